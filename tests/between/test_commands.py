@@ -135,14 +135,14 @@ def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         env = own_folders(folder)
         choice_after = chance.choice((0, 1, 12, 30, 60, 150))
-        line = _line(words, fault, chance, choice_after)
+        line = _make_line(words, fault, chance, choice_after)
         stack.callback(line.clear_away)
-        holder = _holder(line, env, stack) if words.is_client else None
+        holder = _start_holder(line, env, stack) if words.is_client else None
         teller = Teller([*words.words, *words.robot, "--port", line.port], env)
         stack.callback(teller.end)
         if holder is not None:
             line.begin(fault, choice_after)
-        has_ended = _play(teller, line, words, chance, holder)
+        has_ended = _play_fault(teller, line, words, chance, holder)
         wrong = [] if has_ended else ["it has no end"]
         if not has_ended:
             teller.process.kill()
@@ -157,13 +157,13 @@ def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
                      teller.ended_s - began_s, tuple(wrong), teller.text)  # fmt: skip
 
 
-def _line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLine:
+def _make_line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLine:
     if words.robot:
         return BadEsp32Line(fault, chance, after)
     return BadLine(Fault("nothing") if words.is_client else fault, chance, after, with_program())
 
 
-def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
+def _start_holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Teller:
     """Start `tsc monitor --hold` on the port, which meets its robot before the fault."""
     holder = Teller(["monitor", "--hold", "--port", line.port], env)
     stack.callback(holder.end)
@@ -174,7 +174,7 @@ def _holder(line: BehindBadLine, env: dict[str, str], stack: ExitStack) -> Telle
     return holder
 
 
-def _play(
+def _play_fault(
     teller: Teller, line: BehindBadLine, words: Words, chance: Random, holder: Teller | None
 ) -> bool:
     """Apply the fault with a person present; return whether the command has ended. If there are two
@@ -245,7 +245,7 @@ def list_faults(command: TriedCommand, room_s: float = TOLERANCE_S) -> list[str]
     return [*command.wrong, *([f"silent for {command.silence_s:.1f} s"] if silent else [])]
 
 
-def all_tried(rows: Sequence[tuple[Words, Fault, int]]) -> list[TriedCommand]:
+def try_all(rows: Sequence[tuple[Words, Fault, int]]) -> list[TriedCommand]:
     with_program()
     with ThreadPoolExecutor(WORKERS) as pool:
         return list(pool.map(lambda row: try_command(*row), rows))
@@ -284,7 +284,7 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
     from tests.support import sampling
 
     seed = Random(sampling.seed(request.config)).randrange(10**6)
-    commands = all_tried(draw_cases(SAMPLE_SIZE, seed, is_whole=False))
+    commands = try_all(draw_cases(SAMPLE_SIZE, seed, is_whole=False))
     wrong = {
         f"{tried_command.name}, {tried_command.fault}": (
             list_faults(tried_command, TOLERANCE_IN_CI_S),
@@ -334,7 +334,7 @@ if __name__ == "__main__":
         CLIENT_COMMANDS if options.clients else ESP32_COMMANDS if options.esp32 else ALL_COMMANDS
     )
     began_s = CLOCK.now_s
-    commands = all_tried(draw_cases(options.count, options.seed, options.whole, candidates))
+    commands = try_all(draw_cases(options.count, options.seed, options.whole, candidates))
     print_table(commands)
     faults_by_command = [(tried_command, list_faults(tried_command)) for tried_command in commands]
     for tried_command, reasons in faults_by_command:

@@ -80,7 +80,7 @@ def machine_for(op: Op, code: bytes) -> Machine:
     )
 
 
-def left_by(op: Op, value: int) -> tuple[int, str]:
+def effect_of(op: Op, value: int) -> tuple[int, str]:
     """Push an instruction's arguments and run it; return the number of values that it leaves, and
     its fault."""
     code = code_with(op, value)
@@ -104,7 +104,7 @@ def test_stack_effects() -> None:
             wanted = (1, "DIVIDE_BY_ZERO") if divides else (results, "")
             if op.needs == NEEDS_GO and value:  # a way, and a power that rounds to 0
                 wanted = (0, "NO_POWER")
-            assert left_by(op, value) == wanted, (op.name, value)
+            assert effect_of(op, value) == wanted, (op.name, value)
 
 
 EDGES = (-(2**31), 1 - 2**31, -1001, -1, 0, 1, 500, 1000, 2**31 - 1)

@@ -48,7 +48,7 @@ def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
     return path
 
 
-def at_a_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
+def start_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
     breaks = [word for line in lines for word in ("--break", str(line))]
     port_option = ("--port", robot.port)
     return Terminal("upload", program, "--no-save", *port_option, *breaks, size=(100, 50))
@@ -121,7 +121,7 @@ def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: 
 def test_a_key_steps_one_instruction_of_the_text(
     keys: str, pty_robot: PtyRobot, program: Path
 ) -> None:
-    terminal = at_a_terminal(pty_robot, program, 4)
+    terminal = start_terminal(pty_robot, program, 4)
     for halted_text, *_ in (HALT_BEFORE_4, HALT_BEFORE_6, HALT_BEFORE_7):
         terminal.until(rf"(?s){halted_text.split(':')[0]}.*Ctrl-C: stop\n*$")
         terminal.type(keys)
@@ -139,7 +139,7 @@ def test_a_key_steps_one_instruction_of_the_text(
 
 @pytest.mark.parametrize("key", ["g", "G"])
 def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program: Path) -> None:
-    terminal = at_a_terminal(pty_robot, program, 4, 7)
+    terminal = start_terminal(pty_robot, program, 4, 7)
     for line in (4, 7):
         terminal.until(rf"(?s)before line {line}.*Ctrl-C: stop\n*$")
         terminal.type(key)
@@ -154,7 +154,7 @@ def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program:
 
 def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
     """Keys typed before the halt is reported do not answer it."""
-    terminal = at_a_terminal(pty_robot, program, 4)
+    terminal = start_terminal(pty_robot, program, 4)
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
     terminal.type("x?ssg")
     terminal.until(r"(?s)before line 6.*Ctrl-C: stop\n*$")
@@ -172,7 +172,7 @@ def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_pa
     path = tmp_path / "loop.ts"
     text = "SI|N = 2\nLOOP(N)\nSHOW(N * N + 1)\nN = N - 1\nEND_LOOP\n"
     path.write_text(text, encoding="utf-8")
-    terminal = at_a_terminal(pty_robot, path, 3)
+    terminal = start_terminal(pty_robot, path, 3)
     halts = []
     for k in range(6):
         terminal.until(rf"(?s)(.*Ctrl-C: stop){{{k + 1}}}\n*$")
@@ -184,7 +184,7 @@ def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_pa
 
 
 def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None:
-    terminal = at_a_terminal(pty_robot, program, 4)
+    terminal = start_terminal(pty_robot, program, 4)
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
     terminal.interrupt()
     assert terminal.end() == 2

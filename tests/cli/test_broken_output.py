@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.command import FOREVER, PROGRAM, TSC, Command, inside
+from tests.support.command import FOREVER, PROGRAM, TSC, Command, run_in_process
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.robot_fleet import RobotFleet
 from tests.support.waiting import HANG_LIMIT_S, until
@@ -199,15 +199,15 @@ def test_a_port_that_vanishes_is_no_bug(
     real = connect.Connection.begin_request
     asked = []
 
-    def do(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
+    def ask_and_pull(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
         if limit_ms is None:  # a request after HELLO
             asked.append(make)
         if len(asked) == which:
             pty_robot.pull()
         return real(self, make, limit_ms)
 
-    monkeypatch.setattr(connect.Connection, "begin_request", do)
-    result = inside(*words, "--port", pty_robot.port)
+    monkeypatch.setattr(connect.Connection, "begin_request", ask_and_pull)
+    result = run_in_process(*words, "--port", pty_robot.port)
     assert len(asked) == which
     assert result.code == 3
     assert "is gone" in result.err
@@ -226,7 +226,7 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 600)
     for language, expected in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
-            result = inside(*words, "--port", pty_robot.port, "--lang", language).gives(3)
+            result = run_in_process(*words, "--port", pty_robot.port, "--lang", language).gives(3)
             assert (
                 expected in result.err and "lost" not in result.err and "perdió" not in result.err
             )
@@ -238,19 +238,19 @@ TALKS = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
 PIPE_BYTES = 4096
 
 
-def unread(*words: str) -> Command:
+def start_unread_command(*words: str) -> Command:
     """Return a command that writes to a full pipe."""
     command = Command(*words)
     pipe = command.process.stdout
     assert pipe
     fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
 
-    def waiting() -> int:
+    def count_waiting_bytes() -> int:
         count = array("i", [0])
         fcntl.ioctl(pipe, termios.FIONREAD, count)
         return count[0]
 
-    until(lambda: waiting() > PIPE_BYTES - 100, "the pipe is full")
+    until(lambda: count_waiting_bytes() > PIPE_BYTES - 100, "the pipe is full")
     return command
 
 
@@ -259,7 +259,7 @@ def unread(*words: str) -> Command:
 def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        command = unread("upload", "-e", TALKS, *port_options, *extra)
+        command = start_unread_command("upload", "-e", TALKS, *port_options, *extra)
         assert any(pupil.moves for pupil in room.pupils)
         command.signal(signal.SIGINT)
         assert command.process.wait(HANG_LIMIT_S) == 2
@@ -277,7 +277,7 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
     port_option = ("--port", pty_robot.port)
     if verb == "monitor":
         assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
-    command = unread(verb, *port_option, *(("-e", TALKS) if verb == "upload" else ()))
+    command = start_unread_command(verb, *port_option, *(("-e", TALKS) if verb == "upload" else ()))
     command.signal(signal.SIGINT)
     assert command.process.wait(HANG_LIMIT_S) in (0, 2)
     if verb == "upload":

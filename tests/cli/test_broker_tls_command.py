@@ -12,8 +12,8 @@ import pytest
 from tests.machines.esp32 import HAS_TLS
 from tests.support.certificates import Authority, der
 from tests.support.claimed_robots import claim_with_button
-from tests.support.command import inside, process
-from tests.support.esp32_near import NETWORK, PASSWORD, near
+from tests.support.command import process, run_in_process
+from tests.support.esp32_near import NETWORK, PASSWORD, put_network_in_reach
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
 from tests.support.pty_robot import on
@@ -39,7 +39,7 @@ def school(tmp_path: Path) -> Iterator[School]:
     broker = Mosquitto(tmp_path, "robots", "a secret", authority.rules(NAME))
     robot = Esp32PtyRobot("tinibot32")
     try:
-        near(robot)
+        put_network_in_reach(robot)
         assert claim_with_button(robot).code == 0
         assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
         yield School(robot, broker, authority)
@@ -49,19 +49,19 @@ def school(tmp_path: Path) -> Iterator[School]:
 
 
 def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) -> None:
-    def used(*words: str) -> str:
+    def set_wifi(*words: str) -> str:
         result = on(school.robot, "set", "wifi", *words, "--user", "robots", data=b"a secret\n")
         assert result.code == 0 and "a secret" not in result.out + result.err, result.err
         return result.out
 
     stranger = Authority(tmp_path, "Otra")
-    assert "does not trust its certificate" in used(*school.place(stranger.file))
-    err = used(*school.place())
+    assert "does not trust its certificate" in set_wifi(*school.place(stranger.file))
+    err = set_wifi(*school.place())
     assert "is connected to the broker localhost, in the class 3b" in err
     later = on(school.robot, "set", "wifi").out
     assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
     _, *next_command = shlex.split(err.partition("To see the whole class:  ")[2])
-    assert "no program; nothing is running; yours" in inside(*next_command, data=b"a secret\n").out
+    assert "no program; nothing is running; yours" in run_in_process(*next_command, data=b"a secret\n").out
 
 
 def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:
@@ -81,12 +81,12 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
             ("en", "is not a file with one"),
             ("es", "no es un archivo con un"),
         ):
-            result = inside(*words, "--port", "/none", "--lang", language)
+            result = run_in_process(*words, "--port", "/none", "--lang", language)
             assert result.code == 2 and expected in result.err and result.err.count("\n") == 1, name
     for form in (authority.der, b"Certificate:\n  x\n" + text):
         (tmp_path / "good").write_bytes(form)
         words = ("set", "wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
-        assert inside(*words, "--port", "/none").code == 3, "there is no such port"
+        assert run_in_process(*words, "--port", "/none").code == 3, "there is no such port"
 
 
 def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
 def test_options_that_make_no_sense(words: list[str], message: str, tmp_path: Path) -> None:
     file = str(Authority(tmp_path).file)
     words = [file if word == "CA" else word for word in words]
-    inside("set", "wifi", *words, "--port", "/none").gives(2, message, out="")
+    run_in_process("set", "wifi", *words, "--port", "/none").gives(2, message, out="")
 
 
 def test_every_state_of_a_broker_has_a_sentence() -> None:

@@ -191,10 +191,10 @@ def test_notepad_s_unicode_is_text_in_another_encoding(tmp_path: Path, tsc: Tsc)
 def test_a_file_that_cannot_be_written_is_as_it_was(
     folder: Path, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(*_: object, **__: object) -> None:
+    def fail_full_disk(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("tiniscript.base.files.replace", full)
+    monkeypatch.setattr("tiniscript.base.files.replace", fail_full_disk)
     result = tsc("check", "--fix", "b.ts")
     assert (result.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
     assert (

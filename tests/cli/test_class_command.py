@@ -18,8 +18,8 @@ from typing import cast
 
 import pytest
 
-from tests.support.claimed_robots import as_another, claim_with_button
-from tests.support.command import FOREVER, Command, CommandResult, inside, process
+from tests.support.claimed_robots import become_another_computer, claim_with_button
+from tests.support.command import FOREVER, Command, CommandResult, process, run_in_process
 from tests.support.esp32_near import (
     DRIVE_ACTIONS,
     DRIVE_PROGRAM,
@@ -27,7 +27,7 @@ from tests.support.esp32_near import (
     PASSWORD,
     files_with,
     list_motor_changes,
-    near,
+    put_network_in_reach,
 )
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
@@ -59,7 +59,7 @@ class Class(list[Esp32PtyRobot]):
         self.broker = Mosquitto(folder, "robots", SECRET.decode())
         super().__init__(Esp32PtyRobot("tinibot32", seed) for seed in SEEDS)
         for robot in self:
-            near(robot)
+            put_network_in_reach(robot)
             assert claim_with_button(robot).code == 0
             assert on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
             result = on(
@@ -104,7 +104,7 @@ def tsc(room: Class, *words: str) -> CommandResult:
     return result
 
 
-def driving(room: Class) -> Command:
+def start_endless_upload(room: Class) -> Command:
     """A command that stays and has all robots drive."""
     command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
     all_drive(room)
@@ -129,7 +129,7 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     assert result.out.count("SHOW 7") == 2, result
     assert all(list_motor_changes(robot)[-2:] == DRIVE_ACTIONS for robot in room)
     assert files_with(tmp_path / "cache", SECRET) == []
-    command = driving(room)
+    command = start_endless_upload(room)
     result = tsc(room, "stop")
     assert not any(robot.moves for robot in room)
     assert (result.code, result.out.count("has confirmed")) == (0, 2), result
@@ -147,7 +147,7 @@ def test_who_has_no_key_sees_and_stops(
     """Clients without the broker's password do not see the class."""
     tsc(room, "upload", "-e", FOREVER, "--detach").gives(0)
     all_drive(room)
-    as_another(monkeypatch, tmp_path)
+    become_another_computer(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
         result = process("class", *room.access, data=data)
         assert result.code in (2, 3) and result.out == "" and "assword" in result.err, data
@@ -163,13 +163,13 @@ def test_who_has_no_key_sees_and_stops(
 
 def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     """A robot keeps its client for 3 s; another client waits for that, and then gets a message."""
-    command = driving(room)
+    command = start_endless_upload(room)
     command.signal(signal.SIGSTOP)
     begun_ms = [robot.robot_ms for robot in room]
     for robot, began_ms in zip(room, begun_ms, strict=True):
         assert robot.stands_after_ms(began_ms) < 2000, "the dead-man timer is a second"
     command.process.kill()
-    command = driving(room)
+    command = start_endless_upload(room)
     command.process.kill()
     command.process.wait()
     tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(0)
@@ -332,11 +332,11 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     """A stranger's retained messages never reach a terminal unescaped."""
-    inside("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
+    run_in_process("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
     broker_option = ("--broker", f"127.0.0.1:{broker.port}")
     for words in ([], ["stop"], ["upload", "-e", DRIVE_PROGRAM], ["show"]):
-        inside("class", *words, *broker_option).gives(3, "no robot of the class class")
-    assert inside("class", "--tls", *broker_option).code == 3
+        run_in_process("class", *words, *broker_option).gives(3, "no robot of the class class")
+    assert run_in_process("class", "--tls", *broker_option).code == 3
     stranger = broker.connect_client()
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
@@ -356,7 +356,7 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
 ])  # fmt: skip
 def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: list[str]) -> None:
     for language in ("en", "es"):
-        result = inside("class", *words, "--lang", language)
+        result = run_in_process("class", *words, "--lang", language)
         assert result.code == 2 and result.err.startswith("tsc: ") and not result.out
 
 
@@ -365,7 +365,7 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
     ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
 ])  # fmt: skip
 def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
-    result = inside("set", "wifi", *words, "--port", "/none", data=PASSWORD)
+    result = run_in_process("set", "wifi", *words, "--port", "/none", data=PASSWORD)
     assert result.code == 2 and result.err.startswith("tsc: ")
 
 
@@ -385,7 +385,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     assert "older than this tsc" in exception_info.value.sentence("en")
 
 
-def keep(client: Broker, topic: str, payload: bytes) -> None:
+def retain_message(client: Broker, topic: str, payload: bytes) -> None:
     """Make a broker retain a message."""
     client._client.publish(topic, payload, qos=1, retain=True).wait_for_publish(HANG_LIMIT_S)
     client.close()
@@ -395,12 +395,12 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     broker: Mosquitto,
 ) -> None:
     place_options = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
-    keep(broker.connect_client(), f"{ROOT}/3b/big", bytes(5000))
+    retain_message(broker.connect_client(), f"{ROOT}/3b/big", bytes(5000))
     named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
     result = process("class", "list", *place_options).gives(3, *named)
     assert "no answer of a broker" not in result.err
     process("class", "stop", *place_options).gives(3, "the stop for all robots", *named)
-    keep(broker.connect_client(), f"{ROOT}/3b/0badcafe", b"-ANA")
+    retain_message(broker.connect_client(), f"{ROOT}/3b/0badcafe", b"-ANA")
     process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
@@ -408,9 +408,9 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
 def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> None:
     access = Access("robots", SECRET.decode())
     topic = f"{ROOT}/3b/{SEEDS[0] ^ 1:08x}"
-    keep(Broker("127.0.0.1", room.broker.port, access), topic, bytes(5000))
+    retain_message(Broker("127.0.0.1", room.broker.port, access), topic, bytes(5000))
     tsc(room).gives(0, topic, out=("12345678", "0badcafe"))
-    command = driving(room)
+    command = start_endless_upload(room)
     result = tsc(room, "stop").gives(0, topic)
     assert not any(robot.moves for robot in room) and result.out.count("has confirmed") == 2
     assert command.wait_for_result().code != 0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import OBSTACLE, PROGRAM, Tsc, inside
+from tests.support.command import OBSTACLE, PROGRAM, Tsc, run_in_process
 from tests.support.rows import each_row
 from tiniscript.base.limits import CODE_BYTES
 from tiniscript.bytecode.image import pack, unpack
@@ -171,8 +171,8 @@ def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
     result = tsc("run", program.with_suffix(".bin"))
     assert result.out == "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"
-    assert inside("run", "-", data=PROGRAM.encode()).out == result.out
-    assert inside("check", "-", data=b"S = 5").code == 1
+    assert run_in_process("run", "-", data=PROGRAM.encode()).out == result.out
+    assert run_in_process("check", "-", data=b"S = 5").code == 1
 
 
 def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:

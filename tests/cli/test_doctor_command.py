@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from tests.support import foreign_boards as boards
-from tests.support.command import FOREVER, Command, Tsc, inside, process
+from tests.support.command import FOREVER, Command, Tsc, process, run_in_process
 from tests.support.pty_end import PtyEnd
-from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.simulated_ends import Firmware
 from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
@@ -57,7 +57,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
 def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
     """Both a run left alone, and one that another tsc attends."""
     if is_others:
-        command = uploading(pty_robot)
+        command = start_endless_upload(pty_robot)
     else:
         assert on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save").code == 0
     result = on(pty_robot, "doctor", "--json")
@@ -120,12 +120,12 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
 def test_a_port_that_another_program_has_locked() -> None:
     with PtyEnd(Firmware()) as end:
         holder = open_port(end.port, 9600)
-        result = inside("doctor", "--port", end.port)
+        result = run_in_process("doctor", "--port", end.port)
         holder.close()
         assert result.code == 3
         assert "1. Another program is using this port (sure)" in result.out
         assert "does not say by which program" in result.out
-        assert inside("doctor", "--port", end.port).code == 0
+        assert run_in_process("doctor", "--port", end.port).code == 0
 
 
 def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:

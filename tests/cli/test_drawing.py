@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from tests.support.command import FOREVER, inside
+from tests.support.command import FOREVER, run_in_process
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
 from tiniscript.base.trace import Ending, Event, Senses
@@ -42,9 +42,9 @@ def run_to_end(
     return terminal
 
 
-def plain(*arguments: str) -> str:
+def plain_output(*arguments: str) -> str:
     """Return the output of `tsc run` without a terminal."""
-    return inside("run", *arguments).out
+    return run_in_process("run", *arguments).out
 
 
 def row(lines: list[str], name: str) -> list[str]:
@@ -72,7 +72,7 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
         assert written_bytes.count(HIDE_CURSOR) == 1 and written_bytes.rindex(
             SHOW_CURSOR
         ) > written_bytes.rindex(HIDE_CURSOR)
-    trace = plain("-e", OBSTACLES, *SENSOR_OPTIONS).splitlines()
+    trace = plain_output("-e", OBSTACLES, *SENSOR_OPTIONS).splitlines()
     top = next(k for k in range(len(lines)) if lines[k].startswith("0 "))
     assert lines[top : top + len(trace)] == trace
     drawn = picture(lines)
@@ -90,7 +90,7 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
 def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
     file = tmp_path / "trace"
     terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", "20", output=file)
-    assert file.read_bytes() == plain("-e", OBSTACLES, *SENSOR_OPTIONS).encode()
+    assert file.read_bytes() == plain_output("-e", OBSTACLES, *SENSOR_OPTIONS).encode()
     assert b"MOTORS" not in terminal.written
     assert picture(terminal.whole())[0].startswith("── TiniBot")
 
@@ -123,8 +123,8 @@ def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
 
 
 def test_without_a_terminal_there_is_no_picture() -> None:
-    result = inside("run", "-e", OBSTACLES, *SENSOR_OPTIONS, "--show")
-    assert (result.code, result.out) == (0, plain("-e", OBSTACLES, *SENSOR_OPTIONS))
+    result = run_in_process("run", "-e", OBSTACLES, *SENSOR_OPTIONS, "--show")
+    assert (result.code, result.out) == (0, plain_output("-e", OBSTACLES, *SENSOR_OPTIONS))
     assert "TiniBot" not in result.err
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
-from tests.support.claimed_robots import as_another, claim_with_button
-from tests.support.command import FOREVER, LONG, Command, inside, process
+from tests.support.claimed_robots import become_another_computer, claim_with_button
+from tests.support.command import FOREVER, LONG, Command, process, run_in_process
 from tests.support.esp32_announced import Announced
 from tests.support.esp32_near import (
     DRIVE_ACTIONS,
@@ -19,7 +19,7 @@ from tests.support.esp32_near import (
     PASSWORD,
     files_with,
     list_motor_changes,
-    near,
+    put_network_in_reach,
 )
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.esp32_radio import port_of, radios
@@ -51,7 +51,7 @@ def ask_radios(robot: Esp32PtyRobot, what: str) -> str:
 @pytest.fixture
 def robot_in_network(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     """A robot with an owner, in a network."""
-    near(robot)
+    put_network_in_reach(robot)
     assert claim_with_button(robot).code == 0
     result = on(robot, "set", "wifi", NETWORK, data=PASSWORD + b"\n")
     assert result.code == 0, result.err
@@ -59,7 +59,7 @@ def robot_in_network(robot: Esp32PtyRobot) -> Esp32PtyRobot:
     return robot
 
 
-def driving(robot: Esp32PtyRobot, place: str) -> Command:
+def start_endless_upload(robot: Esp32PtyRobot, place: str) -> Command:
     """A command that stays and has the robot drive, over its network."""
     command = Command("upload", "-e", FOREVER, "--port", place)
     command.until("running")
@@ -85,7 +85,7 @@ def test_a_network_is_set_told_and_forgotten(
         and PASSWORD.decode() not in result.out + result.err
     )
     assert files_with(tmp_path, PASSWORD) == []
-    near(robot_in_network, b"another password")
+    put_network_in_reach(robot_in_network, b"another password")
     robot_in_network.until(
         lambda: "password may be" in on(robot_in_network, "set", "wifi").out, "it is refused"
     )
@@ -124,7 +124,9 @@ def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
     words: tuple[str, ...],
 ) -> None:
     for language in ("en", "es"):
-        result = inside("set", "wifi", *words, "--port", "/none", "--lang", language, data=PASSWORD)
+        result = run_in_process(
+            "set", "wifi", *words, "--port", "/none", "--lang", language, data=PASSWORD
+        )
         assert result.code == 2 and result.err.startswith("tsc: ")
 
 
@@ -133,36 +135,38 @@ def test_two_computers_at_once_over_cable_and_network(
 ) -> None:
     place = f"socket://127.0.0.1:{ask_radios(robot_in_network, 'port')}"
     for words in (("set", "wifi", "Other"), ("set", "wifi", "--forget")):
-        inside(*words, "--port", place, data=PASSWORD).gives(2, "Bluetooth")
-    assert NETWORK in inside("set", "wifi", "--port", place).out
-    assert inside("upload", "-e", DRIVE_PROGRAM, "--port", place).code == 0
+        run_in_process(*words, "--port", place, data=PASSWORD).gives(2, "Bluetooth")
+    assert NETWORK in run_in_process("set", "wifi", "--port", place).out
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", place).code == 0
     assert list_motor_changes(robot_in_network)[-2:] == DRIVE_ACTIONS
-    command = driving(robot_in_network, place)
+    command = start_endless_upload(robot_in_network, place)
     on(robot_in_network, "upload", "-e", DRIVE_PROGRAM).gives(3, "another connection")
     assert "otra conexión" in on(robot_in_network, "live", "F(1, 20)", "--lang", "es").err
-    as_another(monkeypatch, tmp_path)
+    become_another_computer(monkeypatch, tmp_path)
     assert on(robot_in_network, "doctor").code == 0
     assert robot_in_network.moves
     assert on(robot_in_network, "stop").code == 0
     assert not robot_in_network.moves
     assert "stopped" in command.wait_for_result().out + command.wait_for_result().err
-    assert inside("upload", "-e", DRIVE_PROGRAM, "--port", place).code == 3, "it is another's robot"
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", place).code == 3, (
+        "it is another's robot"
+    )
 
 
 def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:
     bad = BadNetwork(int(ask_radios(robot_in_network, "port")))
     place = f"socket://127.0.0.1:{bad.port}"
     for _ in range(3):
-        inside("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
+        run_in_process("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    assert inside("compile", "-e", LONG, "-o", ours).code == 0
-    assert inside("show", "-o", theirs, "--port", place).code == 0
+    assert run_in_process("compile", "-e", LONG, "-o", ours).code == 0
+    assert run_in_process("show", "-o", theirs, "--port", place).code == 0
     assert ours.read_bytes() == theirs.read_bytes()
-    command = driving(robot_in_network, place)
+    command = start_endless_upload(robot_in_network, place)
     assert process("stop", "--port", place).code == 0
     assert not robot_in_network.moves
     command.wait_for_result()
-    command = driving(robot_in_network, place)
+    command = start_endless_upload(robot_in_network, place)
     began_ms = robot_in_network.robot_ms
     bad.cut()
     assert robot_in_network.stands_after_ms(began_ms) < 2000, (
@@ -179,7 +183,9 @@ PLACE = "tcp://tini-5678"
 
 def is_listed() -> bool:
     rows = [
-        row for row in inside("doctor", "--ports", "--ask").out.split("\n") if row.startswith(PLACE)
+        row
+        for row in run_in_process("doctor", "--ports", "--ask").out.split("\n")
+        if row.startswith(PLACE)
     ]
     return any("announced on the network" in row and "robot tinibot (yours)" in row for row in rows)
 
@@ -192,13 +198,15 @@ def test_a_robot_is_found_and_driven_by_its_name(
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
             assert process("doctor", "--identify", "--port", place).code == 0
         robot_in_network.until(is_listed, "it is listed")  # a busy computer misses data after 2 s
-        command = driving(robot_in_network, PLACE)
+        command = start_endless_upload(robot_in_network, PLACE)
         assert process("stop", "--port", PLACE).code == 0
         assert not robot_in_network.moves
         command.wait_for_result()
         assert on(robot_in_network, "set", "wifi", "--forget").code == 0
         assert ask_radios(robot_in_network, "service") == ""
         robot_in_network.until(
-            lambda: "announces itself" in inside("doctor", "--identify", "--port", PLACE).err,
+            lambda: (
+                "announces itself" in run_in_process("doctor", "--identify", "--port", PLACE).err
+            ),
             "it is silent",
         )

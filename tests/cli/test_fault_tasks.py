@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import inside
+from tests.support.command import run_in_process
 
 DEF, WHEN, TASK = (
     f"{head}\n  W(0.05); {{}}\n{end}\n"
@@ -40,7 +40,7 @@ def path(tmp_path: Path) -> Path:
 def test_its_line_and_its_task(where: str, english: str, spanish: str, path: Path) -> None:
     path.write_text(program(where), encoding="utf-8")
     for language, sentence in (("en", english), ("es", spanish)):
-        result = inside("run", path, "--lang", language)
+        result = run_in_process("run", path, "--lang", language)
         assert result.code == 1 and result.out.endswith("FAULT DIVIDE_BY_ZERO\n")
         line = result.err.splitlines()[-1]
         assert line.startswith(sentence) and line.endswith(FAULT), line
@@ -48,13 +48,15 @@ def test_its_line_and_its_task(where: str, english: str, spanish: str, path: Pat
 
 def test_a_program_without_tasks_has_none(path: Path) -> None:
     path.write_text("N = 0\nTASKS = 1 / N\n", encoding="utf-8")
-    assert inside("run", path).err.endswith("line 2:  TASKS = 1 / N\n")
+    assert run_in_process("run", path).err.endswith("line 2:  TASKS = 1 / N\n")
 
 
 @pytest.mark.parametrize("robot", ["grabber", "tinibot32"])
 def test_from_a_robot(robot: str, path: Path) -> None:
     path.write_text(program("WHEN"), encoding="utf-8")
-    result = inside("upload", path, "--virtual", "--robot", robot)
+    result = run_in_process("upload", path, "--virtual", "--robot", robot)
     assert (result.code, "line 6, in the WHEN on line 5:  " in result.err) == (1, True), result.err
     text = "N = 0; WHEN(TRUE); SHOW(1 / N); END_WHEN"
-    inside("live", text, "--virtual", "--robot", robot).gives(1, "line 1, in the WHEN on line 1:  ")
+    run_in_process("live", text, "--virtual", "--robot", robot).gives(
+        1, "line 1, in the WHEN on line 1:  "
+    )

@@ -283,15 +283,15 @@ def test_an_old_node_and_one_without_npm_are_none(
     monkeypatch.setattr(building, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
 
-    def has(name: str, version: str) -> None:
+    def install_stub(name: str, version: str) -> None:
         (tmp_path / name).write_text(f"#!/bin/sh\necho v{version}\n")
         (tmp_path / name).chmod(0o755)
 
-    has("node", "24.0.0")
+    install_stub("node", "24.0.0")
     assert building.find_tools() is None
-    has("npm", "9.2.0")
+    install_stub("npm", "9.2.0")
     assert building.find_tools() is not None
-    has("node", "20.20.2")
+    install_stub("node", "20.20.2")
     assert building.find_tools() is None
 
 

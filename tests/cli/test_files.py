@@ -17,7 +17,7 @@ from typing import IO
 import platformdirs
 import pytest
 
-from tests.support.command import PROGRAM, Command, Tsc, inside
+from tests.support.command import PROGRAM, Command, Tsc, run_in_process
 from tiniscript.base import files
 from tiniscript.cli import outputs
 from tiniscript.library import source_map
@@ -268,7 +268,7 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
     assert registry.lock_port("socket://x:1") is None
     command.kill()
     assert len(names()) == 2
-    assert json.loads(inside("doctor", "--ports", "--json").out) is not None
+    assert json.loads(run_in_process("doctor", "--ports", "--json").out) is not None
     assert names() == set()
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.command import OBSTACLE, Command, Tsc, inside
+from tests.support.command import OBSTACLE, Command, Tsc, run_in_process
 from tests.support.link_events import event
 from tests.support.rows import each_row
 from tests.support.virtual_command import Robot, robot
@@ -42,7 +42,7 @@ PROGRAM = Path("examples/obstacle_until.ts")
 
 def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
-    result = inside("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
+    result = run_in_process("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
     receipt, *rest = result.out.splitlines()
     assert result.code == 0
     assert receipt.endswith("SB: its button is pressed right away, since there is no keyboard here")
@@ -53,7 +53,7 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     ]  # the program is saved meanwhile
     assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
     assert picture.read_bytes().startswith(b"\x89PNG")
-    inside("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es").gives(
+    run_in_process("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es").gives(
         1, "DIVIDE_BY_ZERO", out="su botón se pulsa de inmediato"
     )
 
@@ -81,18 +81,24 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     """Ends at the time of `--for`, to the millisecond. A mere upload presses no button."""
     text = FOREVER.replace("SI", "SB")
-    result = inside("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
+    result = run_in_process(
+        "upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json"
+    )
     assert result.code == 0
     rows = [json.loads(line) for line in result.out.splitlines()]
     assert [row["event"] for row in rows] == ["RECEIPT", "TIME_OVER", "SAVED"]
     assert rows[0]["is_pushed"] is True
     assert "drove 0 cm in 3.0 s" in result.err
-    result = inside("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
+    result = run_in_process("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
     assert (result.code, result.err) == (0, "")
     assert "SB: waiting for the button" in result.out
-    inside("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(2, "Leave --detach out")
+    run_in_process("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)").gives(
+        2, "Leave --detach out"
+    )
     lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
-    result = inside("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines).gives(0)
+    result = run_in_process(
+        "live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines
+    ).gives(0)
     assert result.out.splitlines()[:2] == ["SHOW 1", "The time set with --for is over."]
     assert "SHOW 2" not in result.out
 
@@ -100,9 +106,9 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
 @pytest.mark.usefixtures("ends_in_time")
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
 def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
-    result = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry).gives(
-        0
-    )
+    result = run_in_process(
+        "upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry
+    ).gives(0)
     # 2.5 s at 80 % of 45 cm a second, to the millisecond
     assert result.out.splitlines()[1:] == [
         "The time set with --for is over.", "Saved. The button starts it.",
@@ -148,15 +154,15 @@ class Upload(Robot):
 def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     upload = Upload()
     # a command that brings a robot along does not take that of another one
-    other = inside("upload", "--virtual", "-e", "SI|SHOW(1)")
+    other = run_in_process("upload", "--virtual", "-e", "SI|SHOW(1)")
     assert "SHOW 1" in other.out and upload.port not in other.out
-    assert inside("doctor", "--virtual").code == 0
-    result = inside("stop", *options)
+    assert run_in_process("doctor", "--virtual").code == 0
+    result = run_in_process("stop", *options)
     assert (result.code, result.out) == (
         0, f"Stopped: the robot on {upload.port} has confirmed the stop.\n",
     )  # fmt: skip
     upload.command.wait_for_result().gives(3, out="The robot was stopped from a computer.")
-    result = inside("stop", *options)
+    result = run_in_process("stop", *options)
     assert result.code == 3  # the robot no longer exists
     assert directory.running_robots() == []
 
@@ -165,8 +171,8 @@ def test_stop_stops_all_that_are_in_use() -> None:
     """Rather one too many than one too few; the last used one, too, where it is there."""
     with robot() as running_robot:
         first, second = Upload("--seed", "1"), Upload("--seed", "2")
-        inside("upload", "--port", running_robot.port, "-e", FOREVER, "--detach")
-        result = inside("stop").gives(0)
+        run_in_process("upload", "--port", running_robot.port, "-e", FOREVER, "--detach")
+        result = run_in_process("stop").gives(0)
         assert result.err == "Done: 3 of 3.\n"
         assert {running_robot.port, first.port, second.port} <= set(
             re.findall(r"socket:\S*\d", result.out)
@@ -193,19 +199,21 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     with robot("--name", "KAT") as running_robot:
-        assert inside("doctor", "--ports", "--ask").code == 0
-        assert inside("doctor", "--identify", "--all").code == 0
+        assert run_in_process("doctor", "--ports", "--ask").code == 0
+        assert run_in_process("doctor", "--identify", "--all").code == 0
         local = running_robot.port.replace("127.0.0.1", "localhost")
-        assert inside("doctor", "--identify", "--port", local).code == 0
-        assert running_robot.port in inside("doctor", "--ports").out
-        result = inside("live", "-", "--port", running_robot.port, data=b"X = 5;SHOW(X)\nS\n")
+        assert run_in_process("doctor", "--identify", "--port", local).code == 0
+        assert running_robot.port in run_in_process("doctor", "--ports").out
+        result = run_in_process(
+            "live", "-", "--port", running_robot.port, data=b"X = 5;SHOW(X)\nS\n"
+        )
         assert (result.code, result.out) == (0, "X 5\n")
         lines = running_robot.until("DONE") + running_robot.until("DONE")
         assert sum("SHOW" in line for line in lines) == 1, "what live keeps is not printed"
-    assert "socket" not in inside("doctor", "--ports").out
+    assert "socket" not in run_in_process("doctor", "--ports").out
     known_ports.remember(running_robot.port, "KAT")  # remembered by a tsc that found it
-    assert "socket" not in inside("doctor", "--ports").out
-    inside("start").gives(3, "is gone")
+    assert "socket" not in run_in_process("doctor", "--ports").out
+    run_in_process("start").gives(3, "is gone")
 
 
 # -- a run without a robot ------------------------------------------------------------------------
@@ -306,19 +314,19 @@ def test_up_to_three_robots_are_named() -> None:
 def test_the_robot_that_answers_says_which_kit_it_has() -> None:
     with robot("--robot", "liner", "--world", "line") as running_robot:
         kit_note = "liner is connected; tsc compiles for it.\n"
-        result = inside("check", *LINE, "--virtual")
+        result = run_in_process("check", *LINE, "--virtual")
         assert (result.code, result.err) == (0, kit_note)
-        result = inside("upload", *LINE, "--port", running_robot.port, "--no-run")
+        result = run_in_process("upload", *LINE, "--port", running_robot.port, "--no-run")
         assert (result.code, result.err) == (0, kit_note)
-        result = inside("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
+        result = run_in_process("live", "SHOW(LINE_L)", "--lang", "es").gives(0)
         assert result.err == "El robot conectado: liner. tsc compila para él.\n"
         # a program of the default robot would be for another kit than the robot has
-        inside("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
+        run_in_process("upload", "-e", "SHOW(DISTANCE)").gives(1, "liner has no DISTANCE")
         # Programs that suit any robot print nothing, and slips do not suggest a robot.
-        assert inside("upload", "-e", "SI|S").err == ""
-        assert "TS103" in inside("upload", "-e", "SHOW(LIN)").err
+        assert run_in_process("upload", "-e", "SI|S").err == ""
+        assert "TS103" in run_in_process("upload", "-e", "SHOW(LIN)").err
         # A robot named by the user is used.
-        inside("upload", *LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
+        run_in_process("upload", *LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
 
 
 def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
@@ -327,9 +335,9 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
     profile.write_text(shipped_path.read_text(encoding="utf-8").replace("LIGHT_R", "SIREN"))
     with robot("--robot", profile):
         text = "SI|SHOW(SIREN)"
-        assert "TS103" in inside("upload", "-e", text).err  # the word is unknown so far
-        assert inside("doctor", "--robot", profile).code == 0
-        result = inside("upload", "-e", text)
+        assert "TS103" in run_in_process("upload", "-e", text).err  # the word is unknown so far
+        assert run_in_process("doctor", "--robot", profile).code == 0
+        result = run_in_process("upload", "-e", text)
         assert (result.code, result.err) == (0, "own is connected; tsc compiles for it.\n")
     [(path, given_profile)] = given.profiles()
     assert path == str(profile)

@@ -15,7 +15,7 @@ from typing import Any, cast
 
 import pytest
 
-from tests.support.command import inside
+from tests.support.command import run_in_process
 from tests.support.robot_fleet import RobotFleet, known_fleet
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import robots
@@ -61,7 +61,7 @@ class Room:
         return [pupil.actions.count(DRIVE_ACTION) for pupil in self.fleet.pupils]
 
 
-def stepping(
+def step_calls(
     monkeypatch: pytest.MonkeyPatch, room: Room, owner: object, name: str, before: int, after: int
 ) -> None:
     """Make calls of a function, whose first argument contains a port, pass two stages."""
@@ -97,9 +97,9 @@ def test_after_ctrl_c_nothing_starts(
             *(rng.choice((OPENING_STAGE, OPENED_STAGE, ASKED_STAGE, DRIVING_STAGE)) for _ in "23"),
         ],
     )
-    stepping(monkeypatch, room, opening, "connection_to", OPENING_STAGE, OPENED_STAGE)
-    stepping(monkeypatch, room, Client, "meet", ASKING_STAGE, ASKED_STAGE)
-    stepping(monkeypatch, room, Client, "send_program", SENDING_STAGE, DRIVING_STAGE + 1)
+    step_calls(monkeypatch, room, opening, "connection_to", OPENING_STAGE, OPENED_STAGE)
+    step_calls(monkeypatch, room, Client, "meet", ASKING_STAGE, ASKED_STAGE)
+    step_calls(monkeypatch, room, Client, "send_program", SENDING_STAGE, DRIVING_STAGE + 1)
     interrupt = Fleet.interrupt_robots
 
     def press(_: Fleet) -> None:
@@ -113,14 +113,14 @@ def test_after_ctrl_c_nothing_starts(
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
     monkeypatch.setattr(Fleet, "interrupt_robots", interrupt_and_note)
-    result = inside("upload", "-e", ENDLESS_PROGRAM, "--all").gives(2)
+    result = run_in_process("upload", "-e", ENDLESS_PROGRAM, "--all").gives(2)
     assert room.pressed.is_set()
     assert room.count_states() == room.starts, (room.stages, result)
     assert not any(pupil.moves for pupil in fleet.pupils)
 
 
 @contextmanager
-def not_passed_on() -> Iterator[None]:
+def interrupt_contained() -> Iterator[None]:
     """A Ctrl-C ends here, and no run of the tests."""
     try:
         yield
@@ -176,11 +176,11 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
         if how == "stop":  # an unreadable output acts like a first Ctrl-C
             room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
-            with not_passed_on():
+            with interrupt_contained():
                 room.fleet.stop_robots()
         else:
             table = SimpleNamespace(draw=room.passes, end=lambda _: None, print_line=lambda _: None)
-            with not_passed_on():
+            with interrupt_contained():
                 room.fleet.print_until_done(cast(FleetTable, table) if how == "a table" else None)
         assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * POLL_INTERVAL_S], (
             "each is told"

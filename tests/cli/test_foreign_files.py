@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import TSC, Tsc, inside
+from tests.support.command import TSC, Tsc, run_in_process
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.rows import each_row
 from tests.support.waiting import HANG_LIMIT_S
@@ -124,7 +124,7 @@ def test_nobody_else_reads_the_programs_in_the_cache(
     maps.mkdir(parents=True)
     maps.chmod(0o755)  # permissions of an older tsc
     (tmp_path / "p.ts").write_text("SI|S // mine")
-    assert inside("compile", tmp_path / "p.ts").code == 0
+    assert run_in_process("compile", tmp_path / "p.ts").code == 0
     (file,) = maps.iterdir()
     assert "mine" in file.read_text()
     assert [stat.S_IMODE(path.stat().st_mode) for path in (maps, file)] == [0o700, 0o600]
@@ -145,7 +145,9 @@ def test_a_link_leads_to_a_foreign_file_and_a_pipe_is_none(tsc: Tsc, tmp_path: P
 def test_a_picture_and_rows(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     for _ in range(2):
-        assert inside("robot", "--for", "0.1", "--hurry", "max", "--plot", picture).code == 0
+        assert (
+            run_in_process("robot", "--for", "0.1", "--hurry", "max", "--plot", picture).code == 0
+        )
         assert not is_foreign(picture)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import PROGRAM, Tsc, inside
+from tests.support.command import PROGRAM, Tsc, run_in_process
 from tests.support.rows import each_row
 from tests.support.terminal import Terminal
 from tests.support.texts import LANGUAGES
@@ -307,7 +307,7 @@ def test_help_that_goes_elsewhere_is_never_paged(
 ) -> None:
     marker = tmp_path / "begun"
     monkeypatch.setenv("PAGER", f"touch {marker}")
-    result = inside("help", "upload", "--lang", "en")
+    result = run_in_process("help", "upload", "--lang", "en")
     assert (result.code, result.out, marker.exists()) == (0, help.help_of("upload", "en"), False)
 
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tiniscript.base import files
 from tiniscript.bytecode import image as images
 from tiniscript.cli import outputs
@@ -55,7 +55,7 @@ def add_key(number: int) -> None:
     key_file().add([RobotKey(number, 0, bytes((number,)) * 16, LONG_TEXT[:16])])
 
 
-def met_file() -> Path:
+def met_robots_file() -> Path:
     return files.settings_folder() / "robots.json"
 
 
@@ -89,13 +89,13 @@ KEPT_FILES = {
     ),
     "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
     "robots that were met": Kept(
-        lambda number: met_robots.remember_robot(met_file(), f"{number}{LONG_TEXT}", number),
-        lambda: [*met_robots.read_met_robots(met_file()).id_by_place.values()],
+        lambda number: met_robots.remember_robot(met_robots_file(), f"{number}{LONG_TEXT}", number),
+        lambda: [*met_robots.read_met_robots(met_robots_file()).id_by_place.values()],
         met_robots,
     ),
     "robots that may answer": Kept(
-        lambda number: met_robots.accept(met_file(), number),
-        lambda: met_robots.read_met_robots(met_file()).accepted_ids,
+        lambda number: met_robots.accept(met_robots_file(), number),
+        lambda: met_robots.read_met_robots(met_robots_file()).accepted_ids,
         met_robots,
     ),
     "profiles": Kept(
@@ -141,7 +141,9 @@ def wait_for_child(number: int) -> int:
     return os.waitstatus_to_exitcode(os.waitpid(number, 0)[1])
 
 
-def at_line(kept_memory: Kept, line: int, then: Callable[[], object]) -> Callable[[], None]:
+def trace_until_line(
+    kept_memory: Kept, line: int, then: Callable[[], object]
+) -> Callable[[], None]:
     """Return a tracer that counts the executed lines of the writing code, and acts at one."""
     traced_files = {kept_memory.module.__file__, files.__file__}
     lines_left = [line]
@@ -163,7 +165,7 @@ def lines_of(kept_memory: Kept, number: int) -> int:
     read, write = os.pipe()
     count = [0]
 
-    def does() -> None:
+    def count_lines() -> None:
         traced_files = {kept_memory.module.__file__, files.__file__}
 
         def trace(frame: FrameType, event: str, _: Any) -> Any:
@@ -175,14 +177,14 @@ def lines_of(kept_memory: Kept, number: int) -> int:
         sys.settrace(None)
         os.write(write, count[0].to_bytes(4, "little"))
 
-    assert wait_for_child(fork_child(does)) == 0
+    assert wait_for_child(fork_child(count_lines)) == 0
     line_count = int.from_bytes(os.read(read, 4), "little")
     os.close(read)
     os.close(write)
     return line_count
 
 
-def fresh(kept_memory: Kept, tmp_path: Path) -> list[int]:
+def restore(kept_memory: Kept, tmp_path: Path) -> list[int]:
     """Restore the state with the first value stored; return the stored values."""
     for folder in tmp_path.iterdir():
         for path in sorted(folder.rglob("*"), reverse=True):
@@ -198,29 +200,31 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     kept_memory = KEPT_FILES[name]
-    fresh(kept_memory, tmp_path)
+    restore(kept_memory, tmp_path)
     lines = lines_of(kept_memory, SECOND_NUMBER)
     assert lines > 10
     lines_reached = set()
-    for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = fresh(kept_memory, tmp_path)
+    for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
+        before = restore(kept_memory, tmp_path)
 
         def kill_at_line(line: int = line) -> None:
-            at_line(kept_memory, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
+            trace_until_line(kept_memory, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
             kept_memory.add(SECOND_NUMBER)
 
         assert wait_for_child(fork_child(kill_at_line)) == -signal.SIGKILL, line
         all_after = kept_memory.all()
-        assert sorted(all_after) in (before, with_more(kept_memory, before, SECOND_NUMBER)), line
+        assert sorted(all_after) in (before, expected_values(kept_memory, before, SECOND_NUMBER)), (
+            line
+        )
         lines_reached.add(len(all_after))
         kept_memory.add(THIRD_NUMBER)
-        assert sorted(kept_memory.all()) == with_more(
+        assert sorted(kept_memory.all()) == expected_values(
             kept_memory, sorted(all_after), THIRD_NUMBER
         ), line
     assert lines_reached
 
 
-def with_more(kept_memory: Kept, counts_before: list[int], number: int) -> list[int]:
+def expected_values(kept_memory: Kept, counts_before: list[int], number: int) -> list[int]:
     return [number] if kept_memory.is_alone else [*counts_before, number]
 
 
@@ -228,7 +232,7 @@ def with_more(kept_memory: Kept, counts_before: list[int], number: int) -> list[
 def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
     kept_memory = KEPT_FILES[name]
     for most in (0, 1, 10, 60):
-        before = fresh(kept_memory, tmp_path)
+        before = restore(kept_memory, tmp_path)
 
         def cut(most: int = most) -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
@@ -239,7 +243,9 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
         assert kept_memory.all() == before, most
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
         kept_memory.add(SECOND_NUMBER)
-        assert sorted(kept_memory.all()) == with_more(kept_memory, before, SECOND_NUMBER), most
+        assert sorted(kept_memory.all()) == expected_values(kept_memory, before, SECOND_NUMBER), (
+            most
+        )
 
 
 @pytest.mark.sampled("name", keep=2)
@@ -249,15 +255,17 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
 ) -> None:
     """One is paused at a line; the other one ends meanwhile, or waits for it."""
     kept_memory = KEPT_FILES[name]
-    fresh(kept_memory, tmp_path)
+    restore(kept_memory, tmp_path)
     lines = lines_of(kept_memory, SECOND_NUMBER)
-    for line in some_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = fresh(kept_memory, tmp_path)
+    for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
+        before = restore(kept_memory, tmp_path)
         arrived, holds = os.pipe(), os.pipe()
         say = os.pipe()
 
         def pause_at_line(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
-            at_line(kept_memory, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1)))()
+            trace_until_line(
+                kept_memory, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1))
+            )()
             kept_memory.add(SECOND_NUMBER)
 
         def other(say: Any = say) -> None:
@@ -282,16 +290,16 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
 ) -> None:
     """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""
     kept_memory = KEPT_FILES[name]
-    before = fresh(kept_memory, tmp_path)
+    before = restore(kept_memory, tmp_path)
     now_s = 0.0
 
-    def passes(seconds: float) -> None:
+    def pass_time(seconds: float) -> None:
         nonlocal now_s
         now_s += seconds
         assert now_s < 2 * files.LOCK_WAIT_S, "it waits for ever"
 
     monkeypatch.setattr(files, "monotonic", lambda: now_s)
-    monkeypatch.setattr(files, "sleep", passes)
+    monkeypatch.setattr(files, "sleep", pass_time)
     with ExitStack() as stack:
         for lock in [*tmp_path.rglob(f"*{files.LOCK_ENDING}")]:
             stack.enter_context(
@@ -303,7 +311,7 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
                 kept_memory.add(SECOND_NUMBER)
             assert sorted(kept_memory.all()) in (
                 before,
-                with_more(kept_memory, before, SECOND_NUMBER),
+                expected_values(kept_memory, before, SECOND_NUMBER),
             )
     kept_memory.add(THIRD_NUMBER)
     assert THIRD_NUMBER in kept_memory.all()

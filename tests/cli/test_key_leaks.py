@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.claimed_robots import claim_with_button
-from tests.support.command import Command, inside
+from tests.support.command import Command, run_in_process
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.link.keys import KeyFile
 
@@ -43,14 +43,17 @@ def test_a_key_is_in_its_file_alone(
     assert len(secrets) == 12 and has_one(secrets, KeyFile().path.read_bytes())
     output = ""
     for verb in (*VERBS, ("doctor", "--report", str(tmp_path / "report.txt"))):
-        result = inside(*verb) if "--ports" in verb else on(pty_robot, *verb)
+        result = run_in_process(*verb) if "--ports" in verb else on(pty_robot, *verb)
         assert result.code != 2, result.err
         output += result.out + result.err
     with monkeypatch.context() as debugging:
         debugging.setenv("TINISCRIPT_DEBUG", "1")
         result = on(pty_robot, "doctor", "--json")
         output += result.out + result.err
-    output += inside("set", "owner", "--list").out + inside("set", "owner", "--list", "--json").out
+    output += (
+        run_in_process("set", "owner", "--list").out
+        + run_in_process("set", "owner", "--list", "--json").out
+    )
     link = Command("monitor", "--hold", "--port", pty_robot.port)
     link.until("Ctrl-C")
     output += on(pty_robot, "upload", "-e", "SI|F(0.1, 80)").out

@@ -12,7 +12,7 @@ from contextlib import closing
 
 import pytest
 
-from tests.support.command import FOREVER, Command, CommandResult, inside
+from tests.support.command import FOREVER, Command, CommandResult, run_in_process
 from tests.support.robot_fleet import RobotFleet, known_fleet
 from tests.support.terminal import Terminal
 from tiniscript import robots
@@ -53,7 +53,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
             pupils[number].damages = 97
         for pupil in pupils:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
-        result = inside("upload", "-e", SHORT_PROGRAM, "--all", "--json").gives(3)
+        result = run_in_process("upload", "-e", SHORT_PROGRAM, "--all", "--json").gives(3)
         rows = results(result)
         bad = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
         named = {port: row for port, row in rows.items() if not row["is_absent"]}
@@ -73,10 +73,10 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
-        inside("upload", "-e", FOREVER, "--all", "--detach").gives(3)
+        run_in_process("upload", "-e", FOREVER, "--all", "--detach").gives(3)
         # The program uses no device of a kit.
         assert sum(pupil.moves for pupil in pupils) == ROBOT_COUNT - 2
-        result = inside("stop", "--all").gives(3)
+        result = run_in_process("stop", "--all").gives(3)
         assert not any(pupil.moves for pupil in pupils)
         assert (
             result.out.count("the robot has confirmed the stop") == ROBOT_COUNT - 2
@@ -88,14 +88,14 @@ def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
     *others, last = class_.pupils
     last.babble = babble
-    result = inside("upload", "-e", FOREVER, "--all", "--detach", "--json")
+    result = run_in_process("upload", "-e", FOREVER, "--all", "--detach", "--json")
     rows = results(result)
     assert result.code == 3 and len(result.out) < 10_000
     assert {port for port, row in rows.items() if row["is_done"]} == {
         pupil.port for pupil in others
     }
     assert all(pupil.moves for pupil in others)
-    result = inside("stop", "--all", "--json")
+    result = run_in_process("stop", "--all", "--json")
     rows = results(result)
     assert {port for port, row in rows.items() if row["is_done"]} >= {
         pupil.port for pupil in others
@@ -108,18 +108,18 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
     *others, last = class_.pupils
-    assert inside("upload", "-e", FOREVER, "--all", "--detach").code == 0
+    assert run_in_process("upload", "-e", FOREVER, "--all", "--detach").code == 0
     holder = ports.open_port(last.port, 115_200)
     with monkeypatch.context() as short, closing(holder):
         short.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
-            result = inside("stop", *options, "--json")
+            result = run_in_process("stop", *options, "--json")
             rows = results(result)
             assert result.code == 3 and not rows[last.port]["is_done"]
             assert all(rows[pupil.port]["is_done"] for pupil in others)
             assert not any(pupil.moves for pupil in others)
-            inside("start", "--port", others[0].port, "--detach")
-    inside("stop", "--all").gives(0)
+            run_in_process("start", "--port", others[0].port, "--detach")
+    run_in_process("stop", "--all").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
 
 
@@ -132,7 +132,7 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
         return command
 
     command = drive_all()
-    result = inside("stop", "--all", "--json").gives(0)
+    result = run_in_process("stop", "--all", "--json").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
     rows = [row for row in results(result).values() if not row["is_absent"]]
     assert len(rows) == len(class_.pupils)
@@ -151,28 +151,34 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
 
 def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     """Each named port must have a robot."""
-    assert inside("upload", "-e", "F(2 80)", "--all").code == 1
+    assert run_in_process("upload", "-e", "F(2 80)", "--all").code == 1
     assert not any(pupil.heard for pupil in class_.pupils)
-    assert inside("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
-    assert inside("upload", "-e", "SB|S", "--all").code == 0
+    assert (
+        run_in_process("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
+    )
+    assert run_in_process("upload", "-e", "SB|S", "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    result = inside("doctor", "--all").gives(0)
+    result = run_in_process("doctor", "--all").gives(0)
     rows = [line.split("(")[1].split(")")[0] for line in result.out.splitlines()]
     assert sorted(rows) == sorted(names)
     assert result.out.count("nothing is running") == len(names)
     ports_of = ("--port", names[0], "--port", names[2])
-    robots_by_port = results(inside("doctor", "--count", "3", "--json", *ports_of))
+    robots_by_port = results(run_in_process("doctor", "--count", "3", "--json", *ports_of))
     assert set(robots_by_port) == {names[0], names[2]}
     assert all(row["round_trips"] == 3 for row in robots_by_port.values())
-    result = inside("upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save").gives(3)
+    result = run_in_process(
+        "upload", "-e", "SI|X = DISTANCE;SHOW(1 / X)", "--all", "--no-save"
+    ).gives(3)
     assert result.out.count("DIVIDE_BY_ZERO") == 4
     assert result.out.count("line 1") == 4
-    result = inside(
+    result = run_in_process(
         "doctor", "--identify", "--port", names[0], "--port", "/dev/no-such", "--lang", "es"
     )
     assert result.code == 3
     assert "no existe el puerto /dev/no-such" in result.out
-    assert "3" in inside("doctor", "--count", "3", "--port", names[0], "--port", names[0]).out
+    assert (
+        "3" in run_in_process("doctor", "--count", "3", "--port", names[0], "--port", names[0]).out
+    )
 
 
 @pytest.mark.sampled(of="slow commands")
@@ -181,10 +187,10 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     weak = class_.pupils[1]
     with weak._lock:
         weak.robot.supply(True)
-    inside("upload", "-e", "SB|S", "--port", weak.port)
+    run_in_process("upload", "-e", "SB|S", "--port", weak.port)
     heard = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
-    robots_by_port = results(inside("doctor", "--all", "--count", "3", "--json").gives(3))
-    alone = json.loads(inside("doctor", "--port", weak.port, "--json").gives(3).out)
+    robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))
+    alone = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
     wrong = [finding for finding in alone["findings"] if finding["is_wrong"]]
     assert [finding["cause"] for finding in wrong] == ["low_supply"]
     findings = robots_by_port[weak.port]["findings"]
@@ -204,16 +210,16 @@ def pings(heard_bytes: bytes) -> int:
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     first, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
-    assert inside("upload", "-e", first, "--all").code == 0
+    assert run_in_process("upload", "-e", first, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    assert inside("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
-    result = inside("start", "--previous", "--all", "--json").gives(3)
+    assert run_in_process("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
+    result = run_in_process("start", "--previous", "--all", "--json").gives(3)
     rows = results(result)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
     assert "no earlier program" in str(rows[names[0]]["said"])
     checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
     assert len(checksums) == 1
-    result = inside(
+    result = run_in_process(
         "start", "--previous", "--port", names[1], "--port", names[2], "--lang", "es"
     ).gives(0)
     assert result.out.count("vuelve a tener el programa anterior") == 2
@@ -229,13 +235,13 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     port, known_text = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_TIMEOUT_S", 1.0)
-    result = inside("doctor", "--identify", "--all").gives(0)
+    result = run_in_process("doctor", "--identify", "--all").gives(0)
     assert len(result.out.splitlines()) == 4
     assert result.err == f"Done: 4 of 4.\nNo robot responds on {port}.\n"
     monkeypatch.setattr(ports, "list_ports", list)
     monkeypatch.setattr(opening, "ANSWER_TIMEOUT_MS", 1000)
     known_ports.remember(known_text, "R9", is_used=False)
-    inside("doctor", "--identify", "--all").gives(
+    run_in_process("doctor", "--identify", "--all").gives(
         3, "Done: 4 of 5.", out=f"R9 ({known_text}): nothing responds"
     )
     for end in ends:
@@ -252,7 +258,7 @@ def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
     with RobotFleet([TINIBOT] * 2) as fleet:
         places = [pupil.port for pupil in fleet.pupils]
         words = [word for place in places for word in ("--port", place)]
-        inside("upload", "-e", "SI|W(0.1)", "--no-save", *words).gives(0)
+        run_in_process("upload", "-e", "SI|W(0.1)", "--no-save", *words).gives(0)
     memory = known_ports.remembered_ports()
     assert {*places} < {*memory.name_by_port} and memory.last_port == "own"
 
@@ -260,9 +266,11 @@ def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
 def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     for language, words in (("en", "no robot responds"), ("es", "ningún robot responde")):
-        inside("stop", "--all", "--lang", language).gives(3, words)
-        assert inside("stop", "--all", "--port", "x", "--lang", language).code == 2
-        assert inside("doctor", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
+        run_in_process("stop", "--all", "--lang", language).gives(3, words)
+        assert run_in_process("stop", "--all", "--port", "x", "--lang", language).code == 2
+        assert (
+            run_in_process("doctor", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
+        )
 
 
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import pytest
 
-from tests.support.command import Command, inside
+from tests.support.command import Command, run_in_process
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
 from tiniscript.cli.commands.monitor_hold import _Log
@@ -45,7 +45,9 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
 def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
     rows = tmp_path / "rows.csv"
     rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
-    inside("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1").gives(3)
+    run_in_process(
+        "monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1"
+    ).gives(3)
     assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import tiniscript
 from tests.support.casefile import ROOT
-from tests.support.command import Tsc, inside
+from tests.support.command import Tsc, run_in_process
 from tests.support.rows import each_row
 from tests.support.virtual_command import robot
 from tiniscript import ProgramError
@@ -114,11 +114,14 @@ def test_the_examples_are_right_as_they_are(tsc: Tsc) -> None:
 
 def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path) -> None:
     with robot("--robot", "liner", "--world", "line") as running_robot:
-        assert inside("upload", liner, "--port", running_robot.port, "--no-run").gives(0).err == ""
-        assert inside("check", liner, "--virtual").gives(0).err == ""
+        assert (
+            run_in_process("upload", liner, "--port", running_robot.port, "--no-run").gives(0).err
+            == ""
+        )
+        assert run_in_process("check", liner, "--virtual").gives(0).err == ""
     with robot() as running_robot:
-        inside("upload", liner, "--port", running_robot.port).gives(3, "another kit")
-        assert inside("check", liner, "--virtual").gives(0).err == ""
+        run_in_process("upload", liner, "--port", running_robot.port).gives(3, "another kit")
+        assert run_in_process("check", liner, "--virtual").gives(0).err == ""
 
 
 def test_python_takes_it_too() -> None:

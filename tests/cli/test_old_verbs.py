@@ -87,7 +87,7 @@ def commands_in(text: str, is_document: bool, is_robots: bool = False) -> Iterat
         yield from re.findall(r"  tsc ((?:[^ `]+ ?)+)", text)
 
 
-def wrong_in(command: str) -> str | None:
+def find_unknown_word(command: str) -> str | None:
     """Return the word of a command that no table has, or None."""
     if command.startswith(MISSPELLED):
         return None
@@ -120,7 +120,7 @@ def test_what_messages_say_to_type_is_a_command(language: str) -> None:
             is_robots = path.stem == "robot"
             for command in commands_in(text, is_document=False, is_robots=is_robots):
                 count += 1
-                assert wrong_in(command) is None, (path.stem, key, command)
+                assert find_unknown_word(command) is None, (path.stem, key, command)
     assert count > 100
     owned_text = all_said(language, "robot")["remark/NOT_OWNER"]
     assert [*commands_in(owned_text, is_document=False, is_robots=True)]
@@ -134,7 +134,7 @@ def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
             strings = re.findall(r'"((?:\\.|[^"\\\n])*)"', path.read_text(encoding="utf-8"))
             for command in commands_in(" ".join(strings), is_document=False, is_robots=True):
                 count += 1
-                assert wrong_in(command) is None, (path.relative_to(ROOT), command)
+                assert find_unknown_word(command) is None, (path.relative_to(ROOT), command)
     assert count
 
 
@@ -144,7 +144,7 @@ def test_what_is_no_command_is_found_in_what_a_robot_says() -> None:
         "Take other pins with tsc firmwear -b.",
     ):
         (command,) = commands_in(wrong, is_document=False, is_robots=True)
-        assert wrong_in(command) in ("txet", "firmwear")
+        assert find_unknown_word(command) in ("txet", "firmwear")
 
 
 def test_what_documents_say_to_type_is_a_command() -> None:
@@ -155,7 +155,7 @@ def test_what_documents_say_to_type_is_a_command() -> None:
             continue
         for command in commands_in(path.read_text(encoding="utf-8"), is_document=True):
             count += 1
-            assert wrong_in(command) is None, (path.relative_to(ROOT), command)
+            assert find_unknown_word(command) is None, (path.relative_to(ROOT), command)
     assert count > 500
 
 
@@ -172,7 +172,7 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
             now = result.err.rstrip("\n").rpartition("  tsc ")[2]
             verb, *words = shlex.split(now)
             assert command_of(verb, words)[0] == FORMER_COMMANDS[name], now
-            assert "nonsense" not in now and wrong_in(now) is None
+            assert "nonsense" not in now and find_unknown_word(now) is None
 
 
 @each_row("old, now", [

@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 from tests.machines.host_firmware import EMPTY_EEPROM
-from tests.support.claimed_robots import as_another, claim_with_button
-from tests.support.command import FOREVER, Command, inside
+from tests.support.claimed_robots import become_another_computer, claim_with_button
+from tests.support.command import FOREVER, Command, run_in_process
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli import main
 from tiniscript.cli.commands import set_owner
@@ -31,7 +31,7 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
 ) -> None:
     """The press is over before the command continues."""
 
-    def slowly(words: str, file: object = None, flush: bool = False) -> None:
+    def press_slowly(words: str, file: object = None, flush: bool = False) -> None:
         if file is None:
             return
         assert "2 s" in words
@@ -39,7 +39,7 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
         pty_robot.hold()
         pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2400, "the press is over")
 
-    monkeypatch.setattr(set_owner, "print", slowly, raising=False)
+    monkeypatch.setattr(set_owner, "print", press_slowly, raising=False)
     assert main(["set", "owner", "--port", pty_robot.port]) == 0
 
 
@@ -53,7 +53,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     assert ", yours" in on(pty_robot, "doctor", "--count", "1").out
     assert "(yours)" in on(pty_robot, "doctor", "--ports", "--ask").out
     assert "The robot has an owner" not in on(pty_robot, "doctor").out
-    as_another(monkeypatch, tmp_path)
+    become_another_computer(monkeypatch, tmp_path)
     assert ", owned by somebody else" in on(pty_robot, "doctor").out
     assert "(de otro dueño)" in on(pty_robot, "doctor", "--ports", "--ask", "--lang", "es").out
     on(pty_robot, "upload", "-e", DRIVE_PROGRAM).gives(3, "10 s")
@@ -78,15 +78,15 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     all_before = KeyFile().all()
     assert on(pty_robot, "set", "owner", "--give-up").code == 0
     KeyFile().add(all_before)  # like a computer that was not present
-    as_another(monkeypatch, tmp_path)
+    become_another_computer(monkeypatch, tmp_path)
     assert claim_with_button(pty_robot).code == 0
-    as_another(monkeypatch, tmp_path, "settings")
+    become_another_computer(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
         on(pty_robot, "doctor").gives(0, "claimed the robot again.", "10 s")
     assert "lo hizo suyo" in on(pty_robot, "doctor", "--identify", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
     on(pty_robot, "upload", "-e", DRIVE_PROGRAM).gives(3, "is not the one that this computer has")
-    as_another(monkeypatch, tmp_path)
+    become_another_computer(monkeypatch, tmp_path)
     result = on(pty_robot, "upload", "-e", DRIVE_PROGRAM)
     assert result.code == 0 and "claimed the robot again." not in result.err
 
@@ -137,15 +137,15 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert claim_with_button(pty_robot, "--teacher").code == 0
-    as_another(monkeypatch, tmp_path, "pupil")
+    become_another_computer(monkeypatch, tmp_path, "pupil")
     assert claim_with_button(pty_robot).code == 0
     assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil does not get one
-    as_another(monkeypatch, tmp_path, "settings")
+    become_another_computer(monkeypatch, tmp_path, "settings")
     assert "will only run again after" in on(pty_robot, "stop", "--teacher").out
-    as_another(monkeypatch, tmp_path, "pupil")
+    become_another_computer(monkeypatch, tmp_path, "pupil")
     on(pty_robot, "start").gives(3, "teacher")
-    as_another(monkeypatch, tmp_path, "settings")
+    become_another_computer(monkeypatch, tmp_path, "settings")
     assert on(pty_robot, "start").code == 0
     assert {key.which for key in KeyFile().all()} == {KEY_TEACHER}
 
@@ -159,7 +159,7 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
         claim_with_button(pty_robot).code == 0
     )  # the key is made by the command that holds the port
     assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
-    as_another(monkeypatch, tmp_path)  # removes the key from this command
+    become_another_computer(monkeypatch, tmp_path)  # removes the key from this command
     assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert ", yours" in on(pty_robot, "doctor").out
     driving = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
@@ -196,7 +196,7 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     motor_lines = [line for line in pty_robot.actions if line.startswith("MOTORS")]
     assert set(motor_lines) <= {"MOTORS 0 0"}
     [robot] = re.findall("--accept ([0-9a-f]{8})", refused_result.err)
-    inside("set", "owner", "--accept", robot.upper()).gives(0, "", out=robot)
+    run_in_process("set", "owner", "--accept", robot.upper()).gives(0, "", out=robot)
     assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert on(pty_robot, "stop").code == 0
 

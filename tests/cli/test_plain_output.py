@@ -14,7 +14,7 @@ import pytest
 from tests.support.command import PROGRAM, Tsc
 from tests.support.edited_robots import TEXTS
 from tests.support.rows import each_row
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.session_frames import DESCRIPTION
 from tests.support.verbs import parsers, values_of, words_of
 from tiniscript.base.source import printable
@@ -77,7 +77,7 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
         ends = ends[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
         ends = [ending for ending in ends if ending not in ("X", "-e", PROGRAM, "F(1, 80)")]
-    for language in some_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
+    for language in sample_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
         for evil in (
             HOSTILE_TEXT,
             f"DISTANCE={HOSTILE_TEXT}",
@@ -127,7 +127,7 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
         words = [*command_words(verb).split(), *([] if verb == "firmware_board" else ["--robot"])]
         words.append("evil.toml")
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
-        for language in some_of(pytestconfig, f"{verb} {number}", LANGUAGES):
+        for language in sample_of(pytestconfig, f"{verb} {number}", LANGUAGES):
             ends = END_ARGUMENTS["robot"] if verb == "robot" else []
             result = tsc(*words, *ends, "--lang", language)
             assert result.code != 2 or "evil.toml" in result.err

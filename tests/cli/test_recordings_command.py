@@ -8,7 +8,7 @@ from time import monotonic
 
 import pytest
 
-from tests.support.command import Tsc, inside
+from tests.support.command import Tsc, run_in_process
 from tiniscript import compile, robots
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
@@ -29,7 +29,7 @@ HEAD = header_line(REAL, TEXT, robots.load("tinibot"), CHECKSUM)
 SAME_RUN_MESSAGE = "The virtual robot did exactly the same again. Rows compared: "
 
 
-def real(*events: tuple[int, str]) -> bytes:
+def real_recording(*events: tuple[int, str]) -> bytes:
     rows = [Row(*event) for event in events]
     return encode(HEAD, rows, rows[-1].ms if rows else 0).encode()
 
@@ -85,7 +85,7 @@ def test_a_world_of_a_file_is_in_the_file_of_the_run(tsc: Tsc, tmp_path: Path) -
 def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text(TEXT)
-    inside("upload", program, "--virtual", "--record", file).gives(1, "3")
+    run_in_process("upload", program, "--virtual", "--record", file).gives(1, "3")
     recording = decode(file.read_bytes())
     assert (recording.program, recording.text, recording.robot_kind) == (CHECKSUM, TEXT, REAL)
     assert [row.event for row in recording.rows] == ["SHOW 5", "FAULT DIVIDE_BY_ZERO"]
@@ -114,14 +114,16 @@ def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text(READS)
-    result = inside("upload", program, "--virtual", "--world", "obstacles", "--record", file)
+    result = run_in_process(
+        "upload", program, "--virtual", "--world", "obstacles", "--record", file
+    )
     assert result.gives(0, "").err == ""
     recording = decode(file.read_bytes())
     read = {row.event.split()[1] for row in recording.rows if row.is_reading}
     assert read == {"DISTANCE", "LIGHT_L", "LIGHT_R"}
     values = sum(row.event.startswith("SHOW") for row in recording.rows)
     for world in ("obstacles", "line"):
-        result = inside("run", file, "--world", world)
+        result = run_in_process("run", file, "--world", world)
         assert (result.code, result.err) == (
             0,
             f"Both robots did the same. Values compared: {values + 1}.\n",
@@ -134,10 +136,10 @@ def test_a_robot_that_does_not_report_readings_says_so(
     monkeypatch.setattr(upload, "READINGS", 0)
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text("X = DISTANCE;SHOW(1)")
-    result = inside("upload", program, "--virtual", "--record", file).gives(0)
+    result = run_in_process("upload", program, "--virtual", "--record", file).gives(0)
     assert "This robot does not report what its program reads" in result.err
     assert not [row for row in decode(file.read_bytes()).rows if row.is_reading]
-    result = inside("run", file).gives(0)
+    result = run_in_process("run", file).gives(0)
     assert "the recording lacks that reading" in result.err
 
 
@@ -147,19 +149,21 @@ def test_a_virtual_robot_that_hurries_is_recorded_in_its_own_time(
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text("X = 0; LOOP(6); W(2); X = X + 1; SHOW(X); END_LOOP; W(3)")
-    inside("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
+    run_in_process("upload", program, "--virtual", "--hurry", hurry, "--record", file).gives(0)
     events = decode(file.read_bytes()).rows
     assert [event.event for event in events] == [*(f"SHOW {k}" for k in range(1, 7)), "DONE"]
     for event, wanted_ms in zip(events, (*range(2000, 12_001, 2000), 15_000), strict=True):
         assert wanted_ms <= event.ms <= wanted_ms + 100, events
-    result = inside("run", file)
+    result = run_in_process("run", file)
     assert (result.code, result.err) == (0, "Both robots did the same. Values compared: 7.\n")
 
 
 def test_a_run_that_is_stopped_ends_in_the_time_of_the_robot(tmp_path: Path) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
     program.write_text("SHOW(TRUE); W(FOREVER) UNTIL(FALSE)")
-    inside("upload", program, "--virtual", "--hurry", "max", "--for", "30", "--record", file)
+    run_in_process(
+        "upload", program, "--virtual", "--hurry", "max", "--for", "30", "--record", file
+    )
     first, last = decode(file.read_bytes()).rows
     assert (first.event, last.event) == ("SHOW TRUE", "STOPPED")
     assert first.ms <= 100 and last.ms >= 29_900
@@ -186,7 +190,7 @@ def test_a_real_run_of_the_page_is_compared(
     tsc: Tsc, tmp_path: Path, events: tuple[tuple[int, str], ...], code: int, expected: str
 ) -> None:
     file = tmp_path / "run.tsr"
-    file.write_bytes(real(*events))
+    file.write_bytes(real_recording(*events))
     assert not is_foreign(file)
     result = tsc("run", file)
     assert (result.code, result.err[: len(expected)]) == (code, expected)
@@ -195,7 +199,7 @@ def test_a_real_run_of_the_page_is_compared(
 def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path) -> None:
     """PowerShell and Notepad write a byte order mark and other line ends."""
     file = tmp_path / "run.tsr"
-    text = real((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")).decode() + "\n"
+    text = real_recording((200, "SHOW 5"), (400, "FAULT DIVIDE_BY_ZERO")).decode() + "\n"
     for encoding in ("utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"):
         mark = "\ufeff" if encoding.startswith("utf-16-") else ""
         for end in ("\n", "\r\n"):
@@ -211,7 +215,11 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
 @pytest.mark.parametrize(
     ("data", "message", "dicho"),
     [
-        (real((5, "SHOW 1"))[:-4], "is damaged or is not a recorded run (line 3)", "(línea 3)"),
+        (
+            real_recording((5, "SHOW 1"))[:-4],
+            "is damaged or is not a recorded run (line 3)",
+            "(línea 3)",
+        ),
         (HEAD.encode(), "the end of", "le falta el final"),
         (
             b'{"tiniscript_recording": 1}',
@@ -225,11 +233,11 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
         ),
         (HEAD.replace('"tinibot"', '"mine"').encode(), "does not have", "no trae"),
         (
-            real().replace(b"SHOW(5)", b"SHOW(6)"),
+            real_recording().replace(b"SHOW(5)", b"SHOW(6)"),
             "has a different meaning in this tsc",
             "significa otra cosa",
         ),
-        (real((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
+        (real_recording((999_999, "DONE")), "ten minutes at most", "diez minutos como máximo"),
         (HEAD.encode() + b" " * 1_100_000, "is too long", "es demasiado largo"),
     ],
     ids=["torn", "cut", "older", "newer", "robot", "program", "long", "large"],
@@ -276,9 +284,9 @@ def test_what_is_not_recorded_or_played_says_why(
     own = shipped_path.read_text(encoding="utf-8").replace('name = "tinibot"', 'name = "own"')
     Path("own.toml").write_text(own, encoding="utf-8")
     Path("letter").write_bytes(b"a letter")
-    Path("r").write_bytes(real((5, "SHOW 5")))
+    Path("r").write_bytes(real_recording((5, "SHOW 5")))
     tsc(*words).gives(2, message, out="")
-    assert Path("r").read_bytes() == real((5, "SHOW 5")) and not Path("new").exists()
+    assert Path("r").read_bytes() == real_recording((5, "SHOW 5")) and not Path("new").exists()
 
 
 def record(

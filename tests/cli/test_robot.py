@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, Tsc, inside
-from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.command import LONG, Tsc, run_in_process
+from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.simulated_port import simulate
 from tiniscript import compile_text, robots
 from tiniscript.library import opening
@@ -43,21 +43,21 @@ def test_a_port_that_another_program_uses_is_said(
 
 def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
     """It stops after Ctrl-C, the robot's button, a kill, and an unplugged cable."""
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     pressed_ms = pty_robot.robot_ms
     command.signal(signal.SIGINT)
     command.wait_for_result().gives(2, "Stopped: the robot has confirmed the stop.")
     assert pty_robot.actions[-1] == "MOTORS 0 0"
     assert int(pty_robot.timed_actions[-1].split()[0]) <= pressed_ms + 1000
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     pty_robot.push()
     command.wait_for_result().gives(3, out="with its button")
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     command.kill()
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert "LINK_LOST" in on(pty_robot, "doctor").out
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     pty_robot.pull()
     command.wait_for_result().gives(3, "is gone")
 
@@ -66,7 +66,7 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
     with PtyRobot(KIT, bytes_per_ms=2) as pty_robot:
         assert on(pty_robot, "upload", "-e", "SB|F(0.1, 40)").code == 0
         pty_robot.off_after = 250
-        result = inside("upload", "-e", LONG, "--port", pty_robot.port)
+        result = run_in_process("upload", "-e", LONG, "--port", pty_robot.port)
         assert result.code == 3
         assert "lost the connection to the robot" in result.err
         pty_robot.switch_on()
@@ -79,9 +79,9 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
 
 
 def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot) -> None:
-    assert inside("doctor", "--identify").code == 3  # several ports are possible
+    assert run_in_process("doctor", "--identify").code == 3  # several ports are possible
     result = on(pty_robot, "doctor", "--count", "3").gives(0, out="3 round trips")
-    known_fields = json.loads(inside("doctor", "--json").out)["robot"]
+    known_fields = json.loads(run_in_process("doctor", "--json").out)["robot"]
     assert (known_fields["port"], known_fields["kit"], known_fields["robot"]) == (
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
     )  # fmt: skip
@@ -89,8 +89,8 @@ def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot
     assert known_fields["text_level"] == "uno"
     assert "reads text, level uno" in result.out
     with simulate(pty_robot):  # otherwise late data would count as lost
-        assert json.loads(inside("doctor", "--json").out)["robot"]["round_trips"] == 20
-        assert "10 round trips" in inside("upload", "-e", "PING|check_connection").out
+        assert json.loads(run_in_process("doctor", "--json").out)["robot"]["round_trips"] == 20
+        assert "10 round trips" in run_in_process("upload", "-e", "PING|check_connection").out
 
 
 def test_the_level_of_text_is_that_of_two_bits(
@@ -127,7 +127,7 @@ def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
         assert on(pty_robot, "set", "name", name).code == 2
-    assert "Ñandú, remembered   last used" in inside("doctor", "--ports").out
+    assert "Ñandú, remembered   last used" in run_in_process("doctor", "--ports").out
 
 
 def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty: None) -> None:

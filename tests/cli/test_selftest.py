@@ -18,7 +18,7 @@ from unittest import mock
 import pytest
 
 from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
-from tests.support.command import Command, inside
+from tests.support.command import Command, run_in_process
 from tests.support.flicker import Flicker
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on
@@ -40,7 +40,9 @@ GOOD_LIGHT, GOOD_DISTANCE = 500_000, 42_000  # thousandths
 GOOD_READINGS = (GOOD_LIGHT, GOOD_LIGHT, GOOD_DISTANCE)
 
 
-def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str, object]]]:
+def find_with_selftest(
+    pty_robot: PtyRobot, *words: str
+) -> tuple[int, dict[str, dict[str, object]]]:
     """Return the exit code, and each finding by its subject."""
     result = on(pty_robot, "doctor", "--selftest", "--yes", "--json", *words)
     rows = json.loads(result.out)["found"]
@@ -51,7 +53,7 @@ def found_by(pty_robot: PtyRobot, *words: str) -> tuple[int, dict[str, dict[str,
 
 def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
-    code, parts = found_by(pty_robot)
+    code, parts = find_with_selftest(pty_robot)
     assert code == 0
     verdicts = {name: value["verdict"] for name, value in parts.items()}
     sensors = {f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors}
@@ -83,7 +85,7 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     with PtyRobot(kit) as robot:
         middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
         robot.ask(lambda its: its.sense(*map(int, middle)))
-        code, parts = found_by(robot)
+        code, parts = find_with_selftest(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
         same = [{"robot": value} for value, its in kits.items() if its[:2] == kit[:2]]
@@ -94,7 +96,7 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
 
 def test_another_kit_than_was_said() -> None:
     with PtyRobot(robots.load("liner").kit) as robot:
-        code, parts = found_by(robot, "--robot", "tinibot")
+        code, parts = find_with_selftest(robot, "--robot", "tinibot")
     assert code == 3
     assert parts["kit"]["verdict"] == "wrong"
     assert "--robot liner" in str(parts["kit"]["next"])
@@ -106,7 +108,7 @@ def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: st
         pty_robot._take_power()
         number = [name for name, _ in RESETS].index(reset)
         pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY_EEPROM, number)
-    code, parts = found_by(pty_robot)
+    code, parts = find_with_selftest(pty_robot)
     assert code == 3
     assert (parts["supply"]["verdict"], parts["supply"]["cause"]) == ("wrong", finding)
 
@@ -117,7 +119,7 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
     pty_robot.damages = 97
     findings = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
-    _, parts = found_by(pty_robot, "--robot", "liner")
+    _, parts = find_with_selftest(pty_robot, "--robot", "liner")
     assert parts["store"]["cause"] == "unsaved"
     ours = {finding["cause"]: finding for finding in parts.values()}
     assert {finding["cause"] for finding in findings} >= {"low_supply", "wrong_kit", "lossy"}
@@ -132,21 +134,21 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
     low = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
-    _, parts = found_by(pty_robot)
+    _, parts = find_with_selftest(pty_robot)
     first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert parts[first]["cause"] == "stuck"
     assert parts[second]["verdict"] == "ok"
     pty_robot.ask(lambda robot: robot.sense(GOOD_LIGHT, GOOD_LIGHT, 0))
-    code, parts = found_by(pty_robot)
+    code, parts = find_with_selftest(pty_robot)
     assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
     assert parts["sensor DISTANCE"]["verdict"] == "wrong"
     pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
     pty_robot.damages = 100
-    code, parts = found_by(pty_robot)
+    code, parts = find_with_selftest(pty_robot)
     assert code == 3
     assert parts["line"]["cause"] == "lossy"
     pty_robot.damages, pty_robot.off_after = 0, 150
-    code, parts = found_by(pty_robot)
+    code, parts = find_with_selftest(pty_robot)
     assert code == 3
     assert parts["kit"]["verdict"] == "ok", "what was found before is said"
     assert (parts["answers"]["verdict"], parts["answers"]["cause"]) == ("wrong", "plain")
@@ -165,9 +167,9 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
             port = end.port
         if kind == "locked":
             stack.callback(open_port(port, 9600).close)
-        findings = json.loads(inside("doctor", "--port", port, "--json").out)["findings"]
-        result = inside("doctor", "--selftest", "--port", port, "--json").gives(3)
-        text = inside("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
+        findings = json.loads(run_in_process("doctor", "--port", port, "--json").out)["findings"]
+        result = run_in_process("doctor", "--selftest", "--port", port, "--json").gives(3)
+        text = run_in_process("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
     reported = json.loads(result.out)["found"]
     wrong = [finding for finding in findings if finding["is_wrong"]]
     assert wrong and [finding["cause"] for finding in reported] == [
@@ -189,7 +191,7 @@ def test_only_the_port_of_the_self_test_is_opened(
     monkeypatch.setattr("tiniscript.doctor.linux._using_programs", lambda system, port: [])
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
-        result = inside("doctor", "--selftest", "--json").gives(3)
+        result = run_in_process("doctor", "--selftest", "--json").gives(3)
         assert end.heard == b""
     assert json.loads(result.out)["found"][0]["cause"] == "not_opened"
 
@@ -336,10 +338,10 @@ def test_each_cause_of_a_line_that_the_robot_ends(
 ) -> None:
     """The robot still answers, so the other parts are checked too."""
 
-    def does(test: SelfTest, line: str) -> list[int]:
+    def fail(test: SelfTest, line: str) -> list[int]:
         raise CommandError(3, "plain", said="stopped")
 
-    monkeypatch.setattr(SelfTest, "run_line", does)
+    monkeypatch.setattr(SelfTest, "run_line", fail)
     _, out, _ = run_self_test(pty_robot, person(pty_robot), "--json")
     causes = [(finding["what"], finding["cause"]) for finding in json.loads(out)["found"]]
     sensors = [("sensor", "no_reading")] * len(pty_robot.kit.sensors)
@@ -393,10 +395,10 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
         Flicker(robot, number, 20)
     running = SimulatedRobot(robot, HURRIED_PACE)
     try:
-        result = inside(
+        result = run_in_process(
             "doctor", "--selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json"
         )
-        output = inside("doctor", "--port", running.port, "--lang", "en").out
+        output = run_in_process("doctor", "--port", running.port, "--lang", "en").out
     finally:
         running.close()
     (disc,) = [finding for finding in json.loads(result.out)["found"] if finding["what"] == "discs"]
@@ -431,7 +433,9 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
 
 def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
-    inside("doctor", "--selftest", "--port", "/dev/serial-of-Ana", "--report", file).gives(3)
+    run_in_process("doctor", "--selftest", "--port", "/dev/serial-of-Ana", "--report", file).gives(
+        3
+    )
     report = file.read_text(encoding="utf-8")
     assert "Ana" not in report
     assert "tsc doctor" in report

@@ -11,7 +11,7 @@ from unittest import mock
 import pytest
 
 from tests.support.command import FOREVER, Command, process
-from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.waiting import until
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
@@ -22,7 +22,7 @@ from tiniscript.link.sharing import registry
 from tiniscript.link.transmission import CONFIRM_MS
 
 
-def at_once(pty_robot: PtyRobot, *arguments: str) -> bool:
+def takes_no_wait(pty_robot: PtyRobot, *arguments: str) -> bool:
     """Run `tsc` on the robot's port; return whether it took less than a stop is waited for."""
     began_ms = pty_robot.robot_ms
     assert on(pty_robot, *arguments).code == 0
@@ -38,7 +38,7 @@ def test_a_second_stop_is_confirmed_like_the_first(
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     assert pty_robot.moves
     for _ in range(3):
-        assert at_once(pty_robot, "stop")
+        assert takes_no_wait(pty_robot, "stop")
         assert not pty_robot.moves
     assert on(pty_robot, "doctor").code == 0
 
@@ -55,7 +55,7 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 
 @pytest.mark.parametrize("is_shared", [False, True])
 def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
-    server = uploading(pty_robot) if is_shared else None
+    server = start_endless_upload(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
     results = [command.wait_for_result() for command in stops]
     assert [(result.code, result.err) for result in results] == [(0, "")] * 3
@@ -71,7 +71,7 @@ def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
     on(pty_robot, "stop").gives(3, "has not confirmed")
     pty_robot.switch_on()
     link.until("is back")
-    assert at_once(pty_robot, "doctor")
+    assert takes_no_wait(pty_robot, "doctor")
     assert on(pty_robot, "stop").code == 0
 
 

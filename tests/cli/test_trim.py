@@ -11,7 +11,7 @@ import pytest
 
 from tests.machines.host_firmware import EMPTY_EEPROM, HostFirmware
 from tests.support import pty_robot as pty_robots
-from tests.support.command import Command, CommandResult, inside
+from tests.support.command import Command, CommandResult, run_in_process
 from tests.support.pty_robot import PtyRobot
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
@@ -31,13 +31,13 @@ from tiniscript.link.trim import Pace, Trim, trim_from_reply
 KIT = robots.load("tinibot").kit
 
 
-def on(pty_robot: PtyRobot, *arguments: str, data: str = "") -> CommandResult:
+def run_trim(pty_robot: PtyRobot, *arguments: str, data: str = "") -> CommandResult:
     return pty_robots.on(pty_robot, "set", "trim", *arguments, data=data.encode())
 
 
-def keeps(pty_robot: PtyRobot) -> Trim:
+def stored_trim(pty_robot: PtyRobot) -> Trim:
     """Return the trim stored by the robot."""
-    result = on(pty_robot, "--show", "--json").gives(0)
+    result = run_trim(pty_robot, "--show", "--json").gives(0)
     fields = json.loads(result.out)
     pace = fields["pace"]
     trim = Trim(*(fields[name] for name in Trim._fields))
@@ -98,17 +98,17 @@ def test_a_trim_that_makes_no_sense_is_refused() -> None:
 
 
 def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> None:
-    assert on(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
-    result = on(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
+    assert run_trim(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
+    result = run_trim(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert result.out.endswith(
         "has saved: motors swapped, right wheel reversed, right wheel 5 % weaker, "
         "the wheels begin to turn at 12 %, moves in CM and DEG at its kit's speeds\n"
     )
-    assert keeps(pty_robot) == Trim(True, False, True, -5, 12, Pace())
-    assert on(pty_robot, "--exchange", "no", "--balance", "0").code == 0
-    assert keeps(pty_robot) == Trim(False, False, True, 0, 12, Pace())
-    assert "as they are wired, both wheels equally strong" in on(pty_robot, "--reset").out
-    assert keeps(pty_robot) == Trim(pace=Pace())
+    assert stored_trim(pty_robot) == Trim(True, False, True, -5, 12, Pace())
+    assert run_trim(pty_robot, "--exchange", "no", "--balance", "0").code == 0
+    assert stored_trim(pty_robot) == Trim(False, False, True, 0, 12, Pace())
+    assert "as they are wired, both wheels equally strong" in run_trim(pty_robot, "--reset").out
+    assert stored_trim(pty_robot) == Trim(pace=Pace())
 
 
 def test_what_cannot_be_set_is_said_without_a_robot() -> None:
@@ -116,7 +116,7 @@ def test_what_cannot_be_set_is_said_without_a_robot() -> None:
         ("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x"),
         ("--speed-80", "-1"), ("--turn-80", "656"), ("--turn-40", "fast"),
     ):  # fmt: skip
-        result = inside("set", "trim", option, value, "--port", "/nowhere")
+        result = run_in_process("set", "trim", option, value, "--port", "/nowhere")
         assert result.code == 2 and option in result.err, option
 
 
@@ -128,8 +128,8 @@ ANSWERS = "\n4\n1\n2\n2\n1\n\n2\n9\n3\n1\n1\n"
 
 def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot) -> None:
     assert pty_robots.on(pty_robot, "live", "W(0)").code == 0
-    result = on(pty_robot, data=ANSWERS + "2\n").gives(0)
-    assert keeps(pty_robot) == Trim(True, False, True, -8, 15, Pace())
+    result = run_trim(pty_robot, data=ANSWERS + "2\n").gives(0)
+    assert stored_trim(pty_robot) == Trim(True, False, True, -8, 15, Pace())
     assert "a number from 1 to 4" in result.err
     assert result.err.index("One motor turned") < result.err.index("The other motor turned")
     moves = [
@@ -143,7 +143,7 @@ def test_a_person_is_guided_to_a_robot_that_drives_straight(pty_robot: PtyRobot)
     ]  # fmt: skip
 
 
-def of_the_table(cause: str, part: str, **values: str) -> str:
+def text_of_cause(cause: str, part: str, **values: str) -> str:
     """Return the text of a cause in the doctor's table, as this verb prints it."""
     finding = Finding(cause, True, values, part)
     sentences = causes.sentences_of(finding, "en")
@@ -154,16 +154,16 @@ def of_the_table(cause: str, part: str, **values: str) -> str:
 
 
 def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -> None:
-    assert on(pty_robot, "--balance", "7", "--least", "3").code == 0
+    assert run_trim(pty_robot, "--balance", "7", "--least", "3").code == 0
     for answers, expected in (
-        ("\n1\n2\n", of_the_table("same_wheel", "motors")),
-        ("\n5\n", of_the_table("still", "left")),
-        ("\n1\n3\n" + "2\n" * 8, of_the_table("too_weak", "motors", n="40")),
-        ("\n1\n3\n1\n\n" + "2\n" * 3, of_the_table("too_uneven", "motors", n="40")),
+        ("\n1\n2\n", text_of_cause("same_wheel", "motors")),
+        ("\n5\n", text_of_cause("still", "left")),
+        ("\n1\n3\n" + "2\n" * 8, text_of_cause("too_weak", "motors", n="40")),
+        ("\n1\n3\n1\n\n" + "2\n" * 3, text_of_cause("too_uneven", "motors", n="40")),
         ("\n1\n", "the input ended"),
     ):
-        on(pty_robot, data=answers).gives(3, expected)
-        assert keeps(pty_robot) == Trim(balance=7, least=3, pace=Pace()), expected
+        run_trim(pty_robot, data=answers).gives(3, expected)
+        assert stored_trim(pty_robot) == Trim(balance=7, least=3, pace=Pace()), expected
         assert not pty_robot.moves
 
 
@@ -197,13 +197,13 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
 
 
 def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) -> None:
-    assert on(pty_robot, "--balance", "7").code == 0
+    assert run_trim(pty_robot, "--balance", "7").code == 0
     command = Command("set", "trim", "--port", pty_robot.port, data=b"\n")
     pty_robot.until(lambda: pty_robot.moves, "a motor turns")
     command.signal(signal.SIGINT)
     assert command.wait_for_result().code == 2
     assert not pty_robot.moves
-    assert keeps(pty_robot) == Trim(balance=7, pace=Pace())
+    assert stored_trim(pty_robot) == Trim(balance=7, pace=Pace())
 
 
 # -- how fast it is -------------------------------------------------------------------------------
@@ -286,8 +286,8 @@ def test_older_firmware_keeps_none() -> None:
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:
     measuring = "1\n\nx\n-3\n0.5 m\n1e3\n99999\n\n33\n\n66,5 cm\n\n144°\n\n288\n"
-    result = on(pty_robot, data=LIFTED + measuring).gives(0)
-    assert keeps(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
+    result = run_trim(pty_robot, data=LIFTED + measuring).gives(0)
+    assert stored_trim(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert result.err.count("18 in") == 5
     assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in result.out
     told_by_info = pty_robots.on(pty_robot, "doctor").out
@@ -296,17 +296,17 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
 
 def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
     wrong = "1\n\n33\n\n33\n"
-    result = on(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
+    result = run_trim(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
     assert result.code == 0, result.err
     assert "Measure both again" in result.err
-    assert keeps(pty_robot).pace == Pace(0, 16.51, 144, 288)
+    assert stored_trim(pty_robot).pace == Pace(0, 16.51, 144, 288)
 
 
 def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
-    on(pty_robot, "--speed-40", "20").gives(2, "faster than at 40 %")
-    assert keeps(pty_robot).pace == Pace()
-    assert on(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
+    run_trim(pty_robot, "--speed-40", "20").gives(2, "faster than at 40 %")
+    assert stored_trim(pty_robot).pace == Pace()
+    assert run_trim(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
     for answers in ("1\n", "1\n\n33\n\n"):
-        on(pty_robot, data=LIFTED + answers).gives(3, "the input ended")
-        assert keeps(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
+        run_trim(pty_robot, data=LIFTED + answers).gives(3, "the input ended")
+        assert stored_trim(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
         assert not pty_robot.moves

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, OBSTACLE, Command, CommandResult, inside
-from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.command import LONG, OBSTACLE, Command, CommandResult, run_in_process
+from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
 
@@ -85,7 +85,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
         assert bool(fields["damaged"]) == bool(damages)
     listing = on(pty_robot, "show").out
-    assert listing.split("\n", 1)[1] == inside("show", ours).out.split("\n", 1)[1]
+    assert listing.split("\n", 1)[1] == run_in_process("show", ours).out.split("\n", 1)[1]
 
 
 def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
@@ -168,7 +168,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
 
 
 def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
-    interrupt(uploading(pty_robot)).gives(
+    interrupt(start_endless_upload(pty_robot)).gives(
         2, "the robot has confirmed the stop", out="Saved. The button starts it."
     )
     pty_robot.switch_off_and_on()
@@ -176,7 +176,7 @@ def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
 
 
 def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     naming, trimming = ("set", "name", "ANA"), ("set", "trim", "--balance", "5")
     for words in (naming, trimming):
         result = on(pty_robot, *words)
@@ -226,7 +226,7 @@ def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> N
 FIRST_PROGRAM, SECOND_PROGRAM = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
 
 
-def with_two(pty_robot: PtyRobot) -> list[str]:
+def upload_two(pty_robot: PtyRobot) -> list[str]:
     """Send two programs; return their checksums."""
     results = [
         on(pty_robot, "upload", "--json", "-e", text) for text in (FIRST_PROGRAM, SECOND_PROGRAM)
@@ -237,7 +237,7 @@ def with_two(pty_robot: PtyRobot) -> list[str]:
 
 def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
     """The JSON form is a receipt."""
-    first, second = with_two(pty_robot)
+    first, second = upload_two(pty_robot)
     for language, checksum, expected, saved_text in (
         ("en", first, "it has the previous program again, checksum", "Saved. The button"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
@@ -277,8 +277,8 @@ def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -
 
 
 def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> None:
-    with_two(pty_robot)
-    command = uploading(pty_robot)
+    upload_two(pty_robot)
+    command = start_endless_upload(pty_robot)
     result = on(pty_robot, "start", "--previous").gives(0)
     assert result.out.splitlines()[-1].startswith("Saved.")
     assert not pty_robot.moves
@@ -287,7 +287,7 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
 
 @pytest.mark.sampled(of="slow commands")
 def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
-    first, second = with_two(pty_robot)
+    first, second = upload_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
         on(pty_robot, "start", "--previous", "--lang", language).gives(3, expected, out=first)
@@ -300,7 +300,7 @@ def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot
 
 def test_ports_and_options_are_those_of_the_other_verbs() -> None:
     for words in (("--port", "/dev/no-such-port"), ("--virtual",)):
-        result = inside("start", "--previous", *words)
+        result = run_in_process("start", "--previous", *words)
         assert result.code == 3 and result.err.startswith("tsc: ") and not result.out
-    assert inside("start", "--previous", "--all", "--port", "X").code == 2
-    assert inside("start", "--previous", "what").code == 2
+    assert run_in_process("start", "--previous", "--all", "--port", "X").code == 2
+    assert run_in_process("start", "--previous", "what").code == 2

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.command import OBSTACLE, Command, Tsc, inside
+from tests.support.command import OBSTACLE, Command, Tsc, run_in_process
 from tests.support.virtual_command import FOREVER, Robot, robot, visitor
 from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.library import install_advice
@@ -28,16 +28,18 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
     picture = tmp_path / "way.png"
     with robot("--name", "KAT", "--world", "light", "--plot", picture) as running_robot:
         assert running_robot.port.startswith("socket://127.0.0.1:")
-        listed = json.loads(inside("doctor", "--ports", "--json").out)
+        listed = json.loads(run_in_process("doctor", "--ports", "--json").out)
         [row] = [row for row in listed if row["port"] == running_robot.port]
         assert row["is_virtual"]
         assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
         in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
         assert (
             f"{running_robot.port}   {in_spanish}"
-            in inside("doctor", "--ports", "--lang", "es").out
+            in run_in_process("doctor", "--ports", "--lang", "es").out
         )
-        result = inside("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
+        result = run_in_process(
+            "upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)"
+        )
         assert (result.code, result.err) == (0, "")
         receipt, *rest = result.out.splitlines()
         assert receipt.startswith(f"-e -> KAT ({running_robot.port})")
@@ -49,14 +51,17 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         assert lines == ["0 START", "0 MOTORS 50 50", "200 MOTORS 0 0", "SHOW 1.5", "BEEP 440 100",
                          "DONE"]  # fmt: skip
         # Silent virtual robots are found too, but are not remembered.
-        assert inside("start").out.startswith("KAT: started")
-        assert json.loads(inside("doctor", "--virtual", "--json").out)["robot"]["name"] == "KAT"
+        assert run_in_process("start").out.startswith("KAT: started")
+        assert (
+            json.loads(run_in_process("doctor", "--virtual", "--json").out)["robot"]["name"]
+            == "KAT"
+        )
         for _ in range(3):
-            assert inside("stop", "--virtual").code == 0
+            assert run_in_process("stop", "--virtual").code == 0
         running_robot.end().gives(0, "The virtual robot drove 9 cm")
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert directory.running_robots() == []
-    inside("start").gives(3, "which port?")
+    run_in_process("start").gives(3, "which port?")
 
 
 @pytest.mark.parametrize("hurry", ["1", "50"])
@@ -92,14 +97,14 @@ def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
         with visitor(running_robot.port) as first:
             first.sendall(b"SHOW(1)\n")
             assert first.recv(1000)  # the client is answered
-            result = inside("doctor", "--identify", "--port", running_robot.port)
+            result = run_in_process("doctor", "--identify", "--port", running_robot.port)
             assert result.code == 3
             assert f"another program is using the port {running_robot.port}" in result.err
             with visitor(running_robot.port) as third:
                 assert third.recv(1000).startswith(b"Port already in use")
                 assert third.recv(1000) == b""
             first.sendall(b"\x05half a frame")
-        inside("upload", "--port", running_robot.port, "-e", "SI|F(0.1, 50)").gives(0, "")
+        run_in_process("upload", "--port", running_robot.port, "-e", "SI|F(0.1, 50)").gives(0, "")
 
 
 def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
@@ -107,13 +112,13 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
     text = OBSTACLE.replace("SI|", "SB|")
     with robot("--memory", memory) as running_robot:
-        assert inside("upload", "--virtual", "-e", text).code == 0
-        assert inside("set", "name", "INTI", "--virtual").code == 0
+        assert run_in_process("upload", "--virtual", "-e", text).code == 0
+        assert run_in_process("set", "name", "INTI", "--virtual").code == 0
         running_robot.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
     options = ("--button-at", "1", "--for", "20", "--hurry", "max", "--noise", "5", "--lang", "es")
     first, second, other = (
-        inside("robot", "--memory", memory, *options, "--seed", seed) for seed in "112"
+        run_in_process("robot", "--memory", memory, *options, "--seed", seed) for seed in "112"
     )
     assert first.code == 0
     assert first.out.count("READ DISTANCE") > 10
@@ -121,7 +126,10 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
     found_cm = re.search(r"El robot virtual recorrió (\d+) cm en 20.0 s", first.err)
     assert found_cm and int(found_cm[1]) > 50, "what it drives when its time is over counts"
     with robot("--memory", memory):
-        assert json.loads(inside("doctor", "--virtual", "--json").out)["robot"]["name"] == "INTI"
+        assert (
+            json.loads(run_in_process("doctor", "--virtual", "--json").out)["robot"]["name"]
+            == "INTI"
+        )
 
 
 @pytest.mark.parametrize(
@@ -131,13 +139,13 @@ def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Pa
     """A robot refuses the memory of another kind."""
     memory = tmp_path / "kept.bin"
     options = ("--robot", name, "--memory", memory, "--for", "3", "--hurry", "max")
-    inside("robot", *options, "--name", "INTI").gives(0)
+    run_in_process("robot", *options, "--name", "INTI").gives(0)
     assert len(memory.read_bytes()) == size
-    inside("robot", *options).gives(0)
+    run_in_process("robot", *options).gives(0)
     assert b"INTI" in memory.read_bytes()
     for other in (size + 1, size - 1, 0):
         memory.write_bytes(bytes(other))
-        inside("robot", *options).gives(2, f"which has {size} bytes")
+        run_in_process("robot", *options).gives(2, f"which has {size} bytes")
         assert len(memory.read_bytes()) == other
 
 
@@ -145,7 +153,7 @@ def test_a_pseudo_terminal_is_a_port_too() -> None:
     with robot("--pty") as running_robot:
         port = running_robot.line()
         assert port.startswith("/dev/")
-        assert inside("upload", "--port", port, "-e", "SI|F(0.1, 50)").code == 0
+        assert run_in_process("upload", "--port", port, "-e", "SI|F(0.1, 50)").code == 0
         assert running_robot.until("100 DONE")
 
 
@@ -159,7 +167,7 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
     for text in ("", "[]", "{}", '{"address": 5}', "[" * 10_000):
         note.write_text(text, encoding="utf-8")
         assert directory.running_robots() == []
-    assert inside("stop", "--virtual").code == 3
+    assert run_in_process("stop", "--virtual").code == 3
 
 
 def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -210,9 +218,9 @@ def colours(data: bytes) -> dict[str, int]:
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
     still, way = tmp_path / "still.png", tmp_path / "way.png"
-    inside("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
-    result = inside("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
-                   "--plot", way)  # fmt: skip
+    run_in_process("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
+    result = run_in_process("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
+                            "--plot", way)  # fmt: skip
     assert result.code == 0
     assert "The time set with --for is over.\nSaved. The button starts it.\n" in result.out
     assert f"and touched nothing. Picture: {way}\n" in result.out
@@ -225,7 +233,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
 
 def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
-    result = inside("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
+    result = run_in_process("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
     assert result.code == 0  # text that a radio inserts is printed too
     assert result.out.splitlines()[1:3] in (
         ["TIME 40", "Done."],
@@ -238,18 +246,22 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
 def test_the_exit_code_is_that_of_the_run_whatever_has_begun_it(
     start: str, text: str, code: int
 ) -> None:
-    result = inside("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(code)
+    result = run_in_process("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(
+        code
+    )
     assert "Saved." in result.out
 
 
 def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
-    result = inside("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
+    result = run_in_process(
+        "upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7"
+    )
     assert result.code == 1
     events = [json.loads(line)["event"] for line in result.out.splitlines()]
     assert events == ["RECEIPT", "FAULT", "SAVED"]
     assert "The virtual robot drove 0 cm" in result.err
-    result = inside("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
-                   "--sensor", "BATTERY=7.4").gives(0)  # fmt: skip
+    result = run_in_process("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
+                            "--sensor", "BATTERY=7.4").gives(0)  # fmt: skip
     assert result.out.startswith("BATTERY 7.4\nDone.\nThe virtual robot drove 5 cm")
 
 
@@ -269,15 +281,15 @@ def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path)
 def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
     """The one of `tsc robot`; without one they say how to have one."""
     for command in ("doctor", "doctor --selftest", "set trim", "monitor"):
-        result = inside(*command.split(), "--virtual")
+        result = run_in_process(*command.split(), "--virtual")
         assert result.code == 3, command
         assert "Start one in another terminal:  tsc robot" in result.err, command
-        assert "--virtual" in inside(*command.split(), "--help").out, command
-    assert "Without a robot:  --virtual" in inside("upload", "-e", "SI|S").err
+        assert "--virtual" in run_in_process(*command.split(), "--help").out, command
+    assert "Without a robot:  --virtual" in run_in_process("upload", "-e", "SI|S").err
     with robot() as running:
         for words in ((), ("--virtual",), ("--identify", "--virtual")):
-            inside("doctor", *words).gives(0, out=running.port)
-        inside("doctor", "--virtual", "--port", running.port).gives(2, "--virtual")
+            run_in_process("doctor", *words).gives(0, out=running.port)
+        run_in_process("doctor", "--virtual", "--port", running.port).gives(2, "--virtual")
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ from tiniscript.studio import building, serving
 from tiniscript.studio.hosting import Hosting
 
 
-def looks_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def watch_output(monkeypatch: pytest.MonkeyPatch) -> None:
     """Simulate a person who watches slow operations."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
@@ -52,7 +52,7 @@ def test_who_waits_for_a_robot_is_told(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A short wait prints nothing, and a program that reads the output sees nothing."""
-    looks_on(monkeypatch)
+    watch_output(monkeypatch)
     result = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
     assert result.err.startswith(f"Esperando al robot en {silent} …\n")
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
@@ -65,7 +65,7 @@ def test_who_waits_for_a_robot_is_told(
 def test_who_waits_for_a_board_is_told_until_it_is_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    looks_on(monkeypatch)
+    watch_output(monkeypatch)
     output = ""
 
     def write(*arguments: object) -> avrdude.WriteResult:
@@ -113,7 +113,7 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
 def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    looks_on(monkeypatch)
+    watch_output(monkeypatch)
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
     result = tsc("stop", "--port", silent).gives(3, "has not confirmed the stop")
     assert result.err.count(f"Waiting for the robot on {silent} to confirm the stop …\n") == 1
@@ -128,7 +128,7 @@ def test_waits_without_news_are_one_silence(
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
     quiet = progress.RepeatedWaitNotice("waits", is_seen=True)
 
-    def waits(count: int, each_s: float) -> str:
+    def wait_times(count: int, each_s: float) -> str:
         nonlocal now_s
         for _ in range(count):
             quiet.begin()
@@ -138,12 +138,12 @@ def test_waits_without_news_are_one_silence(
                 quiet.poll()
         return capsys.readouterr().err
 
-    assert waits(19, 0.1) == ""
-    assert waits(100, 0.3) == "waits\n"
+    assert wait_times(19, 0.1) == ""
+    assert wait_times(100, 0.3) == "waits\n"
     quiet.restart()
-    assert waits(50, 0.3) == ""  # once
+    assert wait_times(50, 0.3) == ""  # once
     now_s += 1  # a person types
-    assert waits(1, 1.8) == "" and waits(2, 1.8) == "waits\n"
+    assert wait_times(1, 1.8) == "" and wait_times(2, 1.8) == "waits\n"
 
 
 def test_a_bar_is_not_full_before_all_is_done(
@@ -281,7 +281,7 @@ def test_the_end_of_a_studio_says_what_it_waits_for(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, moment: str
 ) -> None:
     """Whenever that is, before its server has begun too."""
-    looks_on(monkeypatch)
+    watch_output(monkeypatch)
     output = ""
 
     class Silent(Hosting):
@@ -296,7 +296,7 @@ def test_the_end_of_a_studio_says_what_it_waits_for(
 
     def raise_interrupt(*arguments: object, **values: object) -> None:
         monkeypatch.undo()
-        looks_on(monkeypatch)
+        watch_output(monkeypatch)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(studio, "Hosting", Silent)

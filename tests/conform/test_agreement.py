@@ -43,7 +43,7 @@ def run_by_host(run: Run) -> str:
 
 def run_by_avr(chip: str, run: Run) -> str:
     pace = pace_of(run)
-    return avr.ran_on(
+    return avr.run_on(
         chip, run.image, run.kit, run.senses, pace=pace, begin_ms=run.schedule[0]
     ).trace  # fmt: skip
 

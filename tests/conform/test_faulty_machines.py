@@ -14,13 +14,13 @@ from tools.generate.machine_kit import Run, answer_of, runs
 
 
 @lru_cache(maxsize=1)
-def by_name() -> dict[str, Run]:
+def runs_by_name() -> dict[str, Run]:
     return {run.name: run for run in runs()}
 
 
 @pytest.mark.parametrize("fault", [pytest.param(fault, id=fault.says) for fault in faults()])
 def test_the_case_notices_the_fault(fault: Fault) -> None:
-    run = by_name()[fault.noticed_by]
+    run = runs_by_name()[fault.noticed_by]
     right = answer_of(run)
     assert right is not None
     with machine_with(fault) as module:

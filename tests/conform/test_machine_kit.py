@@ -88,7 +88,7 @@ def conform(tsc: Tsc, command: str, *more: str) -> CommandResult:
     return tsc("doctor", "--conform", "--machine", command, *more)
 
 
-def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
+def find_differences(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
     """Return the differences."""
     result = conform(tsc, command, "--json", *more).gives(1)
     rows: list[dict[str, object]] = json.loads(result.out)["found"]
@@ -260,7 +260,7 @@ ONE_SHOT = "list(iter(sys.stdin.readline, 'run\\n'))\nprint('0 DONE', flush=True
 
 
 def test_a_machine_that_ends_after_each_answer_is_started_again(tsc: Tsc, tmp_path: Path) -> None:
-    rows = found_by(tsc, machine(tmp_path, ONE_SHOT), "--only", "images: ")
+    rows = find_differences(tsc, machine(tmp_path, ONE_SHOT), "--only", "images: ")
     assert rows
     assert {row["what"] for row in rows} == {"differs"}
     assert "images: no code" not in [row["name"] for row in rows]
@@ -283,7 +283,7 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     result = conform(tsc, command, "--timeout", timeout_s).gives(1, out=message)
     assert result.out.splitlines()[-1].startswith("0 of ")
     assert "too many got no response." in result.out
-    rows = found_by(tsc, command, "--timeout", timeout_s)
+    rows = find_differences(tsc, command, "--timeout", timeout_s)
     assert [row["what"] for row in rows] == [what] * tried
 
 
@@ -293,11 +293,11 @@ def test_a_slow_reader_takes_nothing_of_the_next_process(
     """A number of a file that is closed is the next pipe's."""
     read = os.read
 
-    def slow(number: int, count: int) -> bytes:
+    def read_slowly(number: int, count: int) -> bytes:
         time.sleep(0.1)
         return read(number, count)
 
-    monkeypatch.setattr(os, "read", slow)
+    monkeypatch.setattr(os, "read", read_slowly)
     process = MachineProcess(machine(tmp_path, HOSTILE["more"][0]), 100)
     for _ in range(3):
         with pytest.raises(Problem) as problem:

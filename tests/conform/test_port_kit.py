@@ -56,7 +56,7 @@ def open_changed_robot(robot: PtyRobot, change: Change) -> Iterator[WireRobot]:
             wire.close()
 
 
-def of(name: str) -> int:
+def number_of(name: str) -> int:
     return BY_NAME[name].number
 
 
@@ -81,7 +81,7 @@ def alter_payload(name: str, **fields: Callable[[bytes], bytes]) -> Change:
     """Return a change of one message's payload."""
 
     def change(frame: Frame) -> Frame | None:
-        if frame.number != of(name):
+        if frame.number != number_of(name):
             return frame
         return frame._replace(payload=fields["payload"](frame.payload))
 
@@ -89,7 +89,7 @@ def alter_payload(name: str, **fields: Callable[[bytes], bytes]) -> Change:
 
 
 def drop_message(name: str) -> Change:
-    return lambda frame: None if frame.number == of(name) else frame
+    return lambda frame: None if frame.number == number_of(name) else frame
 
 
 def with_status(number: int, status: int) -> Change:
@@ -118,16 +118,17 @@ FRAME_CHANGES: dict[str, tuple[Change, str]] = {
         alter_payload("STOPPED", payload=lambda p: b"\3"), "stops: the stop sequence"),
     "an event has another form": (
         alter_payload("STOPPED", payload=lambda p: p + b"?"), "stops: STOP"),
-    "a rule is another": (with_status(of("PROGRAM"), 21), "refused: refused: A power over 100"),
+    "a rule is another": (with_status(number_of("PROGRAM"), 21),
+                          "refused: refused: A power over 100"),
     "a message that nobody knows": (with_status(31, 65), "link: a message that nobody knows"),
     "a place of something else": (
         alter_payload("PING", payload=lambda p: p[:3] + bytes(len(p) - 3)),
         "link: where a program is"),
-    "a long payload": (with_status(of("PING"), 64), "link: a payload that is too long"),
+    "a long payload": (with_status(number_of("PING"), 64), "link: a payload that is too long"),
     "damaged frames are not counted": (
         alter_payload("STATUS", payload=lambda p: p[:-4] + bytes(4)), "link: a damaged frame"),
     "a wrong checksum is another error": (
-        with_status(of("COMMIT"), 76), "images: another checksum"),
+        with_status(number_of("COMMIT"), 76), "images: another checksum"),
     "what is fetched is other code": (
         alter_payload("FETCH", payload=lambda p: p[:-1] + b"\xff"), "images: FETCH"),
 }  # fmt: skip

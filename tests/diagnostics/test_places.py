@@ -17,14 +17,14 @@ from tiniscript.diagnostics.rendering import Message, as_text, message
 KIT = robots.load("grabber").kit
 
 
-def at(text: str, start: int, end: int, code: Code = codes.EXTRA_CLOSE) -> Message:
+def message_at(text: str, start: int, end: int, code: Code = codes.EXTRA_CLOSE) -> Message:
     """Return the message of a diagnostic that is put at a place by hand."""
     return message(Diagnostic(code, Span(start, end)), Source(text), "en")
 
 
 def picture(text: str, start: int, end: int) -> list[str]:
     """Return the line and the carets for a place in a text."""
-    return as_text(at(text, start, end), Source(text), "en").split("\n")[:2]
+    return as_text(message_at(text, start, end), Source(text), "en").split("\n")[:2]
 
 
 # -- places ---------------------------------------------------------------------------------------
@@ -55,7 +55,7 @@ def picture(text: str, start: int, end: int) -> list[str]:
 def test_lines_and_columns(
     text: str, start: int, end: int, place: tuple[int, int, int, int]
 ) -> None:
-    assert at(text, start, end)[2:6] == place
+    assert message_at(text, start, end)[2:6] == place
 
 
 def test_carets_stand_under_the_place() -> None:

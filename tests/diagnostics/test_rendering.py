@@ -59,7 +59,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
 }
 
 
-def first(text: str, lang: str = "en") -> tuple[Message, Source]:
+def first_message(text: str, lang: str = "en") -> tuple[Message, Source]:
     compilation = compile_text(text, KIT)
     return message(compilation.diagnostics[0], compilation.source, lang), compilation.source
 
@@ -127,7 +127,7 @@ def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> Non
 
 
 def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
-    message, source = first("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
+    message, source = first_message("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
     assert message.code == "TS306"
     assert re.search(r"\d+ bytes too long: a robot holds at most 32767$", message.message)
     assert (message.line, message.column) == (5000, 29)
@@ -157,20 +157,20 @@ def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
 
 
 def test_terms_and_units_are_translated() -> None:
-    assert first("X = 1;X = TRUE;SHOW(X)", "es")[0].message == (
+    assert first_message("X = 1;X = TRUE;SHOW(X)", "es")[0].message == (
         "X empezó como un número y no puede volverse un sí o no"
     )
-    assert "F(tiempo, potencia)" in first("F(1)", "es")[0].message
-    assert first("GRIPPER(181)", "es")[0].message.endswith("de 0 a 180 grados")
-    assert first("M(101, 0)", "es")[0].message.endswith("de -100 a 100 %")
-    assert first("SHOW(1000000 * 1000000)", "es")[0].message.endswith("es demasiado grande")
+    assert "F(tiempo, potencia)" in first_message("F(1)", "es")[0].message
+    assert first_message("GRIPPER(181)", "es")[0].message.endswith("de 0 a 180 grados")
+    assert first_message("M(101, 0)", "es")[0].message.endswith("de -100 a 100 %")
+    assert first_message("SHOW(1000000 * 1000000)", "es")[0].message.endswith("es demasiado grande")
 
 
 def test_long_pieces_of_a_program_are_shortened() -> None:
-    message, _ = first("SHOW(" + "DISTANCE < 1 AND " * 5000 + "TRUE + 1)")
+    message, _ = first_message("SHOW(" + "DISTANCE < 1 AND " * 5000 + "TRUE + 1)")
     assert len(message.message) < 200
     assert len(message.fix) < 200
-    message, _ = first("A" * 100_000)
+    message, _ = first_message("A" * 100_000)
     assert len(message.message) < 200
 
 
@@ -179,7 +179,7 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
 
 def test_colors_change_nothing_but_colors() -> None:
     for text in ("F(2 80)", "W(0.12345)"):
-        message, source = first(text)
+        message, source = first_message(text)
         colored_text = as_text(message, source, "en", color=True)
         assert colored_text != as_text(message, source, "en")
         assert re.sub(r"\033\[[0-9;]*m", "", colored_text) == as_text(message, source, "en")

@@ -151,7 +151,7 @@ def case(tmp_path: Path) -> Case:
 Make = Callable[[Case], object]
 
 
-def _of_dialout(member: str) -> Make:
+def _port_of_dialout(member: str) -> Make:
     def make(case: Case) -> None:
         case.with_port(CABLE)
         case.system.owners[CABLE] = (20, False)
@@ -160,10 +160,10 @@ def _of_dialout(member: str) -> Make:
     return make
 
 
-_member, _stranger = _of_dialout("somebody"), _of_dialout("")
+_member, _stranger = _port_of_dialout("somebody"), _port_of_dialout("")
 
 
-def _used(name: str) -> Make:
+def _port_in_use(name: str) -> Make:
     def make(case: Case) -> None:
         case.with_port(CABLE)
         case.system.program(5, name, opens=CABLE)
@@ -216,8 +216,8 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (RADIO, _pair(errors.MISSING, "HC-05"), "no_rfcomm", True),
     (CABLE, _stranger, "no_permission", True),
     (CABLE, _member, "login_again", True),
-    (CABLE, _used("minicom"), "busy", True),
-    (CABLE, _used("ModemManager"), "modem_manager", True),
+    (CABLE, _port_in_use("minicom"), "busy", True),
+    (CABLE, _port_in_use("ModemManager"), "modem_manager", True),
     (CABLE, _other_tsc, "other_tsc", True),
     (RADIO, _failing(errors.BUSY), "busy", True),
     (RADIO, _failing(errors.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
@@ -279,7 +279,7 @@ def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> No
     assert case.diagnosis(None).port == CABLE
 
 
-@pytest.mark.parametrize("make", [_stranger, _member, _used("minicom"), _other_tsc])
+@pytest.mark.parametrize("make", [_stranger, _member, _port_in_use("minicom"), _other_tsc])
 def test_a_port_that_is_not_ours_is_not_opened(case: Case, make: Make) -> None:
     make(case)
     case.says_yes = True

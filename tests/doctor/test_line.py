@@ -81,7 +81,7 @@ def watch_line(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
     return {finding.cause: finding for finding in examine(robot, reply, expected, watch_ms)}
 
 
-def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
+def only_cause(end: OtherEnd, **how: object) -> tuple[str, bool]:
     (finding,) = findings_on(end, **how)  # type: ignore[arg-type]
     return finding.cause, finding.is_sure
 
@@ -124,7 +124,7 @@ def test_a_robot_that_is_fine_and_is_only_asked(is_radio: bool) -> None:
     ],
 )
 def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
-    assert only(Firmware(**values), kit=KIT) == (cause, True)
+    assert only_cause(Firmware(**values), kit=KIT) == (cause, True)
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: st
 
 def test_a_robot_whose_key_this_computer_has_is_fine() -> None:
     for features, key in ((OWNERS, 5), (OWNERS | OWNED, 0x12347F3A), (OWNERS | OWNED | YOURS, 5)):
-        assert only(Firmware(features=features), kit=KIT, its_key=key) == ("fine", True)
+        assert only_cause(Firmware(features=features), kit=KIT, its_key=key) == ("fine", True)
 
 
 @pytest.mark.parametrize(("features", "expected"), [(0, "-"), (OWNERS | OWNED, "OWNERS, OWNED")])
@@ -161,8 +161,8 @@ def test_a_report_tells_what_a_robot_can_do(features: int, expected: str) -> Non
 
 
 def test_a_kit_that_nobody_knows() -> None:
-    assert only(Firmware(kit=0x1234)) == ("unknown_kit", True)
-    assert only(Firmware(kit=0x1234), kit=0x1234) == ("fine", True)
+    assert only_cause(Firmware(kit=0x1234)) == ("unknown_kit", True)
+    assert only_cause(Firmware(kit=0x1234), kit=0x1234) == ("fine", True)
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ def test_a_kit_that_nobody_knows() -> None:
 def test_a_robot_that_refuses_hello(refuses: tuple[str, int], cause: str, is_sure: bool) -> None:
     end = Firmware()
     end.refuses = (STATUSES[refuses[0]], refuses[1])
-    assert only(end) == (cause, is_sure)
+    assert only_cause(end) == (cause, is_sure)
 
 
 def test_a_robot_that_restarts_by_itself_or_by_its_watchdog() -> None:
@@ -283,7 +283,7 @@ def test_how_bad_a_line_was_before() -> None:
 def test_a_robot_that_falls_silent(requests: int) -> None:
     end = Firmware()
     end.dies_after = requests
-    assert only(end) == ("falls_silent", False)
+    assert only_cause(end) == ("falls_silent", False)
 
 
 # -- no robot -----------------------------------------------------------------------------------
@@ -321,7 +321,7 @@ def test_a_robot_at_another_speed_with_another_trouble() -> None:
     ],
 )  # fmt: skip
 def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
-    assert only(end) == (cause, is_sure)
+    assert only_cause(end) == (cause, is_sure)
 
 
 @pytest.mark.parametrize("speed", BAUDS)
@@ -349,7 +349,7 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
     ],
 )
 def test_by_radio(end: OtherEnd, cause: str, is_sure: bool) -> None:
-    assert only(end, is_radio=True) == (cause, is_sure)
+    assert only_cause(end, is_radio=True) == (cause, is_sure)
 
 
 # -- boards that are not ours -------------------------------------------------------------------
@@ -414,7 +414,7 @@ def test_a_robot_that_sends_and_hears_nothing() -> None:
     for data in (end.sent, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
         end.sent = data
         for is_radio in (False, True):
-            assert only(end, is_radio=is_radio) == ("one_way", False)
+            assert only_cause(end, is_radio=is_radio) == ("one_way", False)
 
 
 @pytest.mark.parametrize("line", [
@@ -434,7 +434,7 @@ def test_what_is_text_at_a_speed_is_not_a_wrong_one(line: bytes) -> None:
 def test_a_text_of_a_board_that_is_probably_known_is_told_as_that() -> None:
     end = Sketch()
     end.line = boards.MBOT_START
-    assert only(end) == ("mbot", False)
+    assert only_cause(end) == ("mbot", False)
 
 
 def test_what_a_sketch_prints_is_told_in_part_and_as_text() -> None:

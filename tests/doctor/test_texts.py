@@ -7,7 +7,7 @@ from string import Formatter
 
 from tests.support.rows import each_row
 from tests.support.texts import catalogue_texts as all_said
-from tests.support.texts import in_all
+from tests.support.texts import texts_in_all_languages
 from tiniscript.cli.robot.self_test import SELF_REPORTED_PARTS, SIDES
 from tiniscript.cli.texts.causes import label, sentences_of
 from tiniscript.doctor.findings import CAUSES, OK, Finding
@@ -42,7 +42,7 @@ OF_A_PART = [
 
 def sentences(cause: str, *kinds: str) -> Iterator[str]:
     for kind in kinds:
-        for sentence in in_all(f"{kind}_{cause}"):
+        for sentence in texts_in_all_languages(f"{kind}_{cause}"):
             assert sentence
             gaps = {name for _, name, _, _ in Formatter().parse(sentence) if name}
             assert gaps <= VALUES.get(cause, set())

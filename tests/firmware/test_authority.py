@@ -106,16 +106,18 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
     )
     assert table.outcome(owner, owner.trim()) == "OK"
 
-    def answers(thief: Session, tag: bytes) -> int:
+    def status_of_tag(thief: Session, tag: bytes) -> int:
         return table.ask_unsealed(thief, "AUTHENTICATE", shown_frame.payload[:1] + tag)[0]
 
     assert (
-        answers(owner, shown_frame.payload[1:]) == STATUSES["NOT_OWNER"]
+        status_of_tag(owner, shown_frame.payload[1:]) == STATUSES["NOT_OWNER"]
     )  # twice to one challenge
     table.pass_time(None, 2100)
-    assert answers(owner, shown_frame.payload[1:]) == STATUSES["NOT_OWNER"]  # without a challenge
-    assert answers(owner, b"") == 0
-    assert answers(owner, shown_frame.payload[1:]) == STATUSES["WRONG_KEY"]  # for another challenge
+    # without a challenge
+    assert status_of_tag(owner, shown_frame.payload[1:]) == STATUSES["NOT_OWNER"]
+    assert status_of_tag(owner, b"") == 0
+    # for another challenge
+    assert status_of_tag(owner, shown_frame.payload[1:]) == STATUSES["WRONG_KEY"]
     for count in range(300):
         thief = table.session(nonce=4 if count % 2 else 9)
         assert table.outcome(thief, thief.hello()) == "OK"
@@ -126,8 +128,8 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
         if (thief._epoch - shown_frame.epoch) % 2 == count % 2:  # makes both frames arrive together
             table.robot.wait(100, bytes(8))
     assert thief._epoch == shown_frame.epoch
-    assert answers(thief, b"") == 0
-    assert answers(thief, shown_frame.payload[1:]) == STATUSES["WRONG_KEY"]
+    assert status_of_tag(thief, b"") == 0
+    assert status_of_tag(thief, shown_frame.payload[1:]) == STATUSES["WRONG_KEY"]
 
 
 def test_wrong_keys_cost_the_owner_nothing() -> None:

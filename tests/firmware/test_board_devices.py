@@ -16,7 +16,7 @@ from tiniscript.robots.profile import Robot
 # -- sensors
 
 
-def shown_as_power(reading: str) -> str:
+def power_program(reading: str) -> str:
     """A program that shows a reading as the power of a motor: PWM of 2.55 for each percent."""
     return f"SI|M({reading}, 0);W(5)"
 
@@ -27,7 +27,7 @@ def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
     robot = on_board("tinibot", "mega", ("echo = 3", f"echo = {echo}"), ("= 2 ", "= 4 "),
                      ("trigger = 4", "trigger = 20"),
                      ("right_backward = 10", "right_backward = 40"))  # fmt: skip
-    board = start_board(robot, shown_as_power("DISTANCE"))
+    board = start_board(robot, power_program("DISTANCE"))
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [50 * 2 / 0.0343])
     board.run_for(START + 80)
@@ -43,7 +43,7 @@ def test_interrupts_that_are_not_simulated(echo: str, group: int, mask: int) -> 
     robot = on_board(
         "tinibot", "mega", ("echo = 3", f'echo = "{echo}"' if "A" in echo else f"echo = {echo}")
     )
-    board = start_board(robot, shown_as_power("DISTANCE"))
+    board = start_board(robot, power_program("DISTANCE"))
     board.watched |= {PCICR, PCMSK0 + group}
     board.run_for(START + 10)
     assert board.register(PCICR, START + 5) == 1 << group
@@ -81,7 +81,7 @@ def test_no_echo_is_far_away_and_takes_three_times_25_ms(width_us: int) -> None:
 def test_a_voltage_is_a_reading(
     name: str, reading: str, channel: int, millivolts: int, power: float
 ) -> None:
-    board = start_board(robots.load(name), shown_as_power(reading))
+    board = start_board(robots.load(name), power_program(reading))
     board.analog(channel, millivolts)
     board.run_for(START + 10)
     shown = int(board.motors(START + 9)[0].removeprefix("pwm "))

@@ -41,7 +41,7 @@ extern "C" void test_turn() {
 """
 
 
-def counting(robot: Robot) -> Board:
+def counting_board(robot: Robot) -> Board:
     board = Board(robot, more=COPY_COUNTS_CODE)
     board.watched |= {LEFT_COUNT_REGISTER, RIGHT_COUNT_REGISTER}
     assert robot.board.discs
@@ -67,7 +67,7 @@ def counts(board: Board, ms: float) -> tuple[int, int]:
 def test_each_edge_of_both_counts(name: str) -> None:
     """Fast and slow ones, and both at once; 65.6 ms apart is no glitch where the clock wraps."""
     robot = robots.load("tinibot2", name)
-    board = counting(robot)
+    board = counting_board(robot)
     left, right = pins(robot)
     for k in range(20):
         board.level(30 + 2 * k, left, k % 2 == 0)
@@ -86,7 +86,7 @@ def test_each_edge_of_both_counts(name: str) -> None:
 def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_high: bool) -> None:
     """Motor brushes cause such pulses on a low or a high line. Edges between them count."""
     robot = robots.load("tinibot2", name)
-    board = counting(robot)
+    board = counting_board(robot)
     left, _ = pins(robot)
     chance = random.Random(5)
     board.level(25, left, is_high)
@@ -109,7 +109,7 @@ def test_a_line_that_glitches_without_end_counts_again_afterwards(
 ) -> None:
     """Its interrupt is off in between, and the clock of the other disc's edges goes on."""
     robot = robots.load("tinibot2", name)
-    board = counting(robot)
+    board = counting_board(robot)
     left, right = pins(robot)
     pulses = round(40 / (2 * span_us / 1000))
     for k in range(2 * pulses):
@@ -125,7 +125,7 @@ def test_a_line_that_glitches_without_end_counts_again_afterwards(
 @each_board
 def test_two_channels_count_back(name: str) -> None:
     robot = with_discs(name, "two_channel")
-    board = counting(robot)
+    board = counting_board(robot)
     discs = robot.board.discs
     assert discs
     a, b = discs.pins["left"], discs.pins["left_b"]

@@ -83,7 +83,7 @@ class Seen(NamedTuple):
     powers: dict[str, int]
 
 
-def seen_by_the_motors(board: Board) -> list[Seen]:
+def motor_states(board: Board) -> list[Seen]:
     """Play all writes into a shift register and L293Ds; return the motors' actions, in order.
 
     A motor whose PWM is on while its two inputs are not known is a motor that nobody controls.
@@ -121,7 +121,7 @@ def level_of(board: Board, pin: int, values: dict[int, int]) -> int:
     return 255 * (values.get(PORTS[port], 0) >> bit & 1)
 
 
-def at(states: list[Seen], ms: float) -> dict[str, int]:
+def powers_at(states: list[Seen], ms: float) -> dict[str, int]:
     return [state.powers for state in states if state.cycle <= ms * MS][-1]
 
 
@@ -136,12 +136,12 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
 def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:
     sides = SIDES[name]
     board = start_board(shield(*sides, chip), MOVES).run_for(START + OFF + 50)
-    states = seen_by_the_motors(board)
-    assert at(states, START - 1) == {}
-    assert at(states, START + FORWARD) == both(sides, 204, 204)
-    assert at(states, START + BACKWARD) == both(sides, -102, -102)
-    assert at(states, START + TURN) == both(sides, 127, -255)
-    assert at(states, START + OFF) == {}
+    states = motor_states(board)
+    assert powers_at(states, START - 1) == {}
+    assert powers_at(states, START + FORWARD) == both(sides, 204, 204)
+    assert powers_at(states, START + BACKWARD) == both(sides, -102, -102)
+    assert powers_at(states, START + TURN) == both(sides, 127, -255)
+    assert powers_at(states, START + OFF) == {}
     assert board.quiet_us < 40  # half the time of two bytes at 115,200 baud
 
 
@@ -154,13 +154,13 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
              for _ in range(12)]  # fmt: skip
     text = "SI|" + ";".join(f"M({left}, {right});W(0.02)" for left, right in moves)
     sides = SIDES["crossed"]
-    states = seen_by_the_motors(start_board(shield(*sides), text).run_for(START + 300))
+    states = motor_states(start_board(shield(*sides), text).run_for(START + 300))
     left_of = set(sides[0].split())
     previous = (0, 0)
     for number, (left, right) in enumerate(moves):
         begin, end = START + 20 * number, START + 20 * (number + 1)
         levels = [int(percent * 2.55) for percent in (left, right)]
-        steady = at(states, end - 1)
+        steady = powers_at(states, end - 1)
         assert steady == {m: p for m, p in both(sides, *levels).items() if p}
         for state in states:
             if not begin - 1 < state.cycle / MS < end - 1:
@@ -181,7 +181,7 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
         board.level(START + 50.123, 19, True)
     board.press(400, 450)
     board.run_for(430)
-    states = seen_by_the_motors(board)
+    states = motor_states(board)
     assert all(state.cycle >= (START - 1) * MS for state in states if state.powers)
     stopped = START + 50.123 + 0.02 if chip == "uno" else 402
     assert all(state.cycle < stopped * MS for state in states if state.powers)

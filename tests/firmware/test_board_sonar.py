@@ -23,7 +23,9 @@ FIRST_SAMPLES = 3  # samples of a run's first value
 DELAY_US = 460  # time from the trigger to the echo
 
 
-def looking(text: str, *distances_cm: float, robot: Robot | None = None, more: str = "") -> Board:
+def board_with_distances(
+    text: str, *distances_cm: float, robot: Robot | None = None, more: str = ""
+) -> Board:
     """The distances of its pings, one after the other; the last one stays."""
     robot = robot or robots.load("tinibot")
     trigger, echo = sonar_pins(robot)
@@ -64,7 +66,7 @@ def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: 
 
 def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.01);END_LOOP"
-    board = looking(text, *[20] * FIRST_SAMPLES, 60).run_for(START + 160)
+    board = board_with_distances(text, *[20] * FIRST_SAMPLES, 60).run_for(START + 160)
     first, second, third = ping_starts_ms(board, sonar_pins(board.robot)[0])[
         FIRST_SAMPLES - 1 : FIRST_SAMPLES + 2
     ]
@@ -78,7 +80,7 @@ def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
 def test_until_looks_again_every_40_ms() -> None:
     """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
-    board = looking(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START + 250)
+    board = board_with_distances(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START + 250)
     left = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
     assert [round(ms / 10) for ms in left] == [0, 3, 6, 10, 14, 17]
     assert board.motors(START + 173)[0] == "pwm 51"
@@ -106,9 +108,9 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     robot = robots.load("tinibot")
     trigger, _ = sonar_pins(robot)
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
-    plain = looking(text, 20, 70).run_for(START + 40)
+    plain = board_with_distances(text, 20, 70).run_for(START + 40)
     left = plain.edges(trigger)[0] / MS
-    board = looking(text, 20, 70, robot=robot, more=RESTART_CODE)
+    board = board_with_distances(text, 20, 70, robot=robot, more=RESTART_CODE)
     board.level(left + after_ms, 19, True)
     board.run_for(START + 160)
     first, second, *others = ping_starts_ms(board, trigger)
@@ -214,7 +216,7 @@ def test_a_glitch_without_an_echo_is_far_away() -> None:
     robot = robots.load("tinibot")
     _, echo = sonar_pins(robot)
     text = "SI|IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;W(5)"
-    board = looking(text, 0)
+    board = board_with_distances(text, 0)
     for ms in (1.0, 3.0, 10.0, 20.0):
         board.level(START + ms, echo, True)
         board.level(START + ms + 0.06, echo, False)
@@ -233,7 +235,9 @@ def test_a_healthy_sensor_that_hears_nothing_is_far_away(high_ms: float) -> None
     """The echo line stays high for this time, and the next ping follows its fall: never 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;END_LOOP"
     robot = robots.load("tinibot")
-    board = looking(text, high_ms * 1000 / US_PER_CM, robot=robot).run_for(START + 1000)
+    board = board_with_distances(text, high_ms * 1000 / US_PER_CM, robot=robot).run_for(
+        START + 1000
+    )
     assert read_power_cm(board, START + 3 * high_ms) == 10
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {10}
     assert len(ping_starts_ms(board, sonar_pins(robot)[0])) >= 5
@@ -246,7 +250,9 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     robot = on_board("tinibot", chip)
     echo = sonar_pins(robot)[1]
-    board = looking(text, *[50] * FIRST_SAMPLES, 1_000_000 / US_PER_CM, 50, robot=robot)
+    board = board_with_distances(
+        text, *[50] * FIRST_SAMPLES, 1_000_000 / US_PER_CM, 50, robot=robot
+    )
     board.watch(echo)
     board.run_for(START + 1300)
     hangs = ping_starts_ms(board, sonar_pins(robot)[0])[FIRST_SAMPLES]
@@ -266,7 +272,7 @@ def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
     """This holds after any pause: a glitch at the moment of a query is not read as 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;W(0.5);END_LOOP"
     robot = robots.load("tinibot")
-    board = looking(text, 50, robot=robot)
+    board = board_with_distances(text, 50, robot=robot)
     for number in range(200):
         board.level(START + 400 + 3 * number, sonar_pins(robot)[1], True)
         board.level(START + 401.5 + 3 * number, sonar_pins(robot)[1], False)
@@ -282,7 +288,7 @@ def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
 def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""
     true, heard_cm = approaching_obstacle(seed, 100)
-    board = looking("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard_cm)
+    board = board_with_distances("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard_cm)
     times = ping_starts_ms(board.run_for(START + 2900), sonar_pins(board.robot)[0])
     assert len(times) > 90
     readings = driven_ms(board, 1)
@@ -300,14 +306,16 @@ def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
 def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> None:
     heard_cm: list[float] = [50] * (FIRST_SAMPLES + 1)
     heard_cm[number] = wrong_cm
-    board = looking("SI|LOOP(FOREVER);M(DISTANCE / 10, 0);END_LOOP", *heard_cm).run_for(START + 200)
+    board = board_with_distances(
+        "SI|LOOP(FOREVER);M(DISTANCE / 10, 0);END_LOOP", *heard_cm
+    ).run_for(START + 200)
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {5}
 
 
 @pytest.mark.parametrize("before_cm", [400, 100])
 def test_what_is_suddenly_there_takes_a_second_ping(before_cm: float) -> None:
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
-    board = looking(text, *[before_cm] * 10, 8).run_for(START + 500)
+    board = board_with_distances(text, *[before_cm] * 10, 8).run_for(START + 500)
     comes, confirmed = ping_starts_ms(board, sonar_pins(board.robot)[0])[10:12]
     assert read_power_cm(board, confirmed) == 10
     assert read_power_cm(board, confirmed + 2) == 90

@@ -15,7 +15,7 @@ WIRE = 53  # a pin of a Mega whose change is an interrupt
 HANGING_HANDLER = "ISR(PCINT0_vect) { sei(); for (;;) {} }"
 
 
-def grabber(holds: bool = False) -> Robot:
+def grabber_robot(holds: bool = False) -> Robot:
     return on_board("grabber", "mega", *([HOLD_AT_STOP] if holds else []))
 
 
@@ -42,7 +42,7 @@ def pulses_from(board: Board, ms: float) -> int:
 @pytest.mark.parametrize("holds", [False, True])
 def test_a_stop_turns_actuators_off(holds: bool) -> None:
     """A lamp in any case; a servo gets no more pulses, unless its profile says that it holds."""
-    board = busy(grabber(holds), "SI|GRIPPER(90);LED(TRUE);W(5)")
+    board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 105, START + 300)
     board.run_for(START + 280)
     assert board.pin(LED, START + 104) == "high"
@@ -53,7 +53,7 @@ def test_a_stop_turns_actuators_off(holds: bool) -> None:
 
 
 def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
-    board = busy(grabber(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
+    board = busy(grabber_robot(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 150, START + 200)
     board.press(START + 300, START + 400 - STEADY)
     board.run_for(START + 600)
@@ -69,7 +69,7 @@ def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
 def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     """The interrupt has turned the motors off, and the main loop does not know it yet."""
     stop = "ISR(PCINT0_vect) { tiniscript::motors_stop(); }"
-    board = busy(grabber(), "SI|LOOP(FOREVER);LED(TRUE);LED(FALSE);END_LOOP", interrupt(stop))
+    board = busy(grabber_robot(), "SI|LOOP(FOREVER);LED(TRUE);LED(FALSE);END_LOOP", interrupt(stop))
     board.level(START + 50.123, WIRE, True)
     board.run_for(START + 80)
     edges = [cycle / MS - START for cycle in board.edges(LED)]
@@ -81,7 +81,7 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
 @pytest.mark.parametrize("holds", [False, True])
 def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
     """This includes outputs that a profile holds, because nothing controls them any more."""
-    board = busy(grabber(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER))
+    board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER))
     board.level(START + 50, WIRE, True)
     board.run_for(START + 170)
     assert board.pin(LED, START + 140) == "high"

@@ -46,7 +46,7 @@ def type_and_listen(uno: Uno, text: str, milliseconds: float) -> list[str]:
     return bytes(byte.value for byte in uno.sent_bytes[count_before:]).decode().splitlines()
 
 
-def since_the_line_end_ms(uno: Uno) -> float:
+def time_since_line_end_ms(uno: Uno) -> float:
     """Return the time from the end of the last line that came to the last change of a motor."""
     pins = [uno.pins[name].cycle for name in ("left", "right")]
     return (max(pins) - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
@@ -99,10 +99,10 @@ def test_a_start_begins_a_line_anew(
 def test_a_line_turns_the_motors_and_s_stops_them(robot: Uno) -> None:
     assert type_and_listen(robot, "SI|F(2,80)\n", 60) == ["// OK"]
     assert states(robot) == FORWARD
-    assert 0 < since_the_line_end_ms(robot) <= LINE_MS
+    assert 0 < time_since_line_end_ms(robot) <= LINE_MS
     assert type_and_listen(robot, "S\n", 60) == ["// STOPPED"]
     assert states(robot) == OFF
-    assert 0 < since_the_line_end_ms(robot) <= STOP_MS
+    assert 0 < time_since_line_end_ms(robot) <= STOP_MS
     type_and_listen(robot, "SI|F(2,80)\n", 60)
     assert states(robot) == OFF
     robot.run_ms(1100)
@@ -118,7 +118,7 @@ def test_the_obstacle_program_in_lines(robot: Uno) -> None:
     assert states(robot) == OFF
     assert type_and_listen(robot, f"{last}\r", 40) == ["// OK"]
     assert states(robot) == FORWARD
-    assert 0 < since_the_line_end_ms(robot) <= PROGRAM_MS
+    assert 0 < time_since_line_end_ms(robot) <= PROGRAM_MS
     robot.sonar("trigger", "echo", 5)
     robot.run_ms(1500)
     assert states(robot)["left forward"] == "high" and states(robot)["right backward"] == "high"

@@ -399,7 +399,7 @@ def test_a_when_halts_once_until_it_has_gone_through() -> None:
     assert [event.value for event in it.events if event.name == "SHOW"] == [1000]
 
 
-def visits(image: Image, place: int) -> int:
+def count_visits(image: Image, place: int) -> int:
     """Return how many times the Python machine begins the instruction at a place."""
     machine = Machine(image.code, TracedRobot(KIT, lambda sensor: 0), len(KIT.readings))
     count = now_ms = 0
@@ -431,7 +431,7 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
                 count += 1
                 assert count < 20
                 it.go()
-            assert count == visits(it.image, at), (text, at, count)
+            assert count == count_visits(it.image, at), (text, at, count)
 
 
 def test_a_show_without_room_halts_once() -> None:

@@ -141,7 +141,7 @@ def halts_before(it: Debugged, rng: random.Random) -> None:
         it.talk(rng.choice((300, 700)))
 
 
-def seen_next(it: Debugged, places: list[int]) -> list[str]:
+def list_next_run(it: Debugged, places: list[int]) -> list[str]:
     """Return the actions and events of a run, with its halts, from its request on."""
     assert it.places(*places) == OK
     it.events.clear()
@@ -174,7 +174,7 @@ def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     runs = []
     for robot in (fresh, it):
         robot.robot.talk(robot.session, -robot.robot.now_ms % 100)
-        rows = seen_next(robot, places)
+        rows = list_next_run(robot, places)
         runs.append([row for row in rows if "STOPPED" not in row])  # rows of the run before
     assert runs[0] == runs[1] and "SHOW 9000" in runs[0], places
 

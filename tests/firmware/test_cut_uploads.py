@@ -18,7 +18,7 @@ from tests.support.robot_on_host import (
     actions_of,
     computer,
     fetch_image,
-    holding,
+    robot_with_saved_program,
     send,
     wait_until_saved,
 )
@@ -104,7 +104,7 @@ def cut_at(memory: bytes, kind: str, count: int) -> bool:
 
 def break_off(kind: str, first: int, stride: int) -> int:
     """Break uploads off at each so many bytes; return how many."""
-    memory = holding(OLD_PROGRAM)[0].memory()
+    memory = robot_with_saved_program(OLD_PROGRAM)[0].memory()
     count = 0
     while not cut_at(memory, kind, first + count * stride):
         count += 1
@@ -182,7 +182,7 @@ class Line:
         assert self.asks("HELLO", bytes((MAJOR, MINOR, 2, 0)) + kit + nonce) == OK
 
 
-def pushes(line: Line) -> None:
+def push_button(line: Line) -> None:
     line.robot.push()
     line.hears(b"", 30)
 
@@ -200,7 +200,7 @@ REQUESTS_THAT_END_UPLOAD: dict[str, Callable[[Line], object]] = {
     "an undo": lambda line: line.asks("UNDO"),
     "a breakpoint": lambda line: line.asks("BREAK", bytes(2)),
     "an abort": lambda line: line.asks("ABORT"),
-    "the button": pushes,
+    "the button": push_button,
     "another computer": lambda line: line.says_hello(b"efgh"),
     "zeros": lambda line: line.hears(STOP, 5),
     "a stop": lambda line: line.hears(
@@ -220,7 +220,7 @@ ROBOT_KINDS = {"a mega": HostFirmware, "an uno": SmallRobot}
 
 
 def two_programs() -> bytes:
-    robot, session = holding(OLD_PROGRAM)
+    robot, session = robot_with_saved_program(OLD_PROGRAM)
     send(robot, session, "SB|B(0.1, 40)")
     wait_until_saved(robot, session)
     return robot.memory()

@@ -168,12 +168,12 @@ def state_of(end: End) -> int:
     return next(frame.payload[1] for frame in frames if frame and frame.number == STATUS)
 
 
-def everything(frame: Frame) -> bool:
+def pass_frame(frame: Frame) -> bool:
     return True
 
 
-def honest(end: End, session: Session, request: PendingRequest[Any] | None) -> list[str]:
-    between = Between(end, random.Random(1), 0, everything, cuts_stops=False)
+def talk_honestly(end: End, session: Session, request: PendingRequest[Any] | None) -> list[str]:
+    between = Between(end, random.Random(1), 0, pass_frame, cuts_stops=False)
     return talk(between, session, request)
 
 
@@ -181,7 +181,7 @@ def start_long_drive(end: End, draw: random.Random) -> None:
     """Start a long drive, whatever its state."""
     session = end.session(draw.getrandbits(32), end.keys)
     request = session.upload(image_of(FOREVER), saves=False, is_detached=True)
-    honest(end, session, request)
+    talk_honestly(end, session, request)
     assert request.outcome and request.outcome.status == 0, request.outcome
     assert state_of(end) == STATE_RUNNING
 
@@ -197,14 +197,14 @@ def one_trial(end: End, seed: int) -> str:
     if draw.random() < 0.3:
         greets |= {STATUS, BY_NAME["PING"].number}
     all_pass = cleared != 0 and draw.random() < 0.3
-    between = Between(end, draw, cleared, everything if all_pass else lambda f: f.number in greets)
+    between = Between(end, draw, cleared, pass_frame if all_pass else lambda f: f.number in greets)
     kind = draw.choice(("hello", "stop", "upload", "live", "name"))
     if kind == "stop":
         if state_of(end) != STATE_RUNNING:
             start_long_drive(end, draw)
         is_greeted = draw.random() < 0.5
         if is_greeted:  # greeted by the robot itself
-            honest(end, session, session.hello())
+            talk_honestly(end, session, session.hello())
         session.stop(0)
         names = talk(between, session, None)
         assert "STOPPED" not in names, f"seed {seed}: a stop that nobody has heard is confirmed"
@@ -241,7 +241,7 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
         keys.stored_keys = [key._replace(name="") for key in keys.stored_keys]
     place = ROBOT_PLACE if is_place else draw.choice(("", "tcp://bob"))
     session = end.session(draw.getrandbits(32), keys, place)
-    honest(end, session, session.hello())
+    talk_honestly(end, session, session.hello())
     assert keys.id_by_place.get(ROBOT_PLACE) == (end.keys.stored_keys[0].id if is_place else None)
     if state_of(end) != STATE_RUNNING:
         start_long_drive(end, draw)
@@ -252,7 +252,7 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
         greets = draw.choice(({HELLO}, {HELLO, AUTHENTICATE}, {HELLO, STATUS}))
         between = Between(end, draw, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
     else:
-        between = Between(strange, draw, cleared, everything, cuts_stops=draw.random() < 0.5)
+        between = Between(strange, draw, cleared, pass_frame, cuts_stops=draw.random() < 0.5)
     kind = draw.choice(("stop", "upload", "live", "hello"))
     request: PendingRequest[Any] | None = None
     if kind == "stop":
@@ -291,21 +291,21 @@ def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
     end, strange = End(), Stranger()
     keys = end.keys
     session = end.session(1, keys, ROBOT_PLACE)
-    honest(end, session, session.hello())
+    talk_honestly(end, session, session.hello())
     session = strange.session(2, keys, ROBOT_PLACE)
     request = session.hello()
-    honest(strange, session, request)
+    talk_honestly(strange, session, request)
     assert request.outcome and request.outcome.status == OTHER_ROBOT
     other = request.outcome.detail
     keys.accepted_ids.add(other)
     for _ in range(2):
-        honest(strange, session, request := session.hello())
+        talk_honestly(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
         assert session.robot and session.robot.id == other
     strange.table.claim_session(keys)  # in another slot
     keys.accepted_ids.clear()
     session = strange.session(3, keys, ROBOT_PLACE)
-    honest(strange, session, request := session.hello())
+    talk_honestly(strange, session, request := session.hello())
     assert request.outcome and request.outcome.status == 0
     assert keys.id_by_place[ROBOT_PLACE] == other
 
@@ -318,7 +318,7 @@ def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
         keys.stored_keys = key
         keys.remember_robot(ROBOT_PLACE, 7)
         session = strange.session(4, keys, ROBOT_PLACE)
-        honest(strange, session, request := session.hello())
+        talk_honestly(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
 
 
@@ -335,10 +335,10 @@ def test_a_stop_that_the_robot_has_heard_is_confirmed(which: int, is_greeted: bo
     start_long_drive(end, random.Random(3))
     session = end.session(99, end.keys)
     if is_greeted:
-        honest(end, session, session.hello())
+        talk_honestly(end, session, session.hello())
         end.passes(2500)  # time for the robot to forget the seal
     session.stop(0)
-    assert honest(end, session, None)[-1] == "STOPPED"
+    assert talk_honestly(end, session, None)[-1] == "STOPPED"
     assert state_of(end) == STATE_STOPPED
 
 
@@ -349,14 +349,14 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() 
     keys.stored_keys = [key._replace(key=bytes(15) + b"\7") for key in end.keys.stored_keys]
     session = end.session(99, keys)
     session.stop(0)
-    assert honest(end, session, None)[-1] == "LOST"
+    assert talk_honestly(end, session, None)[-1] == "LOST"
     assert state_of(end) == STATE_STOPPED
     request = session.hello()
-    honest(end, session, request)
+    talk_honestly(end, session, request)
     assert request.outcome and request.outcome.status == 0  # public values are reported
     stranger = end.session(100, Keys())
     stranger.stop(0)
-    assert honest(end, stranger, None)[-1] == "STOPPED"
+    assert talk_honestly(end, stranger, None)[-1] == "STOPPED"
 
 
 def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
@@ -365,20 +365,20 @@ def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
     keys = Keys()
     # The form of older files.
     keys.stored_keys = [key._replace(uses_seals=False) for key in end.keys.stored_keys]
-    cut = Between(end, random.Random(1), OWNED, everything)
+    cut = Between(end, random.Random(1), OWNED, pass_frame)
     session = end.session(50, keys)
     talk(cut, session, session.hello())
     assert not keys.stored_keys[0].uses_seals
     session = end.session(51, keys)
-    honest(end, session, session.hello())
+    talk_honestly(end, session, session.hello())
     assert keys.stored_keys[0].uses_seals
 
 
-def either(ends: tuple[End, End, Stranger], seed: int) -> str:
+def play_either(ends: tuple[End, End, Stranger], seed: int) -> str:
     """Play one of somebody in between, or one of a stranger with an id of its own."""
     robot, other, strange = ends
     return one_stranger(other, strange, seed) if seed % 2 else one_trial(robot, seed)
 
 
 if __name__ == "__main__":
-    each_seed(partial(either, (End(), End(), Stranger())), make_options(10_000, 1))
+    each_seed(partial(play_either, (End(), End(), Stranger())), make_options(10_000, 1))

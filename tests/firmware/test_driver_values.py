@@ -44,7 +44,7 @@ INPUTS_BY_ABILITY: dict[str, Callable[[Board, Wiring, bool], None]] = {
 }
 
 
-def wired_as(driver: Driver) -> tuple[str, Wiring]:
+def name_and_wiring(driver: Driver) -> tuple[str, Wiring]:
     """Return the name and the wiring of a driver's device."""
     board = ROBOT_WITH_ALL_DRIVERS.board
     wirings = board.sensors if isinstance(driver, SensorDriver) else board.actuators
@@ -80,7 +80,7 @@ def test_whatever_drivers_there_are_each_is_wired_to_pins_that_are_simulated(mot
 @pytest.mark.sampled("driver", keep=2)
 @pytest.mark.parametrize("driver", SENSORS, ids=names(list(SENSORS)))
 def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
-    name, wiring = wired_as(driver)
+    name, wiring = name_and_wiring(driver)
     readings = set()
     for is_much in (False, True):
         board = start_board(
@@ -94,7 +94,7 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
 @pytest.mark.sampled("driver")
 @pytest.mark.parametrize("driver", ACTUATORS, ids=names(ACTUATORS))
 def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
-    name, wiring = wired_as(driver)
+    name, wiring = name_and_wiring(driver)
     less, more = SET_VALUES[driver.used_by.split()[1]]
     board = start_board(
         ROBOT_WITH_ALL_DRIVERS, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)"

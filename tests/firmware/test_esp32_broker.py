@@ -12,13 +12,13 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_broker import (
     DEAD_MAN_MS,
     ID,
-    at,
     broker_settings_of,
-    motors,
-    present,
+    connect_to_broker,
+    list_present_robots,
+    motor_state,
     until,
 )
-from tests.support.esp32_radio import Bytes, in_reach, talk
+from tests.support.esp32_radio import Bytes, set_network_in_reach, talk
 from tests.support.esp32_wifi import (
     join_network,
     remote,
@@ -64,9 +64,9 @@ class Drive(NamedTuple):
     ends: Ends
 
 
-def driving(broker: Mosquitto, text: str = AWAY_PROGRAM, keys: Keys | None = None) -> Drive:
+def start_drive(broker: Mosquitto, text: str = AWAY_PROGRAM, keys: Keys | None = None) -> Drive:
     keys = keys or Keys()
-    robot, _ = at(broker, keys)
+    robot, _ = connect_to_broker(broker, keys)
     teacher, owner = broker.connect_client(), remote(robot, keys)
     ends: Ends = [(AtBroker(robot, teacher), owner)]
     assert upload_text(robot, ends, owner, text) == "OK"
@@ -89,40 +89,42 @@ def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: M
 def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
     broker: Mosquitto,
 ) -> None:
-    robot, teacher, owner, ends = driving(broker)
-    assert present(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
+    robot, teacher, owner, ends = start_drive(broker)
+    assert list_present_robots(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     other = broker.connect_client()
     other.stop("another")
     talk(robot, ends, 1500)
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     other.stop("aula")
     talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 0 0"
+    assert motor_state(robot) == "MOTORS 0 0"
     owner.events()
     assert upload_text(robot, ends, owner) == "OK"
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     owner.stop(robot.now_ms)
     talk(robot, ends, 60)
-    assert motors(robot) == "MOTORS 0 0"
+    assert motor_state(robot) == "MOTORS 0 0"
     assert any(event.name == "STOPPED" for event in owner.events())
 
 
 def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
     lines = "".join(f"X = {k}; " for k in range(400))
-    robot, _, owner, ends = driving(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
+    robot, _, owner, ends = start_drive(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
     talk(robot, ends, 300)
     names = [event.name for event in owner.events()]
     assert names.count("SHOW") == 2 and "DONE" in names
 
 
 def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
-    robot, owner = at(broker, Keys())
+    robot, owner = connect_to_broker(broker, Keys())
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     restarted_robot = restart_with_school_in_reach(robot)
     teacher = broker.connect_client()
     until(
         restarted_robot,
-        lambda: present(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)],
+        lambda: (
+            list_present_robots(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
+        ),
     )
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(None)) == "OK"
     assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
@@ -133,7 +135,7 @@ def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
 
 
 def test_what_is_no_broker_is_refused(broker: Mosquitto) -> None:
-    robot, owner = at(broker, Keys())
+    robot, owner = connect_to_broker(broker, Keys())
     names = ("", "a/b", "a+", "#", "Aula", "aula 3", "ñ", "x" * 17)
     for settings in (
         wifi.BrokerSettings(bytes(4), 0, "aula"),
@@ -153,7 +155,7 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(
 ) -> None:
     user, password = "robots", "a long password: 40 letters and some more"
     own = brokers(user, password)
-    robot, owner = at(own, Keys(), own.settings("aula", user, password))
+    robot, owner = connect_to_broker(own, Keys(), own.settings("aula", user, password))
     assert b"40 letters" in robot.read_kept().entries[BROKER_KEY], "it has come whole"
     wrong = own.settings("aula", user, "another one")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
@@ -167,7 +169,7 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(
 
 def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     """Its silence counts from its last message, not from its first."""
-    robot, _ = at(broker, Keys())
+    robot, _ = connect_to_broker(broker, Keys())
     teacher, stranger = broker.connect_client(), broker.connect_client()
     topic = f"{ROOT}/aula/{ID}/in/"
     for k in range(4000):  # milliseconds: longer than a client may be silent
@@ -193,7 +195,7 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
 
 def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:
     """Otherwise it would use up all sockets of an ESP32."""
-    robot, owner = at(broker, Keys())
+    robot, owner = connect_to_broker(broker, Keys())
     for _ in range(20):
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY", 10_000)
@@ -203,14 +205,14 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
 
 
 def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
-    robot, teacher, owner, ends = driving(broker)
+    robot, teacher, owner, ends = start_drive(broker)
     stranger, other = broker.connect_client(), remote(robot, Keys(50), 11)
     end = AtBroker(robot, stranger)
     end.port._patient_until_s = 0.0
     request = other.live(image_of("F(1, 9)").code)
     talk(robot, [*ends, (end, other)], 300)
     assert request.outcome is None and end.has_ended, "it is told that another one has the robot"
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     for _ in range(20):  # an unfinished frame would spoil the owner's next one
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", b"\3\2\1")
         talk(robot, ends, 10)
@@ -221,26 +223,26 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     for junk in (b"SI|B(9, 90)\n", b"\3\2\1\0" * 50, bytes(range(1, 255)), b"GET / HTTP/1.1\r\n"):
         stranger.publish(topic, junk)
         talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     for name in ("in/x", "in/" + "g" * 8, "in/" + "0" * 9, "in", "stop", f"in/{ID}/more"):
         stranger.publish(f"{ROOT}/aula/{ID}/{name}", bytes(STOP_BYTES))
     stranger.publish(f"{ROOT}/aula/stop", b"stop")
     stranger.publish(f"{ROOT}/aula/stop", bytes(3))
     talk(robot, ends, 200)
-    assert motors(robot) == "MOTORS 80 80", "none of these is a stop"
+    assert motor_state(robot) == "MOTORS 80 80", "none of these is a stop"
     for length in (513, 20_000):
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
     talk(robot, ends, 500)
-    assert motors(robot) == "MOTORS 80 80", "nor is what is too long, which is skipped"
+    assert motor_state(robot) == "MOTORS 80 80", "nor is what is too long, which is skipped"
     assert wait_for_outcome(robot, ends, owner.ping()) == "OK"
     stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
     talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 0 0"
+    assert motor_state(robot) == "MOTORS 0 0"
 
 
 def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
     """It is a whole line in one message; a frame's code may contain such bytes."""
-    robot, _, owner, ends = driving(broker)
+    robot, _, owner, ends = start_drive(broker)
     stranger = broker.connect_client()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
     for none in (
@@ -254,10 +256,10 @@ def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
         talk(robot, ends, 100)
     for stop in (b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop", b"SS\n", b"PARA", b"\0S.\n", b"S\0",
                  b"\3", b"FFSSS", b"stop STOP now"):  # fmt: skip
-        assert motors(robot) == "MOTORS 80 80"
+        assert motor_state(robot) == "MOTORS 80 80"
         stranger.publish(topic, stop)
         talk(robot, ends, 100)
-        assert motors(robot) == "MOTORS 0 0", stop
+        assert motor_state(robot) == "MOTORS 0 0", stop
         assert upload_text(robot, ends, owner) == "OK"
 
 
@@ -269,9 +271,9 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
     for topic in topics:
         stranger._client.publish(topic, bytes(STOP_BYTES), retain=True)
     try:
-        robot, owner = at(broker, keys)
+        robot, owner = connect_to_broker(broker, keys)
         cable: Ends = [(None, owner)]
-        in_reach(robot, "", "")
+        set_network_in_reach(robot, "", "")
         talk(robot, cable, 50)
         assert upload_text(robot, cable, owner) == "OK"
         school_in_reach(robot)
@@ -281,7 +283,9 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
             if broker_settings_of(robot, owner)[1] == "READY":
                 break
         talk(robot, cable, 300)
-        assert broker_settings_of(robot, owner)[1] == "READY" and motors(robot) == "MOTORS 80 80"
+        assert (
+            broker_settings_of(robot, owner)[1] == "READY" and motor_state(robot) == "MOTORS 80 80"
+        )
     finally:
         for topic in topics:
             stranger._client.publish(topic, b"", retain=True)
@@ -300,7 +304,7 @@ def test_what_is_said_again_has_nothing_done(
         send(end, data)
 
     monkeypatch.setattr(AtBroker, "send", sends)
-    robot, _, _, ends = driving(broker, "SI|F(0.2, 80)")
+    robot, _, _, ends = start_drive(broker, "SI|F(0.2, 80)")
     thief = broker.connect_client()
     talk(robot, ends, 400)
     end = ends[0][0]
@@ -318,7 +322,7 @@ def test_what_is_said_again_has_nothing_done(
 
 
 def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) -> None:
-    robot, cable = at(broker, Keys())
+    robot, cable = connect_to_broker(broker, Keys())
     assert wait_for_outcome(robot, [(None, cable)], cable.disown(0)) == "OK"
     talk(robot, [], AUTHORITY_MS + 100)
     count_before = len(robot.did)
@@ -339,18 +343,18 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
 @pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
 def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
     own, keys = brokers(), Keys()
-    robot, _, _, ends = driving(own, keys=keys)
+    robot, _, _, ends = start_drive(own, keys=keys)
     talk(robot, ends, 500)
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     if how == "dies":
         own.kill()
     elif how == "stalls":
         own.stall()
     else:
-        in_reach(robot, "", "")
+        set_network_in_reach(robot, "", "")
     begun_ms = robot.now_ms
     limit_ms = DEAD_MAN_MS if how == "stalls" else RECONNECT_MS
-    while motors(robot) != "MOTORS 0 0":
+    while motor_state(robot) != "MOTORS 0 0":
         talk(robot, ends, 5)
         assert robot.now_ms < begun_ms + limit_ms
     own.stall(False)
@@ -368,24 +372,24 @@ def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], h
 
 def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosquitto) -> None:
     keys = Keys()
-    robot, _, _, [(end, _)] = driving(broker, keys=keys)
+    robot, _, _, [(end, _)] = start_drive(broker, keys=keys)
     assert end
     end.leave()
-    until(robot, lambda: motors(robot) == "MOTORS 0 0", 200)
+    until(robot, lambda: motor_state(robot) == "MOTORS 0 0", 200)
     second, next_client = broker.connect_client(), remote(robot, keys, 13)
     ends: Ends = [(AtBroker(robot, second), next_client)]
     second.attend()
     assert upload_text(robot, ends, next_client) == "OK"
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     time.sleep(0.6)
     talk(robot, ends, 400)
-    assert motors(robot) == "MOTORS 0 0"
+    assert motor_state(robot) == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("is_silent", [False, True])
 def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool) -> None:
     """A connection that ends, and one that falls silent."""
-    robot, _ = at(broker, Keys())
+    robot, _ = connect_to_broker(broker, Keys())
     teacher = broker.connect_client()
     if not is_silent:
         robot.close()

@@ -19,10 +19,10 @@ from tests.support.certificates import Authority, der
 from tests.support.esp32_broker import (
     DEAD_MAN_MS,
     ID,
-    at,
     broker_settings_of,
-    motors,
-    present,
+    connect_to_broker,
+    list_present_robots,
+    motor_state,
     until,
 )
 from tests.support.esp32_radio import announce_computer, talk
@@ -78,18 +78,18 @@ def room(school: Room) -> Iterator[Room]:
 
 def test_the_owner_drives_over_tls(room: Room) -> None:
     keys = Keys()
-    robot, _ = at(room.broker, keys, room.settings())
+    robot, _ = connect_to_broker(room.broker, keys, room.settings())
     teacher = room.connect()
-    assert present(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
+    assert list_present_robots(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     owner = remote(robot, keys)
     ends: Ends = [(AtBroker(robot, teacher), owner)]
     lines = "".join(f"X = {k}; " for k in range(200))
     assert upload_text(robot, ends, owner, f"SI|{lines}F(9, 80)") == "OK"
     talk(robot, ends, 300)
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     teacher.stop("aula")
     talk(robot, ends, 100)
-    assert motors(robot) == "MOTORS 0 0"
+    assert motor_state(robot) == "MOTORS 0 0"
 
 
 @pytest.mark.sampled("what", "state", keep=3)
@@ -121,7 +121,9 @@ def test_who_is_not_trusted_gets_nothing(
     assert broker_settings_of(robot, owner)[1] == state, "it stays while the robot tries again"
     if state != "NO_TLS":
         teacher = room.connect()
-        assert not [presence for presence in present(robot, teacher) if presence.is_here]
+        assert not [
+            presence for presence in list_present_robots(robot, teacher) if presence.is_here
+        ]
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
 
@@ -204,15 +206,15 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
 ) -> None:
     authority, keys = Authority(tmp_path), Keys()
     own = Room(brokers(more=authority.rules(NAME)), authority)
-    robot, _ = at(own.broker, keys, own.settings())
+    robot, _ = connect_to_broker(own.broker, keys, own.settings())
     owner = remote(robot, keys)
     ends: Ends = [(AtBroker(robot, own.connect()), owner)]
     assert upload_text(robot, ends, owner) == "OK"
     talk(robot, ends, 500)
-    assert motors(robot) == "MOTORS 80 80"
+    assert motor_state(robot) == "MOTORS 80 80"
     own.broker.kill()
     begun_ms = robot.now_ms
-    while motors(robot) != "MOTORS 0 0":
+    while motor_state(robot) != "MOTORS 0 0":
         talk(robot, ends, 5)
         assert robot.now_ms < begun_ms + DEAD_MAN_MS
 
@@ -227,7 +229,7 @@ def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: R
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         assert upload_text(robot, [(None, owner)], owner) == "OK"
         talk(robot, [(None, owner)], 300)
-        assert motors(robot) == "MOTORS 80 80"
+        assert motor_state(robot) == "MOTORS 80 80"
         talk(robot, [(None, owner)], 16_500)
         silent.settimeout(120)
         for _ in range(2):  # until the second attempt
@@ -292,7 +294,7 @@ def test_what_is_no_tls_is_refused() -> None:
 
 
 def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room: Room) -> None:
-    robot, owner = at(room.broker, Keys(), room.settings())
+    robot, owner = connect_to_broker(room.broker, Keys(), room.settings())
     robot.fill_nvs()
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
     talk(robot, [(None, owner)], 100)
@@ -301,5 +303,7 @@ def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room
     teacher = room.connect()
     until(
         restarted_robot,
-        lambda: present(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)],
+        lambda: (
+            list_present_robots(restarted_robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
+        ),
     )

@@ -100,7 +100,7 @@ def pulses(pin: int, count: int, high_us: int, low_us: int = 400) -> list[tuple[
     return [change for _ in range(count) for change in ((low_us, pin, True), (high_us, pin, False))]
 
 
-def counting(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
+def counting_robot(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
     assert profile.board.discs
     robot, pins = Esp32Robot(profile), dict(profile.board.discs.pins)
     robot.edges(*((100, pin, False) for pin in pins.values()))
@@ -146,7 +146,7 @@ def test_a_counter_that_is_full_begins_again() -> None:
 
 
 def test_each_edge_counts_and_a_glitch_does_not() -> None:
-    robot, pins = counting(SLOTTED)
+    robot, pins = counting_robot(SLOTTED)
     start_edges = robot.edges()
     robot.edges(*pulses(pins["left"], 10, LONGEST_US), *pulses(pins["right"], 10, 1))
     assert robot.edges() == start_edges
@@ -156,7 +156,7 @@ def test_each_edge_counts_and_a_glitch_does_not() -> None:
 
 def test_two_channels_count_back() -> None:
     """The cases are those of an Uno in `test_board_discs.py`."""
-    robot, pins = counting(TWO_CHANNELS)
+    robot, pins = counting_robot(TWO_CHANNELS)
     a, b = pins["left"], pins["left_b"]
     states = [(True, False), (True, True), (False, True), (False, False)]
     start_edges = robot.edges()[0]
@@ -183,7 +183,7 @@ def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
         board=SLOTTED.board._replace(discs=discs._replace(pins=pins), sensors=()),
         kit=SLOTTED.kit._replace(sensors=()),
     )
-    robot, _ = counting(profile)
+    robot, _ = counting_robot(profile)
     start_edges = robot.edges()
     counts = robot.edges(*pulses(pins["left"], 4, 50), *pulses(pins["right"], 2, 50))
     assert [(b - a) % 2**16 for a, b in zip(start_edges, counts, strict=True)] == [8, 4]

@@ -147,21 +147,21 @@ def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
 # -- the button -------------------------------------------------------------------------------
 
 
-def runs(robot: Esp32Robot, ends: Ends, page: Session) -> None:
+def upload_running(robot: Esp32Robot, ends: Ends, page: Session) -> None:
     assert upload_text(robot, ends, page) == "OK"
 
 
-def waits(robot: Esp32Robot, ends: Ends, page: Session) -> None:
+def upload_waiting(robot: Esp32Robot, ends: Ends, page: Session) -> None:
     assert upload_text(robot, ends, page, "SB|F(60, 80)") == "OK"
 
 
-def stands(robot: Esp32Robot, ends: Ends, page: Session) -> None:
-    waits(robot, ends, page)
+def upload_stopped(robot: Esp32Robot, ends: Ends, page: Session) -> None:
+    upload_waiting(robot, ends, page)
     page.stop(robot.now_ms)
     talk(robot, ends, 100)
 
 
-@pytest.mark.parametrize("before", [runs, waits, stands])
+@pytest.mark.parametrize("before", [upload_running, upload_waiting, upload_stopped])
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("has_passed", [False, True])
 def test_behind_the_button_anybody_drives(
@@ -171,7 +171,7 @@ def test_behind_the_button_anybody_drives(
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
     before(robot, ends, page)
-    for _ in range(1 + (before is runs)):  # the first press is a stop
+    for _ in range(1 + (before is upload_running)):  # the first press is a stop
         talk(robot, ends, 100, flags=1)
         talk(robot, ends, 300, flags=2)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "the button has started it"

@@ -58,7 +58,7 @@ LONGEST_WAIT_MS = max(LISTEN_MS, AUTHORITY_MS) + 1200
 
 
 @lru_cache(maxsize=1)
-def at_school() -> tuple[Kept, RobotKey]:
+def memory_with_network() -> tuple[Kept, RobotKey]:
     """Return the memory of a robot with an owner and a network, and the owner's key."""
     keys = Keys()
     robot, _ = join_network(keys)
@@ -87,7 +87,7 @@ class Scene:
     def new(self, what: str) -> Client:
         self.nonce += 1
         keys = Keys()
-        keys.stored_keys = [at_school()[1]]
+        keys.stored_keys = [memory_with_network()[1]]
         if what == "owner":
             return remote(self.robot, keys, self.nonce)
         if what == "thief":
@@ -181,7 +181,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
 
 def check(seed: int) -> str:
     rng = random.Random(seed)
-    scene = Scene(at_school()[0])
+    scene = Scene(memory_with_network()[0])
     wait_ms = rng.choice((3, 30, 300, LONGEST_WAIT_MS))
     for _ in range(rng.choice((2, 4, 8, 16))):
         a_step(scene, rng, wait_ms < LONGEST_WAIT_MS)

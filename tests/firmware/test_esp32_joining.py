@@ -8,7 +8,7 @@ from struct import pack
 
 import pytest
 
-from tests.support.esp32_radio import in_reach, radios, talk
+from tests.support.esp32_radio import radios, set_network_in_reach, talk
 from tests.support.esp32_wifi import SCHOOL, join_network, make_owned_robot, school_in_reach, state
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import Ends, boot, wait_for_outcome
@@ -49,7 +49,7 @@ def test_a_network_that_comes_back_is_joined() -> None:
     robot, owner = join_network(Keys())
     robot.wait(JOIN_RETRY_MS)
     for away_ms in (50, 1000, 100_000):
-        in_reach(robot, "", "")
+        set_network_in_reach(robot, "", "")
         robot.wait(away_ms)
         school_in_reach(robot)
         robot.wait(JOIN_RETRY_MS + 100)

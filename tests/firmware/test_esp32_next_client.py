@@ -17,9 +17,9 @@ from tests.support.esp32_radio import (
     LowEnergy,
     Network,
     SerialPort,
+    limit_accepted_bytes,
     radios,
     session,
-    takes,
     talk,
 )
 from tests.support.esp32_wifi import far_owner, make_owned_robot, remote, remote_with_wrong_key
@@ -42,44 +42,44 @@ from tiniscript.link.typed_stop import is_typed_stop, stops_at_once
 drawn = pytest.mark.sampled(of="places of clients", keep=1)
 
 
-def shows_wrong_keys(robot: Esp32Robot, end: End, keys: Keys) -> None:
+def show_wrong_keys(robot: Esp32Robot, end: End, keys: Keys) -> None:
     thief = remote_with_wrong_key(robot, keys, 1)
     for _ in range(10):
         assert wait_for_outcome(robot, [(end, thief)], thief.start()) != "OK"
 
 
-def begins_an_upload(robot: Esp32Robot, end: End, keys: Keys) -> None:
+def begin_upload(robot: Esp32Robot, end: End, keys: Keys) -> None:
     stranger = session(3, robot)
     stranger.upload(image_of("SB|" + ";".join("F(1, 80)" for _ in range(800))))
     talk(robot, [(end, stranger)], 300)
 
 
-def claims(robot: Esp32Robot, end: End, keys: Keys) -> None:
+def claim_as_stranger(robot: Esp32Robot, end: End, keys: Keys) -> None:
     stranger = remote(robot, Keys(50), 4)
     stranger.claim(0)
     talk(robot, [(end, stranger)], 300)
 
 
-def says(data: bytes) -> Callable[[Esp32Robot, End, Keys], None]:
-    def it(robot: Esp32Robot, end: End, keys: Keys) -> None:
+def sender_of(data: bytes) -> Callable[[Esp32Robot, End, Keys], None]:
+    def send(robot: Esp32Robot, end: End, keys: Keys) -> None:
         talk(robot, [(end, Bytes(data))], 30)
 
-    return it
+    return send
 
 
 DISTURBANCES = {
-    "wrong keys": shows_wrong_keys,
-    "an upload": begins_an_upload,
-    "a claim": claims,
-    "half a frame": says(b"\0\0\5\7\7"),
-    "noise": says(b"\0\0" + random.Random(5).randbytes(3000)),
-    "half a line": says(b"SI|F(60, 80"),
-    "half a block": says(b"SI|LOOP(2)\n"),
-    "stops": says(b"\0\0" + bytes(STOP_BYTES) * 9),
+    "wrong keys": show_wrong_keys,
+    "an upload": begin_upload,
+    "a claim": claim_as_stranger,
+    "half a frame": sender_of(b"\0\0\5\7\7"),
+    "noise": sender_of(b"\0\0" + random.Random(5).randbytes(3000)),
+    "half a line": sender_of(b"SI|F(60, 80"),
+    "half a block": sender_of(b"SI|LOOP(2)\n"),
+    "stops": sender_of(b"\0\0" + bytes(STOP_BYTES) * 9),
 }
 
 
-def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
+def owner_time_ms(robot: Esp32Robot, make: Make, keys: Keys) -> int:
     """Return the owner's time from a new connection until a program runs."""
     owner = remote(robot, keys, 8)
     began_ms = robot.now_ms
@@ -92,26 +92,26 @@ def owners_time(robot: Esp32Robot, make: Make, keys: Keys) -> int:
 @pytest.mark.parametrize("make", TRANSPORTS)
 @pytest.mark.parametrize("wrong", DISTURBANCES)
 def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
-    def place() -> tuple[Esp32Robot, Keys]:
+    def connected_place() -> tuple[Esp32Robot, Keys]:
         keys = Keys()
         robot, end, _ = far_owner(keys)
         end.leave()
         talk(robot, [], AUTHORITY_MS + 100)
         return robot, keys
 
-    robot, keys = place()
+    robot, keys = connected_place()
     talk(robot, [(end := make(robot), Bytes())], 300)
     end.leave()
     talk(robot, [], 5)
-    usual_ms = owners_time(robot, make, keys)
+    usual_ms = owner_time_ms(robot, make, keys)
 
-    robot, keys = place()
+    robot, keys = connected_place()
     for _ in range(3):
         end = make(robot)
         DISTURBANCES[wrong](robot, end, keys)
         end.leave()
         talk(robot, [], 5)
-    assert owners_time(robot, make, keys) <= usual_ms + 30  # a stop is released first
+    assert owner_time_ms(robot, make, keys) <= usual_ms + 30  # a stop is released first
 
 
 @pytest.mark.sampled("make")
@@ -177,12 +177,12 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
     frames = b"".join(encode_frame(Frame(STATUS, seq, 0)) for seq in range(requests))
     rests = 0
     for moment_ms in (1, 2, 3, 5, 9, 100):
-        takes(robot, most)
+        limit_accepted_bytes(robot, most)
         first = Bytes(b"\0" + frames)
         talk(robot, [(end := Network(robot), first)], moment_ms)
         end.leave()
         talk(robot, [], 3)
-        takes(robot, 1000)
+        limit_accepted_bytes(robot, 1000)
         other = Bytes(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
         talk(robot, [(end := Network(robot), other)], 60)
         end.leave()

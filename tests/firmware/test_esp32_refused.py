@@ -82,7 +82,9 @@ def brokers() -> Iterator[list[StrictBroker]]:
         strict_broker.close()
 
 
-def using(broker: StrictBroker, strict_brokers: list[StrictBroker]) -> tuple[Esp32Robot, Session]:
+def robot_at_broker(
+    broker: StrictBroker, strict_brokers: list[StrictBroker]
+) -> tuple[Esp32Robot, Session]:
     strict_brokers.append(broker)
     robot, owner = join_network(Keys())
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
@@ -95,7 +97,7 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
     granted_bytes: bytes, brokers: list[StrictBroker]
 ) -> None:
     """For example, the broker's access list may omit the class."""
-    robot, owner = using(broker := StrictBroker(granted_bytes), brokers)
+    robot, owner = robot_at_broker(broker := StrictBroker(granted_bytes), brokers)
     until(robot, lambda: broker.asked >= 3)
     assert broker_settings_of(robot, owner)[1] == "REFUSED", "and it is tried again"
     assert broker.published == [], "nobody is told that the robot is there"
@@ -109,7 +111,7 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
 def test_an_answer_to_something_else_is_none(
     granted_bytes: bytes, brokers: list[StrictBroker]
 ) -> None:
-    robot, owner = using(broker := StrictBroker(granted_bytes), brokers)
+    robot, owner = robot_at_broker(broker := StrictBroker(granted_bytes), brokers)
     until(robot, lambda: broker.asked >= 2)
     assert broker_settings_of(robot, owner)[1] == "SEARCHING"
     assert broker.published == []
@@ -119,7 +121,7 @@ def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None
     """A broker may send messages before it has confirmed a subscription."""
     topic = b"tiniscript/aula/stop"
     stop = bytes([PUBLISH, 2 + len(topic) + STOP_BYTES, 0, len(topic)]) + topic + bytes(STOP_BYTES)
-    robot, owner = using(broker := StrictBroker(early=stop), brokers)
+    robot, owner = robot_at_broker(broker := StrictBroker(early=stop), brokers)
 
     def is_stopped() -> bool:  # messages from before the stop are stale
         status = owner.status()

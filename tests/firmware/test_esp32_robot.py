@@ -336,7 +336,7 @@ def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
 # -- failures
 
 
-def driving(text: str = AWAY_PROGRAM) -> Esp32Robot:
+def driving_robot(text: str = AWAY_PROGRAM) -> Esp32Robot:
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, text)
     robot.talk(session, 100)
@@ -346,7 +346,7 @@ def driving(text: str = AWAY_PROGRAM) -> Esp32Robot:
 
 
 def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
-    robot = driving()
+    robot = driving_robot()
     robot.hang(99)
     robot.wait(1)
     assert robot.did == []
@@ -377,7 +377,7 @@ def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
 
 
 def test_a_short_stall_is_a_fault_and_no_restart() -> None:
-    robot = driving()
+    robot = driving_robot()
     robot.hang(150)
     robot.wait(20)
     assert actions_of(robot)[0] == "MOTORS 0 0"
@@ -401,7 +401,7 @@ def test_the_cause_of_a_reset(reset: int, number: int) -> None:
     "take", [lambda kept: EMPTY_MEMORY, lambda kept: kept._replace(noinit=b"")]
 )
 def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
-    robot = driving()
+    robot = driving_robot()
     robot.hang(1200)
     restarted_robot = Esp32Robot(kept_memory=take(robot.read_kept()), reset=1)
     restarted_robot.wait(300)

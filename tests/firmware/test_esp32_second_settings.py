@@ -19,7 +19,7 @@ import pytest
 from tests.machines.esp32 import EXTERNAL, PANIC, POWER_ON, Esp32Robot, Kept
 from tests.support.campaign import each_seed, make_options
 from tests.support.compared_answers import first_difference
-from tests.support.esp32_radio import Network, in_reach, port_of, radios, talk
+from tests.support.esp32_radio import Network, port_of, radios, set_network_in_reach, talk
 from tests.support.esp32_wifi import (
     HOTSPOT,
     SCHOOL,
@@ -55,38 +55,38 @@ RETRY_MS = 4000  # between two tries at a broker, at most
 # -- networks -----------------------------------------------------------------------------------
 
 
-def refused(robot: Esp32Robot, network: wifi.Network, reason: int = 15) -> None:
+def refuse_robot(robot: Esp32Robot, network: wifi.Network, reason: int = 15) -> None:
     robot.radio("x", bytes([reason]))
-    let_in(robot, WRONG_PASSWORD_NETWORK if network == SECOND_NETWORK else SECOND_NETWORK)
+    accept_robot(robot, WRONG_PASSWORD_NETWORK if network == SECOND_NETWORK else SECOND_NETWORK)
 
 
-def out_of_reach(robot: Esp32Robot, network: wifi.Network) -> None:
-    in_reach(robot, "", "")
+def remove_network(robot: Esp32Robot, network: wifi.Network) -> None:
+    set_network_in_reach(robot, "", "")
 
 
-def let_in(robot: Esp32Robot, network: wifi.Network, lease_ms: int = 0) -> None:
+def accept_robot(robot: Esp32Robot, network: wifi.Network, lease_ms: int = 0) -> None:
     robot.radio("l", pack("<I", lease_ms))
     robot.radio("f", pack("<I", 0))
-    in_reach(robot, network.name.decode(), network.password.decode())
+    set_network_in_reach(robot, network.name.decode(), network.password.decode())
 
 
-def searched_long(robot: Esp32Robot, network: wifi.Network) -> None:
+def search_long(robot: Esp32Robot, network: wifi.Network) -> None:
     """Search until the long interval between attempts is reached."""
-    let_in(robot, network)
+    accept_robot(robot, network)
     robot.radio("f", pack("<I", SEARCH_MS))
 
 
-def let_in_late(robot: Esp32Robot, network: wifi.Network) -> None:
+def accept_robot_late(robot: Esp32Robot, network: wifi.Network) -> None:
     """Its address comes much later."""
-    let_in(robot, network, LEASE_MS)
+    accept_robot(robot, network, LEASE_MS)
 
 
 CONNECTION_ENDS: dict[str, Callable[[Esp32Robot, wifi.Network], None]] = {
-    "out of reach": out_of_reach,
-    "joined": let_in,
-    "joined late": let_in_late,
-    "searched for long": searched_long,
-    "refused": refused,
+    "out of reach": remove_network,
+    "joined": accept_robot,
+    "joined late": accept_robot_late,
+    "searched for long": search_long,
+    "refused": refuse_robot,
 }
 
 
@@ -98,7 +98,7 @@ LOOK_MS, FIRST_LOOK_MS = 730, 300  # no look is near the time of a try or of a l
 
 
 @lru_cache(maxsize=1)
-def owned() -> tuple[Kept, RobotKey]:
+def memory_with_owner() -> tuple[Kept, RobotKey]:
     """Return the memory of a robot that has an owner and no network, and the owner's key."""
     keys = Keys()
     robot, _ = make_owned_robot(keys)
@@ -112,7 +112,7 @@ class Life:
         self.nonce = 10
         self.place = "out of reach", SCHOOL
         self.guests: list[Network] = []
-        self.boot(owned()[0], POWER_ON)
+        self.boot(memory_with_owner()[0], POWER_ON)
 
     def boot(self, kept_memory: Kept, reset: int) -> None:
         self.robot = Esp32Robot(kept_memory=kept_memory, reset=reset)
@@ -120,7 +120,7 @@ class Life:
         self.robot.wait(400)
         self.nonce += 1
         keys = Keys()
-        keys.stored_keys = [owned()[1]]
+        keys.stored_keys = [memory_with_owner()[1]]
         self.owner = remote(self.robot, keys, self.nonce)
 
     def restart(self, reset: int) -> None:
@@ -130,7 +130,7 @@ class Life:
 
     def move_to(self, end: str, network: wifi.Network) -> None:
         self.place = end, network
-        let_in(self.robot, network)
+        accept_robot(self.robot, network)
         CONNECTION_ENDS[end](self.robot, network)
 
     def use(self, network: wifi.Network | None) -> None:
@@ -217,11 +217,11 @@ def test_after_any_history_a_radio_does_what_a_fresh_one_does(part: int) -> None
 def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
     """With a weak signal, the robot may have joined and be waiting for its address."""
     robot, owner = make_owned_robot(Keys())
-    refused(robot, SCHOOL, reason)
+    refuse_robot(robot, SCHOOL, reason)
     assert wait_for_outcome(robot, [(None, owner)], owner.join(SCHOOL)) == "OK"
     talk(robot, [], 2)
     assert state(robot, owner) == ("STATION", "REFUSED")
-    let_in_late(robot, SCHOOL)
+    accept_robot_late(robot, SCHOOL)
     robot.wait(JOIN_RETRY_MS + 1000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
     robot.wait(LEASE_MS)
@@ -241,12 +241,12 @@ REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
 }
 
 
-def kept_settings(robot: Esp32Robot) -> tuple[bytes | None, bytes | None]:
+def stored_settings(robot: Esp32Robot) -> tuple[bytes | None, bytes | None]:
     entries = robot.read_kept().entries
     return entries.get(WIFI_KEY), entries.get(BROKER_KEY)
 
 
-def took_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
+def saving_time_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
     """Save a setting; return the time that takes."""
     began_ms = robot.now_ms
     assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[what](owner)) == "OK"
@@ -260,8 +260,8 @@ def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: in
     """The sender may disconnect at any moment before the last part."""
     rng = random.Random(seed)
     robot, owner = make_owned_robot(Keys())
-    usual_ms = took_ms(robot, owner, last)
-    fresh = kept_settings(robot)
+    usual_ms = saving_time_ms(robot, owner, last)
+    fresh = stored_settings(robot)
     keys = Keys()
     robot, _ = make_owned_robot(keys)
     for nonce in range(rng.randint(1, 3)):
@@ -272,12 +272,12 @@ def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: in
             first
         )
         talk(robot, [(None, first)], rng.randint(1, usual_ms))
-        if request.outcome is not None or kept_settings(robot) != (None, None):
+        if request.outcome is not None or stored_settings(robot) != (None, None):
             return  # the data arrived complete
     talk(robot, [], AUTHORITY_MS + 100)
     owner = remote(robot, keys, 50)
     assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[last](owner)) == "OK"
-    assert kept_settings(robot) == fresh
+    assert stored_settings(robot) == fresh
 
 
 # -- damaged data -------------------------------------------------------------------------------
@@ -298,7 +298,7 @@ def test_damaged_settings_are_none(key: bytes) -> None:
     robot, owner = join_network(keys)
     ends: Ends = [(None, owner)]
     assert wait_for_outcome(robot, ends, owner.use_broker(BROKER)) == "OK"
-    kept_memory, whole = robot.read_kept(), kept_settings(robot)
+    kept_memory, whole = robot.read_kept(), stored_settings(robot)
     for entry in damage_entry(kept_memory.entries[key]):
         restarted_robot = Esp32Robot(kept_memory=Kept(b"", {**kept_memory.entries, key: entry}, 0))
         school_in_reach(restarted_robot)
@@ -316,7 +316,7 @@ def test_damaged_settings_are_none(key: bytes) -> None:
         assert (radios(restarted_robot).joins == 0) == (key == WIFI_KEY)
         assert wait_for_outcome(restarted_robot, ends, owner.join(SCHOOL)) == "OK"
         assert wait_for_outcome(restarted_robot, ends, owner.use_broker(BROKER)) == "OK"
-        assert kept_settings(restarted_robot) == whole
+        assert stored_settings(restarted_robot) == whole
 
 
 @pytest.mark.parametrize("what", ["joins", "forgets", "uses a broker", "uses none"])
@@ -327,7 +327,7 @@ def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
     if what == "uses none":
         assert wait_for_outcome(robot, ends, owner.use_broker(BROKER)) == "OK"
     assert upload_text(robot, ends, owner, "SI|F(2, 80);W(60)") == "OK"
-    kept_settings_before = kept_settings(robot)
+    kept_settings_before = stored_settings(robot)
     ways: dict[str, Callable[[], PendingRequest[Any]]] = {
         "joins": partial(owner.join, HOTSPOT),
         "forgets": owner.forget_wifi,
@@ -336,10 +336,10 @@ def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
     }
     request = ways[what]()
     talk(robot, ends, 1500)
-    assert request.outcome is None and kept_settings(robot) == kept_settings_before
+    assert request.outcome is None and stored_settings(robot) == kept_settings_before
     assert (
         wait_for_outcome(robot, ends, request) == "OK"
-        and kept_settings(robot) != kept_settings_before
+        and stored_settings(robot) != kept_settings_before
     )
 
 

@@ -141,7 +141,7 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
         if how == "its client that leaves" and (way := ways[driver]) is not None:
             way.leave()
     elif how in HARMLESS_BYTES:
-        say(robot, ends[driver if how.startswith("its") else other], HARMLESS_BYTES[how])
+        send_data(robot, ends[driver if how.startswith("its") else other], HARMLESS_BYTES[how])
     listening_ends = [ends[place] for place in listening]
     talk(robot, listening_ends, 1, flags=how == "the button")
     talk(robot, listening_ends, DEAD_MAN_MS + 300)
@@ -153,7 +153,7 @@ def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) ->
         assert not clients[place].events()
 
 
-def say(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
+def send_data(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
     """Send data of a client outside its session."""
     if end[0] is None:
         end[1].receive(robot.step(data), robot.now_ms)
@@ -538,7 +538,7 @@ def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> Non
     assert overrun(robot) == 0
 
 
-def pressing(robot: Esp32Robot, ends: Ends, who: Session, keys: int = 1) -> str:
+def press_keys(robot: Esp32Robot, ends: Ends, who: Session, keys: int = 1) -> str:
     return wait_for_outcome(robot, ends, who.press(keys))
 
 
@@ -547,14 +547,14 @@ def test_keys_come_from_who_drives_or_from_anybody_where_nobody_does() -> None:
     robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert pressing(robot, ends, first) == "OK"
-    assert pressing(robot, ends, second, 2) == "OK"
+    assert press_keys(robot, ends, first) == "OK"
+    assert press_keys(robot, ends, second, 2) == "OK"
     assert upload_text(robot, ends, first) == "OK", "nobody was the driver"
-    assert pressing(robot, ends, second) == "OTHER_DRIVER"
-    assert pressing(robot, ends, first, 4) == "OK"
+    assert press_keys(robot, ends, second) == "OTHER_DRIVER"
+    assert press_keys(robot, ends, first, 4) == "OK"
     first.stop(robot.now_ms)
     talk(robot, ends, AUTHORITY_MS + 500)
-    assert pressing(robot, ends, second) == "OK"
+    assert press_keys(robot, ends, second) == "OK"
     assert upload_text(robot, ends, first) == "OK", "nor is he who has pressed last"
 
 

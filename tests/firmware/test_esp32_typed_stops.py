@@ -28,7 +28,7 @@ LATE_MS = 3  # a turn of the radio's task, and the delay of this computer's netw
 WHOLE = encode_frame(Frame(BY_NAME["STATUS"].number, 9, 0))
 
 
-def drives(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
+def start_drive(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
     """Make a robot drive, by its cable or over a transport."""
     ends: Ends = [(end, driver)]
     assert upload_text(robot, ends, driver) == "OK"
@@ -37,19 +37,19 @@ def drives(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
     return ends
 
 
-def stands(robot: Esp32Robot) -> bool:
+def has_stopped(robot: Esp32Robot) -> bool:
     return actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def stops(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str) -> None:
+def check_stop(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str) -> None:
     """Send bytes that end with a stop. From then on, the robot does not drive."""
     typed: Ends = [*ends, (end, Bytes(data))]
     talk(robot, typed, LATE_MS)
-    if not stands(robot):
+    if not has_stopped(robot):
         talk(robot, typed, SHORTEST_STOP_MS)  # inside a started frame
-    assert stands(robot), what
+    assert has_stopped(robot), what
     talk(robot, [*ends, (end, Bytes(b"SI|F(1,80)\n"))], 50)  # before a second of silence
-    assert stands(robot), what
+    assert has_stopped(robot), what
 
 
 def stops_after_every_prefix(
@@ -58,8 +58,8 @@ def stops_after_every_prefix(
     for k, (name, prefix) in enumerate(ALL_PREFIXES.items()):
         spellings = spellings_after(name)
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
-            ends = drives(robot, driver, driver_end)
-            stops(robot, end, ends, prefix + spelling, f"{name} {spelling!r}")
+            ends = start_drive(robot, driver, driver_end)
+            check_stop(robot, end, ends, prefix + spelling, f"{name} {spelling!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -84,21 +84,21 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     end = Network(robot)
     end.send(word)
     talk(robot, [(None, owner)], SILENCE_MS + 100)  # no program runs
-    ends = drives(robot, owner)
+    ends = start_drive(robot, owner)
     talk(robot, ends, SILENCE_MS + 100)
-    assert not stands(robot)
+    assert not has_stopped(robot)
     other = Network(robot)
     other.send(word)
     talk(robot, ends, SILENCE_MS - 50)
-    assert not stands(robot)
+    assert not has_stopped(robot)
     talk(robot, ends, 50 + LATE_MS)
-    assert stands(robot)
+    assert has_stopped(robot)
     page = b"S / HTTP/1.1\r\n"
     other.send(page)
     talk(robot, ends, LATE_MS)
     other.take()
     assert other.has_ended == (sniff_robot_client(word + page) is False)
-    stops(robot, end, drives(robot, owner), b"S\n", "after one that has stopped nothing")
+    check_stop(robot, end, start_drive(robot, owner), b"S\n", "after one that has stopped nothing")
     end.leave()
     other.leave()
 
@@ -107,13 +107,13 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
 def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
     """A request has no line end before its target, and the stop admits no one."""
     robot, owner = join_network(Keys())
-    ends = drives(robot, owner)
+    ends = start_drive(robot, owner)
     end = Network(robot)
     for word in words:
-        assert not stands(robot)
+        assert not has_stopped(robot)
         end.send(word)
         talk(robot, ends, LATE_MS)
-    assert stands(robot)
+    assert has_stopped(robot)
     end.leave()
 
 
@@ -127,7 +127,7 @@ def test_who_comes_next_begins_a_line(make: Make) -> None:
     """Unfinished text of the previous client ends with its connection."""
     robot = boot()
     driver = session(1, robot)
-    ends = drives(robot, driver)
+    ends = start_drive(robot, driver)
     end = make(robot)
     end.send(b"F(1,")
     talk(robot, ends, 2)
@@ -135,7 +135,7 @@ def test_who_comes_next_begins_a_line(make: Make) -> None:
     talk(robot, ends, 2)
     make(robot).send(b"S\n")
     talk(robot, ends, LATE_MS)
-    assert stands(robot)
+    assert has_stopped(robot)
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -147,14 +147,14 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
     driver, end = session(1, robot), make(robot)
     line = b"F(1,80)\n"
     for bytes_left in range(-1, len(stop) + 1):  # bytes of the stop that find room
-        ends = drives(robot, driver)
+        ends = start_drive(robot, driver)
         line_before = (line * ROOM)[: ROOM - bytes_left - 1] + b"\n"
-        stops(robot, end, ends, line_before + stop, f"{bytes_left} of {stop!r}")
+        check_stop(robot, end, ends, line_before + stop, f"{bytes_left} of {stop!r}")
     for lost in range(len(stop)):
-        ends = drives(robot, driver)
+        ends = start_drive(robot, driver)
         end.send(b"(" * ROOM + b"\n" + stop[:lost])
         talk(robot, ends, 20)
-        stops(robot, end, ends, stop[lost:], f"the rest after {lost} of {stop!r}")
+        check_stop(robot, end, ends, stop[lost:], f"the rest after {lost} of {stop!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -162,7 +162,7 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
     """Nor does a frame that contains a line S and arrives whole after the lost bytes."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
-    ends = drives(robot, driver)
+    ends = start_drive(robot, driver)
     client = session(2, robot)
     code = b"Z\n\nS\n\xcc\x03"
     for bytes_before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
@@ -172,11 +172,11 @@ def test_what_is_lost_stops_nobody(make: Make) -> None:
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
         talk(robot, ends, SHORTEST_STOP_MS + 20)
-        assert not stands(robot)
+        assert not has_stopped(robot)
     assert wait_for_outcome(robot, [*ends, (end, client)], client.status()) == "OK"
 
 
-def moves(robot: Esp32Robot) -> list[str]:
+def motor_actions(robot: Esp32Robot) -> list[str]:
     return [line for line in actions_of(robot) if line.startswith("MOTORS")]
 
 
@@ -190,21 +190,24 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
     """Earlier lines never start afterwards, and later ones count again."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
-    ends = drives(robot, driver)
+    ends = start_drive(robot, driver)
     few, many = LINES[: 8 * 40], LINES[: 8 * 100]
     for bytes_before in (few, many, many + b"LOOP(2)\n", b"\0" + many):
         who = Bytes()
         end.send(bytes_before + stop)
         robot.wait(1)
-        assert stands(robot), (bytes_before[-20:], stop)
+        assert has_stopped(robot), (bytes_before[-20:], stop)
         talk(robot, [*ends, (end, who)], 500)
         talk(robot, [(end, who)], 3000)  # the driver has left
-        assert stands(robot), (bytes_before[-20:], stop)
+        assert has_stopped(robot), (bytes_before[-20:], stop)
         who.to_send = b"\r\nSI|F(0.1,33)\n"
         talk(robot, [(end, who)], 1500)
-        assert moves(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (bytes_before[-20:], who.heard)
+        assert motor_actions(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (
+            bytes_before[-20:],
+            who.heard,
+        )
         talk(robot, ends, 1500)
-        ends = drives(robot, driver)
+        ends = start_drive(robot, driver)
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -216,9 +219,9 @@ def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
     lines = b"".join(b"F(0.01,%d) // one of twenty\n" % (20 + k) for k in range(20))
     end.send(b"LOOP(1)\n" + lines + b"S\nF(0.01,80)\nEND_LOOP\n")
     robot.wait(1)
-    assert moves(robot)[-1] == "MOTORS 0 0"
+    assert motor_actions(robot)[-1] == "MOTORS 0 0"
     talk(robot, [(end, who)], 2000)
-    assert moves(robot)[-3:] == ["MOTORS 39 39", "MOTORS 80 80", "MOTORS 0 0"]
+    assert motor_actions(robot)[-3:] == ["MOTORS 39 39", "MOTORS 80 80", "MOTORS 0 0"]
     assert who.heard.endswith(b"// OK\r\n// DONE\r\n")
 
 
@@ -229,7 +232,7 @@ def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
     live = b"\0" + encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
     end.send(LINES[:0] + b"// " + b"x" * 500 + b"\n" + live * 6 + b"\nS\n")
     robot.wait(300)
-    assert moves(robot) == []
+    assert motor_actions(robot) == []
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -245,14 +248,14 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
             stopped = []
             for leaves in (False, True):
-                ends, end = drives(robot, driver), make(robot)
+                ends, end = start_drive(robot, driver), make(robot)
                 driver.events()
                 end.send(prefix + spelling)
                 if leaves:
                     end.leave()
                 talk(robot, ends, LATE_MS)
                 events = [event.name for event in driver.events()]
-                stopped.append(stands(robot) and "STOPPED" in events)
+                stopped.append(has_stopped(robot) and "STOPPED" in events)
                 end.leave()
                 talk(robot, ends, LATE_MS)
             assert stopped[1] or not stopped[0], f"{name} {spelling!r}"
@@ -284,7 +287,7 @@ def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) ->
         assert upload_text(robot, [(end, who)], who) == "OK"
         talk(robot, [(end, who)], 20)
         outcome = (len(waiting), first, second, left_ms)
-        assert moves(robot)[-1] == "MOTORS 80 80", outcome
+        assert motor_actions(robot)[-1] == "MOTORS 80 80", outcome
         end.leave()
         talk(robot, [], 20)
-        assert moves(robot)[-1] == "MOTORS 0 0", outcome
+        assert motor_actions(robot)[-1] == "MOTORS 0 0", outcome

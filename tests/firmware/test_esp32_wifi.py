@@ -20,10 +20,10 @@ from tests.support.esp32_radio import (
     Bytes,
     LowEnergy,
     Network,
-    in_reach,
     port_of,
     radios,
     session,
+    set_network_in_reach,
     talk,
 )
 from tests.support.esp32_wifi import (
@@ -93,7 +93,7 @@ def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     assert radios(third).joins == 0
 
 
-def overheard(
+def overhear(
     robot: Esp32Robot, end: LowEnergy | None, who: Session, request: PendingRequest[Any]
 ) -> tuple[bytes, bytes]:
     """Let a client talk until a request is over; return all bytes in both directions."""
@@ -120,7 +120,7 @@ def test_the_password_is_not_readable_on_the_line() -> None:
     talk(robot, [], 2500)
     over = remote(robot, keys)
     request = over.join(SCHOOL)
-    sent_bytes, replies = overheard(robot, LowEnergy(robot), over, request)
+    sent_bytes, replies = overhear(robot, LowEnergy(robot), over, request)
     assert request.outcome and request.outcome.status == 0
     assert radios(robot).password.encode() == SCHOOL.password
     for text, heard_bytes in ((SCHOOL.name, sent_bytes), (SCHOOL.password, sent_bytes + replies)):
@@ -131,7 +131,7 @@ def test_a_robot_without_an_owner_takes_none() -> None:
     robot = boot()
     client = session(1, robot)
     for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
-        sent_bytes, _ = overheard(robot, None, client, request)
+        sent_bytes, _ = overhear(robot, None, client, request)
         assert request.outcome and request.outcome.status != 0
         assert SCHOOL.password[:8] not in sent_bytes
     assert radios(robot).joins == 0
@@ -188,10 +188,10 @@ def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
         (8, "SEARCHING"), (15, "REFUSED"), (202, "REFUSED"), (203, "REFUSED"), (204, "REFUSED"),
     ):  # fmt: skip
         robot.radio("x", bytes([reason]))  # 8: it was only left
-        in_reach(robot, SCHOOL.name.decode(), "another one")
+        set_network_in_reach(robot, SCHOOL.name.decode(), "another one")
         talk(robot, ends, 20)
         assert state(robot, owner) == ("STATION", expected), reason
-        in_reach(robot, "", "")
+        set_network_in_reach(robot, "", "")
         talk(robot, ends, 20)
         assert state(robot, owner) == ("STATION", "SEARCHING")
     joins = radios(robot).joins
@@ -284,7 +284,7 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     cable = session(12, robot)
     ends: Ends = [(end, owner), (None, cable)]
     assert upload_text(robot, ends, owner) == "OK"
-    in_reach(robot, "", "")
+    set_network_in_reach(robot, "", "")
     talk(robot, ends, 10)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
     assert end.has_ended
@@ -374,7 +374,7 @@ def restart(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
     return rebooted_robot
 
 
-def rests(robot: Esp32Robot) -> bool:
+def is_wifi_off(robot: Esp32Robot) -> bool:
     """Return whether its WiFi is off, as HELLO says as well."""
     client = session(40, robot)
     ends: Ends = [(None, client)]
@@ -392,19 +392,19 @@ def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int
     robot, _ = join_network(keys)
     for is_third in (False, False, True):
         robot = restart(robot, reset, 1000)
-        assert rests(robot) == is_third
+        assert is_wifi_off(robot) == is_third
     owner = remote(robot, keys, 41)
     assert state(robot, owner) == ("STATION", "RESTS")
     assert wifi_reply_of(robot, [(None, owner)], owner).network == SCHOOL.name
     robot = restart(robot, POWER_ON, 1000)
-    assert rests(robot), "until somebody sets it again"
+    assert is_wifi_off(robot), "until somebody sets it again"
     owner = remote(robot, keys, 42)
     assert wait_for_outcome(robot, [(None, owner)], owner.join(SCHOOL)) == "OK"
     talk(robot, [(None, owner)], 50)
-    assert state(robot, owner) == ("STATION", "READY") and not rests(robot)
+    assert state(robot, owner) == ("STATION", "READY") and not is_wifi_off(robot)
     for _ in range(2):
         robot = restart(robot, reset, 1000)
-        assert not rests(robot), "it counts anew"
+        assert not is_wifi_off(robot), "it counts anew"
 
 
 ROW = (PANIC, 1000)  # a reset, and how long after the one before
@@ -420,9 +420,9 @@ def test_what_is_no_row_of_restarts(row: list[tuple[int, int]]) -> None:
     robot, _ = join_network(Keys())
     for reset, lived_ms in row:
         robot = restart(robot, reset, lived_ms)
-        assert not rests(robot)
+        assert not is_wifi_off(robot)
     if row[-1][0] != PANIC:  # these are not counted, and do not end a row
-        assert rests(restart(robot, PANIC, 1000))
+        assert is_wifi_off(restart(robot, PANIC, 1000))
 
 
 def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:
@@ -434,7 +434,7 @@ def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:
     full = Esp32Robot(kept_memory=kept_memory, reset=PANIC)
     full.fill_nvs()
     full.wait(400)
-    assert rests(full)
+    assert is_wifi_off(full)
     owner = remote(robot, keys, 43)
     assert wait_for_outcome(robot, [(None, owner)], owner.forget_wifi()) == "OK"
     for _ in range(4):

@@ -50,12 +50,12 @@ IDENTIFY_MS = 3300
 LINE_END_MEMORY_MS = 65_000  # time after which line ends are no longer assumed
 
 
-def starts(rng: random.Random) -> str:
+def immediate_program(rng: random.Random) -> str:
     """Return a program that begins at once."""
     return "SI|" + rng.choice((SHORT_PROGRAM[3:], LONG_PROGRAM[3:], draw_program(rng)))
 
 
-def sensible(rng: random.Random) -> str:
+def program_without_readings(rng: random.Random) -> str:
     """Return a program of the size of a line, with no readings."""
     return "SI|" + without_readings(
         rng.choice((SHORT_PROGRAM[3:], "BEEP(0.001, 31);M(20, 30);W(0.2)", TONE_PROGRAM))
@@ -71,20 +71,24 @@ HARMLESS_REQUESTS: dict[str, Asks] = {
     "status": lambda session, rng: session.status(),
     "clear": lambda session, rng: session.clear(),
     "trim?": lambda session, rng: session.trim(),
-    "a live line": lambda session, rng: session.live(image_of(sensible(rng)).code),
-    "a program": lambda session, rng: session.upload(image_of(sensible(rng), KIT), saves=False),
+    "a live line": lambda session, rng: session.live(image_of(program_without_readings(rng)).code),
+    "a program": lambda session, rng: session.upload(
+        image_of(program_without_readings(rng), KIT), saves=False
+    ),
     "a long program": lambda session, rng: session.upload(image_of(LONG_PROGRAM, KIT), saves=False),
     "a program for the button": lambda session, rng: session.upload(
         image_of("SB|" + SHORT_PROGRAM[3:], KIT), runs=False, saves=False
     ),
     "a program that goes on alone": lambda session, rng: session.upload(
-        image_of(sensible(rng), KIT), saves=False, is_detached=True
+        image_of(program_without_readings(rng), KIT), saves=False, is_detached=True
     ),
 }
 CHANGING_REQUESTS: dict[str, Asks] = {
     "identify": lambda session, rng: session.identify(),
-    "any program": lambda session, rng: session.upload(image_of(starts(rng), KIT), saves=False),
-    "a saved program": lambda session, rng: session.upload(image_of(starts(rng), KIT)),
+    "any program": lambda session, rng: session.upload(
+        image_of(immediate_program(rng), KIT), saves=False
+    ),
+    "a saved program": lambda session, rng: session.upload(image_of(immediate_program(rng), KIT)),
     "a waiting program": lambda session, rng: session.upload(
         image_of("SB|" + draw_program(rng), KIT), runs=False
     ),
@@ -204,7 +208,7 @@ class Scene:
 # -- before -------------------------------------------------------------------------------------
 
 
-def a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """Ask for something; mostly wait for its end."""
     name = rng.choice([*asks])
     if rng.random() < 0.3:
@@ -213,7 +217,7 @@ def a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     scene.robot.talk(scene.session, rng.choice((0, 1, 30, 300)))
 
 
-def half_a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_half_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """The line breaks within a frame, usually near its end; another client continues."""
     name = rng.choice([*asks])
     robot, session = scene.robot, scene.session
@@ -228,7 +232,7 @@ def half_a_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> N
     scene.observed.append(f"half of {name}")
 
 
-def a_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_lines(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     for _ in range(rng.choice((1, 1, 3))):
         text = rng.choice(LINES)
         if rng.random() < 0.2:
@@ -236,17 +240,17 @@ def a_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
         scene.say((text + rng.choice(LINE_ENDS)).encode(), rng.choice((0, 20, 300, 1100, 2500)))
 
 
-def a_whole_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_harmless_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     data = b"".join(rng.choices(HARMLESS_BYTES, k=rng.choice((1, 1, 2, 3))))
     scene.say(data + rng.choice((b"\n", b"\r", b"\r\n")), 20)
     scene.say(rng.choice((b"", b"\0")) + b"//\n", 300)  # no frame has begun
 
 
-def pieces(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_pieces(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     scene.say(b"".join(rng.choices(TEXT, k=rng.randint(1, 4))), rng.choice((0, 5, 300, 1100)))
 
 
-def noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     data = b"".join(rng.choices(PIECES, k=rng.randint(1, 4)))
     if rng.random() < 0.3:
         frame = encode_frame(Frame(rng.randrange(1, 25), rng.randrange(256), 0, rng.randbytes(9)))
@@ -254,7 +258,7 @@ def noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     scene.say(data, rng.choice((0, 5, 300, 1100)))
 
 
-def the_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def toggle_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """Press or release the button."""
     scene.is_down = not scene.is_down
     scene.robot.talk(scene.session, 1, BUTTON_PRESSED if scene.is_down else BUTTON_RELEASED)
@@ -264,17 +268,17 @@ def the_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     scene.robot.talk(scene.session, rng.choice((0, 40, 300, 1200)))
 
 
-def the_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def lower_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """Lower the supply for a while, in which something may be saved."""
     scene.robot.supply(True)
     for _ in range(rng.choice((1, 2))):
-        a_request(scene, rng, CHANGING_REQUESTS)
+        send_request(scene, rng, CHANGING_REQUESTS)
         scene.robot.talk(scene.session, rng.choice((0, 700)))
     if rng.random() < 0.5:
         scene.robot.supply(False)
 
 
-def the_rest(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def disturb(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """A stall, a cable, a stop, silence."""
     what = rng.randrange(4)
     if what < 2:
@@ -286,7 +290,7 @@ def the_rest(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
         scene.robot.wait(rng.choice((30, 1100, SILENCE_MS)))
 
 
-def an_owner_s_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_owner_requests(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """A client connects with a key, a wrong one, or none."""
     scene.next_session(rng.choice(CLIENT_KINDS))
     for _ in range(rng.choice((1, 1, 2, 4))):
@@ -295,7 +299,7 @@ def an_owner_s_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) 
         scene.robot.talk(scene.session, rng.choice((0, 1, 30, 300)))
 
 
-def a_long_press(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def press_long(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     """Two seconds of the button let text drive, or confirm a claim that was asked for."""
     robot, session = scene.robot, scene.session
     if rng.random() < 0.5:
@@ -321,14 +325,15 @@ class Before(NamedTuple):
 
 PREVIOUS_HISTORIES = {
     "anything": Before(
-        (a_request, a_request, half_a_request, a_line, noise, the_button, the_supply, the_rest),
+        (send_request, send_request, send_half_request, send_lines, send_noise, toggle_button,
+         lower_supply, disturb),
         {**HARMLESS_REQUESTS, **CHANGING_REQUESTS, **PROGRAM_REQUESTS}, True),
-    "requests": Before((a_request, half_a_request, noise, the_button, the_rest), HARMLESS_REQUESTS,
-                       False),
-    "whole lines": Before((a_whole_line,), {}, False),
-    "lines": Before((a_line, a_line, a_line, pieces, the_button), {}, False),
+    "requests": Before((send_request, send_half_request, send_noise, toggle_button, disturb),
+                       HARMLESS_REQUESTS, False),
+    "whole lines": Before((send_harmless_line,), {}, False),
+    "lines": Before((send_lines, send_lines, send_lines, send_pieces, toggle_button), {}, False),
     "owners": Before(
-        (an_owner_s_request, an_owner_s_request, a_line, a_long_press, the_button, the_rest),
+        (send_owner_requests, send_owner_requests, send_lines, press_long, toggle_button, disturb),
         {**HARMLESS_REQUESTS, **CHANGING_REQUESTS, **OWNER_REQUESTS,
          "fetch": PROGRAM_REQUESTS["fetch"]}, True),
 }  # fmt: skip
@@ -418,7 +423,7 @@ def stop_both(scene: Scene, how: Behind) -> None:
     scene.next_session()
 
 
-def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
+def observe(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
     """Ask for things; return all that can be seen."""
     asks = {
         **HARMLESS_REQUESTS,
@@ -444,10 +449,10 @@ def all_seen(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
                 scene.robot.until(scene.session, scene.session.hello())
             scene.ask(name, asks[name], rng)
             scene.talk(RUN_MS)
-    return [*scene.observed, *in_the_end(scene, how)]
+    return [*scene.observed, *stored_data_at_end(scene, how)]
 
 
-def in_the_end(scene: Scene, how: Behind) -> list[object]:
+def stored_data_at_end(scene: Scene, how: Behind) -> list[object]:
     """Stop the robot; return its identity, and its stored data."""
     robot, session = scene.robot, scene.next_session()
     robot.supply(False)
@@ -516,7 +521,7 @@ def check(seed: int, kind: str, text_before: str) -> int:
     states_of_both = []
     for one_scene in (scene, twin):
         stop_both(one_scene, how)
-        states_of_both.append(all_seen(one_scene, how, random.Random(drawn_alike)))
+        states_of_both.append(observe(one_scene, how, random.Random(drawn_alike)))
     # If a cut program is still being saved, a request is repeated until that is over.
     assert are_alike(states_of_both[0], states_of_both[1], RETRY_MS if how.is_cut else 0), (
         f"{history}\n{how}\n{first_difference(*states_of_both)}"

@@ -19,8 +19,8 @@ from tests.support.robot_on_host import (
     actions_of,
     broken_upload,
     computer,
-    holding,
     live,
+    robot_with_saved_program,
     send,
     switched_on,
 )
@@ -30,7 +30,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 
-def driving(milliseconds: int) -> tuple[HostFirmware, Session]:
+def driving_robot(milliseconds: int) -> tuple[HostFirmware, Session]:
     """Return a robot that has driven for this long, and is still driving."""
     robot, session = switched_on(), computer()
     send(robot, session, AWAY_PROGRAM)
@@ -58,7 +58,7 @@ def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
 
 def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
     assert not switched_on().is_lit
-    robot, _ = holding("SI|F(0.5, 80)")
+    robot, _ = robot_with_saved_program("SI|F(0.5, 80)")
     restarted_robot = switched_on(robot.memory())
     assert restarted_robot.is_lit
     restarted_robot.wait(2000)
@@ -69,7 +69,7 @@ def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> 
 
 
 def test_without_frames_the_motors_go_off_in_time() -> None:
-    robot, session = driving(700)
+    robot, session = driving_robot(700)
     silent_ms = robot.now_ms
     robot.wait(2000)
     assert actions_of(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
@@ -81,7 +81,7 @@ def test_without_frames_the_motors_go_off_in_time() -> None:
 @pytest.mark.parametrize("starts", [1, 256])
 def test_no_run_of_the_button_is_attached(starts: int) -> None:
     """However often it starts: runs are counted in one byte, and one of them was attached."""
-    robot, session = driving(100)
+    robot, session = driving_robot(100)
     assert not robot.is_lit
     robot.talk(session, 1, flags=1)
     assert actions_of(robot)[-1] == "MOTORS 0 0" and robot.is_lit
@@ -116,7 +116,7 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
 def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
     """Whenever it is pulled: while it arrives, while it drives, while it is saved."""
     rng = random.Random(seed)
-    memory = holding()[0].memory()
+    memory = robot_with_saved_program()[0].memory()
     for _ in range(6):
         robot, session = switched_on(memory), computer(rng.getrandbits(32))
         session.upload(image_of("SI|B(0.1, 60); " + "SHOW(1); " * rng.randrange(30)))
@@ -132,7 +132,7 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
 
 def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
     """The memory cannot be read while it is written: its content must not count as lost then."""
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     robot.talk(session, 500)
     request = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
     assert robot.until(session, request) == OK
@@ -162,7 +162,7 @@ def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
 @pytest.mark.parametrize("text", ["SB|F(0.1, 50)", LONG_PROGRAM.replace("SI|", "SB|")])
 def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> None:
     """In one frame, and in several."""
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     send(robot, session, text)
     values = robot.complete(session, session.status())
     assert values.program == image_of(text).checksum

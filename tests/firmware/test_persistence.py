@@ -26,8 +26,8 @@ from tests.support.robot_on_host import (
     actions_of,
     broken_upload,
     computer,
-    holding,
     push_button,
+    robot_with_saved_program,
     send,
     switched_on,
     wait_until_saved,
@@ -207,7 +207,7 @@ def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) ->
     """The memory accepts no writes for a while, as if the supply failed in each write. The first
     answer afterwards may still be about the last time.
     """
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     asks, is_kept = KEPT[what]
     for place in range(len(robot.memory())):
         robot.wear_out(place)
@@ -268,7 +268,7 @@ def test_a_low_supply_is_told_and_waited_for() -> None:
 
 def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
     """The earlier program is kept, and the pending one is given up for the new one."""
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     robot.supply(is_low=True)
     for power in (20, 30, 40):
         text = f"SI|F(0.1, {power}); " + "SHOW(1); " * 20
@@ -291,7 +291,7 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
     """Uploads arrive at any moment of a save, and the program in memory at a power loss is always
     whole."""
     chance = Random(seed)
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     programs, kept = (
         [bytes_of("SB|F(0.2, 80)")],
         0,
@@ -318,7 +318,7 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
 
 def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
     """Repairs after a cut need enough voltage; until then, the result is unknown."""
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     memory = bytearray(robot.memory())
     assert memory[FIRST_SLOT] == 0
     memory[FIRST_SLOT + 3] = 0  # the third mark was not written
@@ -339,7 +339,9 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
 # -- reading while it is written ------------------------------------------------------------------
 
 
-def writing_a_name(robot: HostFirmware, session: Session, name: bytes = b"A LONG NAME") -> Session:
+def session_while_name_is_written(
+    robot: HostFirmware, session: Session, name: bytes = b"A LONG NAME"
+) -> Session:
     """Return another session of a robot with a stored program that writes its name."""
     broken_upload(robot, session)
     other = computer(3)
@@ -351,19 +353,19 @@ def writing_a_name(robot: HostFirmware, session: Session, name: bytes = b"A LONG
 
 def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> None:
     text = "SB|" + "F(0.2, 80); " * 30
-    robot, session = holding(text)
-    writing_a_name(robot, session)
+    robot, session = robot_with_saved_program(text)
+    session_while_name_is_written(robot, session)
     another = computer(4)
     assert robot.complete(another, another.fetch()).image == bytes_of(text)
     robot.talk(another, 1000)
-    other = writing_a_name(robot, another, b"ANOTHER ONE")
+    other = session_while_name_is_written(robot, another, b"ANOTHER ONE")
     robot.push(1)
     robot.talk(other, 7000)
     assert actions_of(robot)[0] == "MOTORS 80 80" and actions_of(robot)[-1] == "FINISHED"
 
 
 def test_a_robot_that_writes_says_busy_to_fetch() -> None:
-    robot, session = holding()
+    robot, session = robot_with_saved_program()
     broken_upload(robot, session)
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
@@ -378,7 +380,7 @@ def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
     robot, session = switched_on(write_ms=12), computer()
     send(robot, session, "SB|F(0.2, 80)")
     robot.talk(session, 2000)
-    other = writing_a_name(robot, session)
+    other = session_while_name_is_written(robot, session)
     robot.push(1)
     other.stop(robot.now_ms)
     robot.talk(other, 2000)

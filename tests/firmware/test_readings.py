@@ -13,7 +13,7 @@ import pytest
 from tests.support.debugging import Debugged
 from tests.support.robot_on_host import KIT
 from tests.support.sensed_runs import BYTE_TICKS, LARGEST_DELAY_MS, is_steady, sensed_run
-from tests.support.shown_in_loops import apart_ms, program
+from tests.support.shown_in_loops import largest_difference_ms, program
 from tiniscript.link import handshake
 from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME, READINGS, STATUSES, UNTOLD, encode_payload
@@ -34,7 +34,7 @@ def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -
     """
     text = program(random.Random(seed))
     alone, reporting = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
-    apart = apart_ms(alone.did, reporting.did)
+    apart = largest_difference_ms(alone.did, reporting.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= LARGEST_DELAY_MS or not is_steady(text, seed), text
     shown_events = [

@@ -20,7 +20,7 @@ from tests.support.campaign import failure_text
 from tests.support.images import image_of
 from tests.support.robot_on_uno import KIT, MOTORS, computer, switched_on
 from tests.support.sensed_runs import BYTE_TICKS, is_steady, sensed_run
-from tests.support.shown_in_loops import Did, apart_ms, program
+from tests.support.shown_in_loops import TimedAction, largest_difference_ms, program
 from tests.support.uno_trace import power
 from tiniscript import robots
 from tiniscript.bytecode.image import Image
@@ -42,7 +42,7 @@ LARGEST_DELAY_MS = 1.5  # one byte, and the main loop's delay until it looks
 START_TIMES_MS = (0, 70, 130, 17, 41, 93, 113, 150, 171, 199)
 
 
-def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[Did], int]:
+def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list[TimedAction], int]:
     """Return a program's settings with their times since the first, and the number of readings
     reported.
     """
@@ -86,7 +86,9 @@ def compare(text: str, uno: Uno) -> int:
     did, told_count = run_image(image, uno, True, 0)
     nearest_ms = inf
     for begin_ms in START_TIMES_MS:
-        nearest_ms = min(nearest_ms, apart_ms(run_image(image, uno, False, begin_ms)[0], did))
+        nearest_ms = min(
+            nearest_ms, largest_difference_ms(run_image(image, uno, False, begin_ms)[0], did)
+        )
         if nearest_ms <= LARGEST_DELAY_MS:
             return told_count
     raise AssertionError(f"{nearest_ms:.1f} ms from each run without: {text}")

@@ -22,7 +22,7 @@ from tests.support.owners import (
     owner_of,
     state_of,
 )
-from tests.support.thief import Thief, wire_of
+from tests.support.thief import Thief, encoded
 from tiniscript.link.authority import OWNED_BY_OTHER, OWNED_BY_YOU, ownership_of
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 from tiniscript.link.messages import (
@@ -272,7 +272,7 @@ def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
 PIECES = {1: "F(0.1, 80);", 3: "F(0.1, 80);B(0.1, 60);" * 20, 7: "F(0.1, 80);B(0.1, 60);" * 45}
 
 
-def cable_off(table: Owned, session: Session) -> None:
+def unplug_cable(table: Owned, session: Session) -> None:
     """The robot forgets the seal."""
     table.robot.step(flags=UNPLUGGED)
 
@@ -283,7 +283,7 @@ def spend_number(table: Owned, session: Session) -> None:
         session._sealing.seal.sent_counter = LAST_COUNTER - 1
 
 
-@pytest.mark.parametrize("loses", [cable_off, spend_number])
+@pytest.mark.parametrize("loses", [unplug_cable, spend_number])
 @pytest.mark.parametrize("pieces", PIECES)
 def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
     pieces: int, loses: Callable[[Owned, Session], None]
@@ -396,7 +396,7 @@ def _is_sealed(wire: bytes) -> bool:
 def _stop(chance: random.Random) -> bytes:
     """Return a STOP with any seal, or none."""
     payload = chance.randbytes(chance.choice((13, 20)))
-    return wire_of(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
+    return encoded(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
 
 
 if __name__ == "__main__":

@@ -171,17 +171,17 @@ ACTIONS_BESIDE: dict[
 ] = {
     "nothing": (lambda robot: None, lambda robot: None),
     "the button is down": (lambda robot: robot.step(flags=1), lambda robot: robot.step(flags=2)),
-    "a wheel is held": (lambda robot: holds(robot), lambda robot: robot.hold(0)),
-    "the supply is low": (lambda robot: robot.supply(True), lambda robot: fills(robot)),
+    "a wheel is held": (lambda robot: hold_motors(robot), lambda robot: robot.hold(0)),
+    "the supply is low": (lambda robot: robot.supply(True), lambda robot: restore_supply(robot)),
 }
 
 
-def holds(robot: HostFirmware) -> None:
+def hold_motors(robot: HostFirmware) -> None:
     robot.hold(1 + robot.now_ms % 2)
     robot.wait(300)
 
 
-def fills(robot: HostFirmware) -> None:
+def restore_supply(robot: HostFirmware) -> None:
     """The supply is sufficient: waiting data is saved, if that delays no motor."""
     robot.supply(False)
     robot.wait(1500)
@@ -253,7 +253,7 @@ def run_and_listen(scene: Scene, begins: str, milliseconds: int) -> list[str]:
     return [re.sub(r"run=\d+", "run", str(event)) for event in events]
 
 
-def after(tale: Story, scene: Scene) -> Scene:
+def robot_after_first(tale: Story, scene: Scene) -> Scene:
     """Return the robot when the first program is over."""
     robot = scene.robot
     if not isinstance(robot, Esp32Robot):
@@ -289,11 +289,11 @@ FIRST_PROGRAM_EVENTS = (
 )
 
 
-def without_the_first(heard_lines: list[str]) -> list[str]:
+def without_first_program_events(heard_lines: list[str]) -> list[str]:
     return [line for line in heard_lines if not line.startswith(FIRST_PROGRAM_EVENTS)]
 
 
-def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
+def fitting_story(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str], list[str]]:
     """Return a story whose second part this robot can begin, and the actions and messages of a
     fresh one."""
     for _ in range(20):
@@ -305,11 +305,14 @@ def fitting(rng: random.Random, starts: str, kind: str) -> tuple[Story, list[str
 
 
 def check(seed: int, starts: str, kind: str) -> str:
-    tale, want, wanted_words = fitting(random.Random(f"{seed} {starts} {kind}"), starts, kind)
-    scene = after(tale, Scene(kind, random.Random(seed).choice(CLOCKS_MS)))
+    tale, want, wanted_words = fitting_story(random.Random(f"{seed} {starts} {kind}"), starts, kind)
+    scene = robot_after_first(tale, Scene(kind, random.Random(seed).choice(CLOCKS_MS)))
     goes_on = not scene.robot.is_latched  # until the second program begins
     actions, heard_lines = run_second(scene, tale)
-    heard_lines, wanted_words = without_the_first(heard_lines), without_the_first(wanted_words)
+    heard_lines, wanted_words = (
+        without_first_program_events(heard_lines),
+        without_first_program_events(wanted_words),
+    )
     if tale.beside == "the button is down":
         heard_lines = [line for line in heard_lines if "StoppedEvent(cause=3" not in line]
     if goes_on and heard_lines == ["// Still saving. Send it again."]:
@@ -441,7 +444,7 @@ def drive(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, 
     return [what for _, what in rows], took_ms, its_left - left, its_right - right
 
 
-def stands(robot: HostFirmware) -> bool:
+def is_standing(robot: HostFirmware) -> bool:
     wheel_edges_before = robot.wheel_edges()
     robot.wait(50)
     return all(
@@ -459,8 +462,8 @@ def check_ways(seed: int) -> str:
         runs_ms=rng.choice((1, 200, 700, 2500)),
         waits_ms=rng.choice((0, 20, 300, 800, 1500)),
     )
-    scene = after(tale, with_discs())
-    is_over, stood = scene.robot.is_latched, stands(scene.robot)
+    scene = robot_after_first(tale, with_discs())
+    is_over, stood = scene.robot.is_latched, is_standing(scene.robot)
     actions, took_ms, *distances_cm = drive(scene, tale.starts, tale.second)
     want, its_ms, *far = drive(with_discs(), tale.starts, tale.second)
     explanation = f"{tale}\n{actions} {took_ms} {distances_cm}\nnot\n{want} {its_ms} {far}"

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.button_states import STATES, Table, keeps_trim, saves
+from tests.support.button_states import STATES, Table, save_typed, store_trim
 from tests.support.images import image_of
 from tests.support.pty_robot import drives_now
 from tests.support.robot_on_host import (
@@ -31,7 +31,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 
-def waiting(robot: HostFirmware, session: Session) -> None:
+def send_waiting_program(robot: HostFirmware, session: Session) -> None:
     """Bring a program that waits for the button."""
     send(robot, session, "SB|F(60, 80)")
     robot.talk(session, 100)
@@ -50,7 +50,7 @@ def run_to_end(
     assert actions_of(robot)[-1] == last
 
 
-def leave(robot: HostFirmware, session: Session) -> None:
+def leave_live(robot: HostFirmware, session: Session) -> None:
     live(robot, session, AWAY_PROGRAM)
     robot.step(flags=8)
 
@@ -65,14 +65,14 @@ INTERVENING_STOPS: dict[str, Callable[[HostFirmware, Session], object]] = {
     ),
     "lost": lambda robot, session: run_to_end(robot, session, AWAY_PROGRAM, "FAULTED", 1500),
     "still running": lambda robot, session: live(robot, session, "SI|F(0.3, 80)"),
-    "left": leave,
+    "left": leave_live,
 }
 
 
 @pytest.mark.parametrize("between", INTERVENING_STOPS)
 def test_a_button_that_was_down_meanwhile_starts_nothing(between: str) -> None:
     robot, session = switched_on(), computer()
-    waiting(robot, session)
+    send_waiting_program(robot, session)
     robot.talk(session, 1, flags=1)
     robot.talk(session, 50)
     INTERVENING_STOPS[between](robot, session)
@@ -88,7 +88,7 @@ def test_a_button_that_was_down_meanwhile_starts_nothing(between: str) -> None:
 def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> None:
     """The stop has arrived in an interrupt; the main loop sees the button first."""
     robot, session = switched_on(), computer()
-    waiting(robot, session)
+    send_waiting_program(robot, session)
     robot.step(flags=1)
     robot.wait(50)
     robot.step(bytes(4), flags=2 | 16)
@@ -99,7 +99,7 @@ def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> 
 
 def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -> None:
     robot, session = switched_on(), computer()
-    waiting(robot, session)
+    send_waiting_program(robot, session)
     for _ in range(3):
         robot.push()
         robot.wait(10)
@@ -116,7 +116,7 @@ def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -
 def test_a_stop_works_every_time(how: str) -> None:
     """Stop, button, stop, button: the sender repeats the stop as if no answer had arrived."""
     robot, session = switched_on(), computer()
-    waiting(robot, session)
+    send_waiting_program(robot, session)
     stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
     for _ in range(300):  # more often than an 8-bit counter can count
         robot.push(2)
@@ -206,7 +206,7 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
 
 
 @pytest.mark.parametrize("after_ms", [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89])
-@pytest.mark.parametrize("state", [saves, keeps_trim])
+@pytest.mark.parametrize("state", [save_typed, store_trim])
 def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: int) -> None:
     table = Table()
     state(table)
@@ -216,7 +216,7 @@ def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: 
     table.robot.wait(1500)
     later = after_power_off(table)
     session = computer(7)
-    if state is keeps_trim:
+    if state is store_trim:
         request = session.trim()
         assert later.until(session, request) == OK
         assert request.outcome and request.outcome.values.least in (0, 1)

@@ -29,7 +29,7 @@ END_ACTIONS: dict[str, tuple[Callable[[Esp32Robot, Session], object], int]] = {
 }
 
 
-def shows(session: Session) -> int:
+def count_shows(session: Session) -> int:
     """Return the number of values that the robot has sent since the last call."""
     return sum(event.name == "SHOW" for event in session.events())
 
@@ -53,18 +53,19 @@ def test_all_tasks_end(state: str, end: str) -> None:
     driven = {"a task waits": [], "the body of a WHEN moves": ["MOTORS -40 -40"]}
     begun = driven.get(state, ["MOTORS 80 80"])
     assert actions_of(robot) == begun
-    assert (0 < shows(session) < 300) == (state == "a SHOW finds no room")  # fewer than all 400
+    # fewer than all 400
+    assert (0 < count_shows(session) < 300) == (state == "a SHOW finds no room")
     robot.did.clear()
 
     ended, fault = END_ACTIONS[end]
     ended(robot, session)
     robot.talk(session, 100)
     assert robot.is_latched
-    shows(session)
+    count_shows(session)
     robot.talk(session, 2000)
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
     assert moves == ["MOTORS 0 0"] * len(begun)
-    assert shows(session) == 0
+    assert count_shows(session) == 0
     values = robot.complete(session, session.status())
     assert (values.state, values.fault) == (STATE_FAULTED if fault else STATE_STOPPED, fault)
 

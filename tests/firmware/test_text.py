@@ -33,8 +33,8 @@ from tests.support.text_robot import (
     SAVED_BACK,
     SAVED_MEMORY,
     fetch_image,
-    holding,
     read_back,
+    robot_with_program,
     status,
     type_text,
 )
@@ -265,7 +265,7 @@ def test_a_line_moves_and_its_end_is_told() -> None:
 ])  # fmt: skip
 def test_a_wrong_line_changes_nothing(line: str) -> None:
     """The running program continues, and one in memory stays there; a second time, too."""
-    robot, session = holding("SB|B(30, 60)", saves=False)
+    robot, session = robot_with_program("SB|B(30, 60)", saves=False)
     bytes_before = fetch_image(robot, session)
     robot.wait(4000)
     assert push_button(robot) == ["MOTORS -60 -60"]
@@ -307,7 +307,7 @@ def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
 
 
 def test_a_program_of_frames_replaces_sb() -> None:
-    robot, session = holding()
+    robot, session = robot_with_program()
     type_text(robot, "SB|F(0.2,50)\n")
     send(robot, session, "SB|L(0.1, 40)")
     assert push_button(robot)[0] == "MOTORS -40 40"
@@ -321,7 +321,7 @@ def test_what_stops_it_latches(how: str) -> None:
     """Text within a second after it may have been under way, even if the line was silent before the
     stop.
     """
-    robot, _ = holding()
+    robot, _ = robot_with_program()
     type_text(robot, "SI|F(30,50)\n", 3000)
     assert actions_of(robot) == ["MOTORS 50 50"]
     if how == "button":
@@ -380,7 +380,7 @@ def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
 
 
 def test_a_fault_is_told_recorded_and_kept() -> None:
-    robot, session = holding()
+    robot, session = robot_with_program()
     held = status(robot, session).program
     robot.wait(4000)
     assert type_text(robot, "SI|X=0;F(0.1,50);X=1/X\n", 300) == ["// OK", "// FAULT DIVIDE_BY_ZERO"]
@@ -502,7 +502,7 @@ def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> Non
 @pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])
 def test_an_upload_while_text_arrives(line: str) -> None:
     """It is complete, or refused without replacing the previous program."""
-    robot, session = holding()
+    robot, session = robot_with_program()
     bytes_before = fetch_image(robot, session)
     request = session.upload(image_of(LONG_PROGRAM))
     robot.talk(session, 10)
@@ -650,7 +650,7 @@ INTERRUPTIONS = {
 STEP_MS = 37
 
 
-def on_a_slow_line() -> HostFirmware:
+def robot_on_slow_line() -> HostFirmware:
     robot = HostFirmware(KIT)
     robot.wait(200)
     robot.pace(PACE)
@@ -672,9 +672,9 @@ def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
     """The cut may come at any moment of the answer: the rest is not sent, and the next answer is
     that of a fresh robot.
     """
-    wanted_answer = answer_to(on_a_slow_line(), line)
+    wanted_answer = answer_to(robot_on_slow_line(), line)
     assert wanted_answer.startswith(b"//")
-    robot = on_a_slow_line()
+    robot = robot_on_slow_line()
     lasts_ms = 1 + len(wanted_answer) * PACE // TICKS
     for begun_ms in range(1, lasts_ms + STEP_MS, STEP_MS):
         robot.wait(begun_ms, f"{line}\n".encode())
@@ -687,7 +687,7 @@ def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
 
 
 def test_text_at_once_after_power_on() -> None:
-    robot = HostFirmware(KIT, holding()[0].memory())
+    robot = HostFirmware(KIT, robot_with_program()[0].memory())
     robot.step(b"SI|F(0.2,50)\n", flags=16, ticks=0)
     assert robot.step(ticks=3) == b"// Still saving. Send it again.\r\n"
     robot.wait(300)

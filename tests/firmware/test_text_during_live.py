@@ -30,7 +30,7 @@ def running(kind: type[HostFirmware], after_ms: int) -> tuple[HostFirmware, Sess
     return robot, session
 
 
-def types(robot: HostFirmware, session: Session, text: str, milliseconds: int) -> list[str]:
+def type_line(robot: HostFirmware, session: Session, text: str, milliseconds: int) -> list[str]:
     """Type a line, let time pass, and return the robot's actions."""
     session.receive(robot.wait(20, text.encode() + b"\n"), robot.now_ms)
     robot.talk(session, milliseconds)
@@ -41,7 +41,7 @@ def types(robot: HostFirmware, session: Session, text: str, milliseconds: int) -
 @pytest.mark.parametrize("text", TYPED)
 def test_what_is_typed_drives_a_robot_with_room_for_it(text: str, after_ms: int) -> None:
     robot, session = running(HostFirmware, after_ms)
-    actions = types(robot, session, text, 1500)
+    actions = type_line(robot, session, text, 1500)
     assert actions == ["MOTORS 0 0", "MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
     assert [event.name for event in session.events()] == ["STARTED", "DONE"]
 
@@ -50,10 +50,10 @@ def test_what_is_typed_drives_a_robot_with_room_for_it(text: str, after_ms: int)
 @pytest.mark.parametrize("text", TYPED)
 def test_a_robot_without_that_room_goes_on_with_its_live_line(text: str, after_ms: int) -> None:
     robot, session = running(SmallRobot, after_ms)
-    assert types(robot, session, text, 1500) == ["MOTORS 0 0", "FINISHED"]
+    assert type_line(robot, session, text, 1500) == ["MOTORS 0 0", "FINISHED"]
     assert [event.name for event in session.events()] == ["DONE"]
     robot.did.clear()  # after this the robot reads text again
-    actions = types(robot, session, text, 1500)
+    actions = type_line(robot, session, text, 1500)
     assert actions == ["MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
 
 
@@ -61,7 +61,7 @@ def test_a_robot_without_that_room_goes_on_with_its_live_line(text: str, after_m
 @pytest.mark.parametrize("text", ["S", "STOP", "s"])
 def test_a_stop_that_is_typed_stops_either(kind: type[HostFirmware], text: str) -> None:
     robot, session = running(kind, 130)
-    assert types(robot, session, text, 300)[0] == "MOTORS 0 0"
+    assert type_line(robot, session, text, 300)[0] == "MOTORS 0 0"
     assert robot.is_latched
 
 

@@ -25,8 +25,8 @@ from tests.support.text_robot import (
     SAVED_BACK,
     SAVED_MEMORY,
     fetch_image,
-    holding,
     read_back,
+    robot_with_program,
     status,
     type_text,
 )
@@ -64,7 +64,7 @@ def test_a_stored_program_comes_back_with_the_button() -> None:
 
 @pytest.mark.parametrize("has_stored", [True, False])
 def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> None:
-    robot, session = holding() if has_stored else (switched_on(), computer())
+    robot, session = robot_with_program() if has_stored else (switched_on(), computer())
     send(robot, session, "SB|L(0.1, 40)", saves=False)
     assert status(robot, session).saved == SAVED_MEMORY
     robot.wait(4000)
@@ -93,7 +93,7 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
 
 def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
     """It also ends it when it needs the running program's memory."""
-    robot, session = holding()
+    robot, session = robot_with_program()
     send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
     robot.wait(4000)
     type_text(robot, "SI|R(0.2, 40);W(0.1)")
@@ -111,7 +111,7 @@ def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
     "SI|" + "F(0.1,50);W(0.2);" * 8 + "\0",
 ])  # fmt: skip
 def test_a_wrong_line_that_needed_the_room_tells_what_is_lost(line: str) -> None:
-    robot, session = holding("SB|B(30, 60)", saves=False)
+    robot, session = robot_with_program("SB|B(30, 60)", saves=False)
     first, *more = type_text(robot, line + "\n", 1500)
     assert first.startswith("// ") and more.count(LOST) == 1
     assert status(robot, session).saved == SAVED_NOTHING
@@ -190,7 +190,7 @@ def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
 
 def test_texts_and_frames_in_any_order() -> None:
     """Whatever was typed, the stored program does not change."""
-    robot, session = holding()
+    robot, session = robot_with_program()
     bytes_before = fetch_image(robot, session)
     rng = random.Random(7)
     for _ in range(40):

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host import once
+from tests.machines.host import make_once
 from tests.machines.uno import skip_unless_available
 from tests.machines.wired import Wired
 from tests.support.campaign import make_options
@@ -55,24 +55,26 @@ def sketch(
     folder, run = tmp_path_factory.mktemp("sketch"), shared_folder(tmp_path_factory)
     if baud == BAUDS[0]:
         return firmware("uno", folder, run), baud
-    return once(run / f"uno_{baud}.elf", lambda path: shutil.copy(build(baud, folder), path)), baud
+    return make_once(
+        run / f"uno_{baud}.elf", lambda path: shutil.copy(build(baud, folder), path)
+    ), baud
 
 
 @pytest.fixture
 def uno_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
-    with switched_on(*sketch) as uno:
+    with started_uno(*sketch) as uno:
         yield uno, sketch[1]
 
 
 @pytest.fixture(scope="module")
 def driving_at(sketch: tuple[Path, int]) -> Iterator[tuple[Uno, int]]:
     """A driving robot after a second of silence: tests branch off from there."""
-    with switched_on(*sketch) as uno:
+    with started_uno(*sketch) as uno:
         drive(uno)
         yield uno, sketch[1]
 
 
-def switched_on(sketch: Path, baud: int) -> Uno:
+def started_uno(sketch: Path, baud: int) -> Uno:
     uno = Uno(sketch, names=NAMES, baud=baud, resets_on_open=False, tells_sleep=False)
     uno.run_ms(300)
     return uno
@@ -151,7 +153,7 @@ def test_a_loose_spelling_in_a_frame_is_none(driving_at: tuple[Uno, int], name: 
 # -- stops that do not wait for the end of their line ----------------------------------------------
 
 
-def off_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
+def stop_time_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     """Send bytes; return the ms from the last of them to the pins, which are off."""
     uno.send(data)
     uno.run_ms(len(data) * byte_ms + 10)
@@ -168,7 +170,7 @@ def test_who_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -
     """A held button's row of S, and a second STOP."""
     uno, baud = driving_at
     with uno.try_out():
-        assert off_ms(uno, data, 10_000 / baud) < MOST_MS
+        assert stop_time_ms(uno, data, 10_000 / baud) < MOST_MS
 
 
 def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, int]) -> None:
@@ -213,7 +215,7 @@ def test_ctrl_c_alone_stops_after_silence(
 ) -> None:
     uno, baud = driving_at
     with uno.try_out():
-        late_ms = off_after_silence(uno, prefix + data, 10_000 / baud)
+        late_ms = stop_time_after_silence_ms(uno, prefix + data, 10_000 / baud)
         assert SHORTEST_STOP_MS - TURN_MS < late_ms < SHORTEST_STOP_MS + BUSY_TURN_MS
         check_latched(uno)
     for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
@@ -223,7 +225,7 @@ def test_ctrl_c_alone_stops_after_silence(
             assert states(uno) == FORWARD, other
 
 
-def off_after_silence(uno: Uno, data: bytes, byte_ms: float) -> float:
+def stop_time_after_silence_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.send(data)
     uno.run_ms(len(data) * byte_ms + SHORTEST_STOP_MS + 2 * BUSY_TURN_MS)
     assert states(uno) == OFF, data
@@ -378,7 +380,7 @@ def random_prefix(draw: random.Random) -> bytes:
 def stop_after_random_bytes(sketch: Path, baud: int, draw: random.Random, count: int) -> float:
     """Type so many stops after random bytes; return the ms that the slowest took."""
     slowest_ms = 0.0
-    with switched_on(sketch, baud) as uno:
+    with started_uno(sketch, baud) as uno:
         for k in range(count):
             if k % STOPS_PER_STATE == 0:
                 drive(uno)
@@ -408,7 +410,7 @@ QUIET_MS = 700  # longer than a program of these lines
 def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
     """A robot after a second of silence: tests branch off from there."""
     skip_unless_available()
-    with switched_on(build(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
+    with started_uno(build(BAUD, tmp_path_factory.mktemp("sketch")), BAUD) as uno:
         uno.run_ms(SILENCE_MS)
         yield uno
 

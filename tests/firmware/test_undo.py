@@ -48,7 +48,9 @@ PROGRAM_A, PROGRAM_B, PROGRAM_C = "SB|F(0.1, 50)", LONG_PROGRAM.replace("SI", "S
 NO_PREVIOUS = STATUSES["NO_PREVIOUS"]
 
 
-def with_two(first: str = PROGRAM_A, second: str = PROGRAM_B) -> tuple[HostFirmware, Session]:
+def robot_with_two_programs(
+    first: str = PROGRAM_A, second: str = PROGRAM_B
+) -> tuple[HostFirmware, Session]:
     """Return a robot that holds the second program, and has saved the first one before."""
     robot, session = switched_on(), computer()
     for text in (first, second):
@@ -129,7 +131,7 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
 
 
 def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
-    robot, session = with_two()
+    robot, session = robot_with_two_programs()
     send(robot, session, PROGRAM_C, saves=False)
     robot.talk(session, 500)
     memory = robot.memory()
@@ -175,7 +177,7 @@ def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
     steps: tuple[str, ...],
 ) -> None:
     """A program that another one has followed since is not saved, nor is one in its place."""
-    robot, session = with_two()
+    robot, session = robot_with_two_programs()
     robot.supply(is_low=True)
     waits, is_tried, name = "", False, ""
     for count, step in enumerate(steps):
@@ -204,7 +206,7 @@ def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) -> None:
-    robot, session = with_two()
+    robot, session = robot_with_two_programs()
     robot.supply(is_low=True)
     memory = robot.memory()
     for text in (PROGRAM_A, PROGRAM_B, PROGRAM_A)[:count]:
@@ -227,7 +229,7 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
 
 def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     """The restore waits until the motors are off before its first byte."""
-    robot, session = with_two(DRIVE_PROGRAM, PROGRAM_A)
+    robot, session = robot_with_two_programs(DRIVE_PROGRAM, PROGRAM_A)
     memory = robot.memory()
     assert undo(robot, session) == OK
     assert robot.until(session, session.start()) == OK
@@ -243,7 +245,7 @@ def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
 @pytest.mark.sampled("cut_ms", keep=18)
 @pytest.mark.parametrize("cut_ms", range(0, 160, 3))
 def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
-    robot, session = with_two()
+    robot, session = robot_with_two_programs()
     request = session.undo()
     robot.talk(session, cut_ms)
     memory = robot.memory()
@@ -262,7 +264,7 @@ def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
 
 def test_a_request_that_comes_twice_is_done_once() -> None:
     """The answer was lost, so the same bytes come again, also when it has long been saved."""
-    robot, session = with_two()
+    robot, session = robot_with_two_programs()
     request = session.undo()
     wire = session.poll(robot.now_ms)
     answers = [decode_frame(robot.wait(wait_ms, wire).strip(b"\0")) for wait_ms in (50, 500, 2000)]
@@ -337,7 +339,7 @@ def program_of(power: int) -> bytes:
     return bytes_of(f"SB|F(600, {power})")
 
 
-def back_in(state: str) -> int:
+def power_after_undo(state: str) -> int:
     """Return the power of the program that comes back."""
     if state == "holds no program":
         return 0  # EARLIER is the only one
@@ -351,7 +353,7 @@ def back_in(state: str) -> int:
 @pytest.mark.parametrize("state", STATES)
 def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     table, session = robot_in_state(state, has_draft)
-    robot, previous = table.robot, back_in(state)
+    robot, previous = table.robot, power_after_undo(state)
     assert robot.has_draft == has_draft
     was_running = not robot.is_latched
     robot.did.clear()
@@ -376,7 +378,7 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
 def test_two_at_once_are_two(state: str) -> None:
     """The second request is on its way before the first is answered."""
     table, session = robot_in_state(state)
-    robot, previous = table.robot, back_in(state)
+    robot, previous = table.robot, power_after_undo(state)
     requests = [session.undo(), session.undo()]
     outcomes = [robot.until(session, request) for request in requests]
     assert outcomes == [OK if previous else NO_PREVIOUS] * 2

@@ -69,7 +69,7 @@ def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
         assert read_counters(wired_uno) == (1, 0, 0, 1)
 
 
-def driving(uno: Uno) -> Wired:
+def driving_uno(uno: Uno) -> Wired:
     """Run a program that needs no computer."""
     wired_uno = computer(uno)
     send(wired_uno, AWAY_PROGRAM, is_detached=True)
@@ -85,7 +85,7 @@ def frames_since(uno: Uno, since: int) -> list[Frame]:
 
 
 def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) -> None:
-    wired_uno = driving(uno)
+    wired_uno = driving_uno(uno)
     start_cycle = uno.cycle
     uno.hold(False, 2 * BAUD)
     uno.run_ms(20)
@@ -117,7 +117,7 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) 
 def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
     """Each byte with a framing error becomes a zero, but the level of the line meanwhile does not
     count as zeros."""
-    driving(uno)
+    driving_uno(uno)
     uno.hold(False, 25)  # longer than two bytes
     uno.run_ms(50)
     assert states(uno) == FORWARD
@@ -134,7 +134,7 @@ def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
 
 
 def test_bytes_after_a_framing_error_are_no_line_that_is_held(uno: Uno) -> None:
-    driving(uno)
+    driving_uno(uno)
     uno.send(b"\x10", stop_bits_fail=True)
     uno.send(b"\x01\x02\x04\x08" * 200)
     uno.run_ms(1000)

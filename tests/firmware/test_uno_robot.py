@@ -144,7 +144,7 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
     assert wired_uno.complete(wired_uno.session.status()).damaged == 0
 
 
-def low_for(uno: Uno, ms: float) -> None:
+def disconnect_for(uno: Uno, ms: float) -> None:
     """Disconnect for so long, according to the HC-05's STATE pin."""
     at = uno.cycle + CYCLES_PER_MS
     uno.drive("radio", False, at=at)
@@ -156,12 +156,12 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     uno.drive("radio", True)
     wired_uno = computer(uno)
     send(wired_uno, AWAY_PROGRAM)
-    low_for(uno, 49)
+    disconnect_for(uno, 49)
     wired_uno.run(150)
     assert states(uno) == FORWARD
     for pause_ms in (1, 5, 30, 49, 60):
         for _ in range(4):
-            low_for(uno, 0.3)
+            disconnect_for(uno, 0.3)
             wired_uno.run(pause_ms)
     assert states(uno) == FORWARD
     uno.drive("radio", False)
@@ -174,7 +174,7 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     uno.drive("radio", True)
     wired_uno.run(60)
     left_cycle = uno.cycle + CYCLES_PER_MS
-    low_for(uno, 51)
+    disconnect_for(uno, 51)
     wired_uno.run(100)
     assert states(uno) == OFF
     off = max(uno.pins[name].cycle for name in MOTORS)

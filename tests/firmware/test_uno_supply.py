@@ -19,7 +19,7 @@ LOW, STORED = SAVED_LOW_SUPPLY, SAVED_STORED
 SAVES = "SI|SHOW(1)"
 
 
-def until_saved(wired_uno: Wired, limit_ms: int = 4000) -> int:
+def wait_until_saved(wired_uno: Wired, limit_ms: int = 4000) -> int:
     """Return the storage state of the program, once it is decided."""
     end_ms = wired_uno.now_ms + limit_ms
     while wired_uno.now_ms < end_ms:
@@ -38,7 +38,7 @@ def test_it_saves_from_four_volts_on(robot: Uno, volts: float, millivolts: int) 
     wired_uno = computer(robot)
     robot.supply(volts)
     send(wired_uno, SAVES)
-    assert until_saved(wired_uno) == millivolts
+    assert wait_until_saved(wired_uno) == millivolts
 
 
 def marks(uno: Uno, since: int) -> list[int]:
@@ -60,7 +60,7 @@ def test_a_supply_that_falls_between_two_marks_is_noticed(uno: Uno) -> None:
     while len(marks(uno, start_cycle)) < 1:
         wired_uno.run(1)
     uno.supply(3.5)
-    assert until_saved(wired_uno) == LOW
+    assert wait_until_saved(wired_uno) == LOW
     wired_uno.run(1500)
     assert len(marks(uno, start_cycle)) == 1
     uno.supply(4.5)
@@ -88,7 +88,7 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
     assert len(shown_values) > 50
     assert set(shown_values) == {200_000, 800_000}
     assert all(one != other for one, other in pairwise(shown_values))
-    assert until_saved(wired_uno) == (STORED if volts > 4 else LOW)
+    assert wait_until_saved(wired_uno) == (STORED if volts > 4 else LOW)
 
 
 def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno: Uno) -> None:
@@ -109,7 +109,7 @@ def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> 
     wired_uno = computer(uno)
     start_cycle = uno.cycle
     send(wired_uno, "SI|LOOP(FOREVER);F(0.1, 80);W(0.05);END_LOOP")
-    assert until_saved(wired_uno) == STORED
+    assert wait_until_saved(wired_uno) == STORED
     driving = uno.pins.history("left forward")
     for cycle in marks(uno, start_cycle):
         pin_changes_before = [change for change in driving if change.cycle <= cycle]

@@ -39,15 +39,15 @@ OTHER_LINES = ("HELP", "FOO", "F(1,500)", "SI|LOOP(2)", "IF(TRUE)", "ENDWHILE", 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 
 
-def new(kind: type[HostFirmware] = SmallRobot) -> HostFirmware:
+def new_robot(kind: type[HostFirmware] = SmallRobot) -> HostFirmware:
     robot = kind(KIT)
     robot.wait(1400)
     return robot
 
 
-def plain(line: str) -> bytes:
+def plain_code(line: str) -> bytes:
     """Return the code that the robot's reader makes of a line."""
-    robot = new()
+    robot = new_robot()
     robot.wait(1500, (line + "\n").encode())
     if line.startswith("SB"):
         robot.push()
@@ -60,7 +60,7 @@ class Trials:
 
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)
-        self.lines = {line: plain(line) for line in WHOLE_LINES}
+        self.lines = {line: plain_code(line) for line in WHOLE_LINES}
         self.kinds = cycle((SmallRobot, HostFirmware))
         self.lives = 0
         self.ran = 0
@@ -69,7 +69,7 @@ class Trials:
         """Take a new robot now and then."""
         if self.lives == 0:
             self.lives = TRIALS_PER_ROBOT
-            self.robot = new(next(self.kinds))
+            self.robot = new_robot(next(self.kinds))
             self.seq, self.epoch, self.heard = 0, 0, b""
         self.lives -= 1
         kit = KIT.fingerprint.to_bytes(2, "little")
@@ -173,7 +173,7 @@ def test_what_runs_is_what_was_verified() -> None:
 
 @pytest.mark.parametrize("text", [b"X\0", b"t\0", b"D\0", b"a\n\0"])
 def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
-    robot, session = new(), computer()
+    robot, session = new_robot(), computer()
     assert robot.until(session, session.hello()) == OK
     request = session.live(image_of(HIDDEN_MOVE_PROGRAM).code)
     frame = session.poll(robot.now_ms)

@@ -41,7 +41,7 @@ class Known:
         self.may_be = [what] if is_kept else [*self.may_be, what]
 
 
-def worn_of(worn_bytes: set[int], slots: Sequence[tuple[int, int]]) -> int:
+def count_worn_slots(worn_bytes: set[int], slots: Sequence[tuple[int, int]]) -> int:
     """Return the number of slots with worn bytes."""
     return sum(any(low <= place < high for place in worn_bytes) for low, high in slots)
 
@@ -94,13 +94,15 @@ def check(seed: int) -> str:
         slots = {"program": PROGRAM, "claim": KEYS}.get(what, (*IDENTITY, *FAULT))
         if not is_kept:
             outcome = "it says what is not kept"
-            assert worn_of(worn_bytes, slots), f"{seed} {what} {worn_bytes}"
+            assert count_worn_slots(worn_bytes, slots), f"{seed} {what} {worn_bytes}"
     robot.talk(session, 1000)
     restarted_robot = Owned(robot.memory())
     later = restarted_robot.session(keys, nonce=9)
     whose = owner_of(restarted_robot, later)
     # A robot that cannot store its identity has no keys.
-    assert whose in owner.may_be or worn_of(worn_bytes, IDENTITY) == 2, f"{seed} {worn_bytes}"
+    assert whose in owner.may_be or count_worn_slots(worn_bytes, IDENTITY) == 2, (
+        f"{seed} {worn_bytes}"
+    )
     assert later.robot and later.robot.name.encode() in name.may_be, (
         f"{seed} {worn_bytes} {later.robot}"
     )

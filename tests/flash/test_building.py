@@ -244,7 +244,7 @@ def test_the_cache_does_not_grow_for_ever() -> None:
 # -- with a PlatformIO whose output is scripted
 
 
-def pretending(folder: Path, body: str) -> dict[str, str]:
+def fake_platformio(folder: Path, body: str) -> dict[str, str]:
     """Return the variables with which a Python has this for its PlatformIO."""
     package = folder / "pretending" / "platformio"
     package.mkdir(parents=True)
@@ -276,7 +276,7 @@ OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); s
 
 
 def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
-    result = build_firmware(clone, pretending(tmp_path, OFFLINE), "--lang", "es")
+    result = build_firmware(clone, fake_platformio(tmp_path, OFFLINE), "--lang", "es")
     result.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
     log = Path(result.err.split()[-1])
     assert log.parent == ready.firmware_cache() and "Installing atmelavr" in log.read_text()
@@ -293,14 +293,14 @@ def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
 def test_a_build_that_fails_has_its_reason(
     body: str, reason: str, clone: Path, tmp_path: Path
 ) -> None:
-    result = build_firmware(clone, pretending(tmp_path, body)).gives(2, reason, out="")
+    result = build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, reason, out="")
     assert "\x1b" not in result.err
 
 
 def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
     clone: Path, tmp_path: Path
 ) -> None:
-    result = build_firmware(clone, pretending(tmp_path, TOO_LARGE))
+    result = build_firmware(clone, fake_platformio(tmp_path, TOO_LARGE))
     result.gives(2, "does not fit on", "33000 > 32256", out="")
     assert "upgrade" not in result.err
     assert not ready.files(ready.firmware_cache())
@@ -320,14 +320,14 @@ if name == "{chip}":
 make(name, ":00000001FF\\n")
 """
     words = ("--chip", chip, "--lang", "es")
-    result = build_firmware(clone, pretending(tmp_path, body), *words).gives(0)
+    result = build_firmware(clone, fake_platformio(tmp_path, body), *words).gives(0)
     assert result.err.count(f"queda {lacks}") == 1, result
     assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":0400")'
-    build_firmware(clone, pretending(tmp_path, body)).gives(2, "could not be built")
+    build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
 
@@ -338,14 +338,14 @@ def test_a_build_that_does_not_end_well_has_made_nothing(
 ) -> None:
     """Files that it leaves do not count."""
     body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
-    build_firmware(clone, pretending(tmp_path, body)).gives(2, "could not be built")
+    build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
 
 def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
     """Settings for a project of the person's own would change the build or its place."""
     body = 'print("Compiling", *sorted(n for n in os.environ if "PLATFORMIO" in n)); sys.exit(1)'
-    variables = pretending(tmp_path, body)
+    variables = fake_platformio(tmp_path, body)
     for name in ("BUILD_FLAGS", "SRC_DIR", "BUILD_DIR", "WORKSPACE_DIR", "DEFAULT_ENVS"):
         variables[f"PLATFORMIO_{name}"] = "other"
     variables["PLATFORMIO_CORE_DIR"] = "kept"
@@ -363,7 +363,7 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
     completed = subprocess.run(
         command("--build"),
         cwd=mine,
-        env={**os.environ, **pretending(tmp_path, "import serial\nprint(serial.__file__)")},
+        env={**os.environ, **fake_platformio(tmp_path, "import serial\nprint(serial.__file__)")},
         capture_output=True,
         text=True,
     )
@@ -375,7 +375,7 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
     body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
-    result = build_firmware(clone, pretending(tmp_path, body))
+    result = build_firmware(clone, fake_platformio(tmp_path, body))
     result.gives(2, "make room there", str(tmp_path / "cache"))
 
 
@@ -399,7 +399,7 @@ open({str(path)!r} + ".new", "w").write(f"{{os.getpid()}} {{child.pid}}")
 os.rename({str(path)!r} + ".new", {str(path)!r})
 time.sleep(600)
 """
-    variables = pretending(tmp_path, body)
+    variables = fake_platformio(tmp_path, body)
     variables["PYTHONPATH"] += os.pathsep + str(clone)
     run_interrupted(path, "--build", **variables).gives(2)
     for number in path.read_text().split():
@@ -495,7 +495,7 @@ assert os.path.exists("partitions.csv") and "esp32dev" in words
 def write_firmware(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> CommandResult:
     main_end, its_end = os.openpty()
     port = os.ttyname(its_end)
-    variables = pretending(tmp_path, ESP32)
+    variables = fake_platformio(tmp_path, ESP32)
     variables = {"PYTHONPATH": variables["PYTHONPATH"] + os.pathsep + str(clone),
                  "ITS_PORT": port, "ITS_CODE": str(code)}  # fmt: skip
     try:

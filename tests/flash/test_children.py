@@ -26,31 +26,31 @@ class Broken(Exception):
     """The look at it has failed."""
 
 
-def looks_on(text: str) -> None:
+def let_continue(text: str) -> None:
     """Let the program continue."""
 
 
-def breaks(text: str) -> None:
+def break_at_begin(text: str) -> None:
     if "begun" in text:
         raise Broken
 
 
-def presses(text: str) -> None:
+def interrupt_at_begin(text: str) -> None:
     if "begun" in text:
         raise KeyboardInterrupt
 
 
 FIRST_WAITS_FOR_END = "it may not be ended, as what writes a firmware"
 CHILD_ENDS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | None]] = {
-    "it ends well": ("true", looks_on, None),
-    "it fails": ("exit 3", looks_on, None),
-    "it is killed": ("kill -9 $$", looks_on, None),
-    "it closes its ends and stays": ("exec sleep 3600 >&- 2>&-", looks_on,
+    "it ends well": ("true", let_continue, None),
+    "it fails": ("exit 3", let_continue, None),
+    "it is killed": ("kill -9 $$", let_continue, None),
+    "it closes its ends and stays": ("exec sleep 3600 >&- 2>&-", let_continue,
                                      subprocess.TimeoutExpired),
-    "it is not waited for": ("sleep 3600", breaks, Broken),
-    "Ctrl-C": ("sleep 3600", presses, KeyboardInterrupt),
-    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", breaks, Broken),
-    FIRST_WAITS_FOR_END: ("sleep 0.2", breaks, Broken),
+    "it is not waited for": ("sleep 3600", break_at_begin, Broken),
+    "Ctrl-C": ("sleep 3600", interrupt_at_begin, KeyboardInterrupt),
+    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", break_at_begin, Broken),
+    FIRST_WAITS_FOR_END: ("sleep 0.2", break_at_begin, Broken),
 }  # fmt: skip
 
 
@@ -88,15 +88,15 @@ REFUSALS = (FileNotFoundError, PermissionError, MemoryError, ValueError)
 def test_ctrl_c_is_heard_where_nothing_could_be_started(
     monkeypatch: pytest.MonkeyPatch, refusal: type[Exception], is_pressed: bool
 ) -> None:
-    def refuses(*_: object, **__: object) -> None:
+    def refuse(*_: object, **__: object) -> None:
         if is_pressed:
             signal.raise_signal(signal.SIGINT)
         raise refusal
 
-    monkeypatch.setattr(subprocess, "Popen", refuses)
+    monkeypatch.setattr(subprocess, "Popen", refuse)
     failure = children.CannotStart if issubclass(refusal, OSError) else refusal
     for _ in range(2):  # the second one as the first one
         with pytest.raises(KeyboardInterrupt if is_pressed else failure):
-            children.run(["none"], None, looks_on)
+            children.run(["none"], None, let_continue)
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)

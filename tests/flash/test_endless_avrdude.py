@@ -13,7 +13,7 @@ from time import sleep as sleep_s
 
 import pytest
 
-from tests.support.texts import in_all
+from tests.support.texts import texts_in_all_languages
 from tests.support.waiting import has_ended, until
 from tiniscript.flash import avrdude, children
 from tiniscript.flash.avrdude import StepProgress, WriteResult
@@ -74,11 +74,11 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
     """A number of a file that is closed is the next one's: that is the port."""
     read = os.read
 
-    def slow(number: int, count: int) -> bytes:
+    def read_slowly(number: int, count: int) -> bytes:
         sleep_s(0.1)
         return read(number, count)
 
-    monkeypatch.setattr(os, "read", slow)
+    monkeypatch.setattr(os, "read", read_slowly)
     body = "import time\nprint('attempt 1 of 10, attempt 2 of 10', flush=True)\ntime.sleep(600)\n"
     assert write_and_watch(tmp_path, body)[0].outcome == avrdude.NOBODY
     next_ones = [end for _ in range(4) for end in socketpair()]
@@ -119,7 +119,7 @@ def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
 
 
 def test_the_sentence_says_what_to_do() -> None:
-    for sentence in in_all("flash_endless"):
+    for sentence in texts_in_all_languages("flash_endless"):
         assert "avrdude" in sentence and "{port}" in sentence
 
 

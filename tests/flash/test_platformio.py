@@ -229,7 +229,7 @@ def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
 # -- the bootstrap ------------------------------------------------------------------------------
 
 
-def offline(*words: str, **variables: str) -> CommandResult:
+def run_offline(*words: str, **variables: str) -> CommandResult:
     completed = subprocess.run(
         [*OFFLINE, "--offline", *words],
         env={**os.environ, **variables},
@@ -244,7 +244,7 @@ def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
     manifest = tmp_path / "platforms" / "native" / "platform.json"
     manifest.parent.mkdir(parents=True)
     manifest.write_text("{}")
-    result = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    result = run_offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
     result.gives(0, "platforms of its own (native)", out="")
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
 
@@ -256,9 +256,9 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
     names = re.findall(r"(?m)^platform = (.*)", settings)
     assert names and all(re.fullmatch(r"\w+ @ \d+\.\d+\.\d+", package) for package in names)
     with change_file(project / "platformio.ini", ("= atmelavr @ 5.1.0", "= atmelavr @ 5.0.0")):
-        result = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+        result = run_offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
     result.gives(2, "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0", out="")
 
 
 def test_command_runs_in_the_project(project: Path) -> None:
-    offline("--project", str(project), "pio", "project", "config").gives(0, out="env:native")
+    run_offline("--project", str(project), "pio", "project", "config").gives(0, out="env:native")

@@ -19,7 +19,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.machines.host import SOURCES, WARNINGS, built_by
+from tests.machines.host import SOURCES, WARNINGS, build_with
 from tests.support.casefile import ROOT
 from tests.support.link_cases import link_cases
 from tests.support.random_codes import random_codes, random_images
@@ -73,7 +73,7 @@ def harness(name: str) -> Path:
         code += sorted(SOURCES.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
     own = DEFINES_BY_HARNESS.get(name, ()) + (() if name == "machine" else (NO_TRACE_CMP_FLAG,))
-    return built_by(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
+    return build_with(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
 
 
 class Found(NamedTuple):

@@ -112,12 +112,12 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
         )
     ]  # fmt: skip
     commands.append(["check", "-e", "W(1)", "--lang", language])
-    *outputs, (code, refused_text) = _of_package(tmp_path, commands)
-    assert outputs == _of_package(FOLDER.parent.parent, commands)[:-1]
+    *outputs, (code, refused_text) = _outputs_of_package(tmp_path, commands)
+    assert outputs == _outputs_of_package(FOLDER.parent.parent, commands)[:-1]
     assert code == 2 and all(other in refused_text for other in others)
 
 
-def _of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
+def _outputs_of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
     """Return the output of a package's command for each call, in one process."""
     script = (
         "import contextlib, io, json, sys\n"

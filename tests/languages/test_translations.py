@@ -716,7 +716,7 @@ def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Transla
     return open_translation(place)
 
 
-def po(own: Translation) -> Catalog:
+def read_catalog(own: Translation) -> Catalog:
     with Path("xx.po").open("rb") as file:
         return read_po(file, abort_invalid=True)
 
@@ -726,7 +726,7 @@ def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> 
     assert [
         (message.context, message.id, message.string, message.fuzzy, message.auto_comments,
          {*message.flags})
-        for message in po(own) if message.id
+        for message in read_catalog(own) if message.id
     ] == [
         ("some/a", "Read {file}.", "Lee {file}.", False, ["note"], {"python-brace-format"}),
         ("some/b", "Stop.", "Alto.", True, ["note"], {"fuzzy"}),

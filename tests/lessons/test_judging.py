@@ -202,31 +202,31 @@ MISSED_BY_KEY = {"UP": "go forward", "DOWN": "go back", "LEFT": "turn to the lef
 OPPOSITE_KEY = {"UP": "DOWN", "DOWN": "UP", "LEFT": "RIGHT", "RIGHT": "LEFT", "A": "B", "B": "A"}
 
 
-def answering(key: str, does: str) -> str:
+def answer_to_key(key: str, does: str) -> str:
     return f"LOOP(FOREVER); IF(KEY_{key}); {does}; END_IF; W(0.02); END_LOOP"
 
 
 @pytest.mark.parametrize("key", ANSWER_BY_KEY)
 def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key=f"KEY_{key}"))
-    assert sentences_on(lesson, answering(key, ANSWER_BY_KEY[key])) == []
-    (missed_text,) = sentences_on(lesson, answering(OPPOSITE_KEY[key], ANSWER_BY_KEY[key]))
+    assert sentences_on(lesson, answer_to_key(key, ANSWER_BY_KEY[key])) == []
+    (missed_text,) = sentences_on(lesson, answer_to_key(OPPOSITE_KEY[key], ANSWER_BY_KEY[key]))
     assert (
         f"After 1.0 s KEY_{key} was held down, but the robot did not {MISSED_BY_KEY[key]}."
         in missed_text
     )
     if not MISSED_BY_KEY[key].startswith("beep"):
-        (missed_text,) = sentences_on(lesson, answering(key, ANSWER_BY_KEY[OPPOSITE_KEY[key]]))
+        (missed_text,) = sentences_on(lesson, answer_to_key(key, ANSWER_BY_KEY[OPPOSITE_KEY[key]]))
         assert f"did not {MISSED_BY_KEY[key]}." in missed_text
 
 
 @pytest.mark.parametrize(
     ("text", "seconds"),
     [
-        ("F(0.5, 60); " + answering("UP", "F(0.1, 60)"), "0.0"),
-        (answering("UP", "F(3, 60)"), "2.6"),
-        (answering("UP", "M(60, 60)"), "2.6"),
-        (answering("UP", "F(0.1, 60)").replace("END_IF", "ELSE; L(0.1, 60); END_IF"), "0.0"),
+        ("F(0.5, 60); " + answer_to_key("UP", "F(0.1, 60)"), "0.0"),
+        (answer_to_key("UP", "F(3, 60)"), "2.6"),
+        (answer_to_key("UP", "M(60, 60)"), "2.6"),
+        (answer_to_key("UP", "F(0.1, 60)").replace("END_IF", "ELSE; L(0.1, 60); END_IF"), "0.0"),
     ],
 )
 def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
@@ -243,9 +243,11 @@ def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) 
         "KEY_LEFT",
         "KEY_RIGHT",
     ]
-    both = answering("LEFT", "L(0.1, 60)").replace("W(", "IF(KEY_RIGHT); R(0.1, 60); END_IF; W(")
+    both = answer_to_key("LEFT", "L(0.1, 60)").replace(
+        "W(", "IF(KEY_RIGHT); R(0.1, 60); END_IF; W("
+    )
     assert findings_of(both, lesson, range(1, 3)) == []
-    assert findings_of(answering("LEFT", "L(0.1, 60)"), lesson, range(1, 3))
+    assert findings_of(answer_to_key("LEFT", "L(0.1, 60)"), lesson, range(1, 3))
 
 
 def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
@@ -255,7 +257,8 @@ def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
         tmp_path, OBEYS_CRITERION.format(key="KEY_A") + '[[criteria]]\nkind = "shows"\n'
     )
     assert (
-        sentences_on(lesson, answering("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W(")) == []
+        sentences_on(lesson, answer_to_key("A", "BEEP(0.1, 440)").replace("W(", "SHOW(TIME); W("))
+        == []
     )
 
 

@@ -144,13 +144,13 @@ STEPS = (
 ADDRESS = "socket://127.0.0.1:9"
 
 
-def fails(why: BaseException | bool) -> Callable[..., object]:
-    def does(*_: object, **__: object) -> object:
+def failing_call(why: BaseException | bool) -> Callable[..., object]:
+    def fail_or_return(*_: object, **__: object) -> object:
         if isinstance(why, BaseException):
             raise why
         return why
 
-    return does
+    return fail_or_return
 
 
 @pytest.mark.parametrize("step", STEPS)
@@ -176,7 +176,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
     before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
     for why in whys:
         with monkeypatch.context() as patched:
-            patched.setattr(step, fails(why))
+            patched.setattr(step, failing_call(why))
             with pytest.raises(BaseException):  # noqa: B017 - whichever it is
                 open_client()
         assert not any(device.is_open for device in Device.opened), why
@@ -211,18 +211,18 @@ def test_a_connection_that_was_closed_leaves_nothing_open(
         assert registry.find_registration(ADDRESS) is None
 
 
-def greets(version: str, answer: str) -> bytes:
+def greeting(version: str, answer: str) -> bytes:
     return (f'{{"tsc": "{version}", "answer": "{answer}"}}\n').encode()
 
 
 @pytest.mark.parametrize(
     ("data", "reason"),
     [
-        (greets("9.9", "right"), "holder_other"),
-        (greets(__version__, "wrong"), ""),
+        (greeting("9.9", "right"), "holder_other"),
+        (greeting(__version__, "wrong"), ""),
         (b"HTTP/1.1 400\r\n\r\n", ""),
         (b"", ""),
-        (greets(__version__, "right"), "holder_baud"),
+        (greeting(__version__, "right"), "holder_baud"),
     ],
 )
 def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
@@ -236,7 +236,7 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
             ADDRESS, number, "0" * 32, "right", "live", 9600, os.getpid(),
         ))  # fmt: skip
 
-        def serves() -> None:
+        def serve() -> None:
             peer = server.accept()[0]
             with peer:
                 peer.recv(1000)
@@ -246,7 +246,7 @@ def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
                 ended.append(peer.recv(1000))
 
         ended: list[bytes] = []
-        thread = Thread(target=serves, daemon=True)
+        thread = Thread(target=serve, daemon=True)
         thread.start()
         try:
             connection: object = opening._join_shared(ADDRESS, "upload", 115_200, "en")

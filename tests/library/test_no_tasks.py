@@ -10,7 +10,7 @@ from typing import Any, cast
 import pytest
 
 import tiniscript
-from tests.support.command import CommandResult, inside
+from tests.support.command import CommandResult, run_in_process
 from tiniscript import robots
 from tiniscript.studio import checking, page_lessons, playing, recordings, robot_link
 
@@ -26,38 +26,40 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
-def says_so(result: CommandResult, language: str = "en", advice: str = "tsc run") -> bool:
+def reports_no_tasks(result: CommandResult, language: str = "en", advice: str = "tsc run") -> bool:
     output = result.out + result.err
     return result.code == 1 and WORDS[language] in output and advice in output
 
 
 @pytest.mark.parametrize("verb", [("upload",), ("compile", "--text")])
 def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...]) -> None:
-    result = inside(*verb, program, "--robot", ROBOT, "--lang", "es")
-    assert says_so(result, "es", "tinibot") and "línea 2:" in result.out + result.err
+    result = run_in_process(*verb, program, "--robot", ROBOT, "--lang", "es")
+    assert reports_no_tasks(result, "es", "tinibot") and "línea 2:" in result.out + result.err
 
 
 def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path) -> None:
     """An Uno runs compiled programs."""
-    result = inside("check", "--text-level", "uno", program, "--robot", ROBOT)
+    result = run_in_process("check", "--text-level", "uno", program, "--robot", ROBOT)
     output = result.out + result.err
     assert (result.code, "TS313" in output, output.count("[TS308]")) == (1, False, 1)
     assert "line 2:" in output and "tsc upload" in output
     for level in ("mega", "esp32"):
-        assert inside("check", "--text-level", level, program, "--robot", ROBOT).code == 0
-    assert inside("check", program, "--robot", ROBOT).code == 0
+        assert run_in_process("check", "--text-level", level, program, "--robot", ROBOT).code == 0
+    assert run_in_process("check", program, "--robot", ROBOT).code == 0
 
 
 def test_an_image_and_a_live_line_are_refused(program: Path) -> None:
     compiled = program.with_suffix(".bin")
-    assert inside("compile", program, "--robot", ROBOT, "-o", compiled).code == 0
-    assert says_so(inside("upload", compiled, "--robot", ROBOT, "--lang", "es"), "es")
-    assert says_so(inside("live", "TASK;S;END_TASK", "--robot", ROBOT))
+    assert run_in_process("compile", program, "--robot", ROBOT, "-o", compiled).code == 0
+    assert reports_no_tasks(
+        run_in_process("upload", compiled, "--robot", ROBOT, "--lang", "es"), "es"
+    )
+    assert reports_no_tasks(run_in_process("live", "TASK;S;END_TASK", "--robot", ROBOT))
 
 
 def test_what_sends_nothing_takes_them(program: Path) -> None:
     for verb in (("check",), ("fmt",), ("show",), ("run", "--max-time", "0.01")):
-        result = inside(*verb, program, *(() if verb == ("fmt",) else ("--robot", ROBOT)))
+        result = run_in_process(*verb, program, *(() if verb == ("fmt",) else ("--robot", ROBOT)))
         assert (result.code, WORDS["en"] in result.err) == (0, False)
 
 

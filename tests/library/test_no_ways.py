@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import tiniscript
-from tests.support.command import inside
+from tests.support.command import run_in_process
 from tiniscript import robots
 from tiniscript.bytecode.image import GO, TASKS
 from tiniscript.library.known_kits import missing_need_key
@@ -26,7 +26,7 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
-def without(key: str, text: str) -> str:
+def profile_without(key: str, text: str) -> str:
     """The profile without a speed; that of its simulated body is needed then."""
     line = f"{key} = {45 if key == 'speed' else 360}\n"
     assert line in text
@@ -38,19 +38,21 @@ def without(key: str, text: str) -> str:
 def slow(tmp_path: Path) -> Path:
     """The profile of a robot with unmeasured speeds."""
     path = tmp_path / "slow.toml"
-    text = without("turn", without("speed", PROFILE.read_text(encoding="utf-8")))
+    text = profile_without("turn", profile_without("speed", PROFILE.read_text(encoding="utf-8")))
     path.write_text(text, encoding="utf-8")
     return path
 
 
 def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_path: Path) -> None:
     image = tmp_path / "way.bin"
-    assert "0.741 s" in inside("compile", program, "-o", image).out, "the receipt says how long"
+    assert "0.741 s" in run_in_process("compile", program, "-o", image).out, (
+        "the receipt says how long"
+    )
     assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
-    result = inside("upload", image, "--robot", slow, "--lang", "es")
+    result = run_in_process("upload", image, "--robot", slow, "--lang", "es")
     assert result.code == 1 and "no puede avanzar por centímetros" in result.err
     assert "tsc run" in result.err
-    assert inside("run", image).out.endswith("741 DONE\n")
+    assert run_in_process("run", image).out.endswith("741 DONE\n")
 
 
 def test_what_is_lacking_has_a_text_of_its_own() -> None:
@@ -74,14 +76,14 @@ def test_all_robots_have_them(program: Path, robot: str) -> None:
 
 
 def test_the_machine_in_cpp_has_them(program: Path) -> None:
-    result = inside("run", "--machine", "cpp", program)
-    assert result.code == 0 and result.out == inside("run", program).out
+    result = run_in_process("run", "--machine", "cpp", program)
+    assert result.code == 0 and result.out == run_in_process("run", program).out
     assert tiniscript.run(TEXT, machine="cpp").events == tiniscript.run(TEXT).events
 
 
 def test_a_move_without_power_is_explained() -> None:
     for text in ("F(5 CM, 0)", "X = 0; F(5 CM, X + TIME)"):
-        result = inside("run", "-e", text, "--lang", "es")
+        result = run_in_process("run", "-e", text, "--lang", "es")
         assert result.code == 1 and result.out == "0 FAULT NO_POWER\n"
         assert "nunca terminaría" in result.err
 
@@ -90,7 +92,7 @@ def test_a_move_without_power_is_explained() -> None:
 def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
     path = tmp_path / "way.ts"
     path.write_text(f"X = 5; F({way}, 60); SHOW(X)", encoding="utf-8")
-    result = inside("show", "--arduino", path).gives(0 if ms else 2)
+    result = run_in_process("show", "--arduino", path).gives(0 if ms else 2)
     assert f"forward({ms}, 60);" in result.out if ms else "a move in CM or DEG" in result.err
 
 
@@ -98,7 +100,7 @@ def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: s
 def test_a_profile_may_leave_a_speed_out(key: str) -> None:
     text = PROFILE.read_text(encoding="utf-8")
     line = f"{key} = {45 if key == 'speed' else 360}\n"
-    kit = read(without(key, text), "mine").kit
+    kit = read(profile_without(key, text), "mine").kit
     assert getattr(kit, key) == 0
     assert kit.fingerprint == robots.load("tinibot").kit.fingerprint
     half = read(text.replace(line, f"{key} = 0.5\n"), "mine").kit

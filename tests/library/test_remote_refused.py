@@ -19,7 +19,7 @@ OWN = len(ROBOT.kit.sensors)
 READ, PUSH_SENSOR, PUSH_READ = (BY_NAME[name].code for name in ("READ", "PUSH_SENSOR", "PUSH_READ"))
 
 
-def info(features: int) -> DeviceInfo:
+def device_info(features: int) -> DeviceInfo:
     values = {**DESCRIPTION, "kit": ROBOT.kit.fingerprint, "features": features}
     return device_info_of(HelloReply(**values))  # type: ignore[arg-type]
 
@@ -39,15 +39,15 @@ CODES = {
 def test_which_code_reads_a_remote_control(name: str) -> None:
     code, does = CODES[name]
     assert reads_remote(code, ROBOT.kit) == does
-    assert lacks_remote(code, ROBOT.kit, info(PLACES)) == does
-    assert not lacks_remote(code, ROBOT.kit, info(PLACES | REMOTE))
+    assert lacks_remote(code, ROBOT.kit, device_info(PLACES)) == does
+    assert not lacks_remote(code, ROBOT.kit, device_info(PLACES | REMOTE))
 
 
 def test_the_refusal_says_what_to_do() -> None:
     image = unpack(pack("SI", 0, bytes((READ, OWN))))
-    refused = refusal(image, ROBOT, info(PLACES))
+    refused = refusal(image, ROBOT, device_info(PLACES))
     assert refused is not None and refused.status == STATUSES["NO_REMOTE"]
-    assert refusal(image, ROBOT, info(PLACES | REMOTE)) is None
+    assert refusal(image, ROBOT, device_info(PLACES | REMOTE)) is None
     for language in ("en", "es", "pt"):
         sentence, advice = status_text(refused.status, 0, language)
         assert "KEY_UP" in sentence and "tsc firmware" in advice and "Nano" in advice

@@ -28,7 +28,7 @@ from tiniscript.link.requests import OK, Reply
 from tiniscript.virtual import directory
 
 
-def fails(
+def raises_error(
     kind: type[tiniscript.RobotError | tiniscript.UsageError], reason: str
 ) -> pytest.RaisesExc[tiniscript.RobotError | tiniscript.UsageError]:
     """Expect an error of this kind, for this reason."""
@@ -50,9 +50,9 @@ def test_keys_are_pressed_and_others_are_refused(
     virtual.press("UP", "A", x=-100, y=100)
     virtual.press()
     for key in ("C", "up", "KEY_UP"):
-        with fails(tiniscript.UsageError, "bad_key"):
+        with raises_error(tiniscript.UsageError, "bad_key"):
             virtual.press(key)
-    with fails(tiniscript.UsageError, "bad_number"):
+    with raises_error(tiniscript.UsageError, "bad_number"):
         virtual.press(x=101)
 
 
@@ -115,7 +115,7 @@ def test_a_program_that_goes_on_is_no_ending_and_a_line_after_its_stop_runs(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.upload(FOREVER, save=False)
-    with fails(tiniscript.RobotError, "still_running"):
+    with raises_error(tiniscript.RobotError, "still_running"):
         virtual.wait(0.05)
     assert list(virtual.events(0)) == []
     virtual.stop()
@@ -129,7 +129,7 @@ def test_a_time_limit_ends_a_stream_without_end(
 ) -> None:
     virtual.upload("SI|LOOP(FOREVER);SHOW(1);W(0.01);END_LOOP", save=False)
     assert "SHOW" in {robot_event.name for robot_event in virtual.events(0.3)}
-    with fails(tiniscript.RobotError, "still_running"):
+    with raises_error(tiniscript.RobotError, "still_running"):
         virtual.wait(0.2)
 
 
@@ -155,7 +155,7 @@ def test_its_world_and_its_readings_can_be_chosen() -> None:
 def test_a_virtual_robot_refuses_what_it_cannot_be(
     reason: str, arguments: dict[str, object]
 ) -> None:
-    with fails(tiniscript.UsageError, reason):
+    with raises_error(tiniscript.UsageError, reason):
         tiniscript.virtual_robot(**arguments)  # type: ignore[arg-type]
     assert directory.running_robots() == []
 
@@ -169,7 +169,7 @@ def test_wrong_use_of_a_connection_is_an_error(
         ("ping_program", lambda: virtual.upload("PING|check_connection")),
         ("bad_number", lambda: list(virtual.events(-1))),
     ):
-        with fails(tiniscript.UsageError, reason):
+        with raises_error(tiniscript.UsageError, reason):
             wrong()
     with pytest.raises(tiniscript.ProgramError, match="TS"):
         virtual.live("F(1 50)")
@@ -178,7 +178,7 @@ def test_wrong_use_of_a_connection_is_an_error(
     assert (too_long.value.reason, too_long.value.diagnostics) == ("TOO_LARGE", ())
     virtual.close()
     virtual.close()
-    with fails(tiniscript.UsageError, "closed"):
+    with raises_error(tiniscript.UsageError, "closed"):
         virtual.live("F(1, 50)")
 
 
@@ -196,7 +196,7 @@ def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
         assert robot.info.robot == "liner"
         robot.live("SHOW(LINE_L)")  # a word of its own
         assert robot.wait().name == "DONE"
-    with fails(tiniscript.RobotError, "which_port"):
+    with raises_error(tiniscript.RobotError, "which_port"):
         tiniscript.connect()
 
 
@@ -217,7 +217,7 @@ def test_button_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
         result = process("stop", "--port", pty_robot.port)
         assert (result.code, pty_robot.moves) == (0, False)
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
-        with fails(tiniscript.RobotError, "WRONG_KIT"):
+        with raises_error(tiniscript.RobotError, "WRONG_KIT"):
             robot.upload(tiniscript.compile("GRIPPER(30)", "grabber"))
         drive()
     assert not pty_robot.moves
@@ -325,7 +325,7 @@ def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience:
     if patience >= stops:
         assert client.meet(is_patient=lambda: next(answers)) is THE_ROBOT
         return
-    with fails(tiniscript.RobotError, "stopped_elsewhere"):
+    with raises_error(tiniscript.RobotError, "stopped_elsewhere"):
         client.meet(is_patient=lambda: next(answers))
     assert line.stops == stops - patience - 1
 
@@ -356,7 +356,7 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
     for last, reason in (
         (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
     ):  # fmt: skip
-        with fails(tiniscript.RobotError, reason):
+        with raises_error(tiniscript.RobotError, reason):
             follower.follow(last, "P")
 
 
@@ -365,7 +365,7 @@ def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> N
         robot.upload("SI|F(200, 80)", save=False)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
         pty_robot.switch_off_and_on()
-        with fails(tiniscript.RobotError, "restarted"):
+        with raises_error(tiniscript.RobotError, "restarted"):
             robot.wait()
         robot.live("W(0.01)")
         assert robot.wait().name == "DONE"
@@ -406,7 +406,7 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
                 assert refused.value.reason == "NO_PREVIOUS"
         receipt = robot.undo()
         assert (receipt.checksum, receipt.is_running) == (programs[0].checksum, False)
-        with fails(tiniscript.UsageError, "nothing_started"):
+        with raises_error(tiniscript.UsageError, "nothing_started"):
             robot.wait()
     pty_robot.switch_off_and_on()
     with tiniscript.connect(pty_robot.port) as robot:
@@ -466,7 +466,7 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
 
     for listed in ([], [ports.ListedPort("/dev/other", "")]):
         monkeypatch.setattr(ports, "list_ports", lambda listed=listed: listed)
-        with fails(tiniscript.RobotError, "port_missing") as raised:
+        with raises_error(tiniscript.RobotError, "port_missing") as raised:
             tiniscript.connect("/dev/none-here")
         assert ("/dev/other" in str(raised.value)) == bool(listed)
 
@@ -482,7 +482,7 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     other.until("running")
     pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.actions, "it does the other's")
     if watches:
-        with fails(tiniscript.RobotError, "replaced"):
+        with raises_error(tiniscript.RobotError, "replaced"):
             robot.wait()
     with pytest.warns(RuntimeWarning, match="holds the port until the other command has ended."):
         robot.close()
@@ -517,7 +517,7 @@ def test_whom_another_command_has_replaced_stops_nothing_through_a_holder(
         robot.upload(FOREVER)
         other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
         other.until("running")
-        with fails(tiniscript.RobotError, "replaced"):
+        with raises_error(tiniscript.RobotError, "replaced"):
             robot.wait()
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 1500, "it goes on")

@@ -93,7 +93,7 @@ START_ACTIONS = ("start", "start detached", "upload", "upload for good", "live",
 Story = tuple[str, str, bool]
 
 
-def happens(robot: RobotConnection, line: Line, story: Story) -> str:
+def play_story(robot: RobotConnection, line: Line, story: Story) -> str:
     how, end, looks = story
     if how.startswith("upload"):
         robot.upload(f"SI|F({line.run + 1}, 50)", save=how == "upload for good")
@@ -120,7 +120,7 @@ def connect_client(monkeypatch: pytest.MonkeyPatch) -> tuple[RobotConnection, Li
     return RobotConnection("P", robots.load("tinibot"), False, None, "en"), line
 
 
-def leave(robot: RobotConnection, line: Line, kind: type[BaseException] | None) -> list[str]:
+def leave_robot(robot: RobotConnection, line: Line, kind: type[BaseException] | None) -> list[str]:
     robot.__exit__(kind)
     return line.did
 
@@ -137,17 +137,17 @@ def test_leaving_is_about_the_last_program_alone(
     rng = random.Random(seed)
     last = STORIES[seed]
     robot, line = connect_client(monkeypatch)
-    outcome = happens(robot, line, last)
-    fresh = leave(robot, line, kind)
+    outcome = play_story(robot, line, last)
+    fresh = leave_robot(robot, line, kind)
     for _ in range(8):
         robot, line = connect_client(monkeypatch)
         before = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
         for story in before:
-            happens(robot, line, story)
+            play_story(robot, line, story)
             line.events.clear()
             line.unsaved_looks = 0
-        assert happens(robot, line, last) == outcome, before
-        assert leave(robot, line, kind) == fresh, (before, last)
+        assert play_story(robot, line, last) == outcome, before
+        assert leave_robot(robot, line, kind) == fresh, (before, last)
 
 
 def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,8 +162,8 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
     ):
         for kind in (None, KeyboardInterrupt):
             robot, line = connect_client(monkeypatch)
-            happens(robot, line, story)
-            did = leave(robot, line, kind)
+            play_story(robot, line, story)
+            did = leave_robot(robot, line, kind)
             assert did == calls if kind is None else did[0] == "stop", (story, kind)
 
 

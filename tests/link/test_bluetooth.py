@@ -21,9 +21,9 @@ from tests.support.ble_robot import (
     BleRobot,
     Echo,
     Peripheral,
-    uploading,
+    start_endless_upload,
 )
-from tests.support.command import LONG, Command, inside
+from tests.support.command import LONG, Command, run_in_process
 from tests.support.fake_bluez import ADVERTISING_INTERVAL_S, FakeBluez
 from tests.support.interrupted import interrupted_bell
 from tests.support.pty_robot import PtyRobot
@@ -53,14 +53,16 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
     for count, port in enumerate((NAME, ADDRESS_PORT, "BLE://tini 1", ADDRESS_PORT.lower()), 1):
-        result = inside("upload", "-e", DRIVE, "--port", port)
+        result = run_in_process("upload", "-e", DRIVE, "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert result.out.splitlines()[-2:] == ["Done.", "Saved. The button starts it."]
         assert (ble.robot.actions, ble.connections) == (DRIVE_ACTIONS * count, 2 * count - 1)
-        assert inside("set", "trim", "--show").code == 0  # the port is remembered
+        assert run_in_process("set", "trim", "--show").code == 0  # the port is remembered
     assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
     assert max(len(data) for _, data in ble.written) == 20
-    inside("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(0, "")
+    run_in_process("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(
+        0, ""
+    )
     assert ble.robot.actions[-6::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
 
 
@@ -76,9 +78,9 @@ def test_a_long_program_arrives_whole(
     ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
     bluez.add(ble)
     ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    inside("compile", "-e", LONG, "-o", ours)
-    assert inside("upload", ours, "--no-run", "--port", ADDRESS_PORT).code == 0
-    assert inside("show", "-o", theirs, "--port", ADDRESS_PORT).code == 0
+    run_in_process("compile", "-e", LONG, "-o", ours)
+    assert run_in_process("upload", ours, "--no-run", "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("show", "-o", theirs, "--port", ADDRESS_PORT).code == 0
     assert theirs.read_bytes() == ours.read_bytes()
     longest = max(len(data) for _, data in ble.written)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
@@ -91,7 +93,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     ble = BleRobot(pty_robot)
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
-    assert inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
     assert {kind for kind, _ in ble.written} == {"request"}
     assert pty_robot.actions == DRIVE_ACTIONS
 
@@ -101,10 +103,14 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
 
 @pytest.mark.parametrize("port", [NAME, ADDRESS_PORT, ""])
 def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: str) -> None:
-    command = uploading(ble, NAME)
-    rows = [row for row in json.loads(inside("doctor", "--ports", "--json").out) if row["held_by"]]
+    command = start_endless_upload(ble, NAME)
+    rows = [
+        row
+        for row in json.loads(run_in_process("doctor", "--ports", "--json").out)
+        if row["held_by"]
+    ]
     assert [row["port"] for row in rows] == [NAME]
-    result = inside("stop", *(("--port", port) if port else ()))
+    result = run_in_process("stop", *(("--port", port) if port else ()))
     assert (result.code, result.out.count("Stopped")) == (0, 1)
     assert not ble.robot.moves
     assert command.wait_for_result().code == 3
@@ -122,19 +128,19 @@ def test_two_at_once_take_turns(ble: BleRobot) -> None:
 
 
 def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) -> None:
-    command = uploading(ble)
+    command = start_endless_upload(ble)
     command.signal(signal.SIGINT)
     assert command.wait_for_result().code == 2
     assert not ble.robot.moves
     ble.robot.until(lambda: not bluez.devices[ADDRESS].is_connected, "BlueZ has heard it")
-    assert inside("doctor", "--identify", "--port", NAME).code == 0
+    assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
 
 
 def test_ctrl_c_ends_a_search(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     bell = interrupted_bell(lambda: until(lambda: bluez.adapter.is_scanning, "it searches"))
     with monkeypatch.context() as patch:
         patch.setattr(event_loop, "Bell", bell)
-        assert inside("doctor", "--identify", "--port", "ble://nobody").code == 2
+        assert run_in_process("doctor", "--identify", "--port", "ble://nobody").code == 2
     until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
 
 
@@ -142,12 +148,12 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
     ble: BleRobot, bluez: FakeBluez
 ) -> None:
     """BlueZ keeps its connection, and a robot that is connected is seen by no scan."""
-    command = uploading(ble)
+    command = start_endless_upload(ble)
     command.kill()
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, ADDRESS_PORT):
-        assert inside("upload", "-e", DRIVE, "--port", port).code == 0
+        assert run_in_process("upload", "-e", DRIVE, "--port", port).code == 0
     assert ble.robot.actions[-3:] == DRIVE_ACTIONS
 
 
@@ -160,11 +166,11 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
     twin = Peripheral("TINI 1", OTHER)
     twin.late = late
     bluez.add(twin)
-    inside("upload", "-e", DRIVE, "--port", NAME).gives(
+    run_in_process("upload", "-e", DRIVE, "--port", NAME).gives(
         3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER}"
     )
     assert ble.connections == 0
-    assert inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
 
 
 @pytest.mark.parametrize(("name", "typed"), [
@@ -177,13 +183,13 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, lat
 ])  # fmt: skip
 def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed: str) -> None:
     bluez.add(BleRobot(pty_robot, name))
-    assert inside("doctor", "--identify", "--port", f"ble://{typed}").code == 0
+    assert run_in_process("doctor", "--identify", "--port", f"ble://{typed}").code == 0
 
 
 def test_a_name_that_looks_like_an_address_is_none(bluez: FakeBluez, ble: BleRobot) -> None:
     fake = Peripheral(ADDRESS, OTHER)
     bluez.add(fake)
-    assert inside("doctor", "--identify", "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).code == 0
     assert (ble.connections, fake.connections) == (1, 0)
 
 
@@ -191,16 +197,17 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP_SERVICE))
-    result = inside("doctor", "--ports", "--ask").gives(0)
+    result = run_in_process("doctor", "--ports", "--ask").gives(0)
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in result.out.splitlines()}
     assert rows[ADDRESS_PORT] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
     assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", ADDRESS_PORT]
     assert not any(sign in result.out for sign in "\x1b\r\u202e")
-    assert inside("doctor", "--identify", "--port", NAME).code == 0  # from now on it has this name
+    # from now on it has this name
+    assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
     known_ports.remember("ble://yesterday", "Yesterday")
     names = {
         row["port"]: row["said"]
-        for row in json.loads(inside("doctor", "--ports", "--ask", "--json").out)
+        for row in json.loads(run_in_process("doctor", "--ports", "--ask", "--json").out)
     }
     assert (names[NAME], names["ble://yesterday"]) == ("robot tinibot (free)", "out of range now")
     assert ADDRESS_PORT not in names
@@ -211,31 +218,31 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         bluez.add(BleRobot(second, "Tini 2", OTHER, NORDIC))
         ports = ("--port", NAME, "--port", "ble://tini 2")
         for words in (("upload", "-e", DRIVE), ("stop",)):
-            inside(*words, *ports).gives(0, "Done: 2 of 2.")
+            run_in_process(*words, *ports).gives(0, "Done: 2 of 2.")
         assert (ble.robot.actions[:3], second.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
-    assert inside("doctor", "--identify", "--port", NAME).code == 0
+    assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
     for words in (("stop",), ("upload", "-e", DRIVE)):
-        inside(*words, "--all").gives(0, "Done: 1 of 1.")
+        run_in_process(*words, "--all").gives(0, "Done: 1 of 1.")
 
 
 def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP_SERVICE))
-    inside("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer a robot's")
+    run_in_process("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer a robot's")
     bluez.add(Echo("echo", ADDRESS))
-    inside("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
+    run_in_process("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
 
 
 def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.SEARCH_S", 3.0)
-    inside("doctor", "--identify", "--port", "ble://nobody").gives(
+    run_in_process("doctor", "--identify", "--port", "ble://nobody").gives(
         3, "ble://nobody is not in range", "In range: Tini 1"
     )
     ble.is_on = False
-    inside("doctor", "--identify", "--port", NAME, "--lang", "es").gives(
+    run_in_process("doctor", "--identify", "--port", NAME, "--lang", "es").gives(
         3, "ni otro robot con Bluetooth LE"
     )
 

@@ -19,14 +19,14 @@ from tests.support.ble_robot import (
     NORDIC,
     BleRobot,
     Peripheral,
-    uploading,
+    start_endless_upload,
 )
-from tests.support.command import LONG, Tsc, inside
+from tests.support.command import LONG, Tsc, run_in_process
 from tests.support.fake_bluez import FakeBluez
 from tiniscript.link import errors, ports
 
 
-def stops_by_itself(ble: BleRobot) -> None:
+def wait_for_dead_man_stop(ble: BleRobot) -> None:
     """No client is there to stop it."""
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
 
@@ -38,14 +38,14 @@ def stops_by_itself(ble: BleRobot) -> None:
 def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     ble.fails_at = stage
     for language in ("en", "es"):
-        result = inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT, "--lang", language).gives(
-            3, out=""
-        )
+        result = run_in_process(
+            "upload", "-e", DRIVE, "--port", ADDRESS_PORT, "--lang", language
+        ).gives(3, out="")
         assert result.err.startswith("tsc: ")
         assert ADDRESS_PORT.upper() in result.err.upper()
     assert ble.robot.actions == []
     ble.fails_at = ""
-    assert inside("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
     assert ble.robot.actions == DRIVE_ACTIONS
 
 
@@ -56,29 +56,29 @@ def test_a_program_that_is_cut_leaves_the_one_before(
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
-    assert inside("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
-    assert inside("show", "-o", before, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("show", "-o", before, "--port", ADDRESS_PORT).code == 0
     ble.parts_after = len(ble.received_data) + heard
-    result = inside("upload", "-e", LONG, "--port", ADDRESS_PORT)
+    result = run_in_process("upload", "-e", LONG, "--port", ADDRESS_PORT)
     assert result.code == 3
     assert f"lost the Bluetooth connection to {ADDRESS_PORT}" in result.err
     ble.parts_after = None
-    stops_by_itself(ble)
+    wait_for_dead_man_stop(ble)
     ours = tmp_path / "ours.bin"
-    inside("compile", "-e", LONG, "-o", ours)
-    assert inside("show", "-o", after, "--port", ADDRESS_PORT).code == 0
+    run_in_process("compile", "-e", LONG, "-o", ours)
+    assert run_in_process("show", "-o", after, "--port", ADDRESS_PORT).code == 0
     assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
-    assert inside("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
 
 
 def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
     ble: BleRobot, bluez: FakeBluez
 ) -> None:
-    command = uploading(ble)
+    command = start_endless_upload(ble)
     bluez.part(ble)
     command.wait_for_result().gives(3, f"lost the Bluetooth connection to {ADDRESS_PORT}")
-    stops_by_itself(ble)
-    assert inside("upload", "-e", DRIVE, "--port", NAME).code == 0
+    wait_for_dead_man_stop(ble)
+    assert run_in_process("upload", "-e", DRIVE, "--port", NAME).code == 0
     port = ports.open_port(ADDRESS_PORT, 9600)
     assert port.read(1) == b""
     bluez.part(ble)
@@ -90,9 +90,9 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
 
 
 def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
-    inside("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\n").gives(0)
+    run_in_process("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\n").gives(0)
     ble.parts_after = len(ble.received_data) + 60
-    inside("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\n" * 9).gives(
+    run_in_process("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\n" * 9).gives(
         3, "Bluetooth connection"
     )
 
@@ -101,7 +101,7 @@ def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBlue
 def test_an_adapter_that_is_gone_ends_the_command(
     ble: BleRobot, bluez: FakeBluez, what: str
 ) -> None:
-    command = uploading(ble)
+    command = start_endless_upload(ble)
     if what == "power":
         bluez.power(False)
     elif what == "unplug":
@@ -110,8 +110,8 @@ def test_an_adapter_that_is_gone_ends_the_command(
         bluez.vanish()
     result = command.wait_for_result().gives(3, "the Bluetooth connection")
     assert result.err.count("\n") == 1  # no part of bleak
-    stops_by_itself(ble)
-    result = inside("stop", "--port", ADDRESS_PORT, "--lang", "es")
+    wait_for_dead_man_stop(ble)
+    result = run_in_process("stop", "--port", ADDRESS_PORT, "--lang", "es")
     message = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
     assert (result.code, message in result.err) == (3, True)
 
@@ -129,7 +129,7 @@ def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) 
                 self.loop.call_soon(self.flood, left - 1)
 
     bluez.add(Flood("flood"))
-    inside("doctor", "--identify", "--port", ADDRESS_PORT).gives(3, "not TiniScript")
+    run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).gives(3, "not TiniScript")
 
 
 # -- before it begins ---------------------------------------------------------------------------
@@ -149,8 +149,10 @@ def test_a_computer_without_bluetooth(
         monkeypatch.setattr(ports, "list_ports", list)
         monkeypatch.setattr(ports, "find_announced_robots", list)
         for language, words in zip(("en", "es"), messages, strict=True):
-            inside("doctor", "--identify", "--port", NAME, "--lang", language).gives(3, words)
-        inside("doctor", "--ports", "--ask").gives(0, messages[0])
+            run_in_process("doctor", "--identify", "--port", NAME, "--lang", language).gives(
+                3, words
+            )
+        run_in_process("doctor", "--ports", "--ask").gives(0, messages[0])
 
 
 def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -252,7 +254,7 @@ def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.Monkey
         async def stop() -> None:
             did.append("stop")
 
-        async def fails() -> None:
+        async def fail() -> None:
             raise OSError("the adapter is gone")
 
         scanner = SimpleNamespace(start=start, stop=stop)
@@ -265,7 +267,7 @@ def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.Monkey
         answer.set()
         with pytest.raises(asyncio.CancelledError):
             await task
-        monkeypatch.setattr(bluetooth_search, "_connected_devices", fails)
+        monkeypatch.setattr(bluetooth_search, "_connected_devices", fail)
         for _ in range(2):  # the second one begins anew
             with pytest.raises(OSError, match="gone"):
                 async with bluetooth_search._Scan():

@@ -108,7 +108,7 @@ def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort
     return port
 
 
-def works(loop: event_loop.EventLoop, device: Device) -> None:
+def check_next_client_works(loop: event_loop.EventLoop, device: Device) -> None:
     """The next one gets the device, and leaves it."""
     device.fails_at = device.lacks = ""
     before = device.notified
@@ -136,7 +136,7 @@ def test_what_fails_leaves_the_device(
             connects(loop, device)
         assert exception_info.value.reason == reason or not reason
         assert device.clients == []
-        works(loop, device)
+        check_next_client_works(loop, device)
 
 
 @pytest.mark.parametrize("lacks", ["service", "writes", "notifies", "write"])
@@ -147,7 +147,7 @@ def test_what_is_no_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> Non
         connects(loop, device)
     assert exception_info.value.reason == errors.NO_ROBOT
     assert device.clients == []
-    works(loop, device)
+    check_next_client_works(loop, device)
 
 
 @pytest.mark.parametrize("stage", STAGES)
@@ -164,7 +164,7 @@ def test_ctrl_c_leaves_the_device(
         with pytest.raises(KeyboardInterrupt):
             connects_until(loop, device, pressed)
     assert device.clients == []
-    works(loop, device)
+    check_next_client_works(loop, device)
 
 
 def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.MonkeyPatch) -> None:

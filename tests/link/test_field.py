@@ -86,7 +86,7 @@ class Robot:
         return {row for row in self.did if row.startswith("TEXT")}
 
 
-def never_silence(cpp: CppLink, seed: int) -> str:
+def check_never_silent(cpp: CppLink, seed: int) -> str:
     draw = random.Random(seed)
     robot = Robot(cpp)
     before = [draw.choice(NOISE_BEFORE) for _ in range(draw.randint(0, 4))]
@@ -118,7 +118,7 @@ def programs_of(cpp: CppLink, text: str) -> frozenset[str]:
     return frozenset(robot.programs)
 
 
-def no_other_program(cpp: CppLink, seed: int) -> str:
+def check_no_other_program(cpp: CppLink, seed: int) -> str:
     """A glitch is at one byte of a program: a 0x00, in its place or before it."""
     draw = random.Random(seed)
     text = draw.choice(PROGRAMS)
@@ -135,7 +135,7 @@ def no_other_program(cpp: CppLink, seed: int) -> str:
     return "runs" if robot.programs else "told"
 
 
-def both_are_heard(cpp: CppLink, seed: int) -> str:
+def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     """A person and a computer, in turns, on one port."""
     draw = random.Random(seed)
     wanted_of = {text: programs_of(cpp, text) for text in TYPED_PROGRAMS}
@@ -172,7 +172,7 @@ def both_are_heard(cpp: CppLink, seed: int) -> str:
     return f"{heard} lines"
 
 
-CHECKS = (never_silence, no_other_program, both_are_heard)
+CHECKS = (check_never_silent, check_no_other_program, check_both_are_heard)
 
 
 @pytest.mark.parametrize("holds", CHECKS, ids=lambda holds: holds.__name__)

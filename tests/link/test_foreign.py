@@ -28,7 +28,7 @@ CASES = Path(__file__).parent.parent / "cases"
 each_recording = pytest.mark.parametrize("recording", RECORDINGS.values(), ids=RECORDINGS)
 
 
-def our_bytes() -> list[bytes]:
+def recorded_bytes() -> list[bytes]:
     """Return the robots' bytes in the cases of the link: frames, lines of text, zeros."""
     recordings = []
     for name in ("link.md", "link_text.md"):
@@ -38,7 +38,7 @@ def our_bytes() -> list[bytes]:
     return recordings
 
 
-OWN_ROWS = our_bytes()
+OWN_ROWS = recorded_bytes()
 
 
 def test_there_are_a_robot_s_bytes_to_look_at() -> None:

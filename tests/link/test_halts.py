@@ -21,16 +21,16 @@ Ask = Callable[[Session], PendingRequest[Any]]
 DRIVE_IMAGE = image(FOREVER)
 
 
-def moves(robot: HostFirmware) -> bool:
+def is_moving(robot: HostFirmware) -> bool:
     return drives_now([line.split(" ", 1)[1] for line in robot.did])
 
 
-def driving() -> tuple[Session, HostFirmware, int]:
+def driving_robot() -> tuple[Session, HostFirmware, int]:
     """Return a robot that drives for a client, and the run."""
     session, robot = open_session()
     assert robot.until(session, session.upload(DRIVE_IMAGE, saves=False)) == OK
     robot.talk(session, 300)
-    assert moves(robot) and session.run is not None
+    assert is_moving(robot) and session.run is not None
     return session, robot, session.run
 
 
@@ -46,7 +46,7 @@ def fetch(session: Session) -> PendingRequest[Any]:
 @pytest.mark.parametrize("after_ms", [0, 1, 20, 150])
 def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms: int) -> None:
     """This holds whatever is in progress."""
-    session, robot, run = driving()
+    session, robot, run = driving_robot()
     request = wanted(session) if wanted else None
     robot.talk(session, after_ms)
     session.end_run(run, robot.now_ms)
@@ -54,7 +54,7 @@ def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms:
     if request is not None:
         assert robot.until(session, request) == OK
     robot.talk(session, 1000)
-    assert not moves(robot)
+    assert not is_moving(robot)
     ends = [line for line in robot.did if line.endswith("MOTORS 0 0")]
     assert int(ends[-1].split()[0]) - began_ms < 300
     events = [event.name for event in session.events()]
@@ -65,11 +65,11 @@ def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms:
 
 
 def test_a_run_of_another_goes_on() -> None:
-    session, robot, run = driving()
+    session, robot, run = driving_robot()
     assert robot.until(session, session.upload(DRIVE_IMAGE, saves=False)) == OK
     session.end_run(run, robot.now_ms)
     robot.talk(session, 1000)
-    assert moves(robot) and session.run != run
+    assert is_moving(robot) and session.run != run
 
 
 @pytest.mark.parametrize("after_ms", range(5))
@@ -83,7 +83,7 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
     assert gone.outcome is not None and gone.outcome.status == CANCELLED
     assert robot.until(session, other) == OK
     robot.talk(session, 1000)
-    assert not moves(robot) and "MOTORS 80 80" not in "".join(robot.did)
+    assert not is_moving(robot) and "MOTORS 80 80" not in "".join(robot.did)
 
 
 def test_one_that_waits_is_withdrawn() -> None:
@@ -92,7 +92,7 @@ def test_one_that_waits_is_withdrawn() -> None:
     session.withdraw(gone)
     assert gone.outcome is not None and gone.outcome.status == CANCELLED
     assert robot.until(session, last) == OK and first.outcome
-    assert not moves(robot)
+    assert not is_moving(robot)
 
 
 @pytest.mark.parametrize("answers", [OK, "BUSY"])
@@ -109,7 +109,7 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
     session.receive(robot.wait(40, first_frames), robot.now_ms)
     robot.talk(session, 300)
     assert gone.outcome is not None
-    assert (gone.outcome.status == OK) == (answers == OK) == moves(robot)
+    assert (gone.outcome.status == OK) == (answers == OK) == is_moving(robot)
     status = session.status()
     assert robot.until(session, status) == OK
 
@@ -123,4 +123,4 @@ def test_a_program_that_was_sent_before_is_saved_all_the_same() -> None:
     status = session.status()
     assert robot.until(session, status) == OK
     assert status.outcome and status.outcome.values.saved == SAVED_STORED
-    assert not moves(robot)
+    assert not is_moving(robot)

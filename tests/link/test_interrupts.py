@@ -37,7 +37,7 @@ class Port(PushedTransport):
         self.end("closed")
 
 
-def hail(work: Callable[[], object], count: int = INTERRUPT_COUNT) -> None:
+def interrupt_often(work: Callable[[], object], count: int = INTERRUPT_COUNT) -> None:
     """Repeat work while Ctrl-C is pressed again and again. All other exceptions pass."""
     rng = random.Random(1)
     pressed: list[int] = []  # the interpreter discards exceptions in a callback
@@ -67,7 +67,7 @@ def test_a_line_goes_on_and_still_stops() -> None:
             line.event(1e-5)
             line.end_run(1)
 
-        hail(work)
+        interrupt_often(work)
         port.written = b""
         line.stop()
         until(lambda: bytes(STOP_BYTES) in port.written, "the stop is sent")
@@ -76,7 +76,7 @@ def test_a_line_goes_on_and_still_stops() -> None:
 @pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
 def test_an_event_loop_goes_on() -> None:
     loop = EventLoop()
-    hail(lambda: loop.run(asyncio.sleep(0), 100), FEW_HAILS)
+    interrupt_often(lambda: loop.run(asyncio.sleep(0), 100), FEW_HAILS)
     assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     loop.close()
 
@@ -89,7 +89,7 @@ def test_a_bell_rings_for_who_waits() -> None:
         bell.wait(1e-5)
         bell.wait(1e-5)  # yields the interpreter, which might otherwise miss a signal
 
-    hail(work)
+    interrupt_often(work)
     bell.ring()
     bell.ring()
     assert bell.wait(0)

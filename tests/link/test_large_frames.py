@@ -67,7 +67,7 @@ def sent_by(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[bytes
     return [part for part in step.sent.split(b"\0") if part]
 
 
-def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame]:
+def list_answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame]:
     replies = [decode_frame(packet) for packet in sent_by(robot, *frames, is_late=is_late)]
     assert all(replies)
     return [frame for frame in replies if frame]
@@ -82,12 +82,12 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
             Frame(number, 2 + k, EPOCH + 1, bytes(2 * (number == FETCH)))
             for k, number in enumerate(numbers)
         ]
-        replies = answers(robot, *frames, is_late=True)
+        replies = list_answers(robot, *frames, is_late=True)
         assert [frame.number for frame in replies] == numbers[:window]
         statuses = {FETCH: STATUSES["NO_PROGRAM"], PING: OK}
         assert all(frame.payload[0] == statuses[frame.number] for frame in replies)
         assert [frame.seq for frame in replies] == [2 + k for k in range(window)]
-        (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
+        (status,) = list_answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
         values = decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])
         assert (values["dropped"], values["damaged"]) == (2, 0)
 
@@ -117,7 +117,7 @@ def test_a_large_frame_without_its_zero_is_damaged() -> None:
         assert wire[0] == HEAD_BYTES
         step = robot.step(10, wire + b"\0", is_late)
         assert step.sent == b"" and step.did == []
-        (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
+        (status,) = list_answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
         assert decode_payload(BY_NAME["STATUS"].reply, status.payload[1:])["damaged"] == 1
 
 
@@ -139,7 +139,7 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: i
         and robot.fetch_image() == pack("SI", 0, CODE)
     )
     hello = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 8)
-    answers(robot, Frame(HELLO, 1, 0, hello))
+    list_answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
     whole = len(pack("SI", 0, CODE))
     while len(image) < whole:

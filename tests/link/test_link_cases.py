@@ -17,7 +17,7 @@ from tests.support.link_cases import (
     packets_of,
     play,
     stream_of,
-    with_found,
+    with_new_results,
 )
 
 TALKS = link_cases("link")
@@ -45,7 +45,7 @@ def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
 
 @pytest.mark.parametrize("case", [*PACKETS, *COMPUTERS], ids=lambda case: case.id)
 def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
-    rows = with_found(case, packets_of(*stream_of(case)))
+    rows = with_new_results(case, packets_of(*stream_of(case)))
     if request.config.getoption("--accept"):
         if rows != case.rows:
             accept(case, rows)
@@ -55,7 +55,7 @@ def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
 
 @pytest.mark.parametrize("case", [*PACKETS, *ROBOTS], ids=lambda case: case.id)
 def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> None:
-    rows = with_found(case, cpp_link().packets(*stream_of(case)))
+    rows = with_new_results(case, cpp_link().packets(*stream_of(case)))
     if request.config.getoption("--accept") and case in ROBOTS:
         if rows != case.rows:
             accept(case, rows)

@@ -33,7 +33,7 @@ class LiveWorld(World):
         self.sent += frame is not None and frame.number == LIVE and not frame.is_reply
 
 
-def lives(cpp: CppLink, count: int, seed: int) -> Counter[str]:
+def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
     """Send so many lines, each with its own code, over radios that lose answers; return the
     results. A line that the computer confirms begins once, and no line twice.
     """
@@ -70,10 +70,10 @@ def line_of(number: int) -> bytes:
 
 def test_live_lines_over_a_bad_radio() -> None:
     """None is executed twice, however many times its answer is lost."""
-    counts = lives(cpp_link(), LIVES, SEED)
+    counts = send_live_lines(cpp_link(), LIVES, SEED)
     assert counts["OK"] > LIVES * 0.8 and counts["sent again"] > LIVES * 0.1, counts
 
 
 if __name__ == "__main__":
     given = make_options(100_000, 1_000_000)
-    print(lives(link_library(), given.count, given.seed))
+    print(send_live_lines(link_library(), given.count, given.seed))

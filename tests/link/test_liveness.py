@@ -93,7 +93,7 @@ def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
     session.receive(line.takes(sent, robot.now_ms, True), robot.now_ms)
 
 
-def until(
+def finish_request(
     session: Session,
     robot: HostFirmware,
     line: BadLine,
@@ -118,7 +118,7 @@ def check(seed: int) -> str:
     explanation = f"seed {seed}, {name}, {line.is_bursty} {line.likely} {line.late_ms}"
     pieces = 40 if "program" in name else 4
     for request in pending_requests:
-        status = until(session, robot, line, request, pieces * REQUEST_LIMIT_MS)
+        status = finish_request(session, robot, line, request, pieces * REQUEST_LIMIT_MS)
         assert status == OK, f"{explanation}: {status}"
     if name == "what goes on alone":
         robot.wait(2 * DEAF_MS)  # the client that sent it has left
@@ -157,12 +157,13 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
             robot = fresh
         limit_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
         for request in pending_requests:
-            until(session, robot, line, request, limit_ms)
+            finish_request(session, robot, line, request, limit_ms)
         robot.talk(session, 2000)
-        if until(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
+        if finish_request(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
             raise AssertionError(f"seed {seed}: it is there")
         assert (
-            until(session, robot, line, REQUEST_MAKERS["a long program"](session), 20_000) == OK
+            finish_request(session, robot, line, REQUEST_MAKERS["a long program"](session), 20_000)
+            == OK
         ), seed
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.command import LONG, Command, Tsc, inside, process
+from tests.support.command import LONG, Command, Tsc, process, run_in_process
 from tests.support.network import BadNetwork
 from tests.support.virtual_command import FOREVER, Robot, robot
 from tests.support.waiting import HANG_LIMIT_S, until
@@ -121,7 +121,7 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
         sender.join()
 
 
-def ours(robots: list[AnnouncedRobot], number: int) -> list[AnnouncedRobot]:
+def robots_of_this_test(robots: list[AnnouncedRobot], number: int) -> list[AnnouncedRobot]:
     """Those at a TCP port of this computer: a robot of the room may announce itself, too."""
     return [robot for robot in robots if robot.port == f"socket://127.0.0.1:{number}"]
 
@@ -139,19 +139,19 @@ def tini() -> Iterator[Robot]:
 
 
 def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
-    for run, typed in ((process, "tcp://Ñ tini {}"), (inside, "tcp://ñ tini {}.local"),
-                       (inside, "TCP://ñ TINI {}")):  # fmt: skip
+    for run, typed in ((process, "tcp://Ñ tini {}"), (run_in_process, "tcp://ñ tini {}.local"),
+                       (run_in_process, "TCP://ñ TINI {}")):  # fmt: skip
         port = typed.format(PROCESS_ID)
         result = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert known_ports.remembered_ports().last_port == port
-    assert inside("doctor", "--identify").code == 0  # it is remembered
+    assert run_in_process("doctor", "--identify").code == 0  # it is remembered
 
 
 def test_a_name_and_an_address_share_a_connection(tini: Robot) -> None:
     command = Command("upload", "-e", FOREVER, "--port", f"tcp://Ñ tini {PROCESS_ID}")
     command.until("running")
-    assert inside("stop", "--port", tini.port).code == 0
+    assert run_in_process("stop", "--port", tini.port).code == 0
     assert command.wait_for_result().code == 3
 
 
@@ -162,7 +162,7 @@ def test_a_robot_announces_itself_only_when_asked(
     with robot("--name", "quiet") as running_robot, robot("--announce") as other:
         name = other.line()
         assert name == f"tcp://tinibot-{number_of(other.port)}"
-        rows = inside("doctor", "--ports", "--ask").out.splitlines()
+        rows = run_in_process("doctor", "--ports", "--ask").out.splitlines()
         assert any(row.startswith(f"{name} ") for row in rows)
         assert [row.split("   ")[0] for row in rows if "quiet" in row] == [running_robot.port]
 
@@ -172,9 +172,9 @@ def test_the_announcement_ends_with_the_robot(
 ) -> None:
     name = f"short-{PROCESS_ID}"
     with robot("--announce", "--name", name):
-        assert inside("doctor", "--identify", "--port", f"tcp://{name}").code == 0
+        assert run_in_process("doctor", "--identify", "--port", f"tcp://{name}").code == 0
     monkeypatch.setattr(network, "SEARCH_S", 1.0)
-    result = inside("doctor", "--identify", "--port", f"tcp://{name}", "--lang", "es")
+    result = run_in_process("doctor", "--identify", "--port", f"tcp://{name}", "--lang", "es")
     assert result.code == 3
     assert f"ningún robot de esta red se anuncia como tcp://{name}" in result.err
 
@@ -190,14 +190,14 @@ def test_names_that_nobody_has(
 
 def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
     name = f"Ñ tini {PROCESS_ID}"
-    result = inside("robot", "--announce", "--name", name, "--for", "0.1")
+    result = run_in_process("robot", "--announce", "--name", name, "--for", "0.1")
     assert (result.code, f"the name {name} cannot be announced" in result.err) == (3, True)
 
 
 @pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
 def test_an_address_outside_is_not_called(address: str) -> None:
     with announce(f"bait-{PROCESS_ID}", address, 7007):
-        result = inside("doctor", "--identify", "--port", f"tcp://bait-{PROCESS_ID}")
+        result = run_in_process("doctor", "--identify", "--port", f"tcp://bait-{PROCESS_ID}")
         message = f"an address outside this network ({address})"
         assert (result.code, message in result.err) == (3, True)
 
@@ -211,7 +211,7 @@ def test_a_packet_may_announce_anything(
     robots: list[AnnouncedRobot] = []
 
     def all_are_heard() -> bool:
-        robots[:] = ours(network.list_robots(), 7007)
+        robots[:] = robots_of_this_test(network.list_robots(), 7007)
         return len(robots) >= len(heard)
 
     with packets("\x1b[31mx", "a\r\nb", *heard, number=7007):
@@ -232,7 +232,7 @@ def test_names_without_an_address_do_not_hold_up_the_list(
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
     monkeypatch.setattr(network, "query_service", look)
     with packets("robot", number=7007, lonely=40):
-        names = [robot.name for robot in ours(network.list_robots(), 7007)]
+        names = [robot.name for robot in robots_of_this_test(network.list_robots(), 7007)]
     assert names == ["robot"]
     assert limits_ms[0] <= 500 and limits_ms.count(1) > 30  # the first one has all the time
 
@@ -245,7 +245,7 @@ def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
         robot("--listen", "0") as running_robot,
         announce("\u202ex", "127.0.0.1", number_of(running_robot.port)),
     ):
-        result = inside("doctor", "--ports", "--ask").gives(0, out=running_robot.port)
+        result = run_in_process("doctor", "--ports", "--ask").gives(0, out=running_robot.port)
         assert "\u202e" not in result.out
 
 
@@ -260,7 +260,10 @@ def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
 
         threading.Thread(target=serve, daemon=True).start()
         with announce(f"web-{PROCESS_ID}", "127.0.0.1", number):
-            assert inside("doctor", "--identify", "--port", f"tcp://web-{PROCESS_ID}").code == 3
+            assert (
+                run_in_process("doctor", "--identify", "--port", f"tcp://web-{PROCESS_ID}").code
+                == 3
+            )
 
 
 def test_without_multicast_the_address_is_the_next_step(
@@ -287,10 +290,10 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
         ) as network,
         announce(f"far-{PROCESS_ID}", "127.0.0.1", network.port),
     ):
-        result = inside("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
+        result = run_in_process("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
         checksum = result.out.partition("checksum ")[2][:8]
-        assert f"program {checksum}" in inside("doctor", "--port", port).out
+        assert f"program {checksum}" in run_in_process("doctor", "--port", port).out
         command = Command("upload", "-e", FOREVER, "--port", port)
         command.until("running")
-        assert inside("stop", "--port", port).code == 0
+        assert run_in_process("stop", "--port", port).code == 0
         command.wait_for_result()

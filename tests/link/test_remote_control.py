@@ -365,7 +365,7 @@ def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
     else:
         robot.step(bytes(4) if how == "zeros" else b"\r\nS\r\n")
     robot.talk(session, 1000)  # it hears of the stop
-    begins_with_nothing_held(session, robot)
+    check_nothing_held_at_start(session, robot)
     robot.talk(session, HOLD_MS)
     assert robot.remote() == RELEASED
     session.press(*KEY_UP)
@@ -406,12 +406,12 @@ def test_a_program_begins_with_nothing_held() -> None:
     one.holds(KEY_UP)
     one.talk(60)
     assert one.robot.remote() == remote_readings(KEY_UP)
-    begins_with_nothing_held(one.session, one.robot)
+    check_nothing_held_at_start(one.session, one.robot)
     one.talk(250)
     assert one.robot.remote() == remote_readings(KEY_UP)
 
 
-def begins_with_nothing_held(session: Session, robot: HostFirmware) -> None:
+def check_nothing_held_at_start(session: Session, robot: HostFirmware) -> None:
     request, run = session.live(image("W(9)").code), robot.codes()
     for _ in range(500):
         session.receive(robot.step(session.poll(robot.now_ms)), robot.now_ms)

@@ -46,12 +46,12 @@ VECTORS = [
 ]
 
 
-def whole(frame: Frame) -> bytes:
+def whole_frame(frame: Frame) -> bytes:
     kind = frame.number | 0x80 * frame.is_reply | 0x40 * frame.is_sealed
     return bytes((kind, frame.seq, frame.epoch)) + frame.payload
 
 
-def by_hand(frame: Frame, counter: int) -> bytes:
+def sealed_by_hand(frame: Frame, counter: int) -> bytes:
     """Return a sealed frame as the document says it, up to its MAC."""
     key = siphash(KEY, b"\1" + ORIGIN) + siphash(KEY, b"\2" + ORIGIN)
     kind = frame.number | 0x40 | 0x80 * frame.is_reply
@@ -97,8 +97,8 @@ def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> 
     chance = random.Random(1)
     for _ in range(300):
         frame, counter = random_frame(chance, False), counters(chance)
-        sent = by_hand(frame, counter)
-        assert whole(seal(sent=counter - 1).seal_frame(frame)) == sent
+        sent = sealed_by_hand(frame, counter)
+        assert whole_frame(seal(sent=counter - 1).seal_frame(frame)) == sent
         assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
         assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
 
@@ -107,7 +107,7 @@ def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> 
     chance = random.Random(2)
     for _ in range(300):
         frame, counter = random_frame(chance, True), counters(chance)
-        marked, sent = whole(frame._replace(is_sealed=True)), by_hand(frame, counter)
+        marked, sent = whole_frame(frame._replace(is_sealed=True)), sealed_by_hand(frame, counter)
         assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
         mine = seal(heard=counter - 1)
         assert mine.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
@@ -117,7 +117,10 @@ def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> 
 
 def test_each_bit_and_each_length_counts() -> None:
     frame = Frame(8, 3, 10, bytes.fromhex("10448c50"))
-    to_robot, to_computer = by_hand(frame, 7), by_hand(frame._replace(is_reply=True), 7)
+    to_robot, to_computer = (
+        sealed_by_hand(frame, 7),
+        sealed_by_hand(frame._replace(is_reply=True), 7),
+    )
     assert seal(6).open_frame(frame_of(to_computer))
     assert cpp_link().opens(KEY, ORIGIN, 6, to_robot)
     for bit in range(8 * len(to_robot)):
@@ -133,7 +136,7 @@ def test_each_bit_and_each_length_counts() -> None:
 
 
 def test_another_origin_is_another_key() -> None:
-    sent = by_hand(Frame(7, 1, 10, b"\0"), 1)
+    sent = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
     assert cpp_link().opens(KEY, ORIGIN, 0, sent)
     keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH)}
     for at in range(len(ORIGIN)):
@@ -152,10 +155,12 @@ def test_a_counter_at_its_end_seals_nothing_more() -> None:
     assert mine.is_spent
     with pytest.raises(AssertionError):
         mine.seal_frame(Frame(2, 1, 1))
-    marked = whole(Frame(2, 1, 1, is_reply=True, is_sealed=True))
+    marked = whole_frame(Frame(2, 1, 1, is_reply=True, is_sealed=True))
     assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
     assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""
-    assert not cpp_link().opens(KEY, ORIGIN, LAST_COUNTER, by_hand(Frame(2, 1, 1), LAST_COUNTER))
+    assert not cpp_link().opens(
+        KEY, ORIGIN, LAST_COUNTER, sealed_by_hand(Frame(2, 1, 1), LAST_COUNTER)
+    )
 
 
 def test_no_sealed_frame_is_a_line_of_text() -> None:

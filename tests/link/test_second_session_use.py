@@ -55,7 +55,7 @@ class Said(NamedTuple):
     took_ms: list[int]
 
 
-def first(rng: random.Random) -> Wire:
+def first_use(rng: random.Random) -> Wire:
     """Return both ends when the first story is over."""
     wire = Wire(rng)
     wire.session.tells_starts = True
@@ -67,7 +67,7 @@ def first(rng: random.Random) -> Wire:
             rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHERS)(wire.session)
         wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
         wire.turns(rng.choice((1, 3, 8, 30, 300)))
-        happens(rng, wire)
+        end_first_use(rng, wire)
     wire.loses = NOTHING
     wire.turns(wire.late_ms)
     wire.robot.step(b"".join(wire.under_way))
@@ -75,7 +75,7 @@ def first(rng: random.Random) -> Wire:
     return wire
 
 
-def happens(rng: random.Random, wire: Wire) -> None:
+def end_first_use(rng: random.Random, wire: Wire) -> None:
     # A STOP from a client without HELLO may have a number ahead of ours: not "a message".
     how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence",
                       "a dead line", "a dead line"))  # fmt: skip
@@ -107,7 +107,7 @@ def restart(rng: random.Random, wire: Wire) -> None:
     wire.robot = fresh
 
 
-def second(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
+def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
     """Make some requests one after the other; return the results."""
     what: list[str] = []
     took_ms: list[int] = []
@@ -150,7 +150,7 @@ def ends_are_told_once(events: list[Event]) -> bool:
 
 
 def check(seed: int) -> str:
-    used, other = first(random.Random(seed)), first(random.Random(seed))
+    used, other = first_use(random.Random(seed)), first_use(random.Random(seed))
     for wire in (used, other):
         wire.robot.talk(wire.session, QUIET_MS)
         if not wire.robot.is_latched:  # detached programs continue
@@ -161,8 +161,8 @@ def check(seed: int) -> str:
     session = computer(77)
     session.tells_starts = True
     assert other.robot.until(session, session.hello()) == OK
-    did = second(random.Random(seed), used.session, used.robot)
-    want = second(random.Random(seed), session, other.robot)
+    did = second_use(random.Random(seed), used.session, used.robot)
+    want = second_use(random.Random(seed), session, other.robot)
     assert did.what == want.what, f"seed {seed}\n{did.what}\nnot\n{want.what}"
     late = [a - b for a, b in zip(did.took_ms, want.took_ms, strict=True)]
     assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"

@@ -45,7 +45,7 @@ NO_CONNECTION = LinkConnection()
 LOW_SUPPLY, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 
 
-def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
+def list_packets(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
     """Return a session's output if it is woken exactly when it requested."""
     packets = []
     while (at := session.next_wake_ms()) is not None and at <= until_ms:
@@ -66,7 +66,7 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     session.is_attached = False
     request = session.live(FORWARD)
     session.poll(0)
-    sent = sending(session, EXCHANGE_TIMEOUT_MS)
+    sent = list_packets(session, EXCHANGE_TIMEOUT_MS)
     times = [at for at, _ in sent]
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first) <= 2
@@ -75,7 +75,7 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
     assert len({data for _, data in sent}) == 1 and sent[0][1][:1] == b"\0"
     assert 20 <= len(sent) + 1 <= TRIES
-    sending(session, 2 * EXCHANGE_TIMEOUT_MS)
+    list_packets(session, 2 * EXCHANGE_TIMEOUT_MS)
     assert request.outcome and request.outcome.status == LOST
     assert session.next_wake_ms() is None
 
@@ -93,7 +93,7 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
         session.ping()
         begun_ms = now_ms
         data = session.poll(now_ms)
-        times = [at - begun_ms for at, _ in sending(session, begun_ms + took_ms)]
+        times = [at - begun_ms for at, _ in list_packets(session, begun_ms + took_ms)]
         now_ms = begun_ms + took_ms
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
         return [later - earlier for earlier, later in pairwise([0, *times])]
@@ -102,7 +102,7 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
     assert measure_waits(500) == []  # it stays, and this one is certain: 500 and 4 * 250
     silent = session.ping()
     session.poll(now_ms)
-    first = sending(session, now_ms + 2000)[0][0] - now_ms
+    first = list_packets(session, now_ms + 2000)[0][0] - now_ms
     assert silent.outcome is None
     # HELLO's round trip took no time: a mean of 500 / 8, a variation of 500 / 4
     assert first == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
@@ -120,7 +120,8 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
         data = session.poll(begun_ms)
         late_ms = begun_ms + 900
         gaps = [
-            b - a for a, b in pairwise([begun_ms, *(at for at, _ in sending(session, late_ms))])
+            b - a
+            for a, b in pairwise([begun_ms, *(at for at, _ in list_packets(session, late_ms))])
         ]
         assert gaps and max(gaps) <= MOST_RETRY_MS < messages.DEAD_MAN_MS / 2
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
@@ -132,17 +133,17 @@ def test_a_stop_cuts_everything_short() -> None:
     session.poll(0)
     session.stop(3)
     assert all(request.outcome and request.outcome.status == CANCELLED for request in requests)
-    assert sending(session, 250) == [(3, bytes(8)), (103, bytes(8)), (203, bytes(8))]
+    assert list_packets(session, 250) == [(3, bytes(8)), (103, bytes(8)), (203, bytes(8))]
     session.receive(event("STOPPED", 0, {"cause": 1}), 260)
     assert [event.name for event in session.events()] == ["STOPPED"]
-    assert session.is_latched and sending(session, 500) == []
+    assert session.is_latched and list_packets(session, 500) == []
 
 
 def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_seconds() -> None:
     session = greet()
     session.stop(0)
     early = session.ping()
-    assert len(sending(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
+    assert len(list_packets(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
     assert [event.name for event in session.events()] == ["LOST"]
     assert early.outcome and early.outcome.status == LOST
     late = session.ping()
@@ -160,7 +161,7 @@ def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
     session.events()
     session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 30)
     assert [event.name for event in session.events()] == ["STOPPED"]
-    assert sending(session, 500) == []
+    assert list_packets(session, 500) == []
 
 
 @pytest.mark.parametrize("cause", [2, 3, 4, 5])
@@ -171,10 +172,10 @@ def test_another_stop_confirms_none(cause: int) -> None:
     assert session.poll(0) == bytes(8)
     session.receive(event("STOPPED", 0, {"cause": cause}), 30)
     assert session.events() == [] and session.is_latched
-    assert sending(session, 150) == [(100, bytes(8))]  # the program continues
+    assert list_packets(session, 150) == [(100, bytes(8))]  # the program continues
     session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 160)
     assert [event.name for event in session.events()] == ["STOPPED"]
-    assert sending(session, 500) == []
+    assert list_packets(session, 500) == []
 
 
 @pytest.mark.parametrize("cause", [3, 5])
@@ -193,7 +194,7 @@ def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> N
             if is_known:
                 break
         assert [event.name for event in session.events()] == ["STOPPED"]
-        assert sending(session, 500) == []
+        assert list_packets(session, 500) == []
 
 
 def test_a_move_after_another_stop_does_not_go_unseen() -> None:
@@ -248,7 +249,7 @@ def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
     """51 of them were stalled; the stop was given up meanwhile. A later stop has another epoch."""
     session = greet()
     session.stop(100)
-    sending(session, 8000)
+    list_packets(session, 8000)
     assert [event.name for event in session.events()] == ["LOST"] and not session.is_open
     for seq in range(51):
         session.receive(event("STOPPED", seq, {"cause": 1}), 8000 + seq)
@@ -293,7 +294,7 @@ def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> N
     """The radio was slow: two stop sequences were sent before the first was confirmed."""
     session = greet()
     session.stop(0)
-    assert len(sending(session, 150)) == 2
+    assert len(list_packets(session, 150)) == 2
     session.receive(event("STOPPED", 0, {"cause": 1}), 160)
     assert [event.name for event in session.events()] == ["STOPPED"]
     requests: list[PendingRequest[Any]] = [session.clear(), session.live(FORWARD)]
@@ -500,7 +501,7 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
     assert second.outcome is None or second.outcome.status == STATUSES["STALE"]
 
 
-def lost_at(session: Session, now_ms: int = 0) -> int:
+def time_lost_ms(session: Session, now_ms: int = 0) -> int:
     """Leave all frames unanswered, and check every millisecond; return when the robot is given
     up."""
     for at in range(now_ms, now_ms + 10_000):
@@ -510,7 +511,7 @@ def lost_at(session: Session, now_ms: int = 0) -> int:
     raise AssertionError("it waits for ever")
 
 
-def over() -> tuple[Session, int]:
+def session_after_run() -> tuple[Session, int]:
     """Return a session whose heartbeat has just said that its run is over, and the time."""
     session = greet()
     session.live(FORWARD)
@@ -522,10 +523,10 @@ def over() -> tuple[Session, int]:
 
 
 def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
-    assert 3000 <= lost_at(greet()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
-    session, at = over()
+    assert 3000 <= time_lost_ms(greet()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
+    session, at = session_after_run()
     assert session.poll(at), "it asks how the run has ended"
-    assert 3000 <= lost_at(session, at) - at < 3500
+    assert 3000 <= time_lost_ms(session, at) - at < 3500
 
 
 IDLE_STATUS: dict[str, int | bytes] = {
@@ -538,7 +539,7 @@ IDLE_STATUS: dict[str, int | bytes] = {
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     """A heartbeat's reply may report it in the same moment as its event."""
-    session, at = over()
+    session, at = session_after_run()
     frames = [answer(session.poll(at), IDLE_STATUS),
               event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
     for frame in reversed(frames) if is_event_first else frames:
@@ -549,7 +550,7 @@ def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
 @pytest.mark.parametrize("reading_count", [0, 3, 12, 10_000])
 def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_count: int) -> None:
     """Its event is lost; a robot that sends readings endlessly still obeys requests."""
-    session, at = over()
+    session, at = session_after_run()
     values: dict[str, int | bytes] = {"run": 1, "sensor": 0, "value": 7, "ms": 0}
     told_count, request = 0, session.name(b"Ana")
     for _ in range(100):

@@ -85,7 +85,7 @@ def random_frame(draw: random.Random) -> Frame:
     return Frame(number, draw.randrange(256), draw.randrange(256), payload, is_reply, is_sealed)
 
 
-def all_arrive(sender: TextSender, draw: random.Random) -> None:
+def check_all_arrive(sender: TextSender, draw: random.Random) -> None:
     """Frames and lines, whatever the pauses between them."""
     line = Line()
     for _ in range(FRAMES):
@@ -101,7 +101,7 @@ def all_arrive(sender: TextSender, draw: random.Random) -> None:
     assert line.receiver.damaged == line.receiver.dropped == 0
 
 
-def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:
+def check_torn_lines_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:
     """Check lines with a pause between any two bytes, which ends the text before it, or with lost
     bytes.
     """
@@ -123,7 +123,7 @@ def torn_ones_arrive_when_repeated(sender: TextSender, draw: random.Random) -> N
         assert line.put(data)[0][-1:] == [frame]
 
 
-def no_two_zeros_come_before_a_frame(sender: TextSender, draw: random.Random) -> None:
+def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> None:
     """Check a session that sends a program over a lossy line, stops and sends HELLO."""
     lost = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
     robot = AnsweringRobot(InOrderReceiver(lost), baud=draw.choice((9600, 115_200)))
@@ -165,7 +165,7 @@ Property = Callable[[TextSender, random.Random], None]
 
 @pytest.mark.parametrize("seed", range(SEEDS))
 @pytest.mark.parametrize("law", [
-    all_arrive, torn_ones_arrive_when_repeated, no_two_zeros_come_before_a_frame
+    check_all_arrive, check_torn_lines_arrive_when_repeated, check_no_two_zeros_before_frame
 ])  # fmt: skip
 def test_a_sender_that_keeps_the_rule(law: Property, seed: int) -> None:
     law(TextSender(), random.Random(seed))
@@ -209,19 +209,19 @@ class Hasty(TextSender):
 
 
 @pytest.mark.parametrize(("law", "sender"), [
-    (all_arrive, Late), (all_arrive, WithoutFirst), (all_arrive, Hasty),
-    (torn_ones_arrive_when_repeated, WithoutRepeated),
-    (no_two_zeros_come_before_a_frame, Twice),
+    (check_all_arrive, Late), (check_all_arrive, WithoutFirst), (check_all_arrive, Hasty),
+    (check_torn_lines_arrive_when_repeated, WithoutRepeated),
+    (check_no_two_zeros_before_frame, Twice),
 ])  # fmt: skip
 def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSender]) -> None:
-    def fails(seed: int) -> bool:
+    def violates_law(seed: int) -> bool:
         try:
             law(sender(), random.Random(seed))
         except AssertionError:
             return True
         return False
 
-    assert any(map(fails, range(SEEDS)))
+    assert any(map(violates_law, range(SEEDS)))
 
 
 def test_heartbeats_cost_no_zero_and_the_rule_looks_at_what_was_sent() -> None:

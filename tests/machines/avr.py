@@ -65,7 +65,7 @@ def compile_sources(
     return build_cached("avr-g++", flags, made_from, make)
 
 
-def ran_on(
+def run_on(
     chip: str,
     image: bytes,
     kit: Kit,

@@ -189,7 +189,7 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
     usual = (*FLAGS, *flags_of(chip, major), *WARNINGS)
     of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{own}"')
 
-    def is_other(path: Path) -> bool:
+    def is_extra_source(path: Path) -> bool:
         is_stand_in = path.parent == STAND_INS_FOLDER and path.name in SIMULATED_FILES
         return path.suffix == ".cpp" and "extras" in path.parts and not is_stand_in
 
@@ -197,7 +197,7 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
         is_own = path.parent.name in ("boards", "esp32", "src")
         return (*usual, *of_boards) if is_own else usual
 
-    used = {path: text for path, text in files.items() if not is_other(path)}
+    used = {path: text for path, text in files.items() if not is_extra_source(path)}
     objects = objects_of("g++", BUILD_CACHE, used, flags)
     return compile_once(
         "g++", BUILD_CACHE, "", usual, [name.encode() for name in objects], [*objects, *TLS]

@@ -47,7 +47,7 @@ if USER == 0:
     USER = int(os.environ.get("TINISCRIPT_BUILDS_OF", 0))
 
 
-def of_builds(folder: Path) -> Path:
+def make_private_folder(folder: Path) -> Path:
     """Return a folder, which is made. It raises PermissionError if another user can write to it."""
     folder.mkdir(mode=0o700, exist_ok=True)
     stat_result = folder.lstat()
@@ -58,7 +58,7 @@ def of_builds(folder: Path) -> Path:
     return folder
 
 
-BUILD_CACHE = of_builds(Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}")
+BUILD_CACHE = make_private_folder(Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}")
 
 RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
@@ -275,10 +275,10 @@ def compile_program(
     Workers may build at the same time: each object that two build at once is built twice, and the
     last one stays.
     """
-    return built_by("g++", inputs, (*flags, *WARNINGS), builds)
+    return build_with("g++", inputs, (*flags, *WARNINGS), builds)
 
 
-def built_by(
+def build_with(
     compiler: str, inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILD_CACHE
 ) -> Path:
     """Build with any compiler, and with all of its flags."""
@@ -315,7 +315,7 @@ def compile_once(
     path = builds / (_key(compiler, flags, made_from) + suffix)
     if not path.exists():
         same = _preprocess(compiler, builds, flags, words) if suffix == ".o" else path
-        once(same, lambda own: _run_compiler(compiler, [*flags, *words, "-o", str(own)]))
+        make_once(same, lambda own: _run_compiler(compiler, [*flags, *words, "-o", str(own)]))
         if same != path:
             own = path.with_suffix(f".{os.getpid()}-{get_ident()}")
             own.hardlink_to(same)
@@ -324,7 +324,7 @@ def compile_once(
     return path
 
 
-def once(path: Path, make: Callable[[Path], object]) -> Path:
+def make_once(path: Path, make: Callable[[Path], object]) -> Path:
     """Return the file that `make` writes, which appears as a whole or not at all.
 
     If several workers need it, one makes it, and the others wait.
@@ -346,7 +346,7 @@ def build_cached(
     compiler: str, flags: Sequence[str], made_from: Iterable[bytes], make: Callable[[Path], object]
 ) -> Path:
     """Return a program that is made `once` from the same by the same compiler, in any run."""
-    return once(BUILD_CACHE / f"{_key(compiler, flags, made_from)}.elf", make)
+    return make_once(BUILD_CACHE / f"{_key(compiler, flags, made_from)}.elf", make)
 
 
 def contents(*folders: Path) -> list[bytes]:

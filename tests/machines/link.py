@@ -138,11 +138,11 @@ def build_link(sources: Path, is_large: bool = False, flags: tuple[str, ...] = F
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags
-    paths = [path for path in inputs if path.parent.name != "vm" or is_asked(path)]
+    paths = [path for path in inputs if path.parent.name != "vm" or is_needed(path)]
     return compile_program(paths, flags)
 
 
-def is_asked(path: Path) -> bool:
+def is_needed(path: Path) -> bool:
     return path.suffix == ".h" or path.stem in VERIFIER
 
 

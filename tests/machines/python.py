@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 
-def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = ALL_NEEDS) -> Ran:
+def run_in_python(image: bytes, kit: Kit, senses: Senses, has: int = ALL_NEEDS) -> Ran:
     """Run an image, which is read and verified as a machine that has so much of `needs` does it."""
     code = load_image(image, kit, has).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)
@@ -27,7 +27,7 @@ def ran_python(image: bytes, kit: Kit, senses: Senses, has: int = ALL_NEEDS) -> 
 
 def run_python(image: bytes, kit: Kit, senses: Senses) -> str:
     """Return the trace of an image."""
-    return ran_python(image, kit, senses).trace
+    return run_in_python(image, kit, senses).trace
 
 
 def lists_of(kit: Kit, senses: Senses) -> Lists:

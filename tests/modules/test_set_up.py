@@ -39,7 +39,7 @@ def set_up_module(
     return outcomes
 
 
-def all_wanted(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Module:
+def set_up_everything(wire: SimulatedWire, end: Simulated, name: str, baud: int) -> Module:
     """Set up everything; return the module as it was met, which has it all now."""
     module = find_only_module(wire)
     settings = WantedSettings(name, "135790"[: module.dialect.pin_digits], baud)
@@ -94,7 +94,7 @@ def test_a_module_that_echoes_or_is_late_is_the_same(kind: str, late_ms: int) ->
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, echoes=True, late_ms=late_ms))
     plain = find_only_module(SimulatedWire(KINDS[kind]()))
-    module = all_wanted(wire, end, "Tini-7F3A", 9600)
+    module = set_up_everything(wire, end, "Tini-7F3A", 9600)
     assert (module.dialect.name, module.version[:2]) == (kind, plain.version[:2])
 
 
@@ -154,7 +154,7 @@ def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: i
     before = end.name, end.pin, end.data_baud
     assert set_up_module(wire, WantedSettings()) == []
     assert (end.name, end.pin, end.data_baud) == before
-    all_wanted(wire, end, "Tini-7F3A", baud)
+    set_up_everything(wire, end, "Tini-7F3A", baud)
     end.power_on()
     assert end.baud == baud
 
@@ -217,7 +217,7 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
         end.is_on = True  # the button is still held
     else:
         end.power_on()
-    all_wanted(wire, end, "ANA", 57600)
+    set_up_everything(wire, end, "ANA", 57600)
 
 
 def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:

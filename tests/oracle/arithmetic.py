@@ -29,7 +29,7 @@ def divide(number: int, by: int) -> int:
     return size if (number < 0) == (by < 0) else -size
 
 
-def whole(value: int) -> int:
+def nearest_whole(value: int) -> int:
     """The nearest whole number."""
     return divide(value, 1000)
 
@@ -41,7 +41,7 @@ def fits(value: int) -> int:
     return value
 
 
-def within(value: int, low: int, high: int) -> int:
+def nearest_in_range(value: int, low: int, high: int) -> int:
     """The nearest one in the range."""
     return min(max(value, low), high)
 
@@ -73,7 +73,7 @@ def next_state(state: int) -> int:
 
 def random_between(a: int, b: int, state: int) -> int:
     """RANDOM, with a state that has been stepped."""
-    low, high = sorted((whole(a), whole(b)))
+    low, high = sorted((nearest_whole(a), nearest_whole(b)))
     return fits(1000 * (low + state % (high - low + 1)))
 
 
@@ -99,7 +99,7 @@ def calculate(name: str, a: int, b: int = 0) -> int:
         case "MIN" | "MAX":
             return min(a, b) if name == "MIN" else max(a, b)
         case "ROUND":
-            places = whole(b)
+            places = nearest_whole(b)
             unit = 10 ** min(max(3 - places, 0), 11)  # half of this is larger than any value
             return a if places >= 3 else fits(divide(a, unit) * unit)
         case "AND":

@@ -18,12 +18,12 @@ from tests.oracle.arithmetic import (
     calculate,
     divide,
     fits,
+    nearest_in_range,
+    nearest_whole,
     next_state,
     print_number,
     random_between,
     time8,
-    whole,
-    within,
 )
 from tests.oracle.spec_tables import Instruction, decode
 from tests.oracle.words import ACTS, TIME, Device, Kit
@@ -142,7 +142,9 @@ class Run:
         elif last in WAYS:
             if "GO" in family:
                 popped_values[0] = self.way(
-                    popped_values[0], within(whole(popped_values[1]), 0, 100), last in "LR"
+                    popped_values[0],
+                    nearest_in_range(nearest_whole(popped_values[1]), 0, 100),
+                    last in "LR",
                 )
             self.drive(family, WAYS[last], popped_values, operands)
         elif name in ("WATCH_WAIT", "WATCH_FOREVER_WAIT"):
@@ -207,7 +209,7 @@ class Run:
                 self.motors((0, 0))
             case "MOTORS" | "MOTORS8":
                 left, right = operands or (
-                    within(whole(value), -100, 100) for value in popped_values
+                    nearest_in_range(nearest_whole(value), -100, 100) for value in popped_values
                 )
                 self.motors((left, right))
             case _ if name.removesuffix("8") in ACTS:
@@ -234,7 +236,7 @@ class Run:
                 if (popped_values[0] != 0) == (name == "IF_NOT"):
                     self.pc = to
             case "LOOP8" | "LOOP":
-                times = whole(popped_values[0]) if popped_values else operands[0]
+                times = nearest_whole(popped_values[0]) if popped_values else operands[0]
                 if times < 1:
                     self.pc = to
                 else:
@@ -277,7 +279,7 @@ class Run:
         return value
 
     def set(self, actuator: Device, value: int) -> None:
-        rounded_value = within(1000 * whole(value), actuator.low, actuator.high)
+        rounded_value = nearest_in_range(1000 * nearest_whole(value), actuator.low, actuator.high)
         text = answer(value) if actuator.is_yes_no else print_number(rounded_value)
         self.note(f"SET {actuator.name} {text}")
 
@@ -297,7 +299,9 @@ class Run:
         self, family: str, way: tuple[int, int], popped_values: list[int], operands: Sequence[int]
     ) -> None:
         """MOVE and WATCH in one of the four directions."""
-        power = operands[-1] if operands else within(whole(popped_values[-1]), 0, 100)
+        power = (
+            operands[-1] if operands else nearest_in_range(nearest_whole(popped_values[-1]), 0, 100)
+        )
         powers = way[0] * power, way[1] * power
         time = None
         if "FOREVER" not in family:

@@ -15,11 +15,11 @@ from tests.oracle.arithmetic import (
     calculate,
     divide,
     fits,
+    nearest_in_range,
+    nearest_whole,
     next_state,
     print_number,
     random_between,
-    whole,
-    within,
 )
 from tests.oracle.ast import Do, Expression, Program, Value
 from tests.oracle.words import Kit
@@ -130,7 +130,10 @@ class Robot:
             None if argument is None else self.value(argument) for argument in statement.arguments
         ]
         if statement.unit:
-            way, power = max(0, values[0] or 0), within(whole(values[1] or 0), 0, 100)
+            way, power = (
+                max(0, values[0] or 0),
+                nearest_in_range(nearest_whole(values[1] or 0), 0, 100),
+            )
             speed = self.kit.speed if statement.unit == "CM" else self.kit.turn
             if way > 0 and power == 0:
                 raise Fault("NO_POWER")
@@ -141,7 +144,7 @@ class Robot:
         """Sets an actuator: a number is rounded, then limited to the actuator's range."""
         device = next(device for device in self.kit.actuators if device.name == name)
         if not device.is_yes_no:
-            value = within(1000 * whole(value), device.low, device.high)
+            value = nearest_in_range(1000 * nearest_whole(value), device.low, device.high)
         self.note(f"SET {name} {print_value(value)}")
 
     # Values

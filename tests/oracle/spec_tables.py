@@ -103,11 +103,11 @@ def instructions() -> dict[int, Instruction]:
         )
         for code, words, effect, *_ in rows("instructions")
     }
-    kind_of = {words[0]: _halves(words[1])[1] for words, _ in written.values() if words[1:]}
+    kind_of = {words[0]: _label_and_kind(words[1])[1] for words, _ in written.values() if words[1:]}
     table = {}
     for code, ((name, *operands), (takes, leaves)) in written.items():
         op_operands = tuple(
-            Operand(*halves, *kinds[halves[1]]) for halves in map(_halves, operands)
+            Operand(*halves, *kinds[halves[1]]) for halves in map(_label_and_kind, operands)
         )
         short = re.fullmatch(r"(.+)_(\d+)", name)
         stem = short[1] if short else name.removesuffix("_FAR")
@@ -135,7 +135,7 @@ def decode(code: bytes, at: int) -> tuple[Instruction, list[int], int, int]:
     return row, row.values(code, at), at + row.size, row.target(code, at)
 
 
-def _halves(word: str) -> tuple[str, str]:
+def _label_and_kind(word: str) -> tuple[str, str]:
     label, _, kind = word.partition(":")
     return label, kind
 

@@ -10,7 +10,7 @@ import contextlib
 from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass, field
 
-from tests.oracle.arithmetic import whole, within
+from tests.oracle.arithmetic import nearest_in_range, nearest_whole
 from tests.oracle.ast import Do, If, Loop, Statement, Task, Value, While
 from tests.oracle.robot import Break, Ending, Robot
 from tests.oracle.words import ACTS, MOVES
@@ -272,7 +272,7 @@ class TaskRobot(Robot):
                 yield from self.reading(statement.reads)
             return
         yield from self.reading(statement.reads)
-        turns = None if statement.count is None else whole(self.value(statement.count))
+        turns = None if statement.count is None else nearest_whole(self.value(statement.count))
         while turns is None or turns > 0:
             yield from self.body(statement.body)
             turns = None if turns is None else turns - 1
@@ -305,7 +305,9 @@ class TaskRobot(Robot):
                     self.begin()
                     yield from self.until_clock(act_values[0])
             elif word == "M":
-                left, right = (within(whole(value or 0), -100, 100) for value in values)
+                left, right = (
+                    nearest_in_range(nearest_whole(value or 0), -100, 100) for value in values
+                )
                 me.m, me.insists = (left, right), me.is_when
                 if not self.is_outranked:
                     self.seize()
@@ -347,7 +349,7 @@ class TaskRobot(Robot):
     def moving(self, statement: Do, values: list[Value | None]) -> Turns:
         me = self.who
         time_left = None if values[0] is None else max(0, values[0])
-        power = within(whole(values[1] or 0), 0, 100)
+        power = nearest_in_range(nearest_whole(values[1] or 0), 0, 100)
         side = SIDES[statement.word]
         powers = side[0] * power, side[1] * power
         while True:

@@ -21,7 +21,7 @@ from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
 from tests.support.task_agreement import compare_task_program
-from tests.support.vm_agreement import same
+from tests.support.vm_agreement import are_equivalent
 from tiniscript import Compilation, compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack
@@ -46,9 +46,11 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     ):  # often they are the same
         for run_on in machines:
             actual = run_on(image, kit, Senses(readings, MAX_MS, MAX_STEPS))
-            assert same(want, actual), f"seed {seed}, {image.hex()}:\n{text}"
+            assert are_equivalent(want, actual), f"seed {seed}, {image.hex()}:\n{text}"
         actual = machine.trace(unpack(image).code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
-        assert machine.TOO_MANY in actual or same(want, actual), f"seed {seed}, the page:\n{text}"
+        assert machine.TOO_MANY in actual or are_equivalent(want, actual), (
+            f"seed {seed}, the page:\n{text}"
+        )
     laid_out = format_source(Source(text))
     assert compile_text(laid_out, kit).image == both[0].image, f"seed {seed}"
     return want.splitlines()[-1].split(" ", 1)[1]
@@ -164,10 +166,10 @@ def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
     assert diagnostic.code.number == "TS811" and "way" not in diagnostic.values
 
 
-def either(seed: int) -> str:
+def check_either(seed: int) -> str:
     machines = [MACHINES[name] for name in ("python", "host")]
     return check_program(seed, machines) if seed % 2 else compare_task_program(seed, machines, GO)
 
 
 if __name__ == "__main__":
-    each_seed(either, make_options(100_000, 0))
+    each_seed(check_either, make_options(100_000, 0))

@@ -38,7 +38,7 @@ def _row_of(instruction: Instruction) -> SimpleNamespace:
     return SimpleNamespace(size=instruction.size, operands=operands, **parts)
 
 
-def _must(holds: object, rule: str) -> None:
+def _require(holds: object, rule: str) -> None:
     if not holds:
         raise Broken(rule)
 
@@ -56,7 +56,7 @@ def program(text: str) -> dict[str, Any]:
     """Return the names of such a program."""
     names: dict[str, Any] = {rule: rule for rule in rule_numbers()}
     names |= {"IF": "IF", "REPEAT": "REPEAT", "COUNT": "COUNT", "UNKNOWN": None}
-    names |= {"m": SimpleNamespace(), "must": _must, "record": SimpleNamespace}
+    names |= {"m": SimpleNamespace(), "must": _require, "record": SimpleNamespace}
     names["rows"] = {code: _row_of(row) for code, row in instructions().items()}
     exec(text, names)
     return names

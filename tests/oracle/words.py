@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.oracle.arithmetic import whole, within
+from tests.oracle.arithmetic import nearest_in_range, nearest_whole
 
 
 class Device(NamedTuple):
@@ -117,7 +117,9 @@ class Act(NamedTuple):
         range.
         """
         return [
-            max(0, value) if limits == TIME else within(whole(value), *(n // 1000 for n in limits))
+            max(0, value)
+            if limits == TIME
+            else nearest_in_range(nearest_whole(value), *(n // 1000 for n in limits))
             for limits, value in zip(self.ranges, arguments, strict=True)
         ]
 

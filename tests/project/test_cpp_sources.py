@@ -56,7 +56,7 @@ FORBIDDEN_WORDS = ("virtual", "new", "delete", "throw", "try", "float", "double"
                    "dynamic_cast", "typeid", "Arduino", "String")  # fmt: skip
 
 
-def shouting(path: Path) -> set[str]:
+def capital_names(path: Path) -> set[str]:
     """Return the names in capitals."""
     text = code_of(path)
     macro_names = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
@@ -67,7 +67,7 @@ def shouting(path: Path) -> set[str]:
 @each_row("path", FILES)
 def test_nothing_shouts(path: Path) -> None:
     """Arduino.h defines 1,480 macros in capitals: F, B0, INPUT. No name of ours may meet one."""
-    assert not shouting(path)
+    assert not capital_names(path)
 
 
 @each_row("path", PORTABLE)
@@ -209,10 +209,10 @@ def test_no_program_is_run_that_another_user_can_have_built(
 ) -> None:
     """The folder of builds is where all may make folders, and its name is no secret."""
     folder = tmp_path / "builds"
-    assert host.of_builds(folder).stat().st_mode & 0o777 == 0o700
+    assert host.make_private_folder(folder).stat().st_mode & 0o777 == 0o700
     folder.chmod(0o770)
     with pytest.raises(PermissionError):
-        host.of_builds(folder)
+        host.make_private_folder(folder)
     folder.chmod(0o700)
     link = tmp_path / "link"
     link.symlink_to(folder)
@@ -220,4 +220,4 @@ def test_no_program_is_run_that_another_user_can_have_built(
     monkeypatch.setattr(os, "getuid", lambda: 12345)
     for other in (folder, link):
         with pytest.raises(PermissionError):
-            host.of_builds(other)
+            host.make_private_folder(other)

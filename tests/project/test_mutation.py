@@ -69,7 +69,7 @@ def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
 def test_known_mutants_are_noticed(tmp_path: Path) -> None:
     copy = Copy(tmp_path)
     tries = [make_try(known) for known in KNOWN]
-    answers = exchanged.answers(tries, tmp_path)
+    answers = exchanged.list_outcomes(tries, tmp_path)
     skipped = []
     for known_mutant, one, answer in zip(KNOWN, tries, answers, strict=True):
         if answer == exchanged.SKIPS:

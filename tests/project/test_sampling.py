@@ -83,7 +83,7 @@ class Plugin:
         for config.option.sample in self.commits:
             left = list(items)
             sampling.leave_out(config, left)
-            letters = sampling.some_of(config, "letters", "abcd", 2)
+            letters = sampling.sample_of(config, "letters", "abcd", 2)
             names = [item.name for item in left]
             self.drawn.append(([*names, *letters], sampling.how_to_repeat(config)))
 

@@ -220,7 +220,7 @@ def test_what_is_there_is_what_is_asked_for(
         assert pip.has[0] == state and extras in pip.has[1]
 
 
-def script(
+def run_script(
     folder: Path, programs: dict[str, str], **variables: str
 ) -> subprocess.CompletedProcess[str]:
     """Run a script that makes the environment, if there are these programs alone."""
@@ -242,7 +242,7 @@ def script(
 def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
     """`make_venv` gives the extras on, with the interpreter of `.venv` where it has pip."""
     python = {"../.venv/bin/python": 'case "$*" in *environment*) echo "$*";; esac'}
-    completed = script(tmp_path, python)
+    completed = run_script(tmp_path, python)
     assert completed.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n", completed.stderr
 
 
@@ -252,7 +252,7 @@ def test_the_shell_leaves_an_environment_alone_that_cannot_install(
 ) -> None:
     """Its creation may have been interrupted, or the system may have a new Python since."""
     python = 'case "$*" in *environment*) echo python3;; esac'
-    completed = script(tmp_path, {"../.venv/bin/python": left, "python3": python})
+    completed = run_script(tmp_path, {"../.venv/bin/python": left, "python3": python})
     assert completed.stdout == "python3\n", completed.stderr
 
 
@@ -271,7 +271,7 @@ def test_the_shell_takes_a_python_that_is_new_enough(seed: int, tmp_path: Path) 
 esac"""
         for name, minor in minors.items()
     }
-    completed = script(tmp_path, programs)
+    completed = run_script(tmp_path, programs)
     new_enough = [name for name in PYTHONS if minors.get(name, 0) >= 10]
     assert completed.stdout == "".join(f"{name}\n" for name in new_enough[:1]), minors
     assert completed.returncode == (0 if new_enough else 2)
@@ -282,7 +282,9 @@ def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path
     python = tmp_path / "bin" / "python3"
     brings = f'printf "#!/bin/sh\\n" >{python}; chmod +x {python}'
     apt = f'case "$*" in *"install -y"*python3-venv*) {brings};; esac'
-    completed = script(tmp_path, {"apt-get": apt, "sudo": '"$@"'} if has_apt else {}, LC_ALL="C")
+    completed = run_script(
+        tmp_path, {"apt-get": apt, "sudo": '"$@"'} if has_apt else {}, LC_ALL="C"
+    )
     assert completed.returncode == code, completed.stderr
     assert ("needs Python 3.10 or newer" in completed.stderr) != has_apt
     assert python.exists() == has_apt
@@ -301,7 +303,7 @@ def test_who_cannot_install_venv_is_not_told_to_do_it_again(
     sudo: dict[str, str], locale: str, english: bool, tmp_path: Path
 ) -> None:
     fakes = {"python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100", **sudo}
-    completed = script(tmp_path, fakes, LANG=locale)
+    completed = run_script(tmp_path, fakes, LANG=locale)
     assert completed.returncode == 2
     assert ("Who administers" in completed.stderr) == english
     assert ("Quien administra" in completed.stderr) != english

@@ -105,7 +105,7 @@ def check(text: str) -> list[Diagnostic]:
     return compile_source(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
 
 
-def found_in(entry: Entry) -> Entry:
+def current_entry(entry: Entry) -> Entry:
     """Return the current messages of a program, and its repaired text."""
     program = entry.program
     diagnostics = check(program)

@@ -18,7 +18,7 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 
-from tests.pupils.corpus import FOLDER, Entry, check, entries, found_in
+from tests.pupils.corpus import FOLDER, Entry, check, current_entry, entries
 from tests.support.casefile import ROOT
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
@@ -84,7 +84,7 @@ def _row(program: str) -> str:
     return f"{name_of(program)} {program.splitlines()[0].strip()}"
 
 
-def stale(written_text: str, now: str) -> str:
+def why_stale(written_text: str, now: str) -> str:
     """Return the reason to choose the programs again, or ""."""
     match_before, match_after = HEAD.match(written_text), HEAD.match(now)
     assert match_before and match_after, "its first line says of what it is"
@@ -106,7 +106,7 @@ def list_reached_branches(programs: Sequence[Entry]) -> list[frozenset[Branch]]:
         measured_coverage.erase()
         measured_coverage.start()
         try:
-            found_in(entry)
+            current_entry(entry)
         finally:
             measured_coverage.stop()
         data = measured_coverage.get_data()
@@ -148,7 +148,7 @@ def choose_cover(branches: Sequence[frozenset[Branch]], before: Iterable[int] = 
 def main() -> None:
     programs = entries()
     known_entries = set(list_covering_entries()) if LIST.exists() else set()
-    found_in(programs[0])  # caches filled by the first program count for none
+    current_entry(programs[0])  # caches filled by the first program count for none
     branches = list_reached_branches(programs)
     taken = choose_cover(
         branches, [k for k, entry in enumerate(programs) if entry in known_entries]

@@ -62,7 +62,7 @@ def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
     assert repair_program(repaired_program.text, check).text == repaired_program.text
     for diagnostic in diagnostics[:20]:  # each alone
         edits = edits_of(diagnostic)
-        alone = repair_program(text, partial(_only, text, diagnostic))
+        alone = repair_program(text, partial(_only_for_text, text, diagnostic))
         if alone.text != text and diagnostic.code not in OTHER_NUMBERS:
             assert edits and digits(text) == digits(apply_edits(text, edits))
 
@@ -71,7 +71,7 @@ def digits(text: str) -> str:
     return "".join(re.findall("[0-9]", text))
 
 
-def _only(text: str, diagnostic: Diagnostic, changed_text: str) -> list[Diagnostic]:
+def _only_for_text(text: str, diagnostic: Diagnostic, changed_text: str) -> list[Diagnostic]:
     return [diagnostic] if changed_text == text else []
 
 

@@ -19,7 +19,7 @@ SAID = ("fix", "right", "near")  # values of a message that show the changed pro
 OF_BLOCKS = {code.number for code in (codes.NEVER_ENDS, codes.NOT_OPEN, codes.WRONG_END)}
 
 
-def put_in(edits: list[Edit]) -> list[Span]:
+def spans_in_changed_text(edits: list[Edit]) -> list[Span]:
     """Return the spans of the edits' texts in the changed program."""
     ordered_edits = sorted(edits)
     grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered_edits]
@@ -40,7 +40,7 @@ def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
     return [[Edit(span, fix)] for span in spans] if fix else []
 
 
-def wrong_in(
+def find_wrong_codes(
     diagnostic: Diagnostic,
     text: str,
     edits: list[Edit],
@@ -50,7 +50,11 @@ def wrong_in(
     """Return the codes of mistakes in the part of the changed program that a message shows."""
     changed_text = apply_edits(text, edits)
     own = sorted(edits_of(diagnostic) or edits)
-    spans = [span for edit, span in zip(sorted(edits), put_in(edits), strict=True) if edit in own]
+    spans = [
+        span
+        for edit, span in zip(sorted(edits), spans_in_changed_text(edits), strict=True)
+        if edit in own
+    ]
     value = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
     at = changed_text.find(value, max(0, spans[0].start - len(value))) if value else -1
     if 0 <= at < spans[-1].end:
@@ -71,7 +75,7 @@ def is_in_words(changed_text: str, place: int, words: set[str]) -> bool:
     )
 
 
-def offered_wrongly(text: str) -> list[str]:
+def codes_with_wrong_offers(text: str) -> list[str]:
     """Return the codes of a program's messages with wrong offers."""
     diagnostics = [diagnostic for diagnostic in check(text) if diagnostic.is_mistake]
     together: list[Edit] = []
@@ -88,7 +92,8 @@ def offered_wrongly(text: str) -> list[str]:
         if set(edits_of(diagnostic) or ()) <= set(together) and edits_of(diagnostic):
             tried_edits.append(together)
         if tried_edits and all(
-            wrong_in(diagnostic, text, edits, other_codes, other_words) for edits in tried_edits
+            find_wrong_codes(diagnostic, text, edits, other_codes, other_words)
+            for edits in tried_edits
         ):
             bad.append(diagnostic.code.number)
     return bad
@@ -100,7 +105,7 @@ def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
     texts = [entry.program for entry in programs]
     offers = sum(bool(ways(diagnostic, text)) for text in texts[-60:] for diagnostic in check(text))
     assert offers > 50
-    bad = {text: codes for text in texts if (codes := offered_wrongly(text))}
+    bad = {text: codes for text in texts if (codes := codes_with_wrong_offers(text))}
     assert not bad, f"{len(bad)} of {len(texts)}, the first: {next(iter(bad.items()))}"
 
 

@@ -12,8 +12,16 @@ from pathlib import Path
 import pytest
 
 from tests.pupils import cover
-from tests.pupils.corpus import OTHER_NUMBERS, Entry, check, entries, found_in, mistake_count, write
-from tests.pupils.cover import LIST, add, choose_cover, forks, head, stale
+from tests.pupils.corpus import (
+    OTHER_NUMBERS,
+    Entry,
+    check,
+    current_entry,
+    entries,
+    mistake_count,
+    write,
+)
+from tests.pupils.cover import LIST, add, choose_cover, forks, head, why_stale
 from tests.support.rows import go_through
 from tiniscript.base.source import Edit, Source, apply_edits
 from tiniscript.diagnostics import codes
@@ -50,19 +58,19 @@ def test_there_are_enough(programs: tuple[Entry, ...]) -> None:
 def test_the_programs_of_a_commit_are_chosen_of_this_corpus_and_code() -> None:
     first, *rows = LIST.read_text(encoding="utf-8").splitlines()
     now = head(len(rows), 0, [entry.program for entry in entries()])
-    assert not stale(first, now), f"{stale(first, now)}: python -m tests.pupils.cover"
+    assert not why_stale(first, now), f"{why_stale(first, now)}: python -m tests.pupils.cover"
 
 
 def test_they_are_chosen_again_when_others_may_be_needed() -> None:
     head_before = head(1, 1, ["S", "F"])
-    assert stale(head_before, head(2, 2, ["F", "S"])) == ""
-    assert stale(head_before, head(1, 1, ["S", "B"])) == "programs have come or gone"
+    assert why_stale(head_before, head(2, 2, ["F", "S"])) == ""
+    assert why_stale(head_before, head(1, 1, ["S", "B"])) == "programs have come or gone"
     count = forks(["if a and b:\n    [c for c in d if c]\n"])
     assert count == 3
     little, much = (head_before.replace(" forks", f"{extra} forks") for extra in ("", "0"))
     assert (
-        stale(head_before, little) == ""
-        and stale(head_before, much) == "the code has other branches"
+        why_stale(head_before, little) == ""
+        and why_stale(head_before, much) == "the code has other branches"
     )
 
 
@@ -77,7 +85,9 @@ def test_a_new_program_is_tested_until_they_are_chosen_again(
     row = f"{cover.name_of(new)} B"
     assert written_path.read_text().splitlines() == [head(1, 5, ["S", "F", new]), row]
     add(["L"], ["S", "L"])
-    assert not stale(written_path.read_text(), head(1, 5, ["S", "F", new])), "others have gone, too"
+    assert not why_stale(written_path.read_text(), head(1, 5, ["S", "F", new])), (
+        "others have gone, too"
+    )
 
 
 def test_few_reach_what_all_reach() -> None:
@@ -90,7 +100,7 @@ def test_few_reach_what_all_reach() -> None:
 def test_the_corpus_is_as_it_was(
     request: pytest.FixtureRequest, programs: tuple[Entry, ...]
 ) -> None:
-    entries = [found_in(program) for program in programs]
+    entries = [current_entry(program) for program in programs]
     if request.config.getoption("--accept"):
         write(entries)
         pairs = zip(programs, entries, strict=True)
@@ -102,10 +112,10 @@ def test_the_corpus_is_as_it_was(
 
 
 def test_each_repair_helps_and_keeps_the_numbers(programs: tuple[Entry, ...]) -> None:
-    go_through(helps_and_keeps_the_numbers, programs)
+    go_through(check_repairs_keep_numbers, programs)
 
 
-def helps_and_keeps_the_numbers(entry: Entry) -> None:
+def check_repairs_keep_numbers(entry: Entry) -> None:
     diagnostics, source = check(entry.program), Source(entry.program)
     for diagnostic in diagnostics:
         edits, repair = edits_of(diagnostic), diagnostic.repair
@@ -152,10 +162,10 @@ TEXT_ONLY_GAPS = {
 def test_what_a_message_says_to_write_is_offered(programs: tuple[Entry, ...]) -> None:
     """This includes a warning, which then disappears; `tsc check --fix` applies no repair of a
     warning."""
-    go_through(offers_what_it_says, programs)
+    go_through(check_offer, programs)
 
 
-def offers_what_it_says(entry: Entry) -> None:
+def check_offer(entry: Entry) -> None:
     diagnostics, text = check(entry.program), entry.program
     for which, diagnostic in enumerate(diagnostics):
         edits = edits_offered(text, diagnostics, which, check)
@@ -173,10 +183,10 @@ def offers_what_it_says(entry: Entry) -> None:
 
 
 def test_what_is_repaired_is_repaired_once(programs: tuple[Entry, ...]) -> None:
-    go_through(repaired_once, programs)
+    go_through(check_repaired, programs)
 
 
-def repaired_once(entry: Entry) -> None:
+def check_repaired(entry: Entry) -> None:
     if entry.mended is not None:
         assert repair_program(entry.mended, check).text == entry.mended
         assert mistake_count(check(entry.mended)) <= mistake_count(check(entry.program))

@@ -18,7 +18,7 @@ OTHERS = (
 )  # fmt: skip
 
 
-def alike(text: str) -> str:
+def without_spaces(text: str) -> str:
     return "".join(plain(text).split())
 
 
@@ -29,19 +29,19 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
     for entry in entries()[part::4]:
         source = Source(entry.program)
         for diagnostic in check(entry.program):
-            named_text = alike(diagnostic.values.get("found", ""))
+            named_text = without_spaces(diagnostic.values.get("found", ""))
             shown_message = message(diagnostic, source, "en")
             line = source.line_text(shown_message.line)
             if not named_text or diagnostic.code in OTHERS or not names_found(diagnostic):
                 continue
-            if named_text in alike(line):
+            if named_text in without_spaces(line):
                 count += 1
                 end = (
                     shown_message.end_column - 1
                     if shown_message.end_line == shown_message.line
                     else len(line)
                 )
-                assert alike(line[shown_message.column - 1 : end]) == named_text, (
+                assert without_spaces(line[shown_message.column - 1 : end]) == named_text, (
                     entry.program,
                     diagnostic,
                 )

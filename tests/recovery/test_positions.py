@@ -66,10 +66,10 @@ def ends(text: str) -> int:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(3))
 def test_a_row_means_the_same_wherever_its_instruction_stands(part: int) -> None:
-    go_through(means_the_same_everywhere, examples()[part::3])
+    go_through(check_same_meaning_everywhere, examples()[part::3])
 
 
-def means_the_same_everywhere(wrong: str) -> None:
+def check_same_meaning_everywhere(wrong: str) -> None:
     alone = find_meant_program(wrong)
     if alone is None:
         return  # the program depends on its lines in the table

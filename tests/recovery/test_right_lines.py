@@ -32,13 +32,13 @@ _START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
 
 
 @cache
-def right() -> list[str]:
+def right_lines() -> list[str]:
     own = [*programs(), *(entry.program for entry in entries() if not entry.messages), *ODD_LINES]
     return sorted(line for line in own if _starts_at_once(line) and not _mistakes(line))
 
 
 @cache
-def wrong() -> list[str]:
+def wrong_lines() -> list[str]:
     """Return lines of pupils that are wrong on their own and do not belong to a block."""
     lines = ["F(2;80)"]
     for entry in entries():
@@ -62,7 +62,7 @@ _BLOCK_WORDS = {word for word, row in WORDS.items() if row.role.belongs_to_block
 def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
     """After, before and between right ones, which are no longer looked at for warnings."""
     chance = random.Random(seed)
-    program, line = chance.choice(right()), chance.choice(wrong())
+    program, line = chance.choice(right_lines()), chance.choice(wrong_lines())
     rows = program.split("\n")
     k = chance.choice([k for k in range(1, len(rows) + 1) if _is_closed("\n".join(rows[:k]))])
     check_reported_alone(rows[:k], line, rows[k:])

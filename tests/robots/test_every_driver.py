@@ -16,7 +16,7 @@ from tests.machines.host import SOURCES, missing
 from tests.support.casefile import ROOT
 from tests.support.esp32_builds import complaints
 from tests.support.needs import need
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.wired_robots import DEVICES, DISCS, MOTORS, robot_with, with_discs
 from tiniscript import compile_text, robots
 from tiniscript.base.kit import Device
@@ -102,7 +102,7 @@ def test_discs_are_counted_by_the_firmware(name: str, chip: str) -> None:
             assert re.search(rf"#define tiniscript_disc_{side.lower()} INT\d_vect\n", header)
 
 
-def silent(chip: str) -> Robot:
+def robot_without_buzzer(chip: str) -> Robot:
     """Return a robot without a buzzer."""
     robot = robots.load("tinibot" if chip == "uno" else "tinibot32")
     return robot._replace(board=robot.board._replace(buzzer=None))
@@ -110,8 +110,10 @@ def silent(chip: str) -> Robot:
 
 def test_a_robot_without_a_buzzer_has_no_tone() -> None:
     for chip in ("uno", "esp32dev"):
-        assert "#define tiniscript_silent\n" in firmware.header([silent(chip)], "a test.")
-    robot = silent("uno")
+        assert "#define tiniscript_silent\n" in firmware.header(
+            [robot_without_buzzer(chip)], "a test."
+        )
+    robot = robot_without_buzzer("uno")
     compilation = compile_text("SB|BEEP(1, 440);F(1, 50)", robot.kit, "prog.ts")
     assert compilation.program is not None
     sketch = sketch_of(compilation.source, compilation.program, robot, "en")
@@ -137,7 +139,8 @@ ALL_ROBOTS = [
       for k, motors in enumerate(MOTORS) if not is_shield(motors)),
     *(pytest.param(with_discs(chip, discs), id=f"{chip} {discs}")
       for chip in ("mega", "esp32dev") for discs in DISCS),
-    *(pytest.param(silent(chip), id=f"{chip}, silent") for chip in ("uno", "esp32dev")),
+    *(pytest.param(robot_without_buzzer(chip), id=f"{chip}, silent") for chip in ("uno",
+                                                                                  "esp32dev")),
 ]  # fmt: skip
 
 
@@ -194,7 +197,7 @@ def with_parts(chip: str, parts: Sequence[str]) -> Robot:
 def test_a_robot_compiles_with_none_of_a_part(
     chip: str, tmp_path: Path, pytestconfig: pytest.Config
 ) -> None:
-    for parts in ((), *some_of(pytestconfig, chip, SETS_OF_PARTS, 3)):
+    for parts in ((), *sample_of(pytestconfig, chip, SETS_OF_PARTS, 3)):
         compile_all(with_parts(chip, parts), tmp_path)
 
 

@@ -24,13 +24,15 @@ SETTINGS = [(50, 50), (-80, -80), (60, -60), (-30, 30), (20, 70), (70, 20), (0, 
 QUARTER_MS = 1000 * (math.pi / 2 * BODY.wheel_base_cm / 2) / BODY.speed_cm_s
 
 
-def near(pose: Pose) -> Pose:
+def approximate_pose(pose: Pose) -> Pose:
     return pytest.approx(pose, abs=1e-9)  # type: ignore[return-value]
 
 
 def test_one_wheel_alone_turns_the_robot_around_the_other() -> None:
     half_turn_ms = 4 * QUARTER_MS
-    assert move_pose(BODY, START, 0, 100, half_turn_ms) == near(Pose(0, BODY.wheel_base_cm, 180))
+    assert move_pose(BODY, START, 0, 100, half_turn_ms) == approximate_pose(
+        Pose(0, BODY.wheel_base_cm, 180)
+    )
 
 
 def test_an_arc_stays_on_its_circle() -> None:
@@ -45,7 +47,7 @@ def test_a_time_in_parts_is_the_same_way(left: int, right: int) -> None:
     pose = Pose(5, -3, 20)
     for part_ms in (20, 0, 333, 1, 646):
         pose = move_pose(BODY, pose, left, right, part_ms)
-    assert pose == near(move_pose(BODY, Pose(5, -3, 20), left, right, 1000))
+    assert pose == approximate_pose(move_pose(BODY, Pose(5, -3, 20), left, right, 1000))
 
 
 # ---- points
@@ -77,9 +79,9 @@ def test_a_way_knows_its_corners_and_where_the_robot_is() -> None:
     way.set_motors(1000, 0, 0)
     way.set_motors(2000, -100, 100)
     way.set_motors(2000 + QUARTER_MS, 50, 50)
-    assert way.pose(3000 + QUARTER_MS) == near(Pose(20, 20, 90))
-    assert way.corners == [START, near(Pose(20, 0, 0))]
-    assert way.points_ahead(3000 + QUARTER_MS) == [near(Pose(20, 20, 90))]
+    assert way.pose(3000 + QUARTER_MS) == approximate_pose(Pose(20, 20, 90))
+    assert way.corners == [START, approximate_pose(Pose(20, 0, 0))]
+    assert way.points_ahead(3000 + QUARTER_MS) == [approximate_pose(Pose(20, 20, 90))]
 
 
 def test_the_same_setting_again_is_no_corner() -> None:
@@ -87,7 +89,7 @@ def test_the_same_setting_again_is_no_corner() -> None:
     for now_ms in range(0, 1000, 20):
         way.set_motors(now_ms, 50, 50)
     assert way.corners == [START]
-    assert way.pose(1000) == near(Pose(20, 0, 0))
+    assert way.pose(1000) == approximate_pose(Pose(20, 0, 0))
 
 
 def test_thinned_out_corners_keep_the_shape() -> None:

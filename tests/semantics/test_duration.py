@@ -12,7 +12,7 @@ from tiniscript.semantics.optimizer import optimize_program
 KIT = robots.load("tinibot").kit
 
 
-def lasting(text: str, is_optimized: bool = True) -> Duration:
+def duration_of(text: str, is_optimized: bool = True) -> Duration:
     compilation = check_text(text, KIT)
     assert compilation.is_right and compilation.program is not None, compilation.diagnostics
     return duration_of_program(
@@ -57,7 +57,7 @@ def lasting(text: str, is_optimized: bool = True) -> Duration:
 )
 def test_a_program_that_ends(text: str, least: int, most: int | None) -> None:
     for is_optimized in (True, False):
-        assert lasting(text, is_optimized) == Duration(least, most, False)
+        assert duration_of(text, is_optimized) == Duration(least, most, False)
 
 
 @pytest.mark.parametrize(
@@ -74,9 +74,9 @@ def test_a_program_that_ends(text: str, least: int, most: int | None) -> None:
     ],
 )
 def test_a_program_that_never_ends(text: str, least: int) -> None:
-    assert lasting(text) == Duration(least, None, True)
+    assert duration_of(text) == Duration(least, None, True)
 
 
 def test_one_arm_that_ends_is_enough() -> None:
     text = "IF(DISTANCE < 9);LOOP(FOREVER);W(1);END_LOOP;ENDIF;W(2)"
-    assert lasting(text) == Duration(2000, None, False)
+    assert duration_of(text) == Duration(2000, None, False)

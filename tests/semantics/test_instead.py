@@ -146,7 +146,7 @@ LIGHTS = ["LIGHT", "LUZ"]
 SWITCHED = ["ON", "OFF", "HIGH", "LOW", "TRUE", "FALSE", "1", "0"]
 
 
-def found_by(text: str, kit: Kit) -> list[Diagnostic]:
+def find_diagnostics(text: str, kit: Kit) -> list[Diagnostic]:
     return check_text(text, kit).diagnostics
 
 
@@ -155,7 +155,7 @@ def found_by(text: str, kit: Kit) -> list[Diagnostic]:
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
 def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, around: str) -> None:
     text = around.format(f"{word}({given_text})")
-    (shown_message,) = [message(it, Source(text), "en") for it in found_by(text, TINIBOT)]
+    (shown_message,) = [message(it, Source(text), "en") for it in find_diagnostics(text, TINIBOT)]
     assert shown_message.code == "TS122"
     assert f"no lamp that a program can switch with {word}" in shown_message.message
 
@@ -164,17 +164,19 @@ def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, around: str)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
 def test_a_robot_with_a_lamp_names_it(word: str, given_text: str) -> None:
     text = f"SI|{word}({given_text});W(1)"
-    (diagnostic,) = found_by(text, LINER)
+    (diagnostic,) = find_diagnostics(text, LINER)
     answer = "TRUE" if given_text in ("ON", "HIGH", "TRUE", "1") else "FALSE"
     assert f"LED({answer})" in message(diagnostic, Source(text), "en").fix
 
 
 def test_lamps_are_told_once_and_a_light_that_is_not_switched_is_none() -> None:
-    assert len(found_by("SI|LIGHT(ON);W(2);LIGHT(OFF)", TINIBOT)) == 1
-    assert LAMPS and "L\u00c2MPADA" in str(found_by("SI|L\u00c2MPADA(1)", TINIBOT)[0].values)
+    assert len(find_diagnostics("SI|LIGHT(ON);W(2);LIGHT(OFF)", TINIBOT)) == 1
+    assert LAMPS and "L\u00c2MPADA" in str(
+        find_diagnostics("SI|L\u00c2MPADA(1)", TINIBOT)[0].values
+    )
     for text in ("SI|LIGHT(300)", "SI|LIGHT", "SI|LED(ON)"):
-        assert found_by(text, TINIBOT)[0].code.number != "TS122"
-    assert not found_by("DEF LAMP(N);W(N);END_DEF;LAMP(1)", TINIBOT)
+        assert find_diagnostics(text, TINIBOT)[0].code.number != "TS122"
+    assert not find_diagnostics("DEF LAMP(N);W(N);END_DEF;LAMP(1)", TINIBOT)
 
 
 # -- a number in the brackets of a DEF ---------------------------------------------------------

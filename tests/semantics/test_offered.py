@@ -62,7 +62,7 @@ def repair(text: str, warning: Diagnostic) -> str:
     return f"{text[:start]}{fix}{text[end:]}"
 
 
-def new_in(text: str) -> list[tuple[str, str]]:
+def repairs_with_new_messages(text: str) -> list[tuple[str, str]]:
     """Return the repairs of a program's warnings that make a new warning or mistake, with those."""
     diagnostics = check(text)
     counter_before = Counter(diagnostic.code for diagnostic in diagnostics)
@@ -80,7 +80,7 @@ def new_in(text: str) -> list[tuple[str, str]]:
 
 
 def test_no_repair_of_a_warning_makes_a_new_one() -> None:
-    offered = [(text, wrong) for text in PROGRAMS for wrong in new_in(text)]
+    offered = [(text, wrong) for text in PROGRAMS for wrong in repairs_with_new_messages(text)]
     assert not offered, f"{len(offered)}, the first: {offered[0]}"
 
 

@@ -39,7 +39,7 @@ REPEATED = [
 ]  # fmt: skip
 
 
-def of(code: codes.Code, text: str) -> list[Diagnostic]:
+def diagnostics_of(code: codes.Code, text: str) -> list[Diagnostic]:
     compilation = check_text(text, KIT)
     assert compilation.is_right, text
     return [diagnostic for diagnostic in compilation.diagnostics if diagnostic.code is code]
@@ -52,20 +52,20 @@ def of(code: codes.Code, text: str) -> list[Diagnostic]:
 def test_a_question_that_is_asked_once_is_told(around: str, read: str, question: str) -> None:
     asked_text = read.format(q=question)
     text = around.format(asked_text)
-    (diagnostic,) = of(codes.ASKED_ONCE, text)
+    (diagnostic,) = diagnostics_of(codes.ASKED_ONCE, text)
     name = re.findall(r"(?:KEY|PAD)_\w+", question)[0]
     assert text[slice(*diagnostic.span)] == name
     assert name in (diagnostic.values.get("early"), diagnostic.values.get("name"))
     is_early = around in ("{}", "SI|{}", *SURROUNDINGS[4:5], SURROUNDINGS[6], SURROUNDINGS[9])
     assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked_text
     if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
-        assert not of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))
+        assert not diagnostics_of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))
 
 
 @pytest.mark.parametrize("value", ["PAD_X", "ABS(PAD_Y) + 5"])
 @pytest.mark.parametrize("text", VALUES)
 def test_a_stick_that_is_read_once_is_told_in_each_place_of_a_value(text: str, value: str) -> None:
-    assert len(of(codes.ASKED_ONCE, text.format(v=value))) == 1
+    assert len(diagnostics_of(codes.ASKED_ONCE, text.format(v=value))) == 1
 
 
 @pytest.mark.sampled("around", keep=3)
@@ -75,7 +75,7 @@ def test_a_stick_that_is_read_once_is_told_in_each_place_of_a_value(text: str, v
 def test_what_is_asked_again_or_waited_for_is_not_told(
     around: str, read: str, question: str
 ) -> None:
-    assert not of(codes.ASKED_ONCE, around.format(read.format(q=question)))
+    assert not diagnostics_of(codes.ASKED_ONCE, around.format(read.format(q=question)))
 
 
 def test_several_are_told_once_and_the_loop_is_around_all() -> None:
@@ -88,7 +88,7 @@ def test_several_are_told_once_and_the_loop_is_around_all() -> None:
 
 
 def test_a_variable_that_is_called_as_a_key_is_no_key() -> None:
-    assert not of(codes.ASKED_ONCE, "KEY_A = 3;LOOP(KEY_A);S;END_LOOP;SHOW(KEY_A)")
+    assert not diagnostics_of(codes.ASKED_ONCE, "KEY_A = 3;LOOP(KEY_A);S;END_LOOP;SHOW(KEY_A)")
 
 
 def test_no_right_program_of_the_examples_asks_once_or_is_a_lone_task() -> None:
@@ -114,11 +114,11 @@ def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
 ) -> None:
     inside = [move, BEEP][:: -1 if order else 1]
     text = f"SI|{between.join(['TASK', *inside, 'END_TASK'])}"
-    (diagnostic,) = of(codes.LONE_TASK, text)
+    (diagnostic,) = diagnostics_of(codes.LONE_TASK, text)
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
     assert text_after == f"SI|{between.join(['TASK', BEEP, 'END_TASK', move])}"
-    assert not of(codes.LONE_TASK, text_after)
+    assert not diagnostics_of(codes.LONE_TASK, text_after)
     assert diagnostic.values["fix"] == f"TASK;{BEEP};END_TASK;{move}"
 
 
@@ -127,15 +127,15 @@ def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
 @pytest.mark.parametrize("text_before", ["SI|", "N = 3;", "DEF A;S;END_DEF;"])
 def test_each_task_with_nothing_beside_it_is_told(inside: str, text_before: str) -> None:
     text = f"{text_before}TASK\n{inside}\nEND_TASK"
-    assert "fix" not in of(codes.LONE_TASK, text)[0].values
+    assert "fix" not in diagnostics_of(codes.LONE_TASK, text)[0].values
 
 
 @pytest.mark.parametrize("beside", ["S", "F(1, 50)", "TASK;W(9);END_TASK", "SHOW(1)",
                                     "WHEN(DISTANCE < 9);S;W(1);END_WHEN"])  # fmt: skip
 def test_a_task_with_anything_beside_it_is_not_told(beside: str) -> None:
     for text in (f"TASK;{BEEP};END_TASK;{beside}", f"{beside};TASK;F(5, 50);END_TASK"):
-        assert not of(codes.LONE_TASK, text)
+        assert not diagnostics_of(codes.LONE_TASK, text)
 
 
 def test_a_lone_when_is_no_lone_task() -> None:
-    assert not of(codes.LONE_TASK, "WHEN(KEY_A);BEEP(1, 440);END_WHEN")
+    assert not diagnostics_of(codes.LONE_TASK, "WHEN(KEY_A);BEEP(1, 440);END_WHEN")

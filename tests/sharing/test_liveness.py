@@ -83,7 +83,7 @@ def open_shared_connection(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> S
     return SharedConnection(peer, at, MessageReader(protocol.LINE_BYTES))
 
 
-def listens(line: SharedConnection, holder: Holder, seconds: float) -> float:
+def listen_until_lost(line: SharedConnection, holder: Holder, seconds: float) -> float:
     """Listen for events until the end; return the time."""
     began_s = holder.now_s
     while holder.now_s - began_s < seconds:
@@ -105,7 +105,7 @@ def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, se
     if seed % 2:
         for second in range(int(LONG_S)):
             holder.says(SHOWN, second + rng.random())
-    assert listens(line, holder, LONG_S) >= LONG_S and not line.has_ended
+    assert listen_until_lost(line, holder, LONG_S) >= LONG_S and not line.has_ended
     assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + POLL_INTERVAL_S) / 2
 
 
@@ -115,7 +115,7 @@ def test_a_holder_that_falls_silent_is_given_up(monkeypatch: pytest.MonkeyPatch,
     dies_s = rng.choice((0.0, rng.uniform(0, LONG_S)))
     holder = Holder(lambda: rng.choice((0.0, 1.0)), dies_s)
     line = open_shared_connection(monkeypatch, holder)
-    ended_s = listens(line, holder, LONG_S * 2)
+    ended_s = listen_until_lost(line, holder, LONG_S * 2)
     assert line.has_ended
     assert (
         dies_s - 1.0 + DEAF_S - POLL_INTERVAL_S

@@ -192,7 +192,7 @@ REQUEST_NAMES = ("upload", "upload", "live", "status", "trim", "identify")
 STORED_PROGRAM_REQUESTS = ("start", "undo")  # these report the previous client to the next one
 
 
-def asks(rng: random.Random, client: Client, what: str) -> None:
+def send_request(rng: random.Random, client: Client, what: str) -> None:
     text = draw_program(rng)
     if what == "upload":
         is_detached = rng.random() < 0.2
@@ -207,33 +207,33 @@ def asks(rng: random.Random, client: Client, what: str) -> None:
         client.asks(what, **given_fields.get(what, {}))
 
 
-def stops(client: Client) -> None:
+def stop_and_leave(client: Client) -> None:
     client.says({"do": "stop"})
     client.socket.close()
 
 
-def falls_silent(rng: random.Random, client: Client) -> None:
+def stop_heartbeats(rng: random.Random, client: Client) -> None:
     client.beats = False
 
 
 END_ACTIONS: dict[str, Callable[[random.Random, Client], object]] = {
     "leaves": lambda rng, client: client.socket.close(),
-    "is silent": falls_silent,
+    "is silent": stop_heartbeats,
     "breaks the protocol": lambda rng, client: client.socket.send(b'{"do":"nothing"}\n'),
     "breaks off": lambda rng, client: client.socket.send(b'{"do":"sta'),
-    "stops and leaves": lambda rng, client: stops(client),
+    "stops and leaves": lambda rng, client: stop_and_leave(client),
 }
 
 
-def comes_first(rng: random.Random, at: Desk) -> str:
+def play_first_client(rng: random.Random, at: Desk) -> str:
     client = at.join(rng.choice(("upload", "run", "monitor", "python")))
     at.steps(rng.choice((20, 200)))
     for _ in range(rng.randint(1, 3)):
-        asks(rng, client, rng.choice((*REQUEST_NAMES, *STORED_PROGRAM_REQUESTS)))
+        send_request(rng, client, rng.choice((*REQUEST_NAMES, *STORED_PROGRAM_REQUESTS)))
         at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
     if rng.random() < 0.6:  # during its run, or while it is under way
         for _ in range(rng.choice((1, 1, 3))):
-            asks(rng, client, rng.choice(("upload", "live")))
+            send_request(rng, client, rng.choice(("upload", "live")))
         at.steps(rng.choice((0, 20, 40, 60, 400)))
     ends = rng.choice([*END_ACTIONS])
     END_ACTIONS[ends](rng, client)
@@ -260,17 +260,17 @@ def comes_first(rng: random.Random, at: Desk) -> str:
     return ends
 
 
-def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
+def play_second_client(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
     """Return the second client's messages from its first run on, and the robot's actions."""
     robot = at.line.robot_itself
     client = at.join("run")
     at.steps(60)
     robot.did.clear()
     client.heard.clear()
-    asks(rng, client, "upload")
+    send_request(rng, client, "upload")
     at.steps(rng.choice((400, 1500, 3000)))
     for _ in range(2):
-        asks(rng, client, rng.choice(REQUEST_NAMES))
+        send_request(rng, client, rng.choice(REQUEST_NAMES))
         at.steps(rng.choice((400, 1500)))
     client.says({"do": "stop"})
     at.steps(400)
@@ -287,10 +287,10 @@ def second(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
 
 def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
     with desk(monkeypatch) as at:
-        ends = comes_first(random.Random(seed), at)
-        heard_lines, actions = second(random.Random(-seed), at)
+        ends = play_first_client(random.Random(seed), at)
+        heard_lines, actions = play_second_client(random.Random(-seed), at)
     with desk(monkeypatch) as at:
-        want, its = second(random.Random(-seed), at)
+        want, its = play_second_client(random.Random(-seed), at)
     explanation = f"seed {seed} {ends}\n{heard_lines}\n{actions}\nnot\n{want}\n{its}"
     assert actions == its and heard_lines == want, explanation
     return ends if len(its) > 1 else "little"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import Command, inside, process
+from tests.support.command import Command, process, run_in_process
 from tests.support.port_strangers import drive_robot, registration_of
 from tests.support.socket_pairs import connected_pair
 from tests.support.virtual_command import Robot, robot, visitor
@@ -95,7 +95,7 @@ def test_which_ends_are_let_in(
 
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    def failing(number: int) -> object:
+    def failing_owner(number: int) -> object:
         def other_end(other: object, own: object) -> peers.SocketOwner:
             raise OSError(number, "no")
 
@@ -103,11 +103,11 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
     own_end, peer_end = connected_pair()
     with own_end, peer_end:
-        monkeypatch.setattr(peers, "_socket_owner", failing(errno.EOPNOTSUPP))
+        monkeypatch.setattr(peers, "_socket_owner", failing_owner(errno.EOPNOTSUPP))
         assert peers.is_of_this_user(own_end)
         monkeypatch.setattr(sys, "platform", "linux")
         for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # closed, or the query failed
-            monkeypatch.setattr(peers, "_socket_owner", failing(number))
+            monkeypatch.setattr(peers, "_socket_owner", failing_owner(number))
             assert not peers.is_of_this_user(own_end)
 
 
@@ -170,14 +170,14 @@ def test_a_robot_at_whose_port_another_user_listens_is_none(
             assert directory.running_robots() == []
             for words in (["show"], ["upload", "-e", "SI|S"], ["stop"], ["live", "S"]):
                 for port in (address, address.replace("127.0.0.1", "localhost")):
-                    result = inside(*words, "--port", port)
+                    result = run_in_process(*words, "--port", port)
                     result.gives(3, "another user of this computer is listening")
         server.settimeout(HANG_LIMIT_S)
         peer, _ = server.accept()
         with peer:
             peer.settimeout(HANG_LIMIT_S)
             assert peer.recv(1000) == b""  # no bytes were sent
-        inside("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
+        run_in_process("start", "--port", address, "--lang", "es").gives(3, "escucha otro usuario")
         monkeypatch.setattr(peers, "is_of_another_user", lambda port: False)
         assert directory.is_virtual(address)
     assert directory.running_robots() == []
@@ -204,13 +204,13 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
 
     open_pty = pty.openpty
 
-    def open_to_a_group() -> tuple[int, int]:
+    def open_group_pty() -> tuple[int, int]:
         """Open a listener with the usual settings."""
         ours, theirs = open_pty()
         os.fchmod(theirs, 0o620)
         return ours, theirs
 
-    monkeypatch.setattr(pty, "openpty", open_to_a_group)
+    monkeypatch.setattr(pty, "openpty", open_group_pty)
     transports = Transports(has_terminal=True)
     try:
         assert Path(transports.terminal).stat().st_mode & 0o777 == 0o600

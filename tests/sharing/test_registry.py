@@ -43,7 +43,7 @@ def dead() -> Registration:
         return registration(server.getsockname()[1], "upload")
 
 
-def at_line(wanted: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
+def call_at_line(wanted: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
     """Call `runs`, and call `does` just before its line number `wanted` in the registry. Return
     whether it has so many lines."""
     lines = 0
@@ -77,7 +77,7 @@ def each_line(
     while is_more:
         wanted += 1
         does, runs = prepare()
-        is_more = at_line(wanted, does, runs)
+        is_more = call_at_line(wanted, does, runs)
         yield is_more
     assert wanted > 5
 
@@ -141,7 +141,7 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
                 owned_io = lock() if happens == "is let go" or runs == "lets go" else None
                 owners.append(owned_io)
 
-                def does() -> None:
+                def interfere() -> None:
                     if happens == "is let go" and owned_io is not None:
                         owned_io.close()
                     elif happens == "is tidied":
@@ -152,11 +152,11 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
                             owners[-1].close()
 
                 if runs == "claims":
-                    return does, lambda: owners.append(lock())
+                    return interfere, lambda: owners.append(lock())
                 if runs == "tidies":
-                    return does, registry.tidy
+                    return interfere, registry.tidy
                 assert owned_io is not None
-                return does, owned_io.close
+                return interfere, owned_io.close
 
             for _ in each_line(prepare):
                 check_one_owner(owners)

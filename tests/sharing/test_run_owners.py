@@ -100,7 +100,7 @@ def wait_for_event(command: SharedConnection, name: str) -> None:
     until(lambda: (event := command.event(0.1)) is not None and event[1].name == name, name)
 
 
-def asks(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
+def send_start(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
     command.begin(lambda requests: requests.start(is_detached))
     until(lambda: bool(line.asked), "the request arrives")
 
@@ -145,8 +145,8 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
 def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
-    asks(command, line)
-    asks(command, line, is_detached=True)
+    send_start(command, line)
+    send_start(command, line, is_detached=True)
     until(lambda: len(line.asked) == 2, "both requests arrive")
     command.close()
     until(lambda: line.withdrawn == line.asked, "they are withdrawn")
@@ -169,7 +169,7 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
 def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
     line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
-    asks(command, line)
+    send_start(command, line)
     line.begin_run()
     line.post_event(event("SHOW"))
     wait_for_event(command, "SHOW")
@@ -183,7 +183,7 @@ def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
     end: str, line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     """A stop, and an upload right after it: the server's thread may see both at once."""
-    asks(command, line)
+    send_start(command, line)
     line.begin_run()
     line.post_event(DoneEvent(6) if end == "DONE" else event(end))
     wait_for_event(command, end)
@@ -213,7 +213,7 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
             command.begin(lambda requests: requests.ping())
             until(lambda: bool(line.asked), "the request arrives")
         else:
-            asks(command, line, asked_text == "detached")
+            send_start(command, line, asked_text == "detached")
         if asked_text in ("over", "begun"):
             line.begin_run()
             line.is_running = asked_text == "begun"

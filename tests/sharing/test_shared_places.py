@@ -13,7 +13,7 @@ from tiniscript.link.requests import OK
 from tiniscript.link.sharing.shared_connection import join
 
 
-def until_done(connection: LinkConnection) -> list[Event]:
+def list_events_until_done(connection: LinkConnection) -> list[Event]:
     """Return the events up to the end of a run."""
     events: list[Event] = []
     limit_s = monotonic() + HANG_LIMIT_S
@@ -37,12 +37,14 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         request = client.begin(lambda session: session.upload(image, saves=False))
         assert client.wait(request).status == OK
         places = [
-            place_event for place_event in until_done(client) if isinstance(place_event, PlaceEvent)
+            place_event
+            for place_event in list_events_until_done(client)
+            if isinstance(place_event, PlaceEvent)
         ]
         assert len(places) == 2 and {place.program for place in places} == {image.checksum}
         assert places[0].at < places[1].at < len(image.code)
         for connection in (other, shared_port.line):
-            assert "PLACE" not in {event.name for event in until_done(connection)}
+            assert "PLACE" not in {event.name for event in list_events_until_done(connection)}
         client.close()
         other.close()
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import FOREVER, LONG, Command, process
-from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.shared_pty_robot import Shared
 from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
@@ -41,7 +41,7 @@ def hellos(pty_robot: PtyRobot) -> int:
 
 
 def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     result = on(pty_robot, "stop")
     assert (result.code, result.out) == (
         0, f"Stopped: the robot on {pty_robot.port} has confirmed the stop.\n",
@@ -205,7 +205,7 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
     for number, within_ms in (
         (signal.SIGKILL, 900), (signal.SIGTERM, 900), (signal.SIGSTOP, 1500),
     ):  # fmt: skip
-        command = uploading(pty_robot)
+        command = start_endless_upload(pty_robot)
         gone_ms = pty_robot.robot_ms
         command.signal(number)
         pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
@@ -236,7 +236,7 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
 def test_a_program_ends_with_its_command_unless_it_needs_nobody(
     pty_robot: PtyRobot, link: Command
 ) -> None:
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     command.signal(signal.SIGINT)
     command.wait_for_result().gives(2, "the robot has confirmed the stop")
     assert not pty_robot.moves
@@ -251,7 +251,7 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     pty_robot: PtyRobot,
 ) -> None:
     """It runs through the first command, whose own work is over."""
-    first = uploading(pty_robot)
+    first = start_endless_upload(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.wait_for_result().gives(0, out="Done.")
     result = first.wait_for_result().gives(
@@ -265,7 +265,7 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
 
 
 def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
-    first = uploading(pty_robot)
+    first = start_endless_upload(pty_robot)
     second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     second.until("running")
     first.until("holds the port", is_aside=True)
@@ -278,7 +278,7 @@ def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRo
 def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     pty_robot: PtyRobot,
 ) -> None:
-    first = uploading(pty_robot)
+    first = start_endless_upload(pty_robot)
     second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     second.until("running")
     first.until("holds the port", is_aside=True)
@@ -294,7 +294,7 @@ def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
 def test_a_server_that_leaves_stops_the_run_of_its_client(
     pty_robot: PtyRobot, link: Command
 ) -> None:
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     link.signal(signal.SIGINT)
     assert link.wait_for_result().code == 0
     assert not pty_robot.moves
@@ -305,7 +305,7 @@ def test_a_server_that_leaves_stops_the_run_of_its_client(
 
 
 def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     link.process.kill()
     command.wait_for_result().gives(3, "(tsc monitor --hold) has ended")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
@@ -319,7 +319,7 @@ def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Comman
 def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
     """A command that arrives in between opens the port itself."""
     for wait_s in (0, 0.1):
-        server = uploading(pty_robot)
+        server = start_endless_upload(pty_robot)
         stop = Command("stop", "--port", pty_robot.port)
         time.sleep(wait_s)
         server.process.kill()
@@ -343,7 +343,7 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
 
 
 def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Command) -> None:
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     pty_robot.pull()
     for running in (command, link):
         running.wait_for_result().gives(3, "is gone")

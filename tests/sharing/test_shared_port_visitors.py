@@ -12,7 +12,7 @@ from typing import Any, cast
 import pytest
 
 from tests.support.command import Command, Tsc
-from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.shared_pty_robot import Shared
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import __version__
@@ -60,7 +60,7 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     for path in folder.iterdir():
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
-    command = uploading(pty_robot)
+    command = start_endless_upload(pty_robot)
     for wrong in ({"token": "0" * 32}, {"token": 5}, {"verb": "x" * 99}):
         with visitor(registration) as peer:
             peer.sendall(greeting(registration, **wrong))
@@ -82,14 +82,14 @@ def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
                 request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong})
                 peer.sendall(greeting(registration) + request)
                 reply = b""
-                while part := _rest(peer):
+                while part := _receive_rest(peer):
                     reply += part
             answer = {"tsc": __version__, "answer": registration.answer}
             assert reply == protocol.encode_message(answer), wrong
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
 
 
-def _rest(peer: socket.socket) -> bytes:
+def _receive_rest(peer: socket.socket) -> bytes:
     try:
         return peer.recv(65536)
     except ConnectionError:

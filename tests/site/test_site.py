@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.machines.host import once
+from tests.machines.host import make_once
 from tests.support import studio
 from tests.support.casefile import ROOT
 from tests.support.platformio import shared_folder
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="session")
 def site_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return once(
+    return make_once(
         shared_folder(tmp_path_factory) / "site",
         lambda path: site.build(ROOT, path, has_studio=not studio_build.unusable_reason()),
     )
@@ -234,13 +234,13 @@ def test_each_language_links_to_the_other(visitor: Page, address: str) -> None:
 @each_row("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
 def test_what_is_around_a_spanish_page_is_spanish(site_folder: Path, name: str) -> None:
     english, spanish = (
-        _around(site_folder / language / f"{name}.html") for language in ("en", "es")
+        _texts_around_article(site_folder / language / f"{name}.html") for language in ("en", "es")
     )
     assert len(english) > 15
     assert english & spanish <= {"TiniScript", "Furo", "tsc", "Português"}
 
 
-def _around(path: Path) -> set[str]:
+def _texts_around_article(path: Path) -> set[str]:
     """Return the texts and labels of a page that are not in its article."""
     text = re.sub(r"(?s)<(script|style|article).*?</\1>", "", path.read_text(encoding="utf-8"))
     labels = re.findall(r'(?:aria-label|title|placeholder)="([^"]+)"', text)

@@ -148,7 +148,9 @@ def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...
     ]
 
 
-def same(want: Signal, actual: Signal, end: float, near: float, apart: float = 0) -> list[str]:
+def signal_differences(
+    want: Signal, actual: Signal, end: float, near: float, apart: float = 0
+) -> list[str]:
     """Return the difference of two signals; pulses shorter than twice `near` may be missing."""
 
     def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
@@ -191,15 +193,17 @@ def differences(
     want = parse_trace(trace)
     end = want.end_ms
     motors = [*want.motors]
-    wrong = same(motors, shift_signal(run.motors, start_ms, (0, 0)), end, near)
-    wrong += same(want.tones, shift_signal(run.tones, start_ms, (0,)), end, near, 0.02)
+    wrong = signal_differences(motors, shift_signal(run.motors, start_ms, (0, 0)), end, near)
+    wrong += signal_differences(
+        want.tones, shift_signal(run.tones, start_ms, (0,)), end, near, 0.02
+    )
     for device, wiring in zip(robot.kit.actuators, robot.board.actuators, strict=True):
         signal = shift_signal(run.pins[wiring.pins["pin"]], start_ms, (0,))
         asked_signal = want.settings.get(device.name, [(0.0, (0,))])
         if wiring.driver == "digital":
             low = wiring.settings["yes_is_low"]
             levels: Signal = [(at, ((value[0] ^ low) * 255,)) for at, value in asked_signal]
-            wrong += same(levels, signal, end, near)
+            wrong += signal_differences(levels, signal, end, near)
         elif wiring.driver == "servo":
             wrong += pulses(device.low, device.high, wiring.settings, asked_signal, signal, end)
     return wrong + compare_shows(want, run, apart, near)

@@ -63,7 +63,7 @@ def round_trip(page: Page, forms: list[Any]) -> list[Any]:
     return forms_back
 
 
-def through_blocks(page: Page, texts: list[str]) -> list[str]:
+def texts_through_blocks(page: Page, texts: list[str]) -> list[str]:
     """Return the texts that the page makes of its blocks of texts."""
     requests = [{"do": "blocks", "robot": "tinibot", "text": text} for text in texts]
     forms = studio.ask_worker(page, requests)
@@ -80,7 +80,7 @@ def compare(page: Page, count: int, seed: int) -> int:
         oracle_programs.program(random.Random(seed + k), oracle.PAPER_KIT) for k in range(count)
     ]
     want = [compile_to_hex(text) for text in texts]
-    from_blocks = images(page, through_blocks(page, texts))
+    from_blocks = images(page, texts_through_blocks(page, texts))
     rows = zip(texts, want, images(page, texts), from_blocks, strict=True)
     for k, (text, image, from_text, from_block) in enumerate(rows):
         assert from_text == image, f"seed {seed + k}, from its text:\n{text}"

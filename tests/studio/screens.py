@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from tests.support.studio import SETTLED_SCRIPT, in_phase, turn, wait_for_blocks, write
+from tests.support.studio import SETTLED_SCRIPT, turn, wait_for_blocks, wait_for_phase, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -41,27 +41,27 @@ def _running(page: Page) -> None:
     page.select_option("#world", "maze")
     page.select_option("#speed", "0.1")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
 
 
 def _pause_run(page: Page) -> None:
     page.click("#pause")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
 
 
 def _drive_run(page: Page) -> None:
     """A fault, and a score."""
     page.select_option("#speed", "20")
     page.click("#pause")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 def _part(index: int) -> Show:
-    def see(page: Page) -> None:
+    def select_part(page: Page) -> None:
         count = page.locator("#world_part option").count()
         page.select_option("#world_part", index=index % count)
 
-    return see
+    return select_part
 
 
 def _floor(page: Page) -> None:

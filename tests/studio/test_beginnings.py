@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from tests.support.command import inside
+from tests.support.command import run_in_process
 from tests.support.node import in_node
 
 SCRIPT = Path(__file__).parent / "beginnings_in_node.mjs"
@@ -20,7 +20,7 @@ def test_no_picture_of_the_start_shows_a_robot_that_bumps(tmp_path: Path) -> Non
         program = tmp_path / "program.ts"
         program.write_text(beginning["text"], "utf-8")
         where = ("--robot", beginning["robot"], "--world", beginning["world"])
-        result = inside(
+        result = run_in_process(
             "upload", program, "--virtual", *where, "--for", str(SECONDS), "--hurry", "max"
         )
         assert "touched nothing" in result.out, (name, result.out)

@@ -12,7 +12,7 @@ from tests.oracle import programs as oracle_programs
 from tests.pupils import corpus
 from tests.studio.programs import Program, programs
 from tests.support.block_agreement import check_blocks, comment_words, touched_form
-from tests.support.block_words import of_word
+from tests.support.block_words import program_with_word
 from tests.support.kits import KITS
 from tests.support.new_word import HORN
 from tests.support.rows import each_row
@@ -94,7 +94,7 @@ def test_what_pupils_write_becomes_blocks_and_text() -> None:
 
 @each_row("word", [name for name, word in WORDS.items() if word.role.name != "later"])
 def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
-    text = of_word(word)
+    text = program_with_word(word)
     check_blocks(text, TINIBOT)
     printed_text = format_blocks(read_blocks(text, TINIBOT)).text
     assert ALIASES.get(word, word) in words(text.upper()) or word == "CHECK_CONNECTION"
@@ -131,7 +131,9 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
 def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
     left_out = ("later", "setup", "alias")
-    text = ";".join(of_word(word) for word in WORDS if WORDS[word].role.name not in left_out)
+    text = ";".join(
+        program_with_word(word) for word in WORDS if WORDS[word].role.name not in left_out
+    )
     text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
     blocks = in_order(read_blocks(text, TINIBOT).body)

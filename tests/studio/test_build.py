@@ -191,21 +191,23 @@ def test_the_same_sources_give_the_same_page(
 ) -> None:
     """One page is built again, the other one is the existing page."""
 
-    def packs(call: list[str], *words: str) -> str:
+    def pack(call: list[str], *words: str) -> str:
         return (
-            brings("*.zip", Path(words[-1])) if words[0] == "pack.mjs" else run_before(call, *words)
+            copy_built("*.zip", Path(words[-1]))
+            if words[0] == "pack.mjs"
+            else run_before(call, *words)
         )
 
-    def brings(pattern: str, target: Path) -> str:
+    def copy_built(pattern: str, target: Path) -> str:
         for path in set(page.glob(pattern)) - {page / "service_worker.js"}:
             shutil.copy(path, target)
         return ""
 
     run_before = studio.run
     if part == "modules":
-        monkeypatch.setattr(studio, "run", packs)
+        monkeypatch.setattr(studio, "run", pack)
     else:
-        monkeypatch.setattr(studio, "bundle", lambda tools, target: brings("*.js", target))
+        monkeypatch.setattr(studio, "bundle", lambda tools, target: copy_built("*.js", target))
     change_sources_in(monkeypatch, "check_types")  # which was done when that one was built
     second_page = tmp_path / "page"
     studio.build(second_page)

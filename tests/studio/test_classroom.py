@@ -559,24 +559,24 @@ def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
     ana = room.joins("Ana")
     room.checks_in(ana, text="F(1, 50)")
 
-    def come_back(name: str = "ana", token: object = ana) -> Json:
+    def return_to_class(name: str = "ana", token: object = ana) -> Json:
         request = {"do": "join", "code": room.made.code, "name": name, "before": token}
         return room.made.answer("", PUPIL_ADDRESS, request)
 
-    second = come_back()  # a second tab of the same pupil
+    second = return_to_class()  # a second tab of the same pupil
     assert second["name"] == "ana (2)"
     room.teaches("class_remove", pupil=room.number("ana (2)"))
     room.now_s += classroom.PLACE_S + 1
-    assert come_back() == {"token": ana, "name": "Ana"}
+    assert return_to_class() == {"token": ana, "name": "Ana"}
     room.teaches("class_remove", pupil=room.number("Ana"))
     for token in ("", None, 5, "0" * 32, [ana]):
-        other = come_back(token=token)
+        other = return_to_class(token=token)
         assert other["name"] == "ana (2)"
         room.teaches("class_remove", pupil=room.number("ana (2)"))
-    luz = come_back("Luz")  # the next child at this device
+    luz = return_to_class("Luz")  # the next child at this device
     assert luz["name"] == "Luz" and luz["token"] != ana
     assert texts_of(room) == ["F(1, 50)"]
-    assert come_back() == {"token": ana, "name": "Ana"}
+    assert return_to_class() == {"token": ana, "name": "Ana"}
     assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
     wrong = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
     assert room.made.answer("", PUPIL_ADDRESS, wrong) == {"failure": "class_wrong"}
@@ -615,7 +615,7 @@ def keeper(kept_at: Path) -> Iterator[Keeper]:
         yield started_keeper
 
 
-def goes_on(room: Room, keeper: Keeper) -> int:
+def resume_class(room: Room, keeper: Keeper) -> int:
     return command._resume_class(command._Class(room.made, keeper))
 
 
@@ -632,7 +632,7 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     keeper.keep(room.made.state_to_keep())
     assert kept_at.stat().st_mtime_ns == when_s
     room_after = Room(0)
-    assert goes_on(room_after, keeper) == 1
+    assert resume_class(room_after, keeper) == 1
     state = room_after.teaches("class")
     assert (state["code"], state["goes_on"]) == (room.made.code, True)
     assert [robot["port"] for robot in state["robots"]] == ["port0"]
@@ -645,7 +645,7 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     assert not room_after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
     keeper.keep(room.made.state_to_keep())
-    assert not kept_at.exists() and goes_on(Room(), keeper) == 0
+    assert not kept_at.exists() and resume_class(Room(), keeper) == 0
 
 
 def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keeper) -> None:
@@ -660,13 +660,13 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
     kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     room_after = Room(0)
-    assert goes_on(room_after, keeper) == 1
+    assert resume_class(room_after, keeper) == 1
     assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
     assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
     many = [{**row, "token": f"{k:032x}"} for k in range(99)]
     kept_at.write_text(json.dumps({**whole, "pupils": many, "kept": many}))
     room_after = Room(0)
-    assert goes_on(room_after, keeper) == class_keeping.MOST_PUPILS
+    assert resume_class(room_after, keeper) == class_keeping.MOST_PUPILS
     works = len(room_after.teaches("class_work")["pupils"])
     assert works == class_keeping.MOST_WORKS
 
@@ -676,7 +676,7 @@ def test_what_is_no_class_is_put_aside(kept_at: Path, keeper: Keeper) -> None:
     aside = kept_at.with_name("class.unread.json")
     for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):
         kept_at.write_text(data)
-        assert goes_on(Room(), keeper) == 0
+        assert resume_class(Room(), keeper) == 0
         assert aside.read_text() == data and not kept_at.exists()
     keeper.keep(None)
     assert not aside.exists()  # the class is over
@@ -688,11 +688,11 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
     room = Room()
     room.checks_in(room.joins("Ana"), text="F(1, 50)")
 
-    def full(*_: object, **__: object) -> None:
+    def fail_full_disk(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(class_keeping, "replace", full)
+        patched.setattr(class_keeping, "replace", fail_full_disk)
         for _ in range(3):
             keeper.keep(room.made.state_to_keep())
     assert not kept_at.exists()
@@ -710,14 +710,14 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
     for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
         kept_at.write_text(json.dumps({**whole, "kept_s": whole["kept_s"] - passed_s}))
         room_after = Room(0)
-        assert goes_on(room_after, keeper) == 1
+        assert resume_class(room_after, keeper) == 1
         assert (
             room_after.checks_in(token)["name"] == "Ana" and room_after.made.code == room.made.code
         )
     for kept_s in (whole["kept_s"] - 3700, 5, -5, None, "x", 1e400):
         kept_at.write_text(json.dumps({**whole, "kept_s": kept_s}))
         room_after = Room(0)
-        assert goes_on(room_after, keeper) == 0
+        assert resume_class(room_after, keeper) == 0
         assert texts_of(room_after) == ["F(1, 50)"]
         assert room_after.made.code != room.made.code and room_after.teaches("class")["goes_on"]
         keeper.keep(room_after.made.state_to_keep())
@@ -747,11 +747,11 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
     """Once there is room, it gets its file, unless another class has it."""
     room = Room()
 
-    def full(*_: object) -> int:
+    def fail_full_disk(*_: object) -> int:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr(os, "open", full)
+        patched.setattr(os, "open", fail_full_disk)
         early, late = Keeper(), Keeper()
     with closing(early), closing(late):
         early.keep(room.made.state_to_keep())
@@ -858,14 +858,14 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
             room.made.answer(ana, PUPIL_ADDRESS, {"do": do})
             answered.append(do)
 
-    def slow() -> list[Json]:
+    def list_slowly() -> list[Json]:
         asking = Thread(target=ask, daemon=True)
         asking.start()
         asking.join(HANG_LIMIT_S / 10)
         answered.append("listed")
         return [{"port": "port9", "name": "NINE"}]
 
-    monkeypatch.setattr(classroom, "list_ports", slow)
+    monkeypatch.setattr(classroom, "list_ports", list_slowly)
     state = room.teaches("class_robot", port="port9", gives=True)
     assert answered == ["stop", "beat", "here", "listed"]
     assert [robot["name"] for robot in state["robots"]] == ["", "NINE"]
@@ -924,11 +924,11 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
 # -- the newest run of a pupil ---------------------------------------------------------------------
 
 
-def asks_run(room: Room, pupil: int, asks: bool = False) -> Any:
+def ask_for_run(room: Room, pupil: int, asks: bool = False) -> Any:
     return room.made.teach({"do": "class_run", "pupil": pupil, "asks": asks})["run"]
 
 
-def gives(room: Room, token: str, asked: int, start: int, part: str, is_last: bool) -> None:
+def give_run_part(room: Room, token: str, asked: int, start: int, part: str, is_last: bool) -> None:
     request = {"do": "run", "asked": asked, "from": start, "part": part, "is_last": is_last}
     room.made.answer(token, PUPIL_ADDRESS, request)
 
@@ -937,24 +937,24 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
     room = Room()
     ana, ben = room.joins("Ana"), room.joins("Ben")
     assert "run" not in room.checks_in(ana)
-    assert asks_run(room, 1, True) is None
+    assert ask_for_run(room, 1, True) is None
     asked = room.checks_in(ana)["run"]
     assert "run" not in room.checks_in(ben)
-    gives(room, ben, asked, 0, "nobody has asked", True)
-    gives(room, ana, asked + 1, 0, "another question", True)
-    assert asks_run(room, 1) is None
-    gives(room, ana, asked, 0, "one, ", False)
-    assert asks_run(room, 1) is None and room.checks_in(ana)["run"] == asked
-    gives(room, ana, asked, 5, "two", True)
+    give_run_part(room, ben, asked, 0, "nobody has asked", True)
+    give_run_part(room, ana, asked + 1, 0, "another question", True)
+    assert ask_for_run(room, 1) is None
+    give_run_part(room, ana, asked, 0, "one, ", False)
+    assert ask_for_run(room, 1) is None and room.checks_in(ana)["run"] == asked
+    give_run_part(room, ana, asked, 5, "two", True)
     assert "run" not in room.checks_in(ana)
-    assert asks_run(room, 1) == "one, two"
-    assert asks_run(room, 1, True) is None
+    assert ask_for_run(room, 1) == "one, two"
+    assert ask_for_run(room, 1, True) is None
     assert room.checks_in(ana)["run"] > asked, "it is asked anew"
-    gives(room, ana, room.checks_in(ana)["run"], 0, "half of an", False)
-    assert asks_run(room, 1, True) is None
-    gives(room, ana, room.checks_in(ana)["run"], 0, "newer", True)
-    assert asks_run(room, 1) == "newer", "what is asked anew begins anew"
-    assert asks_run(room, 9, True) == "", "who has gone has none"
+    give_run_part(room, ana, room.checks_in(ana)["run"], 0, "half of an", False)
+    assert ask_for_run(room, 1, True) is None
+    give_run_part(room, ana, room.checks_in(ana)["run"], 0, "newer", True)
+    assert ask_for_run(room, 1) == "newer", "what is asked anew begins anew"
+    assert ask_for_run(room, 9, True) == "", "who has gone has none"
     assert "class_run" not in json.dumps(room.made.state_to_keep())
 
 
@@ -968,7 +968,7 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
 def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
     room = Room()
     ana = room.joins("Ana")
-    asks_run(room, 1, True)
+    ask_for_run(room, 1, True)
     asked = room.checks_in(ana)["run"]
     right = {"do": "run", "asked": asked, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
@@ -976,4 +976,4 @@ def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
     room.made.answer(ana, PUPIL_ADDRESS, right)
     with pytest.raises(BadRequest):
         room.made.answer(ana, PUPIL_ADDRESS, {**right, "from": 1})
-    assert asks_run(room, 1) == "x"
+    assert ask_for_run(room, 1) == "x"

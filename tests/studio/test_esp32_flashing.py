@@ -121,7 +121,7 @@ Object.defineProperty(navigator, 'serial', {value: {
 
 
 @contextmanager
-def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
+def teacher_page(browser: Browser, folder: Path) -> Iterator[Page]:
     """Return a page next to the firmware of a folder, opened where a teacher finds it."""
     need(studio.missing())
     with pytest.MonkeyPatch.context() as patch:
@@ -146,7 +146,7 @@ def at_the_teachers(browser: Browser, folder: Path) -> Iterator[Page]:
 @pytest.mark.sampled(of="pages of their own", keep=2)
 def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Path) -> None:
     (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(b"nothing")
-    with at_the_teachers(browser, tmp_path) as page:
+    with teacher_page(browser, tmp_path) as page:
         page.locator("#keys_import").wait_for()
         page.wait_for_load_state("networkidle")
         assert not page.locator("#flash").is_visible()
@@ -156,7 +156,7 @@ def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Pat
 def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Path) -> None:
     whole = image("esp32dev", 12_000)
     (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(whole)
-    with at_the_teachers(browser, tmp_path) as page:
+    with teacher_page(browser, tmp_path) as page:
         page.locator("#flash_write").wait_for()
         assert page.locator("#flash_board option").all_inner_texts() == ["ESP32"]
         page.click("#flash_write")

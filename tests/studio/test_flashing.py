@@ -162,16 +162,18 @@ def plug_in(board: FakeBoard) -> Iterator[str]:
             os.close(file)
 
 
-def bent(at: int, *, by: bytes | None, times: int = 10_000) -> Callable[[int, bytes], bytes | None]:
+def changed_answer(
+    at: int, *, by: bytes | None, times: int = 10_000
+) -> Callable[[int, bytes], bytes | None]:
     """Answer a command otherwise; None: the cable is pulled. `times`: from which time on."""
     count = 0
 
-    def bends(command: int, answer: bytes) -> bytes | None:
+    def change_answer(command: int, answer: bytes) -> bytes | None:
         nonlocal count
         count += command == at
         return by if command == at and count >= times else answer
 
-    return bends
+    return change_answer
 
 
 def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
@@ -188,17 +190,17 @@ def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("bends", "how"),
     [
-        (bent(0x30, by=b"", times=1), "flash_nobody"),
-        (bent(0x30, by=b"\x00\xff" * 40, times=1), "flash_nobody"),
-        (bent(0x75, by=b"\x14\x1e\x98\x01\x10", times=1), "flash_other_chip"),
-        (bent(0x75, by=b"", times=1), "flash_nobody"),
-        (bent(0x30, by=None, times=1), "port_gone"),
-        (bent(0x64, by=None, times=3), "flash_broken_off"),
-        (bent(0x64, by=b"", times=3), "flash_broken_off"),
-        (bent(0x64, by=b"\x15\x10", times=3), "flash_broken_off"),
-        (bent(0x74, by=None, times=2), "flash_broken_off"),
-        (bent(0x74, by=IN_SYNC + b"\x00" * PAGE + OK, times=2), "flash_differs"),
-        (bent(0x51, by=b"", times=1), "done"),
+        (changed_answer(0x30, by=b"", times=1), "flash_nobody"),
+        (changed_answer(0x30, by=b"\x00\xff" * 40, times=1), "flash_nobody"),
+        (changed_answer(0x75, by=b"\x14\x1e\x98\x01\x10", times=1), "flash_other_chip"),
+        (changed_answer(0x75, by=b"", times=1), "flash_nobody"),
+        (changed_answer(0x30, by=None, times=1), "port_gone"),
+        (changed_answer(0x64, by=None, times=3), "flash_broken_off"),
+        (changed_answer(0x64, by=b"", times=3), "flash_broken_off"),
+        (changed_answer(0x64, by=b"\x15\x10", times=3), "flash_broken_off"),
+        (changed_answer(0x74, by=None, times=2), "flash_broken_off"),
+        (changed_answer(0x74, by=IN_SYNC + b"\x00" * PAGE + OK, times=2), "flash_differs"),
+        (changed_answer(0x51, by=b"", times=1), "done"),
     ],
     ids=["silent", "noise", "other chip", "half", "pulled early", "pulled", "hangs", "refuses",
          "pulled while reading", "differs", "begins at once"],

@@ -105,11 +105,11 @@ class Group:
     def later(self, act: Callable[[], None], most_s: float = LATE_S) -> None:
         delay_s = self.chance.random() * most_s
 
-        def acts() -> None:
+        def act_late() -> None:
             time.sleep(delay_s)
             act()
 
-        self.late.append(Thread(target=acts, daemon=True))
+        self.late.append(Thread(target=act_late, daemon=True))
         self.late[-1].start()
 
     def drives(self, mate: Mate) -> None:

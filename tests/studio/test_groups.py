@@ -154,22 +154,22 @@ def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -
 def test_what_is_no_program_begins_no_group(school: School) -> None:
     token = school.joins("Ana")
 
-    def begins(name: str, text: str) -> Json:
+    def begin_group(name: str, text: str) -> Json:
         request = {"do": "group_join", "name": name, "text": text}
         return school.made.answer(token, PUPIL_ADDRESS, request)
 
-    assert begins("Red", "LOOP(3)\n") == {"failure": "group_mistakes"}
-    assert begins("Red", "S\n" * 10_000) == {"failure": "group_long"}
-    assert begins("Red", f"// {'x' * 3000}\n") == {"failure": "group_long"}
-    assert begins(" ", TEXT) == {"failure": "group_nameless"}
+    assert begin_group("Red", "LOOP(3)\n") == {"failure": "group_mistakes"}
+    assert begin_group("Red", "S\n" * 10_000) == {"failure": "group_long"}
+    assert begin_group("Red", f"// {'x' * 3000}\n") == {"failure": "group_long"}
+    assert begin_group(" ", TEXT) == {"failure": "group_nameless"}
     assert school.teaches("class")["groups"] == []
     for k in range(groups.MOST_FOUNDED):
-        assert begins(f"Group {k}", TEXT)["group"] == f"Group {k}"
+        assert begin_group(f"Group {k}", TEXT)["group"] == f"Group {k}"
         change = {"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1"]}]}
         school.made.answer(token, PUPIL_ADDRESS,
                            {"do": "group", "page": "m1", "since": 0, "epoch": "",
                             "changes": [change]})  # fmt: skip
-    assert begins("One more", TEXT) == {"failure": "group_many"}
+    assert begin_group("One more", TEXT) == {"failure": "group_many"}
 
 
 def test_a_group_that_nobody_has_changed_goes_with_its_last_pupil(school: School) -> None:
@@ -193,7 +193,7 @@ def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
     ana.sends()
     luz.sends()
     heard: list[Json] = []
-    waiting = in_thread(lambda: heard.append(ana.asks("group", **ana.request(waits=True))))
+    waiting = start_thread(lambda: heard.append(ana.asks("group", **ana.request(waits=True))))
     until(lambda: members_hold(school, ana) > 0, "the page waits")
     assert school.checks_in(luz.token)["group"] == "Red"  # the class is not held
     luz.types("80", "95")
@@ -208,7 +208,7 @@ def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatc
     ana.sends()
     threads = []
     for k in range(5):
-        threads.append(in_thread(lambda: ana.asks("group", **ana.request(waits=True))))
+        threads.append(start_thread(lambda: ana.asks("group", **ana.request(waits=True))))
         until(partial(has_held, school, ana, k + 1), "the page waits")
     for thread in threads[:-1]:
         thread.join(HANG_LIMIT_S)
@@ -235,7 +235,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     ana.sends()
     luz.sends()
     heard: list[Json] = []
-    waiting = in_thread(lambda: heard.append(luz.asks("group", **luz.request(waits=True))))
+    waiting = start_thread(lambda: heard.append(luz.asks("group", **luz.request(waits=True))))
     until(lambda: members_hold(school, luz) > 0, "the page waits")
     group = school.made._groups.group_of(luz.token)
     assert group is not None and robot.witness is not None
@@ -245,7 +245,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
         school.made._lock,
         school.made._groups._lock,
     ):  # one of them is busy with these
-        telling = in_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
+        telling = start_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
         telling.join(HANG_LIMIT_S)
         assert not telling.is_alive()
     waiting.join(HANG_LIMIT_S)
@@ -259,33 +259,33 @@ def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) 
     school.checks_in(ana.token, True)
     robot = school.connects(ana.token)
 
-    def hears(member: Member, value: str) -> bool:
+    def has_value(member: Member, value: str) -> bool:
         text = json.dumps(member.sends(ran=["", 0]))
         return f'"{value}"' in text
 
-    def tells(value: str) -> None:
+    def show_value(value: str) -> None:
         begins = {"event": "STARTED", "program": "a", "is_program": True}
         if robot.witness is not None:
             robot.witness([begins, {"event": "SHOW", "value": value}])
 
-    tells("one")
-    assert hears(luz, "one") and not hears(eva, "one")
+    show_value("one")
+    assert has_value(luz, "one") and not has_value(eva, "one")
     ana.joins("Blue")
-    tells("two")
-    assert hears(eva, "two") and not hears(luz, "two")
-    assert not hears(luz, "STARTED")  # the run is over for them
+    show_value("two")
+    assert has_value(eva, "two") and not has_value(luz, "two")
+    assert not has_value(luz, "STARTED")  # the run is over for them
     ana.asks("group_leave")
-    tells("three")
-    assert not hears(eva, "three") and not hears(luz, "three")
+    show_value("three")
+    assert not has_value(eva, "three") and not has_value(luz, "three")
     ana.joins("Red")
-    tells("four")
+    show_value("four")
     other = school.connects(luz.token)
-    tells("five")  # the stop at the end of her run
-    assert hears(luz, "five")
+    show_value("five")  # the stop at the end of her run
+    assert has_value(luz, "five")
     assert other.witness is not None
 
 
-def in_thread(do: Callable[[], object]) -> Thread:
+def start_thread(do: Callable[[], object]) -> Thread:
     thread = Thread(target=do, daemon=True)
     thread.start()
     return thread
@@ -704,7 +704,7 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
         except BaseException as why:
             failed_base_exceptions.append(why)
 
-    threads = [in_thread(partial(listens, member)) for member in members]
+    threads = [start_thread(partial(listens, member)) for member in members]
     for k in range(300):
         member = chance.choice(members)
         rows = member.page.lines[:]

@@ -176,11 +176,11 @@ def test_a_page_that_falls_silent_holds_nothing(hand: Hand, two: list[PtyRobot])
     assert hand.answer_to(sent)["ok"]
     robot.push()
 
-    def drives() -> bool:
+    def has_power_60() -> bool:
         hand.holds(60)
         return power_of(robot) == 60
 
-    until(drives, "it drives")
+    until(has_power_60, "it drives")
     until(lambda: power_of(robot) == 0, f"after {ATTENDED_S} s and a little")
 
 

@@ -93,7 +93,7 @@ def page(hosting: Hosting, robot: PtyRobot) -> Page:
     return made_page
 
 
-def drives(page: Page, robot: PtyRobot) -> None:
+def start_drive(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     robot.until(lambda: robot.moves, "it drives")
 
@@ -183,7 +183,7 @@ def test_nobody_pings_for_a_page_that_is_silent(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds even if the thread that should stop the robot hangs."""
-    drives(page, robot)
+    start_drive(page, robot)
     monkeypatch.setattr(attending.Attending, "attend", lambda *_: time.sleep(0.1))
     page.beat()
     assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # stopped by its dead-man timer
@@ -191,12 +191,12 @@ def test_nobody_pings_for_a_page_that_is_silent(
 
 def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
     """Also one that counts wrongly, before it is refused."""
-    drives(page, robot)
+    start_drive(page, robot)
     page.beat(do="stop")
     assert page.until(lambda item: item.get("event") == "STOPPED")["cause"] == "SEQUENCE"
     assert not robot.moves
     for stops in (-1, 0.5, "1", 2**40):
-        drives(page, robot)
+        start_drive(page, robot)
         with pytest.raises(BadRequest):
             hosting.answer({"do": "stop", "page": "page", "stops": stops})
         page.until(lambda item: item.get("event") == "STOPPED")
@@ -204,7 +204,7 @@ def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -
 
 
 def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     from threading import Thread
 
     thread = Thread(target=lambda: process("stop", "--port", robot.port))
@@ -218,7 +218,7 @@ def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None
 def test_the_end_of_a_page_and_of_the_server_stops_robots(
     hosting: Hosting, page: Page, robot: PtyRobot, leaves: bool
 ) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     if leaves:
         page.beat(do="leave")
         robot.until(lambda: not robot.moves, "it stands")
@@ -233,7 +233,7 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     """The next client reaches the robot through the holder of the port, and only the end of the
     studio stops it.
     """
-    drives(page, robot)
+    start_drive(page, robot)
     other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port)
     other.until("running")
     page.beat(do="leave")
@@ -263,7 +263,7 @@ def test_a_port_has_one_page(
     other = Page(hosting, "other")
     assert other.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {}  # the page already has this robot
-    drives(page, robot)
+    start_drive(page, robot)
     # STOP of a page without a robot
     stop_report = {"name": robot.port, "stop": "asked"}
     assert hosting.answer({"do": "stop_all"}) == {"robots": [stop_report]}
@@ -298,7 +298,7 @@ def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, is_silent: bool
 ) -> None:
     """The person who ends the server is told about a silent robot."""
-    drives(page, robot)
+    start_drive(page, robot)
     page.beat()
     if is_silent:
         robot.switch_off()
@@ -318,7 +318,7 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
         page = Page(hosting)
         page.connect(robot.port)
         assert page.until(lambda item: "connected" in item)["held_by"] == "link"
-        drives(page, robot)
+        start_drive(page, robot)
         page.beat()
         assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS
         hosting.close()

@@ -217,20 +217,20 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
 def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
     stepped_hosting: Hosting, runs: bool
 ) -> None:
-    def asks(do: str, connection: int, *asked: Json, **more: object) -> None:
+    def send_request(do: str, connection: int, *asked: Json, **more: object) -> None:
         stepped_hosting.answer({"do": do, "page": "me", "connection": connection, "port": "p",
                                 "seen": 0, "robot": "tinibot", "language": "en", "asked": [*asked],
                         **more})  # fmt: skip
         cast(SteppedRobot, stepped_hosting.robot_of("me")).step()
 
-    asks("connect", 1)
-    asks("beat", 1)
-    asks("connect", 2)  # a press before it is still on its way
+    send_request("connect", 1)
+    send_request("beat", 1)
+    send_request("connect", 2)  # a press before it is still on its way
     if runs:
-        asks("beat", 2, {**RUN, "id": 1, "stops": 1, "seen": 0})
-        asks("beat", 2)
-    asks("stop", 1, stops=1)
-    asks("stop", 1, stops=1)
+        send_request("beat", 2, {**RUN, "id": 1, "stops": 1, "seen": 0})
+        send_request("beat", 2)
+    send_request("stop", 1, stops=1)
+    send_request("stop", 1, stops=1)
     assert [what for what, _, _ in World.actions] == ["run" if runs else "stop"]
 
 
@@ -299,14 +299,14 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     def has_news(stops: int) -> bool:
         return "news" in asker.asks("beat", stops=stops)
 
-    def drives(stops: int) -> None:
+    def start_drive(stops: int) -> None:
         asker.asks("beat", asker.run(stops), stops=stops)
         until(lambda: has_news(stops) and robot.moves, "it drives")
 
-    drives(0)
+    start_drive(0)
     asker.asks("beat", stops=1)
     until(lambda: has_news(1) and not robot.moves, "it stands")
-    drives(1)
+    start_drive(1)
     began = len(robot.heard)
     asker.asks("stop", stops=1)  # late, or a repeated beat
     for _ in range(10):
@@ -318,7 +318,7 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     for other in others:
         asker.asks("stop", **other)
         until(lambda: has_news(1) and not robot.moves, "it stands")
-        drives(1)
+        start_drive(1)
 
 
 def test_a_connect_whose_answer_is_lost_is_offered_again(
@@ -328,7 +328,7 @@ def test_a_connect_whose_answer_is_lost_is_offered_again(
     effect.
     """
 
-    def meets(connection: int) -> None:
+    def connect_twice(connection: int) -> None:
         asker.news.clear()
         assert asker.asks("connect", connection=connection) == {}
         assert asker.asks("connect", connection=connection) == {}
@@ -336,8 +336,8 @@ def test_a_connect_whose_answer_is_lost_is_offered_again(
         [met] = [item for item in asker.news if "connected" in item]
         assert met["held_by"] == ""  # not held by the previous page
 
-    meets(2)
-    meets(3)
+    connect_twice(2)
+    connect_twice(3)
     assert asker.asks("connect", connection=2) == {}
     asker.news.clear()
     for _ in range(5):

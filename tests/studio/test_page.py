@@ -12,7 +12,7 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import LACKING, messages_of, programs
 from tests.studio.programs import image as image_of
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import (
     Pages,
     ask_worker,
@@ -217,7 +217,7 @@ DAMAGED_WORK = (
 
 
 def test_damaged_work_does_no_harm(page: Page, pytestconfig: pytest.Config) -> None:
-    for kept in some_of(pytestconfig, "damaged work", DAMAGED_WORK):
+    for kept in sample_of(pytestconfig, "damaged work", DAMAGED_WORK):
         page.evaluate(
             "kept => { for (const s of [sessionStorage, localStorage])"
             " s.setItem('tiniscript.work', kept.shift()); }",

@@ -13,7 +13,7 @@ import pytest
 from tests.oracle import programs as oracle_programs
 from tests.studio.programs import programs
 from tests.studio.random_in_page import compare, round_trip, without_places
-from tests.support.block_words import of_word
+from tests.support.block_words import program_with_word
 from tests.support.casefile import ROOT
 from tests.support.kits import KITS
 from tests.support.needs import need
@@ -21,8 +21,6 @@ from tests.support.page_blocks import (
     FLYOUT,
     PATIENCE_MS,
     PROGRAM,
-    becomes,
-    becomes_other,
     block,
     box_of,
     drag,
@@ -31,18 +29,20 @@ from tests.support.page_blocks import (
     path_of,
     start,
     text_of,
+    wait_for_other_text,
+    wait_for_text,
 )
 from tests.support.page_screens import SCREENS
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
     finger,
-    hears,
     image,
-    in_phase,
     speak,
+    wait_for,
     wait_for_blocks,
+    wait_for_phase,
     write,
 )
 from tiniscript import check, compile, robots
@@ -108,7 +108,7 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page.locator("#level").wait_for()
     assert block(page, "al empezar").count() == 1
     drag(page, "Moverse", "avanza", block(page, "gira a la derecha"))
-    becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 80);\nF(1, 80);\n")
+    wait_for_text(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 80);\nF(1, 80);\n")
     number = page.locator(f"{PROGRAM} .blocklyNumberField").nth(5)
     number.click()
     assert page.locator(".blocklyWidgetDiv input").get_attribute("inputmode") == "decimal"
@@ -116,12 +116,12 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page.keyboard.type("150")
     page.keyboard.press("Enter")
     # The power cannot be larger.
-    becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")
+    wait_for_text(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")
     page.select_option("#speed", "20")
     page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
     wait_for_blocks(page)
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert image(page) == compile(text_of(page)).image
     page.set_viewport_size({"width": 1024, "height": 600})
     page.evaluate(SETTLED_SCRIPT)
@@ -134,7 +134,7 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     to_x, to_y = target["x"] + 10, target["y"] + target["height"] + 8
     finger(page, [(x + (to_x - x) * k / 12, y + (to_y - y) * k / 12) for k in range(13)])
     page.locator("#blocks[data-state=shown]").wait_for()
-    hears(page, lambda: "B(2, 80)" in text_of(page), "a finger has dragged a block")
+    wait_for(page, lambda: "B(2, 80)" in text_of(page), "a finger has dragged a block")
 
 
 def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
@@ -145,29 +145,29 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     page.mouse.wheel(40, 30)
     box_before = box_of(block(page, "forward"))
     page.click("#undo")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
     assert block(page, "back").count() == 0
     page.click("#redo")
-    becomes(page, text_after)
+    wait_for_text(page, text_after)
     assert block(page, "back").count() == 1
     assert box_of(block(page, "forward")) == pytest.approx(box_before, abs=1)
     page.locator("#speed").focus()  # wherever the focus is
     page.keyboard.press("Control+z")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
     page.keyboard.press("Control+Shift+z")
-    becomes(page, text_after)
+    wait_for_text(page, text_after)
     assert page.locator("#link_line").evaluate(KEPT_KEY)  # keys in a text field do not count
     block(page, "stop").click(position={"x": 6, "y": 6})
     page.keyboard.press("Delete")
-    becomes(page, "SI|F(2, 80);\nB(2, 80);\n")
+    wait_for_text(page, "SI|F(2, 80);\nB(2, 80);\n")
     page.keyboard.press("Control+z")
     block(page, "stop").wait_for()
-    becomes(page, text_after)
+    wait_for_text(page, text_after)
     page.click("#view_text")
     page.locator(".cm-content").focus()
     page.keyboard.press("Control+z")
     page.click("#view_blocks")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
 @drawn
@@ -187,11 +187,11 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     page.keyboard.press("Enter")
     after = long.splitlines()
     after[15] = "F(77, 80);"
-    becomes(page, "\n".join(after) + "\n")
+    wait_for_text(page, "\n".join(after) + "\n")
     for _ in range(2):
         box_before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
         page.keyboard.press("Control+z")
-        becomes(page, long)
+        wait_for_text(page, long)
         page.locator(f"{PROGRAM} .blocklyActiveFocus").wait_for(state="attached")
         # Blockly scrolls to the focused block, and the page scrolls back
         page.evaluate(SETTLED_SCRIPT)
@@ -200,7 +200,7 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
         )
         assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
         page.keyboard.press("Control+y")
-        becomes(page, "\n".join(after) + "\n")
+        wait_for_text(page, "\n".join(after) + "\n")
     high = box_of(block(page, "forward"))["height"]
     page.click("#words")
     wait_for_blocks(page)
@@ -215,9 +215,9 @@ def test_looking_at_blocks_changes_no_text(page: Page) -> None:
     start(page, text)
     page.click("#view_text")
     page.click("#view_blocks")
-    becomes(page, text)
+    wait_for_text(page, text)
     block(page, "forward").click(position={"x": 6, "y": 6})
-    becomes(page, text)
+    wait_for_text(page, text)
 
 
 def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
@@ -231,22 +231,22 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     page.wait_for_timeout(300)
     page.mouse.move(500, 430, steps=3)
     page.mouse.up()
-    becomes(page, "SI|F(2, 80)\n\n/// S\n")
+    wait_for_text(page, "SI|F(2, 80)\n\n/// S\n")
     page.keyboard.press("Control+z")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
 @drawn
 def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(page: Page) -> None:
     """Also one without values."""
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
-    becomes(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
     page.click("#undo")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
     drag(page, "Repeat", "forever", None)
     place = box_of(block(page, "forever"))
     page.click("#undo")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
     page.click("#redo")
     block(page, "forever").wait_for()
     assert box_of(block(page, "forever")) == pytest.approx(place, abs=1)
@@ -272,23 +272,23 @@ def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
         assert marker.locator(moves_and_beeps).count() == taken
     page.mouse.up()
     wrapped = "SI|F(2, 80);\nLOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\n"
-    becomes(page, wrapped)
+    wait_for_text(page, wrapped)
     page.click("#undo")
-    becomes(page, before)
+    wait_for_text(page, before)
     page.click("#redo")
-    becomes(page, wrapped)
+    wait_for_text(page, wrapped)
     place, top = box_of(block(page, "times")), box_of(block(page, "when it starts"))
     page.mouse.move(place["x"] + 8, place["y"] + 12)
     page.mouse.down()
     page.mouse.move(place["x"] + 30, place["y"] + 40, steps=4)
     page.mouse.move(top["x"] + 8, top["y"] + top["height"] + 8, steps=8)
     page.mouse.up()
-    becomes(page, "SI|LOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\nF(2, 80);\n")
+    wait_for_text(page, "SI|LOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\nF(2, 80);\n")
 
 
 def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     drag(page, "Move", "forward", None)
-    becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert image(page) == compile("SI|F(2, 80);S").image
     assert page.inner_text("#status") == "1 loose block does not run"
     loose = block(page, "forward")
@@ -298,11 +298,11 @@ def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     assert page.locator(f"{PROGRAM} > .loose .blocklyText").evaluate_all(white) == 0
     place = box_of(loose)
     page.click("#undo")
-    becomes(page, "SI|F(2, 80);\nS;\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n")
     assert page.inner_text("#status").startswith("The program is correct")
     assert path.evaluate("e => getComputedStyle(e).fill") != grey
     page.click("#redo")
-    becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
+    wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert path.evaluate("e => getComputedStyle(e).fill") == grey
     assert box_of(loose) == pytest.approx(place, abs=1)
     page.click("#view_text")
@@ -314,7 +314,7 @@ def test_a_line_that_does_not_parse_is_grey_and_not_lost(page: Page) -> None:
     start(page, "SI|F(2, 80)\nF(1; 80) // hm\nS\n")
     assert block(page, "F(1; 80)").count() == 1
     drag(page, "Move", "turn right", block(page, "stop"))
-    becomes(page, "SI|F(2, 80);\nF(1; 80) // hm\nS;\nR(0.5, 60);\n")
+    wait_for_text(page, "SI|F(2, 80);\nF(1; 80) // hm\nS;\nR(0.5, 60);\n")
 
 
 def test_blocks_wait_while_a_text_is_being_typed(page: Page) -> None:
@@ -369,7 +369,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     assert "back" in focused or "forward" in focused.replace("\xa0", " ")
     page.locator("#messages .repair").click()
     wait_for_blocks(page)
-    becomes(page, "SI|S;\nLOOP(2);\n  B(2, 80);\nEND_LOOP;\n")
+    wait_for_text(page, "SI|S;\nLOOP(2);\n  B(2, 80);\nEND_LOOP;\n")
     assert icons.count() == 0
 
 
@@ -403,7 +403,7 @@ def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
     running.wait_for()
     assert "until" in (running.text_content() or "")
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.select_option("#robot", "tinibot32")
     start(page, "SI|W(9);\nTASK;\n  LOOP(9);\n    W(9);\n  END_LOOP;\nEND_TASK;\n", "all")
     page.click("#run")
@@ -423,7 +423,7 @@ def flyout(page: Page, group: str) -> str:
 
 @drawn
 def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Config) -> None:
-    for name in some_of(pytestconfig, "words of robots", robots.names(), 3):
+    for name in sample_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
         wait_for_blocks(page)
         text = flyout(page, "Robot")
@@ -433,7 +433,7 @@ def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Conf
         page.keyboard.press("Escape")
 
 
-def said_by(page: Page) -> set[str]:
+def texts_on_blocks(page: Page) -> set[str]:
     """Return the texts on blocks, except for numbers."""
     texts = page.locator(f"{PROGRAM} .blocklyText").all_text_contents()
     return {" ".join(text.split()) for text in texts if not text.isdigit()}
@@ -442,23 +442,25 @@ def said_by(page: Page) -> set[str]:
 @drawn
 def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
-    assert said_by(page) == {
+    assert texts_on_blocks(page) == {
         "when it starts", "repeat", "times", "if", "distance sensor", "<", "stop", "else",
         "forward", "s", "at", "%",
     }  # fmt: skip
     speak(page, "es")
     wait_for_blocks(page)
-    assert {"al empezar", "repite", "veces", "si", "si no"} <= said_by(page)
+    assert {"al empezar", "repite", "veces", "si", "si no"} <= texts_on_blocks(page)
     page.click("#words")
     wait_for_blocks(page)
-    assert {"SI al empezar", "LOOP repite", "IF si", "ELSE si no", "F avanza"} <= said_by(page)
+    assert {"SI al empezar", "LOOP repite", "IF si", "ELSE si no", "F avanza"} <= texts_on_blocks(
+        page
+    )
     speak(page, "en")
     wait_for_blocks(page)
-    worded = said_by(page)
+    worded = texts_on_blocks(page)
     assert {"SI when it starts", "IF", "DISTANCE sensor", "S stop", "ELSE"} <= worded
     page.click("#words")
     wait_for_blocks(page)
-    assert "stop" in said_by(page)
+    assert "stop" in texts_on_blocks(page)
 
 
 @drawn
@@ -472,8 +474,8 @@ def test_a_move_is_so_long_or_so_far(page: Page) -> None:
     ):
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile(f"^{field}")).click()
         page.locator(".blocklyMenuItem", has_text=re.compile(rf"^{choice}$")).click()
-        becomes(page, f"SI|{text}\n")
-        assert said_by(page) == {"when it starts", "at", "%", *says}
+        wait_for_text(page, f"SI|{text}\n")
+        assert texts_on_blocks(page) == {"when it starts", "at", "%", *says}
 
 
 @drawn
@@ -550,8 +552,10 @@ def test_every_word_that_has_a_block_can_be_dragged_out(
     start(page, with_names, "all")
     assert list_offered_blocks(page) == kinds
     for word in (name for name, its in WORDS.items() if its.role.name != "later"):
-        assert kinds_in(read_blocks(of_word(word), robots.load("grabber").kit)) <= kinds, word
-    for name in some_of(pytestconfig, "toolboxes", robots.names(), 2):
+        assert (
+            kinds_in(read_blocks(program_with_word(word), robots.load("grabber").kit)) <= kinds
+        ), word
+    for name in sample_of(pytestconfig, "toolboxes", robots.names(), 2):
         page.select_option("#robot", name)
         start(page, with_names, "all")
         has_actuators = bool(robots.load(name).kit.actuators)
@@ -574,7 +578,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(
     page.locator("#lesson:enabled").wait_for()
     folders = catalogue.folders()
     few_before = few
-    for folder in some_of(pytestconfig, "offers", folders, 4):
+    for folder in sample_of(pytestconfig, "offers", folders, 4):
         number, lesson = folders.index(folder) + 1, catalogue.load(folder)
         kit = robots.load(lesson.robot).kit
         page.select_option("#lesson", str(number))
@@ -614,7 +618,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
         ):  # fmt: skip
             start(page, "SI|S;\n", "usual")
             drag(page, group, words, block(page, "stop"))
-            becomes_other(page, "SI|S;\n")
+            wait_for_other_text(page, "SI|S;\n")
             question = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
             assert (question in text_of(page)) == asks, (robot, words, text_of(page))
             assert not [
@@ -624,10 +628,10 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
     page.select_option("#world", "obstacles")
     start(page, "SI|S;\n", "usual")
     drag(page, "Move", "or until", block(page, "stop"))
-    becomes(page, "SI|S;\nF(5, 60) UNTIL(DISTANCE < 20);\n")
+    wait_for_text(page, "SI|S;\nF(5, 60) UNTIL(DISTANCE < 20);\n")
     page.select_option("#speed", "20")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == "0"
 
 
@@ -637,11 +641,11 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     page.select_option("#robot", "grabber")
     start(page, "SI|S;\n")
     drag(page, "Robot", "lamp", block(page, "stop"))
-    becomes(page, "SI|S;\nLED(TRUE);\n")
+    wait_for_text(page, "SI|S;\nLED(TRUE);\n")
     for device, text in (("gripper", "GRIPPER(0)"), ("lamp", "LED(TRUE)")):
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile("lamp|gripper")).click()
         page.locator(".blocklyMenuItem", has_text=device).click()
-        becomes(page, f"SI|S;\n{text};\n")
+        wait_for_text(page, f"SI|S;\n{text};\n")
     start(page, "SI|LED(0);\n")  # text stays unchanged, and the compiler reports its mistakes
     assert text_of(page) == "SI|LED(0);\n"
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
@@ -659,9 +663,9 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
         loop = block(page, "repeat")
         inside = 20 - round(box_of(loop)["height"])
         drag(page, group, words, loop, off=(12, inside))
-        becomes_other(page, "SI|LOOP(3);\nEND_LOOP;\n")
+        wait_for_other_text(page, "SI|LOOP(3);\nEND_LOOP;\n")
         loops = "LOOP(3);\nEND_LOOP;\n"
-        becomes(page, f"SI|{own}{loops}" if own.startswith("DEF") else f"SI|{loops}{own}")
+        wait_for_text(page, f"SI|{own}{loops}" if own.startswith("DEF") else f"SI|{loops}{own}")
         hat, program = box_of(block(page, words)), box_of(block(page, "repeat"))
         assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
 
@@ -674,7 +678,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
     moved_text = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
-    becomes(page, moved_text)  # a hat that was not moved stays after its block
+    wait_for_text(page, moved_text)  # a hat that was not moved stays after its block
     upper, last = (
         page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
     )
@@ -684,13 +688,13 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
     page.mouse.up()
     moved = moved_text.replace(first + then, then + first)
-    becomes(page, moved)
+    wait_for_text(page, moved)
     place = box_of(last)
     assert place["x"] > above["right"] and place["y"] < above["y"]
     page.click("#undo")
-    becomes(page, moved_text)
+    wait_for_text(page, moved_text)
     page.click("#redo")
-    becomes(page, moved)
+    wait_for_text(page, moved)
     assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
 
 
@@ -767,7 +771,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
         text_before, to = text_of(page), block(page, target)
         inside = 40 - round(box_of(to)["height"])
         drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
-        becomes_other(page, text_before)
+        wait_for_other_text(page, text_before)
     if number == 14:  # every second time the lamp goes out
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()
         page.locator(".blocklyMenuItem", has_text="no").click()
@@ -795,7 +799,7 @@ def test_more_cases_of_an_if(page: Page) -> None:
         href = "more.svg" if name.startswith("Add") else "less.svg"
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
-        becomes(page, f"SI|{wanted_text}")
+        wait_for_text(page, f"SI|{wanted_text}")
 
 
 @drawn
@@ -805,18 +809,18 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     canvas.locator("image[*|href$='more.svg']").first.click()
     page.locator("#blocks[data-state=shown]").wait_for()
     begin = "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
-    becomes(page, begin.format(*"AAAA"))
+    wait_for_text(page, begin.format(*"AAAA"))
     canvas.locator(".blocklyEditableField", has_text=re.compile("^A$")).last.click()
     page.keyboard.type("size")
     page.keyboard.press("Enter")
-    becomes(page, begin.format(*["SIZE"] * 4))
+    wait_for_text(page, begin.format(*["SIZE"] * 4))
     texts = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
     assert {"SIZE", "C"} <= texts
     body = "  F(SIZE, 50);\n  SIZE = SIZE + 1;\nEND_DEF;\n"
     for head, calls in (("HOP(SIZE)", "HOP(2);\nHOP(3);\n"), ("HOP", "HOP;\nHOP;\n")):
         canvas.locator("image[*|href$='less.svg']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
-        becomes(page, f"SI|DEF {head};\n{body}{calls}")
+        wait_for_text(page, f"SI|DEF {head};\n{body}{calls}")
 
 
 @drawn
@@ -828,7 +832,7 @@ def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
     for href, count in [*(("more.svg", count) for count in counts), ("less.svg", PARAMETERS - 1)]:
         page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
         page.locator("#blocks[data-state=shown]").wait_for()
-        becomes(page, text.format(f"({', '.join(names[:count])})"))
+        wait_for_text(page, text.format(f"({', '.join(names[:count])})"))
 
 
 def test_keys_alone_add_a_block(page: Page) -> None:
@@ -838,7 +842,7 @@ def test_keys_alone_add_a_block(page: Page) -> None:
     for key in ("ArrowRight", "Enter", "ArrowDown", "Enter"):
         page.keyboard.press(key)
         page.wait_for_timeout(100)  # the delay of fast fingers
-    hears(page, lambda: text_of(page).count("F(2, 80)") == 2, "another block")
+    wait_for(page, lambda: text_of(page).count("F(2, 80)") == 2, "another block")
 
 
 # -- sentences -------------------------------------------------------------------------------------
@@ -902,9 +906,9 @@ def test_who_changes_a_block_changes_its_line_alone(page: Page) -> None:
     page.keyboard.press("Control+a")
     page.keyboard.type("3")
     page.keyboard.press("Enter")
-    becomes(page, f"{head}B(3, 80);\n{end}")
+    wait_for_text(page, f"{head}B(3, 80);\n{end}")
     block(page, "back").locator(".blocklyNumberField").first.click()
     page.keyboard.press("Control+a")
     page.keyboard.type("1.5")
     page.keyboard.press("Enter")
-    becomes(page, f"{head}B(1.50, 80);\n{end}")
+    wait_for_text(page, f"{head}B(1.50, 80);\n{end}")

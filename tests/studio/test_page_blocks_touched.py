@@ -12,25 +12,25 @@ from tests.support.node import in_node
 from tests.support.page_blocks import (
     FLYOUT,
     PROGRAM,
-    becomes,
-    becomes_other,
     block,
     box_of,
     meet,
     path_of,
     start,
     text_of,
+    wait_for_other_text,
+    wait_for_text,
 )
 from tests.support.page_runs import run_names
 from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
     axe,
-    hears,
-    in_phase,
     speak,
+    wait_for,
     wait_for_blocks,
     wait_for_note,
+    wait_for_phase,
     write,
 )
 
@@ -55,16 +55,16 @@ def touch(page: Page, words: str) -> None:
     page.mouse.click(box["x"] + 4, box["y"] + 26)
 
 
-def rest(page: Page) -> None:
+def switch_robot_off(page: Page) -> None:
     """Switch the virtual robot off."""
     world = page.input_value("#world")
     page.select_option("#world", "light" if world == "obstacles" else "obstacles")
-    in_phase(page, "off")
+    wait_for_phase(page, "off")
 
 
 def list_actions(page: Page) -> list[str]:
     """Return the virtual robot's actions, once it has ended."""
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     lines = (page.locator("#trace").text_content() or "").splitlines()
     return [line.partition(" ")[2] for line in lines]
 
@@ -97,12 +97,12 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
         ("forward", 0, 0), ("do", 1, 0), ("repeat", 2, 0), ("each time", 1, 0), ("new word", 1, 0),
         ("show", 0, 1),
     ):  # fmt: skip
-        rest(page)
+        switch_robot_off(page)
         touch(page, words)
         events = list_actions(page)
         assert sum(line.startswith("BEEP") for line in events) == sounds, (words, events)
         assert sum(line.startswith("SHOW") for line in events) == shows, (words, events)
-    rest(page)
+    switch_robot_off(page)
     box = box_of(page.locator(f"{PROGRAM} .blocklyBlock.sensor").first)
     page.mouse.click(box["x"] + 6, box["y"] + 4)
     assert any(line.startswith("SHOW") for line in list_actions(page))
@@ -127,17 +127,17 @@ def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
 def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> None:
     start(page, "SI|LOOP(FOREVER);\n  F(1, 80);\nEND_LOOP;\n")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     touch(page, "forward")
     page.wait_for_timeout(300)
     page.locator(f"{PROGRAM} .running").wait_for()
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.keyboard.press("Escape")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.click("#side_real")
     touch(page, "forward")
     page.wait_for_timeout(300)
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 @pytest.mark.sampled("way")
@@ -175,8 +175,8 @@ def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages
             "([x, y]) => document.elementFromPoint(x, y).closest('#blocks') !== null",
             [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2],
         )
-        in_phase(page, "running")
-        in_phase(page, "ended")
+        wait_for_phase(page, "running")
+        wait_for_phase(page, "ended")
         poses.append(page.locator("#where").text_content())
     assert len(set(poses)) == 3
     page.locator("html:not([data-peek])").wait_for(state="attached")
@@ -194,10 +194,10 @@ def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
     start(page, "SI|F(0.5, 60);\n")
     page.select_option("#world", "obstacles")
     page.select_option("#speed", "0.5")
-    in_phase(page, "off")
+    wait_for_phase(page, "off")
 
     def measure_distance() -> float:
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
         row = page.locator("#values div", has_text="distance").inner_text()
         return float(row.replace("distance sensor", "").split()[0])
 
@@ -212,7 +212,7 @@ def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
         places.append(measure_distance())
     assert places[0] > places[1] + 4 > places[2] + 8
     page.click("#run")
-    hears(page, lambda: measure_distance() == places[0], "the program begins at the start")
+    wait_for(page, lambda: measure_distance() == places[0], "the program begins at the start")
     start(page, "SI|F(5, 60);\n")
     page.hover("#blocks")
     for bumps in ("1", "1"):  # the robot does not pass through obstacles
@@ -241,7 +241,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     )
     page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="forward").click()
     page.locator(".blocklyMenuItem", has_text="turn left").click()
-    becomes(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
+    wait_for_text(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     evaluate_all_after = arrows.evaluate_all(ARROWS_SCRIPT)
     assert [evaluate_all_before[text] for text, _ in evaluate_all_after] == [
         drawn for _, drawn in evaluate_all_after
@@ -369,14 +369,14 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
         shade.evaluate("e => Promise.all(e.getAnimations().map((each) => each.finished))")
         assert axe(page, within=".blocklyDropDownDiv") == []
         piano.get_by_text(name, exact=True).click()
-        becomes(page, "SI|BEEP(0.5, 330);\nF(5, 80);\n")
+        wait_for_text(page, "SI|BEEP(0.5, 330);\nF(5, 80);\n")
         assert pitch(page, "330").text_content() == "330"  # the number as typed
         page.keyboard.press("Enter")
         pitch(page, f"{name} 330").first.click()
         piano.wait_for()
         piano.locator("button").last.click()  # higher
         piano.locator(".white").first.click()
-        becomes(page, "SI|BEEP(0.5, 523);\nF(5, 80);\n")
+        wait_for_text(page, "SI|BEEP(0.5, 523);\nF(5, 80);\n")
         page.keyboard.press("Escape")
     speak(page, "en")
 
@@ -389,14 +389,14 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
         page.locator(f"{PROGRAM} .blocklyField", has_text=new_text).last.click()
         page.locator(".blocklyWidgetDiv input").wait_for()
         page.keyboard.type(typed_text)
-        becomes(page, text.replace(new_text, typed_text))
+        wait_for_text(page, text.replace(new_text, typed_text))
         page.keyboard.press("Escape")
-        becomes(page, text)
+        wait_for_text(page, text)
     pitch(page).first.click()
     page.locator(".piano").get_by_text("E", exact=True).click()
-    becomes_other(page, text)
+    wait_for_other_text(page, text)
     page.keyboard.press("Escape")
-    becomes(page, text)
+    wait_for_text(page, text)
 
 
 @drawn
@@ -407,12 +407,12 @@ def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
-    becomes(page, "SI|BEEP(0.5, 466);\nS;\n")
+    wait_for_text(page, "SI|BEEP(0.5, 466);\nS;\n")
     page.locator(f"{PROGRAM} .blocklyNumberField", has_text="466").click()
     page.keyboard.press("Control+a")
     page.keyboard.type("1234")  # a frequency between piano notes stays
     page.keyboard.press("Enter")
-    becomes(page, "SI|BEEP(0.5, 1234);\nS;\n")
+    wait_for_text(page, "SI|BEEP(0.5, 1234);\nS;\n")
     assert pitch(page, "1234").text_content() == "1234"
 
 
@@ -473,7 +473,7 @@ def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
     page.mouse.up()
     page.locator(".blocklyFlyout:visible").wait_for(state="detached")
     assert page.input_value(".search input") == ""
-    becomes_other(page, "SI|S;\n")
+    wait_for_other_text(page, "SI|S;\n")
 
 
 # Whether no other pile covers the middle of a block.
@@ -499,7 +499,7 @@ def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     assert abs(box_of(value)["x"] - b["x"]) < 40  # the value lies on the hat, unattached
     page.mouse.click(b["x"] + 6, b["y"] + b["height"] - 8)
     page.locator("#blocks .alone").first.wait_for(state="attached")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert path_of(value).evaluate(IS_SEEN_SCRIPT)
 
 
@@ -552,7 +552,7 @@ def test_no_control_lies_over_a_block_of_a_program(page: Page, size: tuple[int, 
 # -- the keyboard alone ----------------------------------------------------------------------------
 
 
-def take(page: Page, words: str) -> None:
+def take_block(page: Page, words: str) -> None:
     """Look for a block with the keyboard, and take it."""
     page.locator(".search input").focus()
     page.keyboard.press("Control+a")
@@ -566,16 +566,18 @@ def take(page: Page, words: str) -> None:
 def test_a_block_that_keys_take_goes_where_the_focus_was(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\n")
     touch(page, "forward")
-    in_phase(page, "ended")
-    take(page, "wait")
-    becomes(page, "SI|F(1, 80);\nW(1);\nB(1, 80);\n")
+    wait_for_phase(page, "ended")
+    take_block(page, "wait")
+    wait_for_text(page, "SI|F(1, 80);\nW(1);\nB(1, 80);\n")
     assert "wait" in page.evaluate("document.activeElement.closest('.blocklyBlock').textContent")
-    take(page, "repeat forever")  # dropped below that block
-    becomes(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\nEND_LOOP;\nB(1, 80);\n")
-    take(page, "beep")  # into an empty place
-    becomes(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(0.5, 440);\nEND_LOOP;\nB(1, 80);\n")
-    take(page, "distance")  # a value into its first place
-    becomes(
+    take_block(page, "repeat forever")  # dropped below that block
+    wait_for_text(page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\nEND_LOOP;\nB(1, 80);\n")
+    take_block(page, "beep")  # into an empty place
+    wait_for_text(
+        page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(0.5, 440);\nEND_LOOP;\nB(1, 80);\n"
+    )
+    take_block(page, "distance")  # a value into its first place
+    wait_for_text(
         page, "SI|F(1, 80);\nW(1);\nLOOP(FOREVER);\n  BEEP(DISTANCE, 440);\nEND_LOOP;\nB(1, 80);\n"
     )
     wait_for_blocks(page)

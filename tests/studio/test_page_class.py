@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import join_class, teaches, wait_for_status
+from tests.support.class_pages import join_class, open_teacher_page, wait_for_status
 from tests.support.command import FOREVER
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import (
     Class,
     Pages,
     axe,
-    drives,
-    hears,
     image,
     speak,
+    start_drive,
+    wait_for,
     wait_for_note,
     wait_until_checked,
     write,
@@ -123,7 +123,7 @@ def first(shared_pages: Pages, shared_class: Class) -> Page:
 
 @pytest.fixture(scope="module")
 def teacher(shared_pages: Pages, shared_class: Class) -> Page:
-    return teaches(shared_pages, shared_class)
+    return open_teacher_page(shared_pages, shared_class)
 
 
 @pytest.fixture
@@ -145,7 +145,7 @@ def tile(teacher: Page, name: str) -> Locator:
     return teacher.locator("#wall li").filter(has_text=name)
 
 
-def only_ana(taught: Class) -> None:
+def remove_all_but_ana(taught: Class) -> None:
     """Remove the others, and their remains."""
     for pupil in taught.room.teach({"do": "class"})["pupils"]:
         if pupil["name"] != "Ana":
@@ -154,7 +154,7 @@ def only_ana(taught: Class) -> None:
         taught.room.teach({"do": "class_forget", "key": kept["key"]})
 
 
-def asks(page: Page) -> None:
+def click_ask(page: Page) -> None:
     page.click("[data-text=class_ask]")
 
 
@@ -163,15 +163,15 @@ def test_three_pupils_share_a_robot(
 ) -> None:
     luz, teo = (join_class(pages, shared_class, name) for name in ("Luz", "Teo"))
     big = teacher.locator("#big_pupil")
-    asks(ana)
+    click_ask(ana)
     wait_for_status(ana, "It is your turn. Nobody is waiting.")
     wait_for_link(ana, "Connected: ")
-    asks(luz)
+    click_ask(luz)
     wait_for_status(luz, "Your place in the queue: 1 of 1.")
-    asks(teo)
+    click_ask(teo)
     wait_for_status(teo, "Your place in the queue: 2 of 2.")
     wait_for_status(ana, "It is your turn. Time left: ")
-    drives(ana, robot)
+    start_drive(ana, robot)
     # A pupil stops only their own robot.
     luz.click("#stop")
     luz.keyboard.press("Escape")
@@ -194,11 +194,11 @@ def test_three_pupils_share_a_robot(
     teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
-    drives(ana, robot)
+    start_drive(ana, robot)
     big.locator("[data-text=stop]").click()
     robot.until(lambda: not robot.moves, "the teacher stops this one")
     time.sleep(LATCH_S)
-    drives(ana, robot)
+    start_drive(ana, robot)
     big.locator("[data-text=class_next]").click()
     robot.until(lambda: not robot.moves, "the turn is over")
     big.locator("[data-text=close]").click()
@@ -206,7 +206,7 @@ def test_three_pupils_share_a_robot(
     wait_for_link(luz, "Connected: ")
     luz.click("#link_leave")
     wait_for_link(teo, "Connected: ")
-    drives(teo, robot)
+    start_drive(teo, robot)
     teo.close()
     robot.until(lambda: not robot.moves, "a page that is closed stops it")
     luz.close()
@@ -218,7 +218,7 @@ def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
 ) -> None:
     for tear, times in ((lose_answer, 2), (refuse, 3)):
         tear_requests(ana, "connect", tear, times)
-        asks(ana)
+        click_ask(ana)
         if times == 3:  # most tries of the page itself
             ana.click("#class_pupil [data-text=link_connect]")
         wait_for_link(ana, "Connected: ")
@@ -274,7 +274,7 @@ def test_who_opens_the_address_of_a_class_joins_it_at_once(
             assert page.evaluate(IN_ONE_ROW_SCRIPT) == [True, True]
             page.click("#other")
     page.close()
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
 
 
 def test_a_wrong_code_is_said_and_a_pupil_is_removed(
@@ -328,7 +328,7 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_clas
     tile(teacher, "Eva").wait_for()
     teacher.evaluate(NO_TIMEOUT_SCRIPT)
     teacher.route("**/*", hold)
-    hears(teacher, lambda: late, "the wall looks")
+    wait_for(teacher, lambda: late, "the wall looks")
     tile(teacher, "Eva").hover()
     tile(teacher, "Eva").locator(".out").click()
     tile(teacher, "Eva").wait_for(state="detached")
@@ -367,14 +367,14 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Cl
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
     speak(teacher, "en")
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
 
 
 @drawn
 def test_a_picture_is_seen_large_while_the_next_one_is_made(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
     teacher.locator("#wall li:only-child img[src^=blob]").wait_for()
     teacher.evaluate(HOLD_PICTURES_SCRIPT)
     for language in ("es", "en"):  # each makes it anew
@@ -408,8 +408,8 @@ def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
     first: Page, pages: Pages, shared_class: Class
 ) -> None:
     """Therefore STOP ALL need not wait for it: `tools.bench.studio` measures the wait."""
-    teacher = teaches(pages, shared_class)
-    only_ana(shared_class)
+    teacher = open_teacher_page(pages, shared_class)
+    remove_all_but_ana(shared_class)
     picture = tile(teacher, "Ana").locator("img[src^=blob]")
     picture.wait_for()
     teacher.evaluate(MANUAL_CLOCK_SCRIPT)
@@ -444,19 +444,19 @@ COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
 @drawn
 def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
     """Whatever the page writes meanwhile, the newest is drawn then. Others have no wait."""
-    teacher = teaches(pages, shared_class)
-    only_ana(shared_class)
+    teacher = open_teacher_page(pages, shared_class)
+    remove_all_but_ana(shared_class)
     tile(teacher, "Ana").locator("img[src^=blob]").wait_for()
     teacher.evaluate(COUNT_DRAWINGS_SCRIPT)
     teacher.evaluate(MANUAL_CLOCK_SCRIPT)
 
-    def has(names: str, text: str, passed_ms: int = 0) -> bool:
+    def is_shown(names: str, text: str, passed_ms: int = 0) -> bool:
         teacher.evaluate(f"() => {{ window.now += {passed_ms}; }}")
         return text in teacher.evaluate(names)
 
     whole = "F(1, 51)"
 
-    def adds() -> str:
+    def add_line() -> str:
         """Write one line more, at once; return the whole."""
         nonlocal whole
         whole += "\nW(1)"
@@ -466,32 +466,32 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_clas
         return whole
 
     write(first, whole)
-    hears(teacher, lambda: has("drawn", whole, 1000), "what waits, and was written between")
+    wait_for(teacher, lambda: is_shown("drawn", whole, 1000), "what waits, and was written between")
     teacher.evaluate("() => { window.now += 1000; }")
-    newest = adds()
-    hears(teacher, lambda: has("drawn", newest), "after a second it is drawn at once")
+    newest = add_line()
+    wait_for(teacher, lambda: is_shown("drawn", newest), "after a second it is drawn at once")
     count_before = len(teacher.evaluate("drawn"))
     for _ in range(2):
-        newest = adds()
-        hears(teacher, partial(has, "told", newest), "it is told")
+        newest = add_line()
+        wait_for(teacher, partial(is_shown, "told", newest), "it is told")
     request = {"do": "join", "code": shared_class.room.code, "name": "Teo"}
     teo = shared_class.room.answer("", "192.0.2.7", request)["token"]
     shared_class.room.answer(teo, "192.0.2.7", {"do": "here", "text": "S", "robot": "tinibot"})
     tile(teacher, "Teo").locator("img[src^=blob]").wait_for()
     assert teacher.evaluate("drawn")[count_before:] == ["S"]
     teacher.evaluate("() => { window.now += 1000; }")
-    hears(teacher, lambda: has("drawn", newest), "the newest is drawn")
+    wait_for(teacher, lambda: is_shown("drawn", newest), "the newest is drawn")
     assert teacher.evaluate("drawn")[count_before:] == ["S", newest]
     teacher.close()
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
 
 
 def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
     ana: Page, teacher: Page, robot: PtyRobot
 ) -> None:
-    asks(ana)
+    click_ask(ana)
     wait_for_link(ana, "Connected: ")
-    drives(ana, robot)
+    start_drive(ana, robot)
     robot.switch_off()  # the robot hears nothing, but its port exists
     teacher.keyboard.press("Escape")
     red = teacher.locator("#stops .wrong")
@@ -504,7 +504,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
 
 @drawn
 def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
-    asks(ana)
+    click_ask(ana)
     wait_for_link(ana, "Connected: ")
     teacher.click("#class_settings")
     teacher.click("[data-text=class_take]")
@@ -521,7 +521,7 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
 @drawn
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
-    asks(ana)
+    click_ask(ana)
     wait_for_link(ana, "Nothing responds.")
     wait_for_status(ana, "You are in the class, ")
 
@@ -530,12 +530,12 @@ def test_everything_is_seen_and_axe_finds_nothing(
     ana: Page, teacher: Page, pages: Pages, shared_class: Class, pytestconfig: pytest.Config
 ) -> None:
     longest = join_class(pages, shared_class, "A" * 24)
-    asks(longest)
+    click_ask(longest)
     wait_for_link(longest, "Connected: ")
     longest.click("#class_hand")
     tile(teacher, "A" * 24).locator(".hand").wait_for()
     for page in (longest, teacher):
-        for width, height in some_of(pytestconfig, "screens of a class", SCREENS, 2):
+        for width, height in sample_of(pytestconfig, "screens of a class", SCREENS, 2):
             page.set_viewport_size({"width": width, "height": height})
             for language in ("en", "es"):
                 speak(page, language)
@@ -565,7 +565,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
     longest.evaluate(RAISE_HAND_SCRIPT)
     tile(teacher, "A" * 24).locator(".hand").wait_for()
     longest.close()
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
 
 
 def test_the_work_of_a_class_is_saved_opened_and_given_back(
@@ -613,7 +613,7 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     assert image(ana) == compile("F(1, 78)").image
     if teacher.locator("#class_giving[open]").count():
         teacher.click("#class_giving [data-text=close]")
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
 
 
 # The page receives the work, but its next requests are lost.
@@ -642,7 +642,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     wait_until_checked(ana)
     assert image(ana) == compile("F(1, 77)").image
     ana.click("#side_real")
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
 
 
 def opened_row(teacher: Page, name: str) -> Locator:
@@ -670,7 +670,7 @@ def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
     wait_for_status(page, "You are in the class, Noa.")
     assert tile(teacher, "Noa").count() == 1
     page.close()
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
     wrong = [error for error in pages.wrong if "403" not in error]
     assert wrong == []
     pages.wrong.clear()
@@ -681,7 +681,7 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
     """It is exactly that run: with its key presses, its program and its world."""
-    only_ana(shared_class)
+    remove_all_but_ana(shared_class)
     ana.reload()  # the page forgets the runs of other tests
     wait_until_checked(ana)
     play = tile(teacher, "Ana").locator(".play")
@@ -716,7 +716,7 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     write(ana, "F(1, 33)")
     ana.click("#my_programs")
     ana.click("#new")
-    teacher = teaches(pages, taught)
+    teacher = open_teacher_page(pages, taught)
     assert taught.server.entrances.token not in teacher.evaluate("location.href")
     teacher.click("#class_settings")
     if erases:

@@ -11,9 +11,9 @@ from tests.support.page_breakpoints import COUNTING_PROGRAM, press_margin
 from tests.support.page_robot import running, value, wait_for_running
 from tests.support.studio import (
     colors_of,
-    in_phase,
     wait_for_blocks,
     wait_for_note,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -50,7 +50,7 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
         wait_until_stopped(page, 5)
         assert running(page) == "SHOW(X * X)"
         page.click("#pause")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert value(page, "X") == "3"
     wanted_texts = [f"{event.ms} {event.text}" for event in run(COUNTING_PROGRAM).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
@@ -103,9 +103,9 @@ def test_one_line_has_several_breakpoints(page: Page) -> None:
     page.click("#run")
     for part in ("SHOW(2)", "SHOW(3)"):
         wait_for_running(page, part)
-        in_phase(page, "paused")
+        wait_for_phase(page, "paused")
         page.click("#pause")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 @drawn
@@ -139,9 +139,9 @@ def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> Non
     wait_until_stopped(page, 3)
     press_margin(page, 3)
     page.click("#pause")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.wait_for_timeout(200)
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
 
 
 @drawn
@@ -159,7 +159,7 @@ def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_
     page.keyboard.insert_text("SHOW(9);\n")
     wait_until_checked(page)
     page.click("#pause")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
     page.locator("#trace").filter(has_text="SHOW 1").wait_for(state="attached")
     assert "SHOW 2" not in (page.locator("#trace").text_content() or "")
     assert points(page) == 2
@@ -167,7 +167,7 @@ def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_
     press_margin(page, 6)
     page.click("#pause")
     page.locator("#trace").filter(has_text="SHOW 3").wait_for(state="attached")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.keyboard.press("Escape")
 
 
@@ -213,6 +213,6 @@ def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> 
     write(page, COUNTING_PROGRAM)
     page.click("#seen_plot")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     rows = {"11,79,158", "168,32,15", "13,96,64", "122,75,0", "91,42,134"}
     assert rows <= colors_of(page, "#plot")

@@ -13,7 +13,7 @@ from tests.studio import screens
 from tests.support import studio
 from tests.support.needs import need
 from tests.support.page_screens import LOOK, SCREENS
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import Pages, axe, enter, image, speak, wait_until_checked, write
 from tiniscript import check, compile
 from tiniscript.base.languages import SOURCE_LANGUAGE, languages
@@ -83,9 +83,9 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
     """At two sizes, others in each commit; the class is in `test_page_class.py`."""
-    usual = {screen: some_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
-    low = {screen: some_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
-    axed = {screen: some_of(pytestconfig, screen, usual[screen]) for screen in usual}
+    usual = {screen: sample_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
+    low = {screen: sample_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
+    axed = {screen: sample_of(pytestconfig, screen, usual[screen]) for screen in usual}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
@@ -136,23 +136,23 @@ def test_one_row_is_over_the_program_whatever_the_robots_name(page: Page, langua
 def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
     """The contrast is as good; a person's choice takes precedence, and is kept."""
 
-    def become(theme: str) -> None:
+    def wait_for_theme(theme: str) -> None:
         page.locator(f"html{THEMES[theme]}").wait_for(state="attached")
 
     page.set_viewport_size({"width": 1366, "height": 768})
     page.emulate_media(color_scheme="dark")
-    become("dark")
+    wait_for_theme("dark")
     write(page, "F(-2, 80)\nF(1, 20)")
     page.click("#home")
     page.click("#theme")
-    become("light")
+    wait_for_theme("light")
     page.emulate_media(color_scheme="light")
     page.click("#theme")
-    become("dark")
+    wait_for_theme("dark")
     assert page.get_attribute("#theme", "aria-pressed") == "true"
     page.evaluate("localStorage.setItem('tiniscript.theme', '<b>')")
     page.evaluate("dispatchEvent(new Event('storage'))")  # like an event from another tab
-    become("light")
+    wait_for_theme("light")
     page.evaluate("localStorage.removeItem('tiniscript.theme')")
     page.emulate_media(color_scheme="null")
     page.click("#start_write")

@@ -21,7 +21,7 @@ from tests.support.page_link import (
 from tests.support.page_robot import running
 from tests.support.pty_robot import PtyRobot
 from tests.support.silent_serial import SILENT_SERIAL
-from tests.support.studio import UPLOADS, Pages, enter, hears, wait_until_checked, write
+from tests.support.studio import UPLOADS, Pages, enter, wait_for, wait_until_checked, write
 from tiniscript import robots
 from tiniscript.flash.ready import title_of
 from tiniscript.studio import robot_link
@@ -57,7 +57,7 @@ def at_rest(page: Page, robot: PtyRobot) -> Iterator[None]:
     write(page, "W(0)")
 
 
-def put(page: Page, text: str, lines: tuple[int, ...]) -> None:
+def write_with_breakpoints(page: Page, text: str, lines: tuple[int, ...]) -> None:
     write(page, text)
     for line in lines:
         press_margin(page, line)
@@ -76,7 +76,7 @@ def state_of(page: Page, variables: int) -> tuple[str, list[str]]:
     return running(page), values[:variables]
 
 
-def walk(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list[str]]]:
+def list_halts(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list[str]]]:
     """Go from halt to halt, to the end; return the state at each. Repeated if a busy computer kept
     the page silent until its robot was stopped.
     """
@@ -94,7 +94,7 @@ def walk(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list
     raise AssertionError(f"stopped {UPLOADS} times")
 
 
-def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, list[str]]]:
+def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, list[str]]]:
     """Return the state of the virtual robot in the same form."""
     program = check(text.encode(), "tinibot", "en")
     rows = text.split("\n")
@@ -131,9 +131,9 @@ def virtual(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple[str, l
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, name: str) -> None:
     text, lines = PROGRAMS[name]
-    put(page, text, lines)
-    wanted = virtual(text, lines, steps=False)
-    assert walk(page, "#link_upload", "#link_go_on", text) == wanted
+    write_with_breakpoints(page, text, lines)
+    wanted = virtual_states(text, lines, steps=False)
+    assert list_halts(page, "#link_upload", "#link_go_on", text) == wanted
 
 
 @pytest.mark.sampled("name")
@@ -141,9 +141,9 @@ def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, na
 def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> None:
     """It begins at the first part. Two parts joined by the compiler are one step."""
     text, _ = PROGRAMS[name]
-    put(page, text, ())
-    wanted = [row for row in virtual(text, (), steps=True) if row[0] != "DISTANCE"]
-    assert walk(page, "#link_step", "#link_step", text) == wanted
+    write_with_breakpoints(page, text, ())
+    wanted = [row for row in virtual_states(text, (), steps=True) if row[0] != "DISTANCE"]
+    assert list_halts(page, "#link_step", "#link_step", text) == wanted
 
 
 def halts(page: Page, line: int) -> None:
@@ -154,7 +154,9 @@ def halts(page: Page, line: int) -> None:
 @drawn
 def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
     tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
-    put(page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,))
+    write_with_breakpoints(
+        page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,)
+    )
     page.click("#link_upload")
     halts(page, 13)
     assert page.locator("#link_values div").all_inner_texts() == [
@@ -171,7 +173,7 @@ LOOP_PROGRAM = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 @drawn
 def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
     """It stays while the text changes; a waiting or restarted program has it too."""
-    put(page, LOOP_PROGRAM, ())
+    write_with_breakpoints(page, LOOP_PROGRAM, ())
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
     press_margin(page, 4)
@@ -198,7 +200,7 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
 
 @drawn
 def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
-    put(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
+    write_with_breakpoints(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
     page.click("#link_upload")
     halts(page, 3)
     page.click("#link_go_on")
@@ -213,7 +215,7 @@ def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
 
 @drawn
 def test_a_robot_has_the_first_four(page: Page) -> None:
-    put(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
+    write_with_breakpoints(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
     page.click("#link_upload")
     note = page.locator("#link_breakpoints")
     assert "at the first 4" in note.inner_text()
@@ -259,7 +261,7 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     """No breakpoint is set yet. What it leaves out is said before anything is written, and another
     board or robot has no such firmware here."""
     monkeypatch.setattr(robot_link, "BREAKPOINTS", 0)
-    leave(page)
+    leave_link(page)
     other = pages.blank(is_alone=True)
     rows = [
         {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
@@ -302,20 +304,20 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     connect(page, robot)
 
 
-def leave(page: Page) -> None:
+def leave_link(page: Page) -> None:
     page.click("#link_leave")
     page.locator("html[data-robot=none]").wait_for(state="attached")
 
 
 def connect_again(page: Page, robot: PtyRobot) -> None:
-    leave(page)
+    leave_link(page)
     connect(page, robot)
 
 
 @pytest.mark.sampled("how", keep=2)
 @pytest.mark.parametrize("how", ["stop", "Escape", "button", "restart"])
 def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how: str) -> None:
-    put(page, LOOP_PROGRAM, (4,))
+    write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     page.click("#link_upload")
     halts(page, 4)
     if how == "stop":
@@ -337,7 +339,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     page: Page, robot: PtyRobot, what: str
 ) -> None:
     """Its places come between the program and its start."""
-    put(page, LOOP_PROGRAM, (4,))
+    write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     count_before = len(robot.actions)
     pressed: list[bool] = []
 
@@ -353,7 +355,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
 
     page.route("**/robots", press)
     page.click("#link_upload")
-    hears(page, lambda: pressed, "it is on its way")
+    wait_for(page, lambda: pressed, "it is on its way")
     wait_for_message(page, re.compile("Stopped: |stopped"))
     page.wait_for_timeout(1000)
     page.unroute_all(behavior="wait")
@@ -362,7 +364,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
 
 @pytest.mark.long
 def test_a_recording_of_a_halted_program_is_as_long_as_one_that_was_not(page: Page) -> None:
-    put(page, "SHOW(1);\nW(0.3);\nSHOW(2);\nW(0.3);\nSHOW(3)", (3,))
+    write_with_breakpoints(page, "SHOW(1);\nW(0.3);\nSHOW(2);\nW(0.3);\nSHOW(3)", (3,))
     page.click("#link_upload")
     halts(page, 3)
     page.wait_for_timeout(2500)

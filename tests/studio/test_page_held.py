@@ -14,7 +14,7 @@ from tests.support import studio
 from tests.support.node import in_node
 from tests.support.page_link import wait_for_message
 from tests.support.silent_serial import SILENT_SERIAL
-from tests.support.studio import Pages, enter, hears, wait_until_checked
+from tests.support.studio import Pages, enter, wait_for, wait_until_checked
 from tiniscript.studio import serving
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     held_robot = Held(page, f"**/{FILE}")
     for count, ends in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
-        hears(page, partial(held_robot.has, count), "it is fetched")
+        wait_for(page, partial(held_robot.has, count), "it is fetched")
         wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         wait_for_message(page, "The firmware has not arrived.")
@@ -117,7 +117,7 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     held_robot = Held(page, "**/esp32-*.js")
     for _ in range(2):
         page.click("#flash_write")
-        hears(page, lambda: held_robot.routes, "it is fetched")
+        wait_for(page, lambda: held_robot.routes, "it is fetched")
         wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         wait_for_message(page, "The firmware has not arrived.")
@@ -133,17 +133,17 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     page = with_serial(pages, server)
     for count in (1, 2):
         page.click("#link_serial")
-        hears(page, lambda: page.evaluate("window.port.isOpen"), "it is open")
+        wait_for(page, lambda: page.evaluate("window.port.isOpen"), "it is open")
         wait_for_message(page, "Connecting")
-        hears(page, lambda: page.locator("#link_ways").is_visible(), "it is given up")
+        wait_for(page, lambda: page.locator("#link_ways").is_visible(), "it is given up")
         wait_for_message(page, STUCK_PORT_MESSAGE)
-        hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
+        wait_for(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
         assert page.evaluate("window.port.opened") == count
     page.click("#flash_write")
     wait_for_message(page, "Writing and verifying the firmware")
     page.click("#flash_cancel")
     wait_for_message(page, "Cancelled. Nothing was written")
-    hears(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
+    wait_for(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
 
 
 @drawn
@@ -232,13 +232,13 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
         def is_told(begin: Locator = begin, word: Locator = word) -> bool:
             return word.first.is_visible() or begin.count() > 0
 
-        def goes_on(begin: Locator = begin, running: Locator = running) -> bool:
+        def continues(begin: Locator = begin, running: Locator = running) -> bool:
             if begin.count():
                 begin.click()  # a busy page may miss the first one
             return is_told(running)
 
-        hears(page, is_told, name)
-        hears(page, goes_on, name)
+        wait_for(page, is_told, name)
+        wait_for(page, continues, name)
         held_robot.let_go()
         if not page.locator("html[data-screen=program]").count():
             page.click(BEGIN_BUTTON)
@@ -284,7 +284,9 @@ def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: P
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="Press STOP to cancel.").wait_for()
     page.click("#stop")
-    hears(page, lambda: "compiler" not in page.locator("#doing").inner_text(), "it waits no more")
+    wait_for(
+        page, lambda: "compiler" not in page.locator("#doing").inner_text(), "it waits no more"
+    )
     held_robot.let_go()
     wait_until_checked(page)
     page.wait_for_timeout(300)
@@ -311,9 +313,9 @@ def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) 
         enter(page, server.entrance())
         held_robot = Held(page, "**/robots")
         page.keyboard.press("Escape")
-        hears(page, lambda: held_robot.routes, "it is asked")
+        wait_for(page, lambda: held_robot.routes, "it is asked")
         page.clock.fast_forward(3100)
         locator = page.locator("#stops")
         locator.filter(has_text="STOP did not reach tsc studio.").wait_for(state="attached")
         page.context.unroute_all()
-        hears(page, lambda: page.locator("#stops").is_hidden(), "it is heard: there is no robot")
+        wait_for(page, lambda: page.locator("#stops").is_hidden(), "it is heard: there is no robot")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_blocks import drag, list_offered_blocks, start
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import SETTLED_SCRIPT, Pages, axe, speak, wait_for_blocks
 from tests.support.text_only_words import has_line_on_floor, text_only_words
 from tiniscript.base.words import WORDS
@@ -76,7 +76,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
         kinds[level] = list_offered_blocks(page)
     page.select_option("#level", "few")
     level = "few"
-    for number in some_of(pytestconfig, "levels of lessons", LESSONS, 4):
+    for number in sample_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed_names = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
         least = next(level for level in LEVELS if needed_names <= kinds[level] | {"set"})
@@ -196,7 +196,7 @@ def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
     speak(page, language)
     wait_for_blocks(page)
     count = 0
-    lessons = some_of(pytestconfig, "words of lessons", LESSONS, 4)
+    lessons = sample_of(pytestconfig, "words of lessons", LESSONS, 4)
     for number in lessons:
         open_lesson(page, number)
         is_line_on_floor = has_line_on_floor(number)

@@ -10,17 +10,17 @@ import pytest
 
 from tests.support.page_lessons import check_answer, choose_lesson
 from tests.support.page_robot import wait_for_nothing_running, wait_for_running
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
     axe,
     colors_of,
-    hears,
-    in_phase,
     speak,
     turn,
+    wait_for,
     wait_for_note,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -53,7 +53,10 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, pa
         _, wrong = catalogue.answers(folder)
         choose_lesson(page, number)
         verdict = check_answer(page, wrong[0].program)
-        assert verdict == ("failed", [wrong[0].sentence_by_language["en"], *rest(page)]), number
+        assert verdict == (
+            "failed",
+            [wrong[0].sentence_by_language["en"], *later_sentences(page)],
+        ), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
 
@@ -70,7 +73,7 @@ def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
     assert page.inner_text("#lesson_stars") == "★" * lesson.world_count
 
 
-def rest(page: Page) -> list[str]:
+def later_sentences(page: Page) -> list[str]:
     """Return the sentences after the first one, if any."""
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
@@ -110,7 +113,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     page.select_option("#speed", "1")
     page.click("#lesson_check")
     page.locator("#lesson_said", has_text="Watch what the robot does").wait_for(state="attached")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     assert page.locator("#arena").is_visible()
     assert page.locator("#lesson_said[data-verdict]").count() == 0
     page.locator("#lesson_said[data-verdict=failed]").wait_for()
@@ -138,7 +141,7 @@ def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Conf
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
     page.select_option("#speed", "1")
     ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
-    for view, end in some_of(pytestconfig, "ends of a run", ends, 2):
+    for view, end in sample_of(pytestconfig, "ends of a run", ends, 2):
         page.click(view)
         page.click("#lesson_check")
         page.locator("#lesson_end", has_text="Skip").wait_for()
@@ -264,7 +267,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     assert page.locator("#world option:checked").inner_text().startswith("Lección 12, mundo ")
     wait_until_checked(page)
     page.click("#step")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
     page.locator("#values dd").first.filter(has_text=" s").wait_for()
     page.keyboard.press("Escape")
     page.click("#side_virtual")
@@ -318,7 +321,7 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
     assert check_answer(page, right[0].program)[0] == "passed"
     assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
     counts = (0, 2, len(FOLDERS))
-    for count in some_of(
+    for count in sample_of(
         pytestconfig, "lessons done", counts
     ):  # continues with the first unfinished one
         names = json.dumps([folder.name for folder in FOLDERS[:count]])
@@ -385,7 +388,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     lesson = catalogue.load(FOLDERS[number - 1])
     wait_for_note(page, "Your program is kept, and comes back after the lesson.")
     page.locator("#lesson:enabled").wait_for()
-    hears(page, lambda: page.input_value("#robot") == lesson.robot, "its robot")
+    wait_for(page, lambda: page.input_value("#robot") == lesson.robot, "its robot")
     page.locator(".cm-content", has_text=own).wait_for(state="detached")
     wait_until_checked(page)
     assert page.locator("#messages li").count() == 0
@@ -424,7 +427,7 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     write(page, right[0].program)
     page.select_option("#speed", "1")
     page.click("#lesson_check")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.click("#home")
     page.locator("html[data-screen=start]").wait_for(state="attached")
     page.evaluate(SETTLED_SCRIPT)

@@ -27,17 +27,17 @@ from tests.support.page_link import (
 from tests.support.page_robot import running, wait_for_nothing_running, wait_for_running
 from tests.support.page_screens import LOOK, SCREENS
 from tests.support.pty_robot import PtyRobot
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.studio import (
     LONGEST_HANG_MS,
     Pages,
     axe,
-    drives,
     enter,
     hang,
-    hears,
     speak,
+    start_drive,
     turn,
+    wait_for,
     wait_for_blocks,
     wait_until_checked,
     write,
@@ -82,7 +82,7 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
 
 
 def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     robot.switch_off()
     robot.switch_on()
     wait_for_message(page, "The robot restarted, which ended its program.")
@@ -96,7 +96,7 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     """It stops by its button, by a key in the editor, and while the virtual robot is shown."""
     for way in ("button", "Escape", "virtual"):
-        drives(page, robot)
+        start_drive(page, robot)
         if way == "Escape":
             page.locator(".cm-content").focus()
             page.keyboard.press("Escape")
@@ -111,12 +111,12 @@ def test_stop_stops(page: Page, robot: PtyRobot) -> None:
 def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     first: tuple[Pages, Page], page: Page, robot: PtyRobot
 ) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     began_ms = robot.robot_ms
     hang(page, LONGEST_HANG_MS)
     assert robot.stands_after_ms(began_ms) < 0.9 * LONGEST_HANG_MS
     wait_for_message(page, "Stopped")  # the page shows it after reconnecting
-    drives(page, robot)
+    start_drive(page, robot)
     page.evaluate(
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
         "document.dispatchEvent(new Event('visibilitychange'))"
@@ -124,7 +124,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     robot.until(lambda: not robot.moves, "it stands")
     wait_for_message(page, "this page was hidden")
     page.evaluate("delete document.visibilityState")
-    drives(page, robot)
+    start_drive(page, robot)
     page.context.set_offline(True)
     robot.until(lambda: not robot.moves, "it stands")
     wait_for_message(page, "tsc studio has stopped responding")
@@ -141,7 +141,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
     other.locator("#link_port option").first.wait_for(state="attached")
     other.click("#link_connect")
     wait_for_message(other, "Another tab of this browser is driving this robot.")
-    drives(page, robot)
+    start_drive(page, robot)
     other.click("#stop")  # anyone who sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
     other.close()
@@ -187,7 +187,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
 def test_everything_is_seen_and_axe_finds_nothing(
     page: Page, robot: PtyRobot, pytestconfig: pytest.Config
 ) -> None:
-    screens = some_of(pytestconfig, "screens of a link", SCREENS, 2)
+    screens = sample_of(pytestconfig, "screens of a link", SCREENS, 2)
     for is_connected in (True, False):
         for language, (width, height) in product(("en", "es"), screens):
             page.set_viewport_size({"width": width, "height": height})
@@ -250,7 +250,7 @@ def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> 
 
 
 def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     write(page, "F(2, 80")
     with page.expect_request(lambda request: '"do":"stop"' in (request.post_data or "")):
         page.click("#link_upload")
@@ -270,7 +270,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
         either.click("#side_real")
         assert either.locator("#link_ports").is_visible() is has_robots
     connect(first, robot)
-    drives(first, robot)
+    start_drive(first, robot)
     began_ms = robot.robot_ms
     first.close()
     assert robot.stands_after_ms(began_ms) < 0.9 * LONGEST_HANG_MS
@@ -322,7 +322,7 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
     upload_until_it_runs(page)
     shown_element.filter(has_text="NEAR 4").wait_for()
     page.route("**/robots", hold)
-    hears(page, lambda: len(late) > 2, "values are held back")
+    wait_for(page, lambda: len(late) > 2, "values are held back")
     write(page, "FAR = 4;\nLOOP(FOREVER);\nSHOW(FAR);\nW(0.1);\nEND_LOOP")
     upload_until_it_runs(page)
     shown_element.filter(has_text="FAR 4").wait_for()
@@ -486,7 +486,7 @@ def upload_until_told(page: Page, at: int) -> None:
 
     page.route("**/robots", change_places)
     page.click("#link_upload")
-    hears(page, lambda: places, "a place is told")
+    wait_for(page, lambda: places, "a place is told")
     page.unroute_all(behavior="wait")
     page.wait_for_timeout(200)
 

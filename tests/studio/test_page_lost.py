@@ -11,7 +11,7 @@ import pytest
 from tests.support.command import FOREVER
 from tests.support.page_link import KIT, connect, wait_for_message
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, drives, hang, hears, wait_until_checked, write
+from tests.support.studio import Pages, hang, start_drive, wait_for, wait_until_checked, write
 from tests.support.torn_requests import lose_answer, refuse, tear_requests
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -72,10 +72,10 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
 def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):
-        drives(page, robot)
+        start_drive(page, robot)
         torn = tear_requests(page, "stop", lambda route: route.abort(), times=9)
         page.click("#stop")
-        hears(page, lambda: not robot.moves, "it stands")
+        wait_for(page, lambda: not robot.moves, "it stands")
         wait_for_message(page, CONFIRMED_MESSAGE)
         assert torn
         page.unroute_all(behavior="wait")
@@ -84,9 +84,9 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
 @drawn
 def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
-    drives(page, robot)
+    start_drive(page, robot)
     torn = tear_requests(page, "beat", refuse, times=2)
-    hears(page, lambda: len(torn) == 2, "they are refused")
+    wait_for(page, lambda: len(torn) == 2, "they are refused")
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
     torn = tear_requests(page, "beat", refuse, times=1000)  # a failure that lasts is reported
@@ -102,7 +102,7 @@ def test_a_connect_that_is_lost_comes_again(
     torn = tear_requests(page, "connect", tear)
     connect(page, robot)
     assert len(torn) == 1
-    drives(page, robot)
+    start_drive(page, robot)
 
 
 @drawn
@@ -159,7 +159,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     page: Page, robot: PtyRobot, way: str
 ) -> None:
     connect(page, robot)
-    drives(page, robot)
+    start_drive(page, robot)
     page.evaluate(LISTENING_SCRIPT)
     mute = Mute(page, "STOPPED")
 
@@ -170,13 +170,13 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
             page.evaluate(VISIBILITY_SCRIPT, "hidden")
 
     stop()
-    hears(page, lambda: mute.withheld, "it has stopped")
+    wait_for(page, lambda: mute.withheld, "it has stopped")
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
     wait_for_message(page, HIDDEN_MESSAGE if way == "hidden" else CONFIRMED_MESSAGE)
     mute.is_open = False
     page.evaluate(VISIBILITY_SCRIPT, "visible")
-    drives(page, robot)
+    start_drive(page, robot)
     page.evaluate(LISTENING_SCRIPT)
     stop()
     page.keyboard.press("Escape")  # this is the same stop
@@ -190,15 +190,15 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
 def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
-        drives(page, robot)
+        start_drive(page, robot)
         mute = Mute(page, "STOPPED")
         page.evaluate(LISTENING_SCRIPT)
         page.dblclick("#stop")
-        hears(page, partial(mute.keeps, True), "it has stopped")
+        wait_for(page, partial(mute.keeps, True), "it has stopped")
         page.wait_for_timeout(300)  # waits for a second stop request, if there is one
         mute.is_open = True
         wait_for_message(page, CONFIRMED_MESSAGE)
-        hears(page, partial(mute.keeps, False), "all is told")
+        wait_for(page, partial(mute.keeps, False), "all is told")
         page.wait_for_timeout(300)
         page.unroute_all(behavior="wait")
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
@@ -210,16 +210,16 @@ def test_who_presses_five_times_stops_once_more_and_is_told_once(
 ) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
-    drives(page, robot)
+    start_drive(page, robot)
     torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)
     page.evaluate(LISTENING_SCRIPT)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
     wait_for_message(page, CONFIRMED_MESSAGE)
-    hears(page, lambda: torn, "they are lost")
+    wait_for(page, lambda: torn, "they are lost")
     page.wait_for_timeout(300)
     assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
     page.unroute_all(behavior="wait")
-    drives(page, robot)
+    start_drive(page, robot)
     page.wait_for_timeout(700)  # beats have arrived since
     assert robot.moves
 
@@ -229,13 +229,13 @@ def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot
 ) -> None:
     for has_come in (False, True):
         connect(page, robot)
-        drives(page, robot)
+        start_drive(page, robot)
         tear_requests(
             page, "stop", lose_answer if has_come else lambda route: route.abort(), times=99
         )
         page.click("#stop")
         page.reload()
-        hears(page, lambda: not robot.moves, "it stands")
+        wait_for(page, lambda: not robot.moves, "it stands")
         page.unroute_all(behavior="wait")
         wait_until_checked(page)
         page.click("#side_real")
@@ -243,7 +243,7 @@ def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot
 
 def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
-    drives(page, robot)
+    start_drive(page, robot)
     robot.switch_off()
     page.evaluate(LISTENING_SCRIPT)
     page.click("#stop")
@@ -288,7 +288,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
 ) -> None:
     connect(page, robot)
     torn = tear_requests(page, "beat", lambda route: route.abort(), times=1)
-    hears(page, lambda: torn, "a beat is lost")
+    wait_for(page, lambda: torn, "a beat is lost")
     page.unroute_all(behavior="wait")
     hang(page, round(1000 * LEFT_S) + 500)
     wait_for_message(page, "tsc studio heard nothing from this page for a while")
@@ -299,7 +299,7 @@ def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
-    drives(page, robot)
+    start_drive(page, robot)
     Mute(page, "STOPPED", "LOST")
     page.evaluate(LISTENING_SCRIPT)
     page.click("#stop")

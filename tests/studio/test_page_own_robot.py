@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import join_class, teaches
+from tests.support.class_pages import join_class, open_teacher_page
 from tests.support.noted_effects import NOTE_EFFECTS
 from tests.support.page_lessons import check_answer, choose_lesson
-from tests.support.studio import Pages, axe, colors_of, enter, hears, in_phase, write
+from tests.support.studio import Pages, axe, colors_of, enter, wait_for, wait_for_phase, write
 from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ CONFETTI = "window.fell = 0; new MutationObserver((all) => { for (const {addedNo
     ".observe(document.body, {childList: true})"  # fmt: skip
 
 
-def names(page: Page, name: str, colour: int) -> None:
+def name_robot(page: Page, name: str, colour: int) -> None:
     """Enter a name and choose a colour, as a person does."""
     page.click("#home")
     page.click("#start_own")
@@ -46,7 +46,7 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     page = pages.open()
     assert GREEN_COLOUR in colors_of(page, "#arena")
     text_before = page.inner_text("#doing")
-    names(page, "  Pip ", 3)
+    name_robot(page, "  Pip ", 3)
     drawn = page.evaluate("getComputedStyle(document.querySelector('#drawn_robot path')).fill")
     assert drawn == f"rgb({PINK_COLOUR.replace(',', ', ')})"
     assert page.inner_text("#start_own").split() == ["Your", "robot", "Pip"]
@@ -92,12 +92,12 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
     page = pages.open()
     traces = []
     for name in ("", "Pip"):
-        names(page, name, len(name))
+        name_robot(page, name, len(name))
         enter(page, page.url)
         page.click("#view_text")
         write(page, "F(0.5, 80);R(0.3, 50);SHOW(DISTANCE)")
         page.click("#run")
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
         traces.append(page.locator("#trace").text_content())
     assert traces[0] == traces[1] and "SHOW" in str(traces[0])
 
@@ -139,14 +139,14 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
 def test_the_teacher_sees_whose_robot_is_whose(browser: Browser) -> None:
     with studio.serve_class([]) as class_:
         pages = Pages(browser, class_.server.address)
-        teacher, pupil = teaches(pages, class_), join_class(pages, class_, "Ana")
+        teacher, pupil = open_teacher_page(pages, class_), join_class(pages, class_, "Ana")
         pupil.click("#class_pupil [data-text=own_robot]")
         pupil.fill("#own_name", "<b>Pip")
         pupil.locator("#own [role=radiogroup] label").nth(3).click()
         tile = teacher.locator("#wall li").filter(has_text="Ana · <b>Pip")
         tile.wait_for()
         look = "getComputedStyle(document.querySelector('#wall .own_robot')).getPropertyValue"
-        hears(
+        wait_for(
             teacher,
             lambda: teacher.evaluate(f"{look}('--robot')") == "#d0468f",
             "it has its colour",

@@ -15,11 +15,11 @@ from tests.support.studio import (
     UPLOADS,
     Pages,
     axe,
-    hears,
-    in_phase,
     speak,
     turn,
+    wait_for,
     wait_for_blocks,
+    wait_for_phase,
     write,
 )
 from tiniscript import robots
@@ -76,7 +76,7 @@ def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, 
     """One finger drives, another one may hold A; releasing it stops the robot."""
     page = pages.visit(pages.entrance(), "start", viewport=size, has_touch=True)
     page.click("[data-begin=drive]")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("#pad_stick").wait_for()
     assert page.locator("#pad button:visible").all_inner_texts() == ["A"]
     for place in ("#pad_stick", "#pad button:visible", "#arena", "#stop"):
@@ -88,21 +88,21 @@ def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, 
     fingers = Fingers(page)
     fingers.are("touchStart", (x, y))
     fingers.are("touchMove", (x, y - 200))
-    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
+    wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     fingers.are("touchStart", (x, y - 200), a)
-    hears(page, lambda: any("BEEP 440" in line for line in trace(page)), "it beeps")
+    wait_for(page, lambda: any("BEEP 440" in line for line in trace(page)), "it beeps")
     fingers.are("touchEnd")
-    hears(page, lambda: read_motor_powers(page) == "0 0", "it stands")
+    wait_for(page, lambda: read_motor_powers(page) == "0 0", "it stands")
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives by a key")
+    wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives by a key")
     page.keyboard.down("ArrowRight")
-    hears(page, lambda: read_motor_powers(page) in ("142 0", "100 0"), "it turns")
+    wait_for(page, lambda: read_motor_powers(page) in ("142 0", "100 0"), "it turns")
     page.evaluate("dispatchEvent(new Event('blur'))")
-    hears(page, lambda: read_motor_powers(page) == "0 0", "nobody presses it")
+    wait_for(page, lambda: read_motor_powers(page) == "0 0", "nobody presses it")
     turn(page, "program")
     wait_for_blocks(page)
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert not page.locator("#pad").is_visible()
 
 
@@ -122,33 +122,35 @@ def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: 
     page = pages.open()
     write(page, STICK_PROGRAM)
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("#pad_stick").wait_for()
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
+    wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.click("#pause")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
     page.keyboard.up("ArrowUp")
     page.click("#pause")
-    in_phase(page, "running")
-    hears(page, lambda: read_motor_powers(page) == "0 0", "what was let go meanwhile is not held")
+    wait_for_phase(page, "running")
+    wait_for(
+        page, lambda: read_motor_powers(page) == "0 0", "what was let go meanwhile is not held"
+    )
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
+    wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("#pad_stick").wait_for()
-    hears(page, lambda: read_motor_powers(page) == "0 0", "it is pressed anew first")
+    wait_for(page, lambda: read_motor_powers(page) == "0 0", "it is pressed anew first")
     page.keyboard.up("ArrowUp")
     page.keyboard.down("ArrowUp")
-    hears(page, lambda: read_motor_powers(page) == "100 100", "it drives")
+    wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.select_option("#speed", "20")
     since = trace(page)[-1]
-    hears(page, lambda: since not in trace(page), "it goes on, at each speed")
+    wait_for(page, lambda: since not in trace(page), "it goes on, at each speed")
     assert not any(line.endswith("MOTORS 0 0") for line in trace(page))
     page.keyboard.up("ArrowUp")
-    hears(page, lambda: read_motor_powers(page) == "0 0", "it stands")
+    wait_for(page, lambda: read_motor_powers(page) == "0 0", "it stands")
 
 
 @drawn
@@ -195,18 +197,18 @@ def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
     page.locator("#lesson_name").filter(has_not_text=first or "?").wait_for(state="attached")
     page.locator("#lesson_steps button").last.click()
     page.click("#run")  # the own run
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("[data-key=KEY_UP]").wait_for()
     page.click("#lesson_check")
-    hears(page, lambda: read_motor_powers(page) == "60 60", "the judge presses")
+    wait_for(page, lambda: read_motor_powers(page) == "60 60", "the judge presses")
     assert not page.locator("#pad").is_visible()
     page.locator("#lesson_said[data-verdict]").wait_for()
     assert "KEY_RIGHT" in page.locator("#lesson_findings").inner_text()
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert not page.locator("#pad").is_visible()
 
 
-def drives_by(
+def press_until_driven(
     page: Page, robot: PtyRobot, press: Callable[[], None], let_go: Callable[[], None],
     least_ms: int = 0,
 ) -> None:  # fmt: skip
@@ -223,7 +225,7 @@ def drives_by(
             has_driven = robot.moves and robot.robot_ms >= began_ms + least_ms
             return has_driven or "Stopped: " in word.inner_text()
 
-        hears(page, is_over, "it drives or is stopped")
+        wait_for(page, is_over, "it drives or is stopped")
         if "Stopped: " not in word.inner_text():
             return
         let_go()
@@ -251,23 +253,23 @@ def test_a_real_robot_is_driven_and_stands_when_the_page_is_not_seen(pages: Page
         def press() -> None:
             page.keyboard.down("ArrowUp")
 
-        def let_go() -> None:
+        def release_key() -> None:
             page.keyboard.up("ArrowUp")
 
-        drives_by(page, robot, touch, lift, least_ms=2000)
+        press_until_driven(page, robot, touch, lift, least_ms=2000)
         lift()
-        hears(page, lambda: not robot.moves, "it stands")
-        drives_by(page, robot, press, let_go)
+        wait_for(page, lambda: not robot.moves, "it stands")
+        press_until_driven(page, robot, press, release_key)
         page.keyboard.press("Escape")
-        hears(page, lambda: not robot.moves, "it is stopped")
+        wait_for(page, lambda: not robot.moves, "it is stopped")
         wait_for_message(page, "Stopped")
         page.click("#link_start")
         wait_for_message(page, "It is running")
         since_ms = robot.robot_ms
-        hears(page, lambda: robot.robot_ms > since_ms + 700, "time goes by")
+        wait_for(page, lambda: robot.robot_ms > since_ms + 700, "time goes by")
         assert not robot.moves, "it is pressed anew first"
-        let_go()
-        drives_by(page, robot, press, let_go)
+        release_key()
+        press_until_driven(page, robot, press, release_key)
         page.click("#link_leave")
-        hears(page, lambda: not robot.moves, "nobody is there")
+        wait_for(page, lambda: not robot.moves, "nobody is there")
         assert not page.locator("#pad").is_visible()

@@ -13,11 +13,11 @@ from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
     axe,
-    hears,
-    in_phase,
     speak,
     turn,
+    wait_for,
     wait_for_blocks,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -63,7 +63,7 @@ def phone(page: Page) -> Iterator[Page]:
     page.click("#view_text")
 
 
-def half(page: Page) -> str:
+def shown_half(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.half"))
 
 
@@ -87,7 +87,7 @@ def test_the_messages_can_be_put_away(phone: Page) -> None:
         assert not phone.locator("#messages li").is_visible()
     assert axe(phone) == []
     phone.click("#run")  # shows the reason
-    assert half(phone) == "program"
+    assert shown_half(phone) == "program"
     assert phone.locator("#messages li").is_visible()
     phone.click("#sheet")
     write(phone, "S")  # once it is corrected, the next mistake is reported
@@ -103,13 +103,13 @@ def test_run_and_stop_are_on_both_screens(phone: Page, size: tuple[int, int]) ->
     for where in ("program", "robot"):
         turn(phone, "program")
         phone.click("#run")
-        in_phase(phone, "running")
-        assert half(phone) == "robot"
+        wait_for_phase(phone, "running")
+        assert shown_half(phone) == "robot"
         assert phone.locator("#arena").is_visible() and not phone.locator("#writing").is_visible()
         turn(phone, where)
         phone.click("#stop")
-        in_phase(phone, "ended")
-        assert half(phone) == where
+        wait_for_phase(phone, "ended")
+        assert shown_half(phone) == where
 
 
 def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) -> None:
@@ -129,7 +129,7 @@ def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) ->
     assert phone.locator("#link").is_visible()
     phone.click("#side_virtual")
     phone.click("#run")
-    in_phase(phone, "running")
+    wait_for_phase(phone, "running")
 
 
 @drawn
@@ -138,14 +138,14 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
     assert page.locator("#bar button:visible").evaluate_all("all => all.map(e => e.id)") == ["stop"]
     page.tap("[data-begin=dance]")
-    in_phase(page, "running")
-    assert half(page) == "robot" and page.locator("#arena").is_visible()
+    wait_for_phase(page, "running")
+    assert shown_half(page) == "robot" and page.locator("#arena").is_visible()
     page.tap("#home")
     page.tap("#start_lessons")
     assert page.locator("#lesson_page").is_visible()
     page.tap("#home")
     page.tap("#start_write")
-    assert half(page) == "program" and page.locator("#writing").is_visible()
+    assert shown_half(page) == "program" and page.locator("#writing").is_visible()
     page.tap("#home")
     page.set_viewport_size({"width": 1366, "height": 768})
     page.locator("html:not([data-phone])").wait_for(state="attached")
@@ -161,7 +161,7 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
 def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.click("#run")
-    in_phase(phone, "running")
+    wait_for_phase(phone, "running")
     for width, height in ((844, 390), (390, 844), (844, 390)):
         phone.set_viewport_size({"width": width, "height": height})
         phone.evaluate(SETTLED_SCRIPT)
@@ -172,7 +172,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
         assert phone.evaluate("document.documentElement.dataset.phase") == "running"
     phone.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
     phone.click("#stop")
-    in_phase(phone, "ended")
+    wait_for_phase(phone, "ended")
 
 
 TRANSPARENT = "rgba(0, 0, 0, 0)"
@@ -351,18 +351,18 @@ def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language:
         "all => all.every((e) => e.scrollWidth <= e.clientWidth)"
     )
     phone.dblclick("#run")  # a double click, as children do
-    in_phase(phone, "running")
-    hears(phone, lambda: not phone.locator("#run").is_visible(), "STOP in its place")
+    wait_for_phase(phone, "running")
+    wait_for(phone, lambda: not phone.locator("#run").is_visible(), "STOP in its place")
     for step in ("program", "robot", "paused"):
         phone.click("#pause") if step == "paused" else turn(phone, step)
         if step == "paused":
-            in_phase(phone, "paused")
+            wait_for_phase(phone, "paused")
         now = boxes()
         assert now["stop"]["width"] > 0.75 * 390
         assert now["run"] == boxes_before["run"], "nothing moves"
         assert axe(phone, within="#bar") == []
     phone.click("#stop")
-    in_phase(phone, "ended")
+    wait_for_phase(phone, "ended")
     turn(phone, "program")
     assert boxes() == boxes_before
     speak(phone, "en")

@@ -30,8 +30,8 @@ from tests.support.studio import (
     ask_worker,
     axe,
     image,
-    in_phase,
     wait_for_note,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -492,25 +492,25 @@ def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
 def test_a_stop_is_in_reach(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.click("#my_programs")
     page.click("#programs_stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.click("#programs_close")
 
 
 def test_escape_closes_a_window_and_only_then_stops(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     for opens, window in (("#my_programs", "#programs"), ("#runs_open", "#runs")):
         page.click(opens)
         page.keyboard.press("Escape")
         page.locator(window).wait_for(state="hidden")
         page.evaluate(SETTLED_SCRIPT)
-        in_phase(page, "running")
+        wait_for_phase(page, "running")
     page.keyboard.press("Escape")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:

@@ -78,7 +78,7 @@ def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
     page.route("**/texts.en.json", _answer)
     page.goto(pages.address)
     page.locator("#start_title", has_text="lóñg").wait_for()
-    would_be_noticed(page, "#start_write")
+    check_narrow_button_is_noticed(page, "#start_write")
     page.evaluate("document.querySelector('#start_title').append(' in English')")
     assert page.evaluate(PLAIN_TEXTS_SCRIPT) == [" in English"]
     page.evaluate("document.querySelector('#start_title').lastChild.remove()")
@@ -90,7 +90,7 @@ def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
     assert {where: value for where, value in wrong.items() if value} == {}
 
 
-def would_be_noticed(page: Page, button: str) -> None:
+def check_narrow_button_is_noticed(page: Page, button: str) -> None:
     """A button that is too narrow for its text."""
     page.evaluate("(button) => { document.querySelector(button).style.width = '3em'; }", button)
     assert page.evaluate(CUT_TEXTS_SCRIPT) != []
@@ -112,7 +112,7 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
         page.goto(taught_class.server.entrance())
         page.locator("#class_settings", has_text="Cläss").wait_for()
         page.locator("#wall li").nth(9).wait_for()
-        would_be_noticed(page, "#class_settings")
+        check_narrow_button_is_noticed(page, "#class_settings")
         cut = {}
         for width, height in SIZES:
             page.set_viewport_size({"width": width, "height": height})

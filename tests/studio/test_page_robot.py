@@ -22,9 +22,9 @@ from tests.support.studio import (
     ask_worker,
     colors_of,
     dances_like_the_command,
-    in_phase,
     speak,
     turn,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -86,7 +86,7 @@ def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
     wait_for_running(page)
     if is_paused:
         page.dblclick("#pause")
-        in_phase(page, "paused")
+        wait_for_phase(page, "paused")
     assert value(page, "Motors").split() != ["0", "%", "0", "%"]
     if how == "button":
         page.click("#stop")
@@ -96,7 +96,7 @@ def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
         page.keyboard.press("Escape")
     page.locator("#doing").filter(has_text="Stopped.").wait_for()
     assert value(page, "Motors").split() == ["0", "%", "0", "%"]
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert (page.locator("#trace").text_content() or "").endswith(" STOP")
     assert running(page) == ""
 
@@ -104,16 +104,16 @@ def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
 def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
     write(page, "F(1, 80);\nR(0.5, 60);\nB(1, 70)")
     page.click("#step")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
     for part in ("F(1, 80)", "R(0.5, 60)", "B(1, 70)"):
         wait_for_running(page, part)
         assert running(page) == part
         page.click("#step")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert value(page, "Time") == "2.5 s"
     write(page, "W(50);\nS")  # STOP works in the middle of a long step
     page.click("#step")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
     wait_for_running(page)
     page.click("#step")
     page.click("#stop")
@@ -153,7 +153,7 @@ def test_run_waits_for_the_compiler(page: Page) -> None:
         ".observe(doing, {childList: true, characterData: true, subtree: true}); }"
     )
     page.locator(".cm-content").evaluate(PASTED_AND_PRESSED, ["SHOW(5)", "#run"])
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert "SHOW 5" in (page.locator("#trace").text_content() or "")
     text = page.evaluate("() => window.said")
     assert "The compiler is still working…" in text
@@ -176,7 +176,7 @@ def test_a_program_waits_for_its_button(page: Page) -> None:
     page.select_option("#speed", "4")
     page.click("#run")
     page.locator("#push").click()
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert re.fullmatch(r"[\d.]+ cm", value(page, "distance sensor"))
     assert re.fullmatch(r"\d+ of 1023", value(page, "right light sensor"))
     assert (page.locator("#trace").text_content() or "").split("\n")[-1] == "1000 DONE"
@@ -207,7 +207,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
             page.click("#run")
             page.locator("#push").wait_for()
             page.click("#stop")
-            in_phase(page, "ended")
+            wait_for_phase(page, "ended")
         page.evaluate(SETTLED_SCRIPT)
         before = page.evaluate(PLACES)
         page.click("#run")
@@ -218,7 +218,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
         page.locator("#values").get_by_text("X", exact=True).wait_for()
         assert page.evaluate(PLACES) == before
         page.click("#stop")
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
         assert page.evaluate(PLACES) == before
     page.set_viewport_size({"width": 1366, "height": 768})
 
@@ -250,9 +250,9 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
 def test_run_with_a_mistake_stops_what_runs(page: Page) -> None:
     write(page, FOREVER)
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     write(page, "F(1, 80")
     assert page.locator("html").get_attribute("data-phase") == "running"
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.locator("#doing").filter(has_text="Fix the program first.").wait_for()

@@ -11,7 +11,7 @@ import pytest
 from tests.studio.runs_again import record_run
 from tests.support.page_robot import running, value
 from tests.support.page_runs import run_names
-from tests.support.studio import in_phase, write
+from tests.support.studio import wait_for_phase, write
 from tiniscript import compile, robots
 from tiniscript.studio.playing import play, prepare
 from tiniscript.studio.recordings import REAL, Row, decode, encode, header_line
@@ -39,7 +39,7 @@ def run_to_end(page: Page, text: str, shown_text: str) -> None:
     write(page, text)
     page.click("#run")
     page.locator("#trace", has_text=shown_text).wait_for(state="attached")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 def save_run(page: Page, row: int) -> bytes:
@@ -49,7 +49,7 @@ def save_run(page: Page, row: int) -> bytes:
     return Path(download.value.path()).read_bytes()
 
 
-def doing(page: Page) -> str:
+def status_text(page: Page) -> str:
     return page.locator("#doing").text_content() or ""
 
 
@@ -57,7 +57,7 @@ def wait_for_status(page: Page, text: str) -> None:
     page.locator("#doing", has_text=text).wait_for()
 
 
-def real(*rows: tuple[int, str], text: str = LOOKS) -> str:
+def real_recording(*rows: tuple[int, str], text: str = LOOKS) -> str:
     first = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
     return encode(first, [Row(*row) for row in rows], rows[-1][0])
 
@@ -83,7 +83,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     assert page.locator("#doing").inner_text().startswith("Looking back: this was at 0.0 s.")
     page.click("#step")
     page.locator("#doing", has_not_text="Looking back").wait_for()
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
 
 
 @drawn
@@ -107,14 +107,14 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
         KEYS,
     )
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.focus("#arena")
     page.locator("#pad_letters button").first.hover()
     page.mouse.down()
     page.locator("#trace", has_text="SHOW").wait_for(state="attached")
     page.mouse.up()
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     run_names(page)
     data = save_run(page, 0)
     recording = decode(data)
@@ -151,10 +151,10 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     page: Page, tmp_path: Path
 ) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
-    open_run(page, real(*rows), tmp_path / "run.tsr")
+    open_run(page, real_recording(*rows), tmp_path / "run.tsr")
     wait_for_status(page, "Both robots did the same. Values compared: 4.")
     changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
-    open_run(page, real(*changed), tmp_path / "run.tsr")
+    open_run(page, real_recording(*changed), tmp_path / "run.tsr")
     wait_for_status(
         page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after"
     )
@@ -163,7 +163,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     assert [row.event for row in decode(save_run(page, 0)).rows] == [event for _, event in changed]
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
-    open_run(page, real((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
+    open_run(page, real_recording((20, "SHOW 3"), text=text), tmp_path / "run.tsr")
     wait_for_status(page, "Line 1: the program reads DISTANCE, but the recording lacks")
 
 
@@ -172,10 +172,13 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     ("data", "message"),
     [
         (b"a letter", "The file is damaged, or is not a run (line 1)."),
-        (real((1, "DONE")).encode()[:-10], "The end of the file is missing (after line 2)."),
+        (
+            real_recording((1, "DONE")).encode()[:-10],
+            "The end of the file is missing (after line 2).",
+        ),
         (b'{"tiniscript_recording": 1}', "The run was recorded by an older version"),
         (
-            real((1, "DONE")).replace('run":1', 'run":9').encode(),
+            real_recording((1, "DONE")).replace('run":1', 'run":9').encode(),
             "The run was recorded by a newer version.",
         ),
         (b" " * 1_100_000, "The run is too long"),
@@ -193,7 +196,7 @@ def test_a_file_that_is_no_run_says_why_and_nothing_is_lost(
     page.click("#runs_close")
     assert run_names(page) == before
     page.click("#runs_close")
-    assert doing(page) == "It has ended."
+    assert status_text(page) == "It has ended."
     assert running(page) == ""
 
 
@@ -210,5 +213,5 @@ def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
     page.locator(
         "#note", has_text="x.png was not opened. The file name of a saved run ends in .tsr."
     ).wait_for()
-    page.evaluate(drop, ["mine.tsr", real(*rows)])
+    page.evaluate(drop, ["mine.tsr", real_recording(*rows)])
     wait_for_status(page, "Both robots did the same. Values compared: 4.")

@@ -12,7 +12,7 @@ import pytest
 from tests.support.page_link import KIT, connect, upload_until_it_runs, wait_for_message
 from tests.support.page_runs import run_names
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, axe, drives, write
+from tests.support.studio import Pages, axe, start_drive, write
 from tiniscript import robots
 from tiniscript.link import known_ports
 from tiniscript.link.frames import decode_frame
@@ -80,7 +80,7 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     assert not wrong
 
 
-def does(page: Page, what: str) -> None:
+def wait_for_action(page: Page, what: str) -> None:
     """Wait until the page says that the robot does so."""
     page.locator(f"#link_doing[data-does={what}]").wait_for()
 
@@ -97,14 +97,14 @@ def sense(distance: int, robot: HostFirmware) -> None:
     robot.sense(3000, 4000, 1000 * distance)
 
 
-def watch(page: Page) -> None:
+def watch_senses(page: Page) -> None:
     page.click("#link_watch")
     page.locator("#link_watch[aria-pressed=true]").wait_for()
     page.locator("#senses:not(.past)").wait_for()
-    does(page, "senses")
+    wait_for_action(page, "senses")
 
 
-def rests(page: Page) -> None:
+def wait_for_no_reading(page: Page) -> None:
     """Wait until no reading comes any more."""
     page.locator("#link_watch[aria-pressed=false]").wait_for()
     page.locator("#senses:not(.past):visible").wait_for(state="detached")
@@ -125,7 +125,7 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     """No motor turns, no value is shown as a program's, and no run is kept."""
     count_before = len(robot.actions)
     runs = seen_runs(page)
-    watch(page)
+    watch_senses(page)
     for values in SENSED:
         senses(page, robot, *values)
     assert not [line for line in robot.actions[count_before:] if line.startswith(("BEEP", "SET"))]
@@ -139,11 +139,11 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
 
 def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: PtyRobot) -> None:
     """Other sensors are not shown."""
-    watch(page)
+    watch_senses(page)
     senses(page, robot, 3, 4, 5)
     write(page, "LOOP(FOREVER);X = DISTANCE;W(0.1);END_LOOP")
     upload_until_it_runs(page)
-    does(page, "own")
+    wait_for_action(page, "own")
     for distance in (12, 345):
         robot.ask(partial(sense, distance))
         page.locator("#gauges dd").last.filter(has_text=re.compile(rf"^{distance}\b")).wait_for()
@@ -153,17 +153,17 @@ def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: Pt
 
 @drawn
 def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRobot) -> None:
-    watch(page)
+    watch_senses(page)
     write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
     upload_until_it_runs(page)
     wait_for_message(page, "Done.")
     assert page.locator("#link_shown").inner_text().split() == ["5", "6"]
-    does(page, "senses")
+    wait_for_action(page, "senses")
     senses(page, robot, 3, 4, 5)
     write(page, FOREVER_SHOW)
     upload_until_it_runs(page)
-    does(page, "own")
-    rests(page)
+    wait_for_action(page, "own")
+    wait_for_no_reading(page)
     page.locator("#link_shown").filter(has_text=re.compile(r"^(7\n){5}")).wait_for()
     page.click("#link_watch")
     wait_for_message(page, "You will see the sensors when it has ended.")
@@ -179,19 +179,19 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
     """The first press starts it, even if sensors were read before, or another program ran, whose
     end it reports.
     """
-    watch(page)
+    watch_senses(page)
     if runs_before:
         write(page, FOREVER_SHOW)
         upload_until_it_runs(page)
-        does(page, "own")
+        wait_for_action(page, "own")
     write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
     page.click("#link_upload" if way == "waits for it" else "#link_send")
     wait_for_message(page, re.compile("The robot has the program.|Done."))
-    rests(page)
+    wait_for_no_reading(page)
     page.wait_for_timeout(1500)  # no run may start by itself in this time
     robot.push()
     robot.until(lambda: robot.moves, "it drives")
-    does(page, "own")
+    wait_for_action(page, "own")
 
 
 @drawn
@@ -201,23 +201,23 @@ def test_the_robots_button_ends_them_and_then_starts_its_program(
     write(page, "LOOP(FOREVER);F(9, 80);END_LOOP")
     page.click("#link_send")
     wait_for_message(page, "The robot has the program.")
-    watch(page)
+    watch_senses(page)
     robot.push()
     wait_for_message(page, "The robot’s button ended “Watch the sensors”.")
-    rests(page)
+    wait_for_no_reading(page)
     robot.push()
     robot.until(lambda: robot.moves, "it drives")
 
 
 def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot) -> None:
-    for begins in (watch, lambda page: drives(page, robot)):
+    for begins in (watch_senses, lambda page: start_drive(page, robot)):
         begins(page)
         page.click("#stop")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
-        rests(page)
+        wait_for_no_reading(page)
         page.wait_for_timeout(1500)  # no run may start by itself in this time
-        does(page, "stopped")
-    watch(page)
+        wait_for_action(page, "stopped")
+    watch_senses(page)
     senses(page, robot, 9, 8, 7)
 
 
@@ -225,7 +225,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
 def test_they_come_by_themselves_where_somebody_has_wanted_them(
     page: Page, robot: PtyRobot
 ) -> None:
-    watch(page)
+    watch_senses(page)
     page.click("#link_leave")
     page.locator("html:not([data-robot=connected])").wait_for(state="attached")
     connect(page, robot)
@@ -237,10 +237,10 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
         else:
             page.locator("#link_watch[aria-pressed=false]").wait_for(state="attached")
             page.click("#side_real")
-        does(page, "senses")
+        wait_for_action(page, "senses")
     page.click("#link_watch")
-    rests(page)
-    does(page, "still")
+    wait_for_no_reading(page)
+    wait_for_action(page, "still")
     page.click("#link_leave")
     page.locator("html:not([data-robot=connected])").wait_for(state="attached")
     connect(page, robot)
@@ -251,18 +251,18 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
 @drawn
 def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> None:
     """The text is in the chosen language, for every action."""
-    does(page, "still")
-    drives(page, robot)
-    does(page, "own")
+    wait_for_action(page, "still")
+    start_drive(page, robot)
+    wait_for_action(page, "own")
     page.fill("#link_line", "W(9)")
     page.press("#link_line", "Enter")
-    does(page, "line")
+    wait_for_action(page, "line")
     write(page, "X = 0; SHOW(1 / X)")
     page.click("#link_upload")
-    does(page, "fault")
+    wait_for_action(page, "fault")
     write(page, "SHOW(1)")
     page.click("#link_upload")
-    does(page, "done")
+    wait_for_action(page, "done")
     assert not re.search(r"\d", page.locator("#link_doing").inner_text())
     assert not re.search(r"\d", page.locator("#link_said").inner_text())
 
@@ -296,7 +296,7 @@ def test_the_readings_take_a_third_of_the_line_at_most(
     with robot:
         known_ports.remember(robot.port, "TINI")
         connect(page, robot)
-        watch(page)
+        watch_senses(page)
         robot.until(lambda: len(robot.values) > MEASURED, "values have come")
         (began_ms, _), *rest = robot.values
         passed_ms = rest[-1][0] - began_ms

@@ -11,7 +11,7 @@ import pytest
 from tests.support import studio, studio_serial
 from tests.support.page_link import wait_for_message
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import LONGEST_HANG_MS, drives, enter, hang, write
+from tests.support.studio import LONGEST_HANG_MS, enter, hang, start_drive, write
 from tiniscript import robots
 
 if TYPE_CHECKING:
@@ -68,14 +68,14 @@ def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
 
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     page.keyboard.press("Escape")
     wait_for_message(page, "Stopped: the robot has confirmed the stop.")
     assert not robot.moves
 
 
 def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     began_ms = robot.robot_ms
     hang(page, LONGEST_HANG_MS)
     assert robot.stands_after_ms(began_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
@@ -95,7 +95,7 @@ def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRo
 def test_a_page_that_is_closed_stops_its_robot(
     context: BrowserContext, page: Page, robot: PtyRobot
 ) -> None:
-    drives(page, robot)
+    start_drive(page, robot)
     address = page.url
     page.goto("about:blank")
     robot.until(lambda: not robot.moves, "it stands")

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_blocks import PROGRAM, becomes, block, box_of
+from tests.support.page_blocks import PROGRAM, block, box_of, wait_for_text
 from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
     axe,
     finger,
-    hears,
-    in_phase,
     speak,
     turn,
+    wait_for,
     wait_for_blocks,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -65,7 +65,7 @@ COLORS_SCRIPT = """() => {
 def page(page: Page) -> Iterator[Page]:
     yield page
     page.keyboard.press("Escape")
-    hears(page, lambda: page.evaluate("!document.fullscreenElement"), "no full screen")
+    wait_for(page, lambda: page.evaluate("!document.fullscreenElement"), "no full screen")
 
 
 def choose(page: Page, camera: str) -> None:
@@ -84,18 +84,18 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     write(page, FOREVER)
     small = page.evaluate(AREA_SCRIPT)
     page.click("#run")
-    in_phase(page, "running")
-    hears(page, lambda: page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3, "a third of the page")
-    hears(
+    wait_for_phase(page, "running")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3, "a third of the page")
+    wait_for(
         page,
         lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
         "a robot of 70 pixels, its edge apart",
     )
     page.keyboard.press("Escape")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3  # until someone continues to write
     page.hover("#editor")
-    hears(page, lambda: page.evaluate(AREA_SCRIPT) == small, "as before")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small, "as before")
 
 
 def see_last_step(page: Page, size: tuple[int, int]) -> float:
@@ -125,9 +125,9 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
     small = page.evaluate(AREA_SCRIPT)
     for is_ended in (False, True):
         page.click("#run")
-        in_phase(page, "running")
-        hears(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
-        hears(
+        wait_for_phase(page, "running")
+        wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
+        wait_for(
             page,
             lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
             "a robot of 70 pixels, its edge apart",
@@ -136,13 +136,13 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
             page.keyboard.press("Escape")
-            in_phase(page, "ended")
+            wait_for_phase(page, "ended")
             assert page.evaluate(AREA_SCRIPT) > small
         page.locator("#lesson_steps button").last.click()
         assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small
         page.click("#stop")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for()
     assert page.evaluate(AREA_SCRIPT) <= small and page.locator("#lesson_page").is_visible()
@@ -160,9 +160,9 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
         page.click("#lesson_check")
         if not is_still:
-            in_phase(page, "running")
-            hears(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
-            hears(
+            wait_for_phase(page, "running")
+            wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
+            wait_for(
                 page,
                 lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
                 "a robot of 70 pixels, its edge apart",
@@ -185,19 +185,19 @@ def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> N
     page.click("#view_blocks")
     wait_for_blocks(page)
     page.tap("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     narrow = page.evaluate("blocks.clientWidth")
     box = box_of(block(page, "beep"))
     x, y = box["x"] + 8, box["y"] + 12
     finger(page, [(x + 5 * k, y + 20 * k) for k in range(9)])
-    hears(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
-    becomes(page, "SI|F(0.1, 60)\n\n/// BEEP(0.1, 440)\n")
+    wait_for(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
+    wait_for_text(page, "SI|F(0.1, 60)\n\n/// BEEP(0.1, 440)\n")
     page.tap("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     field = page.locator(f"{PROGRAM} .blocklyNumberField", has_text="60")
     at = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
     page.touchscreen.tap(at["x"] + at["width"] / 2, at["y"] + at["height"] / 2)
-    hears(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
+    wait_for(page, lambda: page.evaluate("blocks.clientWidth") > narrow, "the room that it had")
     editor = page.locator(".blocklyWidgetDiv input")
     editor.wait_for()
     page.evaluate(SETTLED_SCRIPT)
@@ -263,18 +263,18 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     whole, cut = place(), page.evaluate(CUT_HATS_SCRIPT)
     assert size[0] != 1366 or cut == []
     page.click("#run")
-    in_phase(page, "running")
-    hears(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
-    hears(page, lambda: not page.evaluate(UNSEEN_BLOCKS_SCRIPT), "all are seen")
+    wait_for_phase(page, "running")
+    wait_for(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
+    wait_for(page, lambda: not page.evaluate(UNSEEN_BLOCKS_SCRIPT), "all are seen")
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.locator("#blocks .running").first.wait_for(state="detached")
     # The view stays for someone who looks at the robot.
     assert page.locator("html[data-big]").count()
     page.wait_for_timeout(AFTER_RUN_MS)
     assert page.evaluate(CUT_HATS_SCRIPT) == cut, "what was seen before the run is seen"
     page.hover("#views")
-    hears(page, lambda: place() == whole, "as before")
+    wait_for(page, lambda: place() == whole, "as before")
     page.click("#view_text")
 
 
@@ -314,18 +314,18 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
         (1, "Escape", 30),
     ):
         page.click("#run")
-        in_phase(page, "running")
-        hears(page, lambda: scale() != whole, "smaller beside the robot")
+        wait_for_phase(page, "running")
+        wait_for(page, lambda: scale() != whole, "smaller beside the robot")
         page.click("#stop") if ends == "click" else page.keyboard.press(ends)
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
         page.wait_for_timeout(AFTER_RUN_MS)
         if not steps:
             page.hover("#views")
-            hears(page, lambda: page.evaluate("blocks.clientWidth") == width, "its room")
+            wait_for(page, lambda: page.evaluate("blocks.clientWidth") == width, "its room")
             assert scale() == whole
         assert drag(right, 20, steps or 1) == pytest.approx((right, 20), abs=4)
-        hears(page, lambda: page.evaluate("blocks.clientWidth") == width, "the room that it had")
-        hears(page, lambda: scale() == whole, "as before")
+        wait_for(page, lambda: page.evaluate("blocks.clientWidth") == width, "the room that it had")
+        wait_for(page, lambda: scale() == whole, "as before")
     page.click("#view_text")
 
 
@@ -337,9 +337,9 @@ def test_who_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) ->
     wait_for_blocks(page)
     canvas = page.locator("#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     text_before = canvas.get_attribute("transform")
-    hears(page, lambda: canvas.get_attribute("transform") != text_before, "it is scrolled")
+    wait_for(page, lambda: canvas.get_attribute("transform") != text_before, "it is scrolled")
     page.hover("#blocks")
     page.mouse.wheel(0, 40)
     page.wait_for_timeout(300)
@@ -347,11 +347,11 @@ def test_who_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) ->
     page.wait_for_timeout(2500)
     assert canvas.get_attribute("transform") == chosen_text
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.wait_for_timeout(1000)
     assert canvas.get_attribute("transform") == chosen_text
     page.click("#run")
-    hears(page, lambda: canvas.get_attribute("transform") != chosen_text, "it is scrolled again")
+    wait_for(page, lambda: canvas.get_attribute("transform") != chosen_text, "it is scrolled again")
     page.click("#stop")
     page.click("#view_text")
 
@@ -361,7 +361,7 @@ def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
     write(page, "SI|F(0.1, 20);\n")
     page.select_option("#world", "free")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert page.locator("html[data-big]").count()
     page.select_option("#world", "light")
     assert page.locator("html[data-big]").count() == 0
@@ -407,18 +407,18 @@ def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
             assert page.locator("#full").get_attribute("aria-pressed") == str(is_full).lower()
     page.click("#full")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     assert axe(page, within="#driving") == []
     page.keyboard.press("Escape")
     page.locator("html:not([data-full])").wait_for(state="attached")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 def test_a_camera_follows_from_above_and_from_behind(page: Page) -> None:
     page.select_option("#world", "free")
     write(page, "SI|F(0.1, 20);\nS;\n")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     lengths = {}
     for camera in ("whole", "above", "behind"):
         choose(page, camera)
@@ -435,7 +435,7 @@ def test_what_stands_on_the_floor_has_sides_from_behind_the_robot(page: Page) ->
     write(page, "SI|S;\n")
     for world, raised_text in (("obstacles", "156,115,70"), ("maze", "138,101,68")):
         page.select_option("#world", world)
-        in_phase(page, "off")
+        wait_for_phase(page, "off")
         for camera in ("whole", "above", "behind"):
             choose(page, camera)
             assert (raised_text in page.evaluate(COLORS_SCRIPT)) == (camera == "behind"), (
@@ -453,7 +453,7 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
     ):  # fmt: skip
         page.click("#home")
         page.click(f"[data-begin={begin}]")
-        in_phase(page, "running")
+        wait_for_phase(page, "running")
         assert page.input_value("#world") == world
         if begin == "dance":
             assert {"251,238,252", "227,240,253", "255,243,207"} <= set(
@@ -465,14 +465,14 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
         if begin == "square":  # a camera that follows shows that it drives
             assert "230,220,196" in set(page.evaluate(COLORS_SCRIPT))
         page.click("#stop")
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
 
 
 def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> None:
     lawn, street = "207,227,194", "223,226,230"
     for world in ("delivery", "free"):
         page.select_option("#world", world)
-        in_phase(page, "off")
+        wait_for_phase(page, "off")
         colors = set(page.evaluate(COLORS_SCRIPT))
         assert ({lawn, street} <= colors) == (world == "delivery")
         assert (lawn in colors or street in colors) == (world == "delivery")
@@ -491,9 +491,9 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
         box = page.locator(button).bounding_box()
         assert box is not None and min(box["width"], box["height"]) >= 44
     page.click("#full")
-    hears(page, lambda: page.evaluate(AREA_SCRIPT) > small, "more of the robot")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) > small, "more of the robot")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     shown_buttons = "all => all.filter((e) => e.checkVisibility()).map((e) => e.id)"
     assert page.locator("body > header button").evaluate_all(shown_buttons) in ([], ["stop"])
     assert page.evaluate(AREA_SCRIPT) > 0.6 * size[0] * size[1]
@@ -501,8 +501,8 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
     page.click("#full")
     choose(page, "above")  # the default position
     page.click("#run")
-    in_phase(page, "running")
-    hears(
+    wait_for_phase(page, "running")
+    wait_for(
         page,
         lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
         "a robot of 70 pixels, its edge apart",

@@ -12,12 +12,12 @@ from tests.support.page_programs import GOOD_WORK
 from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
-    hears,
     image,
-    in_phase,
     speak,
+    wait_for,
     wait_for_blocks,
     wait_for_note,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -49,7 +49,7 @@ def start(page: Page) -> Iterator[Page]:
     page.click("#view_blocks")
     page.click("#home")
     page.click("[data-begin=dance]")  # the page's own example is not kept
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.evaluate("localStorage.clear()")
     page.click("#home")
     page.locator(START).wait_for(state="attached")
@@ -63,7 +63,7 @@ def screen(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.screen"))
 
 
-def moves(page: Page) -> bool:
+def has_moved(page: Page) -> bool:
     """Return whether its robot has moved."""
     trace = page.locator("#trace").text_content() or ""
     return re.search("MOTORS .*[1-9]", trace) is not None
@@ -73,15 +73,15 @@ def test_one_click_moves_the_robot(start: Page) -> None:
     assert start.locator("[data-begin]").count() == len(PICTURES)
     for name in PICTURES:
         start.click(f"[data-begin={name}]")
-        in_phase(start, "running")
+        wait_for_phase(start, "running")
         if name == "drive":  # driven by hand
             start.keyboard.down("ArrowUp")
-        hears(start, lambda: moves(start), "it moves")
+        wait_for(start, lambda: has_moved(start), "it moves")
         start.keyboard.up("ArrowUp")
         assert start.inner_text("#status").startswith("The program is correct"), name
         assert start.locator("#arena").is_visible()
         start.click("#home")
-        in_phase(start, "ended")
+        wait_for_phase(start, "ended")
     assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
 
 
@@ -97,19 +97,19 @@ def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
     page.goto(pages.address)
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="The compiler is still working").wait_for()
-    hears(page, lambda: held_routes, "the compiler is asked for")
+    wait_for(page, lambda: held_routes, "the compiler is asked for")
     assert not any("/blocks-" in url for url in fetched)
     held_routes.pop().continue_()
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     wait_for_blocks(page)
     assert any("/blocks-" in url for url in fetched)
     page.click("#home")
     page.click("#start_lessons")
-    hears(page, lambda: held_routes, "the lessons are asked for")
+    wait_for(page, lambda: held_routes, "the lessons are asked for")
     assert not page.locator("#lesson_hint").is_visible()
     page.click("#home")
     page.click("[data-begin=obstacle]")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     held_routes.pop().continue_()
     page.locator("#lesson_page[data-lesson]").wait_for(state="attached")
     assert page.get_attribute("html", "data-phase") == "running"
@@ -126,7 +126,7 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.route("**/texts.*.json", lambda route: held_routes.append(route))
     page.route("**/tiniscript.zip", lambda route: route.abort())
     page.goto(pages.address, wait_until="domcontentloaded")
-    hears(page, lambda: held_routes, "the texts are asked for")
+    wait_for(page, lambda: held_routes, "the texts are asked for")
     locator = page.locator("header :is(button, select):visible")
     assert locator.all_inner_texts() == ["STOP"]
     held_routes[0].continue_()
@@ -136,7 +136,7 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.locator("#doing", has_text="The compiler did not load. Press Run to try again").wait_for()
     page.click("#side_lessons")
     page.locator("#lesson_said", has_text="The compiler did not load. Press").wait_for()
-    hears(page, lambda: pages.wrong, "what the compiler lacks")
+    wait_for(page, lambda: pages.wrong, "what the compiler lacks")
     pages.wrong.clear()
 
 
@@ -301,13 +301,13 @@ def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: P
     start.dblclick("[data-begin=dance]", position={"x": 40, "y": 100})
     assert screen(start) == "program"
     assert start.locator(".blocklyToolboxSelected").count() == 0
-    in_phase(start, "running")
+    wait_for_phase(start, "running")
     start.click("#home")
     start.dblclick("#start_write")  # STOP works immediately
     start.dblclick("#run")
-    in_phase(start, "running")
+    wait_for_phase(start, "running")
     start.click("#stop")
-    in_phase(start, "ended")
+    wait_for_phase(start, "ended")
 
 
 def test_the_keyboard_alone_is_enough(start: Page) -> None:
@@ -321,7 +321,7 @@ def test_the_keyboard_alone_is_enough(start: Page) -> None:
     ]  # fmt: skip
     start.locator("[data-begin=square]").focus()
     start.keyboard.press("Enter")
-    in_phase(start, "running")
+    wait_for_phase(start, "running")
     assert start.evaluate("document.activeElement.id") == "stop"
     start.keyboard.press("Space")
-    in_phase(start, "ended")
+    wait_for_phase(start, "ended")

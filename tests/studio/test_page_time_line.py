@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_robot import running, value
-from tests.support.studio import hears, in_phase, speak, wait_for_blocks, write
+from tests.support.studio import speak, wait_for, wait_for_blocks, wait_for_phase, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -40,7 +40,7 @@ def start_run(page: Page, text: str) -> None:
     page.click("#run")
 
 
-def doing(page: Page) -> str:
+def status_text(page: Page) -> str:
     return page.locator("#doing").text_content() or ""
 
 
@@ -51,13 +51,15 @@ def seconds(page: Page) -> float:
 @drawn
 def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     start_run(page, COUNT)
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.focus("#time_at")
     end_s, pose = seconds(page), page.locator("#where").text_content()
     times, shown = [end_s], []
     while times[-1] > 0:
         page.keyboard.press("ArrowLeft")
-        assert doing(page).startswith(f"Looking back: at {seconds(page):.1f} s line 5 ran, F(0.5, ")
+        assert status_text(page).startswith(
+            f"Looking back: at {seconds(page):.1f} s line 5 ran, F(0.5, "
+        )
         assert seconds(page) < times[-1] or seconds(page) == times[-1] == 0
         if seconds(page) == times[-1]:
             break
@@ -78,11 +80,11 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     page: Page, button: str
 ) -> None:
     start_run(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("#trace", has_text="SHOW 3").wait_for(state="attached")
     page.focus("#time_at")
     page.keyboard.press("ArrowLeft")
-    in_phase(page, "paused")
+    wait_for_phase(page, "paused")
     page.keyboard.press("Home")
     assert value(page, "X") == value(page, "SHOW(X)") == "1"
     assert running(page) == "F(0.3, 60)"
@@ -90,13 +92,13 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     page.locator("#doing", has_not_text="Looking back").wait_for()
     # The program may run meanwhile.
     assert value(page, "X") != "1" and value(page, "SHOW(X)") != "1"
-    in_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
+    wait_for_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
 
 
 @drawn
 def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
     start_run(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
     parts = []
@@ -109,13 +111,13 @@ def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
 @drawn
 def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     start_run(page, COUNT)
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
     start_run(page, "SI|W(0.4)")
     page.locator("#trace", has_text="DONE", has_not_text="SHOW").wait_for(state="attached")
-    in_phase(page, "ended")
-    assert doing(page) == "It has ended."
+    wait_for_phase(page, "ended")
+    assert status_text(page) == "It has ended."
     first, last, now = (float(page.evaluate(f"time_at.{end}")) for end in ("min", "max", "value"))
     assert last - first < 1000 and now == last
 
@@ -123,10 +125,10 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
 @drawn
 def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page) -> None:
     start_run(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
-    part, *values = doing(page).split(" · ")
+    part, *values = status_text(page).split(" · ")
     assert part == "Looking back: at 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
 
@@ -140,25 +142,27 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     """It also names the task that had the motors. No extra click is needed at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
     start_run(page, f"SI|TASK;\n{task};\nEND_TASK;\nW(2)")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert page.locator("#why").is_hidden()
     page.focus("#time_at")
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
-    assert "Line 3" not in doing(page)
+    assert "Line 3" not in status_text(page)
     page.click("#why")
     page.focus("#time_at")
     read = set()
     asked_text = r"Line 3 asks DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
     for _ in range(5):
-        if match := re.search(asked_text, doing(page)):
-            assert doing(page).endswith("The task on line 1 was driving the motors."), doing(page)
+        if match := re.search(asked_text, status_text(page)):
+            assert status_text(page).endswith("The task on line 1 was driving the motors."), (
+                status_text(page)
+            )
             read.add(match[1])
         page.keyboard.press("ArrowRight")
     assert len(read) > 1
     page.keyboard.press("Home")
     page.click("#why")
-    assert "Line 3" not in doing(page) and "motors" not in doing(page)
+    assert "Line 3" not in status_text(page) and "motors" not in status_text(page)
 
 
 @drawn
@@ -169,9 +173,9 @@ def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
     start_run(
         page, f"SI|WHEN(DISTANCE > 3)\n{loop}\nEND_WHEN\nW(2)\nSHOW(1 / (DISTANCE - DISTANCE))"
     )
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     speak(page, language)
-    assert re.search(CODE, doing(page))
+    assert re.search(CODE, status_text(page))
     page.click("#view_blocks")
     wait_for_blocks(page)
     page.focus("#time_at")
@@ -180,14 +184,14 @@ def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
     page.focus("#time_at")
     told = set()
     for _ in range(12):
-        hears(page, lambda: not re.search(CODE, doing(page)), "no code")
-        told.add(doing(page))
+        wait_for(page, lambda: not re.search(CODE, status_text(page)), "no code")
+        told.add(status_text(page))
         page.keyboard.press("ArrowRight")
     assert any(re.search("(was|era) [\\d.]+", each) for each in told)
     assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", each) for each in told), "a small first letter"
     page.click("#why")
     page.click("#view_text")
-    hears(page, lambda: re.search(CODE, doing(page)), "code")
+    wait_for(page, lambda: re.search(CODE, status_text(page)), "code")
     speak(page, "en")
 
 
@@ -198,5 +202,5 @@ def test_a_when_that_begins_is_a_mark(page: Page) -> None:
         start_run(page, f"SI|WHEN(TIME > {begins_s});\n{body}")
         page.locator("#trace", has_text="SHOW 2").wait_for(state="attached")
         page.click("#stop")
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
         assert (page.evaluate(MARKED) > 0) is is_marked

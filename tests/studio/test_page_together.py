@@ -11,12 +11,12 @@ import pytest
 from tests.support.class_pages import (
     class_of_many,
     enters,
-    goes_to,
-    has,
+    go_to_line,
     join_class,
     lines,
-    teaches,
-    types,
+    open_teacher_page,
+    type_slowly,
+    wait_for_lines,
     wait_for_status,
 )
 from tests.support.page_link import events
@@ -25,8 +25,8 @@ from tests.support.pty_robot import PtyRobot
 from tests.support.studio import (
     Class,
     Pages,
-    drives,
     image,
+    start_drive,
     wait_for_note,
     wait_until_checked,
     write,
@@ -81,30 +81,32 @@ def program_of(taught: Class) -> str:
     return str(taught.room.teach({"do": "class_text", "group": group["key"]})["text"])
 
 
-def begins(two: tuple[Page, Page]) -> None:
+def show_program_on_both(two: tuple[Page, Page]) -> None:
     """Let both pages show the program without a caret in it."""
     ana, luz = two
     write(ana, PROGRAM)
     ana.click("#side_class")
     ana.locator(".cm-content").evaluate("(it) => it.blur()")
     for page in (ana, luz):
-        has(page, *ROWS)
+        wait_for_lines(page, *ROWS)
 
 
 def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
-    goes_to(ana, "F(1, 80)")
-    types(ana, "\nBEEP(1, 440)")  # her line is locked until she leaves it
-    goes_to(luz, "S;")
-    types(luz, "\nw(2)\n")
-    has(ana, "F(1, 80);", "BEEP(1, 440)", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
+    show_program_on_both(two)
+    go_to_line(ana, "F(1, 80)")
+    type_slowly(ana, "\nBEEP(1, 440)")  # her line is locked until she leaves it
+    go_to_line(luz, "S;")
+    type_slowly(luz, "\nw(2)\n")
+    wait_for_lines(
+        ana, "F(1, 80);", "BEEP(1, 440)", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);"
+    )
     assert "BEEP" not in "".join(lines(luz))
-    types(ana, "\n")
+    type_slowly(ana, "\n")
     both = ("F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
     for page in two:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
-        has(page, *both)
+        wait_for_lines(page, *both)
         wait_until_checked(page)
         until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
 
@@ -112,73 +114,75 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
 @drawn
 def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
-    goes_to(ana, "B(1, 40)")
+    show_program_on_both(two)
+    go_to_line(ana, "B(1, 40)")
     for key in ("ArrowLeft", "ArrowLeft", "Backspace", "Backspace"):
         ana.keyboard.press(key)
-    types(ana, "9")  # B(1, 9), which parses
-    goes_to(luz, "F(1, 80)")
-    types(luz, "\nR(1, 50)\n")
-    has(ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 9);", "END_LOOP;", "S;")
-    types(ana, "5")  # the caret is where it was
+    type_slowly(ana, "9")  # B(1, 9), which parses
+    go_to_line(luz, "F(1, 80)")
+    type_slowly(luz, "\nR(1, 50)\n")
+    wait_for_lines(ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 9);", "END_LOOP;", "S;")
+    type_slowly(ana, "5")  # the caret is where it was
     assert "B(1, 40);" in [row.strip() for row in lines(luz)]
     ana.keyboard.press("ArrowDown")
-    has(luz, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 95);", "END_LOOP;", "S;")
+    wait_for_lines(luz, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 95);", "END_LOOP;", "S;")
 
 
 @drawn
 def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
-    goes_to(ana, "S;")
-    types(ana, "\nW(7)\n")
-    goes_to(luz, "F(1, 80)")
-    types(luz, "\nR(1, 50)\n")
-    has(ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(7);")
+    show_program_on_both(two)
+    go_to_line(ana, "S;")
+    type_slowly(ana, "\nW(7)\n")
+    go_to_line(luz, "F(1, 80)")
+    type_slowly(luz, "\nR(1, 50)\n")
+    wait_for_lines(
+        ana, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(7);"
+    )
     ana.locator(".cm-content").focus()
     ana.keyboard.press("Control+z")
     for page in two:
-        has(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
+        wait_for_lines(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
 
 
 @drawn
 def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     for page, text in ((ana, "95)\n"), (luz, "70)\n")):
-        goes_to(page, "B(1, ")
+        go_to_line(page, "B(1, ")
         for _ in range(4):
             page.keyboard.press("Backspace")
-        types(page, text)
-        has(ana, "F(1, 80);", "LOOP(3);", f"B(1, {text[:2]});", "END_LOOP;", "S;")
-    goes_to(ana, "S;")
-    types(ana, "9")  # half typed, and undone as such
+        type_slowly(page, text)
+        wait_for_lines(ana, "F(1, 80);", "LOOP(3);", f"B(1, {text[:2]});", "END_LOOP;", "S;")
+    go_to_line(ana, "S;")
+    type_slowly(ana, "9")  # half typed, and undone as such
     ana.keyboard.press("Control+z")
-    has(ana, "F(1, 80);", "LOOP(3);", "B(1, 70);", "END_LOOP;", "S;")
+    wait_for_lines(ana, "F(1, 80);", "LOOP(3);", "B(1, 70);", "END_LOOP;", "S;")
     ana.keyboard.press("Control+z")
     ana.wait_for_timeout(500)  # an older one may be taken back
     assert "B(1, 70);" in [row.strip() for row in lines(ana)]
-    begins(two)
-    goes_to(ana, "B(1, 40)")
+    show_program_on_both(two)
+    go_to_line(ana, "B(1, 40)")
     for _ in range(4):
         ana.keyboard.press("Backspace")
-    types(ana, "8)")
+    type_slowly(ana, "8)")
     ana.keyboard.press("ArrowDown")
-    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
+    wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
     ana.keyboard.press("Control+z")
-    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
+    wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
     ana.keyboard.press("Control+y")
-    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
+    wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
 
 
 @drawn
 def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
-    goes_to(ana, "B(1, 40)")
+    show_program_on_both(two)
+    go_to_line(ana, "B(1, 40)")
     mark = luz.locator(".cm-line", has_text="B(1, 40)").locator(".cm-mate")
     mark.filter(has_text="Ana").wait_for()
-    types(ana, " ")
+    type_slowly(ana, " ")
     mark.filter(has_text="Ana …").wait_for()
     luz.locator("#class_mates", has_text="Ana").wait_for()
 
@@ -186,39 +190,47 @@ def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
 @drawn
 def test_who_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
-    goes_to(luz, "F(1, 80)")
-    types(luz, "\nBEEP(1, 4")  # the line is unfinished
-    goes_to(ana, "S;")
-    types(ana, "\nW(3)\n")
-    has(luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
+    show_program_on_both(two)
+    go_to_line(luz, "F(1, 80)")
+    type_slowly(luz, "\nBEEP(1, 4")  # the line is unfinished
+    go_to_line(ana, "S;")
+    type_slowly(ana, "\nW(3)\n")
+    wait_for_lines(
+        luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);"
+    )
     luz.reload()
     luz.locator("html[data-group=in]").wait_for(state="attached")
-    has(luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
-    goes_to(luz, "BEEP(1, 4")
-    types(luz, "40)\n")
-    has(ana, "F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);")
+    wait_for_lines(
+        luz, "F(1, 80);", "BEEP(1, 4", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);"
+    )
+    go_to_line(luz, "BEEP(1, 4")
+    type_slowly(luz, "40)\n")
+    wait_for_lines(
+        ana, "F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(3);"
+    )
 
 
 def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     ana.context.set_offline(True)
-    goes_to(ana, "F(1, 80)")
-    types(ana, "\nW(4)\n")
+    go_to_line(ana, "F(1, 80)")
+    type_slowly(ana, "\nW(4)\n")
     ana.locator("#class_group", has_text="is not responding").wait_for()
-    goes_to(luz, "S;")
-    types(luz, "\nW(5)\n")
+    go_to_line(luz, "S;")
+    type_slowly(luz, "\nW(5)\n")
     ana.context.set_offline(False)
     for page in two:
-        has(page, "F(1, 80);", "W(4);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(5);")
+        wait_for_lines(
+            page, "F(1, 80);", "W(4);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(5);"
+        )
 
 
 def test_each_drives_and_each_stops_the_robot_of_the_group(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     with PtyRobot(robots.load("tinibot").kit) as robot:
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
         for page in two:
@@ -226,13 +238,13 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
         ana.click("[data-text=class_ask]")
         ana.locator("html[data-robot=connected]").wait_for(state="attached")
         wait_for_status(luz, "Ana is driving ")
-        drives(ana, robot)
+        start_drive(ana, robot)
         luz.click("#stop")
         until(lambda: not robot.moves, "the robot stands")
         luz.locator("#class_pupil [data-text=link_connect]").click()
         luz.locator("html[data-robot=connected]").wait_for(state="attached")
         wait_for_status(ana, "Luz is driving ")
-        drives(luz, robot)
+        start_drive(luz, robot)
         ana.keyboard.press("Escape")
         until(lambda: not robot.moves, "the robot stands")
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
@@ -244,7 +256,7 @@ def test_all_of_a_group_see_what_its_robot_does(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     rows = ("SPEED = 5;", "SHOW(SPEED);", "F(3, 80);", "SHOW(SPEED + 1);", "R(3, 60);")
     with PtyRobot(robots.load("tinibot").kit) as robot:
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
@@ -255,7 +267,7 @@ def test_all_of_a_group_see_what_its_robot_does(
         write(ana, "\n".join(rows) + "\n")
         ana.locator(".cm-content").evaluate("(it) => it.blur()")
         for page in two:
-            has(page, *rows)
+            wait_for_lines(page, *rows)
             wait_until_checked(page)
         ana.click("#link_upload")
         for row in ("F(3, 80)", "R(3, 60)"):
@@ -286,36 +298,36 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
     two: tuple[Page, Page],
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     questions: list[str] = []
 
-    def answers(dialog: Dialog) -> None:
+    def answer_dialog(dialog: Dialog) -> None:
         questions.append(dialog.message)
         if len(questions) == 1:
             dialog.dismiss()
         else:
             dialog.accept()
 
-    ana.on("dialog", answers)
+    ana.on("dialog", answer_dialog)
     ana.click("#bar_new")
     until(lambda: len(questions) == 1, "it asks")
-    has(ana, *ROWS)
+    wait_for_lines(ana, *ROWS)
     ana.click("#bar_new")
-    has(luz)
-    has(ana)
+    wait_for_lines(luz)
+    wait_for_lines(ana)
     assert questions == ["This replaces the program for your whole group. Replace it?"] * 2
-    ana.remove_listener("dialog", answers)
+    ana.remove_listener("dialog", answer_dialog)
     ana.locator(".cm-content").focus()
     ana.keyboard.press("Control+z")
     for page in two:
-        has(page, *ROWS)
+        wait_for_lines(page, *ROWS)
 
 
 def test_work_that_is_given_back_is_in_my_programs_for_who_does_not_want_it_in_the_group(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     _, luz = two
-    begins(two)
+    show_program_on_both(two)
     shared_class.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
                        "lessons": []})  # fmt: skip
     state = shared_class.room.teach({"do": "class"})
@@ -330,7 +342,7 @@ def test_work_that_is_given_back_is_in_my_programs_for_who_does_not_want_it_in_t
     luz.reload()
     luz.locator("html[data-group=in]").wait_for(state="attached")
     for page in two:
-        has(page, *ROWS)
+        wait_for_lines(page, *ROWS)
     luz.click("#my_programs")
     luz.locator("#versions strong", has_text="F(1, 77)").wait_for()
     luz.click("#programs_close")
@@ -340,35 +352,37 @@ def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     ana.context.set_offline(True)
-    goes_to(ana, "LOOP(3)")
+    go_to_line(ana, "LOOP(3)")
     for key in ("Home", "Shift+ArrowDown", "Shift+ArrowDown", "Shift+ArrowDown", "Delete"):
         ana.keyboard.press(key)
     ana.keyboard.press("ArrowUp")
     ana.locator("#class_group", has_text="is not responding").wait_for()
-    goes_to(luz, "B(1, 40)")
-    types(luz, "\nBEEP(1, 440)\n")
+    go_to_line(luz, "B(1, 40)")
+    type_slowly(luz, "\nBEEP(1, 440)\n")
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     until(lambda: "BEEP" in program_of(shared_class), "the class has hers")
     ana.context.set_offline(False)
     wait_for_note(ana, "Somebody else changed that part first, so your last change was not made.")
     for page in two:
-        has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;")
+        wait_for_lines(
+            page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;"
+        )
 
 
 def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_seconds(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     ana.evaluate(NOTES_WHEN, "W(6)")
-    goes_to(ana, "F(1, 80)")
-    types(ana, "\n")
+    go_to_line(ana, "F(1, 80)")
+    type_slowly(ana, "\n")
     tells = ana.context.new_cdp_session(ana)
     tells.send("Input.imeSetComposition", {"text": "// n", "selectionStart": 4, "selectionEnd": 4})
-    goes_to(luz, "S;")
-    types(luz, "\nW(6)")
+    go_to_line(luz, "S;")
+    type_slowly(luz, "\nW(6)")
     luz.keyboard.press("Enter")
     until(lambda: "W(6)" in program_of(shared_class), "the class has it")
     there_ms = 1000 * time.time()
@@ -377,18 +391,20 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
     tells.send("Input.insertText", {"text": "// ni"})
     ana.keyboard.press("ArrowDown")
     for page in two:
-        has(page, "F(1, 80);", "// ni", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(6);")
+        wait_for_lines(
+            page, "F(1, 80);", "// ni", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(6);"
+        )
 
 
 @drawn
 def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     luz.click("#side_class")  # the page was reloaded
     luz.click("[data-text=group_leave]")
     luz.locator("[data-text=group_join]").wait_for()
-    goes_to(ana, "S;")
-    types(ana, "\nW(8)\n")
+    go_to_line(ana, "S;")
+    type_slowly(ana, "\nW(8)\n")
     luz.locator("#class_group button", has_text="Red (Ana)").wait_for()
     assert "W(8)" not in "".join(lines(luz))
     luz.reload()  # pages do not rejoin a group by themselves
@@ -397,7 +413,7 @@ def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) 
     assert luz.locator("html[data-group=in]").count() == 0
     assert "W(8)" not in "".join(lines(luz))
     luz.locator("#class_group button", has_text="Red (Ana)").click()
-    has(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
+    wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
 
 
 @drawn
@@ -405,19 +421,19 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     two: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     teacher_pages = Pages(browser, shared_class.server.address)
-    teacher = teaches(teacher_pages, shared_class)
+    teacher = open_teacher_page(teacher_pages, shared_class)
     tile = teacher.locator("#wall li").filter(has_text="Red")
     tile.filter(has_text="Ana, Luz").wait_for()
     assert teacher.locator("#wall li").filter(has_text="Ana").count() == 1
     tile.locator("button.see").click()
     program = teacher.locator("#big_pupil pre").first
     program.filter(has_text="B(1, 40)").wait_for()
-    goes_to(luz, "B(1, 40)")
+    go_to_line(luz, "B(1, 40)")
     for _ in range(4):
         luz.keyboard.press("Backspace")
-    types(luz, "66)")
+    type_slowly(luz, "66)")
     luz.keyboard.press("ArrowDown")
     program.filter(has_text="B(1, 66)").wait_for()
     teacher.locator("#big_pupil pre").last.filter(has_text="Luz: → B(1, 66)").wait_for()
@@ -429,27 +445,27 @@ def test_the_teacher_takes_part_and_leaves(
     two: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = two
-    begins(two)
+    show_program_on_both(two)
     teacher_pages = Pages(browser, shared_class.server.address)
-    teacher = teaches(teacher_pages, shared_class)
+    teacher = open_teacher_page(teacher_pages, shared_class)
     tile = teacher.locator("#wall li").filter(has_text="Red")
     tile.hover()
     tile.locator("button.join").click()
     teacher.locator("html[data-group=in]").wait_for(state="attached")
     teacher.locator("#note", has_text="You are editing Red’s program together.").wait_for()
-    has(teacher, *ROWS)
+    wait_for_lines(teacher, *ROWS)
     teacher.click("#view_text")
-    goes_to(teacher, "S;")
-    types(teacher, "\nW(9)\n")
+    go_to_line(teacher, "S;")
+    type_slowly(teacher, "\nW(9)\n")
     for page in (ana, luz, teacher):
-        has(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
+        wait_for_lines(page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
     ana.locator("#class_mates .mate", has_text="Teacher").wait_for()
-    goes_to(teacher, "B(1, 40)")
-    types(teacher, " ")
+    go_to_line(teacher, "B(1, 40)")
+    type_slowly(teacher, " ")
     ana.locator(".cm-line", has_text="B(1, 40)").locator(".cm-mate-4").wait_for()
     teacher.reload()
     teacher.locator("html[data-group=in]").wait_for(state="attached")
-    has(teacher, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
+    wait_for_lines(teacher, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(9);")
     teacher.click("#run")
     teacher.locator("html[data-robot=none]").wait_for(state="attached")
     teacher.click("#class_leave")

@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support import studio
-from tests.support.class_pages import class_of_many, enters, goes_to, has, join_class, lines, types
+from tests.support.class_pages import (
+    class_of_many,
+    enters,
+    go_to_line,
+    join_class,
+    lines,
+    type_slowly,
+    wait_for_lines,
+)
 from tests.support.page_blocks import PROGRAM as PROGRAM_BLOCKS
 from tests.support.page_blocks import block, box_of, drag
 from tests.support.studio import Class, Pages, image, wait_for_blocks, write
@@ -85,7 +93,7 @@ def two(both: tuple[Page, Page]) -> tuple[Page, Page]:
     ana, luz = both
     write(luz, PROGRAM)
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
-    has(luz, *ROWS)
+    wait_for_lines(luz, *ROWS)
     until(lambda: text_of(ana) == PROGRAM, "Ana has the program")
     wait_for_blocks(ana)
     return both
@@ -108,7 +116,7 @@ def ends(two: tuple[Page, Page], *rows: str) -> None:
     """Both have these lines, as text, and compiled; blocks are those of the text."""
     ana, luz = two
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
-    has(luz, *rows)
+    wait_for_lines(luz, *rows)
     until(lambda: text_of(ana) == text_of(luz), "both have the same")
     wait_for_blocks(ana)
     for page in two:
@@ -116,12 +124,12 @@ def ends(two: tuple[Page, Page], *rows: str) -> None:
         until(lambda page=page: image(page) == compile(text_of(luz)).image, "compiled")  # type: ignore[misc]
 
 
-def changes_power(page: Page, row: str) -> None:
+def change_power(page: Page, row: str) -> None:
     """Write 95 in place of a power in the text."""
-    goes_to(page, row)
+    go_to_line(page, row)
     for _ in range(4):
         page.keyboard.press("Backspace")
-    types(page, "95)")
+    type_slowly(page, "95)")
     page.keyboard.press("ArrowDown")
 
 
@@ -132,7 +140,7 @@ def change_rows(*pairs: tuple[str, str]) -> list[str]:
 def test_a_changed_field_is_a_change_of_its_line_alone(two: tuple[Page, Page]) -> None:
     ana, _ = two
     field(ana, "back")
-    types(ana, "7\n")
+    type_slowly(ana, "7\n")
     ends(two, *change_rows(("B(1, 40);", "B(7, 40);")))
 
 
@@ -140,12 +148,12 @@ def test_a_changed_field_is_a_change_of_its_line_alone(two: tuple[Page, Page]) -
 def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> None:
     ana, luz = two
     field(ana, "back")
-    types(ana, "6")
-    goes_to(luz, "S;")
-    types(luz, "\nw(2)\n")
+    type_slowly(ana, "6")
+    go_to_line(luz, "S;")
+    type_slowly(luz, "\nw(2)\n")
     until(lambda: "W(2);" in text_of(ana), "the others' line arrives after a while")
     assert "B(1, 40);" in text_of(luz)
-    types(ana, "5")  # the field is where it was
+    type_slowly(ana, "5")  # the field is where it was
     assert "B(1, 40);" in text_of(luz)
     ana.keyboard.press("Enter")
     ends(two, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
@@ -159,11 +167,11 @@ def test_a_value_for_a_block_that_is_deleted_is_marked_as_of_this_page_alone(
     ana, luz = two
     own_marks = block(ana, "back").locator("> .mate_mark", has_text="only on your page")
     field(ana, "back")
-    types(ana, "6")
-    goes_to(luz, "B(1, 40)")
+    type_slowly(ana, "6")
+    go_to_line(luz, "B(1, 40)")
     for key in ("Home", "Shift+End", "Delete", "ArrowDown"):
         luz.keyboard.press(key)
-    has(luz, *(row for row in ROWS if not row.startswith("B(")))
+    wait_for_lines(luz, *(row for row in ROWS if not row.startswith("B(")))
     ana.keyboard.press("Enter")
     own_marks.wait_for()
     assert "B(6, 40)" in text_of(ana) and "B(" not in text_of(luz)
@@ -178,8 +186,8 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, 
     ana.mouse.move(held["x"] + 8, held["y"] + 10)
     ana.mouse.down()
     ana.mouse.move(held["x"] + 60, held["y"] + 40, steps=4)
-    goes_to(luz, "B(1, 40)")
-    types(luz, "\nBEEP(1, 440)\n")
+    go_to_line(luz, "B(1, 40)")
+    type_slowly(luz, "\nBEEP(1, 440)\n")
     until(lambda: "BEEP" in text_of(ana), "the others' line arrives after a while")
     ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
     ana.mouse.up()
@@ -191,8 +199,8 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, 
 def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) -> None:
     ana, luz = two
     field(ana, "back")
-    types(ana, "6")
-    changes_power(luz, "B(1, 40)")
+    type_slowly(ana, "6")
+    change_power(luz, "B(1, 40)")
     until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
     ana.keyboard.press("Enter")
     ends(two, *change_rows(("B(1, 40);", "B(6, 40);")))
@@ -202,8 +210,8 @@ def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) ->
 def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) -> None:
     ana, luz = two
     drag(ana, "Move", "left", None)
-    goes_to(luz, "S;")
-    types(luz, "\nw(2)\n")
+    go_to_line(luz, "S;")
+    type_slowly(luz, "\nw(2)\n")
     until(lambda: "W(2);" in text_of(ana), "the others' line arrives")
     wait_for_blocks(ana)
     assert block(ana, "left").count() == 1
@@ -225,10 +233,10 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) 
 def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> None:
     ana, luz = two
     field(ana, "back")
-    types(ana, "7\n")
-    has(luz, *change_rows(("B(1, 40);", "B(7, 40);")))
-    goes_to(luz, "S;")
-    types(luz, "\nw(2)\n")
+    type_slowly(ana, "7\n")
+    wait_for_lines(luz, *change_rows(("B(1, 40);", "B(7, 40);")))
+    go_to_line(luz, "S;")
+    type_slowly(luz, "\nw(2)\n")
     until(lambda: "W(2);" in text_of(ana), "the others' line arrives")
     wait_for_blocks(ana)
     ana.locator("#speed").focus()
@@ -236,7 +244,7 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
     ends(two, *ROWS, "W(2);")
     ana.click("#redo")
     ends(two, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
-    changes_power(luz, "B(7, 40)")
+    change_power(luz, "B(7, 40)")
     until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
     wait_for_blocks(ana)
     ana.click("#undo")  # his block has a new owner
@@ -246,10 +254,10 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
 @drawn
 def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    goes_to(luz, "B(1, 40)")
+    go_to_line(luz, "B(1, 40)")
     mark = block(ana, "back").locator("> .mate_mark")
     mark.filter(has_text="Luz").wait_for()
-    types(luz, " ")
+    type_slowly(luz, " ")
     mark.filter(has_text="Luz …").wait_for()
     luz.keyboard.press("ArrowDown")
     block(ana, "right").locator("> .mate_mark").filter(has_text="Luz").wait_for()
@@ -272,7 +280,7 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
         except Error:  # others have taken it away meanwhile
             return False
         page.keyboard.press("Control+a")
-        types(page, f"{rng.randrange(1, 60)}\n")
+        type_slowly(page, f"{rng.randrange(1, 60)}\n")
         return True
     rows = [row for row in lines(page) if row.strip()]
     row = rng.choice(rows)
@@ -286,7 +294,7 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
         for key in ("Home", "Shift+End", "Delete"):
             page.keyboard.press(key)
     else:
-        types(page, f"\n{rng.choice('FBRL')}({rng.randrange(1, 9)}, {rng.randrange(20, 99)})")
+        type_slowly(page, f"\n{rng.choice('FBRL')}({rng.randrange(1, 9)}, {rng.randrange(20, 99)})")
     page.keyboard.press("ArrowUp")
     return True
 

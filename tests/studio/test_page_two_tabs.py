@@ -6,13 +6,20 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_worlds import NO_BORDER, drag, draw_wall, put, save_world, wait_for_status
+from tests.support.page_worlds import (
+    NO_BORDER,
+    drag,
+    draw_wall,
+    open_world_file,
+    save_world,
+    wait_for_status,
+)
 from tests.support.studio import (
     Pages,
-    hears,
     image,
-    in_phase,
+    wait_for,
     wait_for_note,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -48,21 +55,23 @@ PASTE_SCRIPT = """(count) => {
 def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     """They precede this tab's own undo steps, and remove none of them."""
 
-    def opens(tab: Page, width_cm: int) -> None:
+    def open_world(tab: Page, width_cm: int) -> None:
         name = f"w{width_cm}.toml"
-        put(tab, NO_BORDER.replace(b"120.06", b"%d" % width_cm).replace(b"118", b"20"), name)
+        open_world_file(
+            tab, NO_BORDER.replace(b"120.06", b"%d" % width_cm).replace(b"118", b"20"), name
+        )
         wait_for_status(tab, f"Opened: {name}")
         save_world(tab)
 
     page = pages.open()
     page.locator("#world_draw:enabled").wait_for()
     page.click("#world_draw")
-    opens(page, 100)
-    opens(page, 101)
+    open_world(page, 100)
+    open_world(page, 101)
     other = pages.another(page)
     other.locator("#world_draw:enabled").wait_for()
     other.click("#world_draw")
-    opens(other, 102)
+    open_world(other, 102)
     for _ in range(5):
         for tab in (page, other):
             tab.select_option("#world_part", label="Robot")
@@ -100,7 +109,7 @@ def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
     with page.expect_event("close"):
         page.close(run_before_unload=True)
     kept_text = "(localStorage['tiniscript.versions'] ?? '').includes('SI|F(2, 10)')"
-    hears(other, lambda: other.evaluate(kept_text), "the closed tab has kept its program")
+    wait_for(other, lambda: other.evaluate(kept_text), "the closed tab has kept its program")
     assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # kept for the next tab
     newest, before = other.evaluate(
         "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
@@ -138,7 +147,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     wait_for_note(page, "This browser does not save anything for this page. Save")
     assert image(page) == compile("SI|F(0.1, 80)").image
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     page.click("#my_programs")
     page.locator("#versions").wait_for()
 

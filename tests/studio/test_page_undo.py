@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.support.page_blocks import PROGRAM, becomes, block, box_of, drag, start, text_of
-from tests.support.studio import SETTLED_SCRIPT, Pages, hears, speak, wait_for_blocks, write
+from tests.support.page_blocks import PROGRAM, block, box_of, drag, start, text_of, wait_for_text
+from tests.support.studio import SETTLED_SCRIPT, Pages, speak, wait_for, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,7 +50,7 @@ def state_of(page: Page) -> BlocksState:
 
 
 def wait_for_state(page: Page, wanted: BlocksState) -> None:
-    hears(page, lambda: state_of(page) == wanted, str(wanted))
+    wait_for(page, lambda: state_of(page) == wanted, str(wanted))
 
 
 def move(page: Page, words: str, to: tuple[float, float]) -> None:
@@ -62,7 +62,7 @@ def move(page: Page, words: str, to: tuple[float, float]) -> None:
     page.locator("#blocks[data-state=shown]").wait_for()
 
 
-def _moves(page: Page, dice: random.Random) -> None:
+def _move_block(page: Page, dice: random.Random) -> None:
     """A hat, or a loose stack, to an empty place at the right."""
     words = [word for word in ("same time", "each time", "new word", "wait")
              if block(page, word).count()]  # fmt: skip
@@ -70,19 +70,24 @@ def _moves(page: Page, dice: random.Random) -> None:
         move(page, dice.choice(words), (dice.randint(480, 560), dice.randint(330, 560)))
 
 
-def _adds(page: Page, dice: random.Random) -> None:
+def _add_block(page: Page, dice: random.Random) -> None:
     drag(page, *dice.choice((("Events", "same time"), ("Events", "each time"), ("Move", "back"))),
          None)  # fmt: skip
 
 
-def _types(page: Page, dice: random.Random) -> None:
+def _type_text(page: Page, dice: random.Random) -> None:
     text = text_of(page)
     page.click("#view_text")
     write(page, text.replace("SI|", f"SI|W({dice.randint(1, 9)});\n"))
     page.click("#view_blocks")
 
 
-ACTS: tuple[Callable[[Page, random.Random], None], ...] = (_moves, _moves, _adds, _types)
+ACTS: tuple[Callable[[Page, random.Random], None], ...] = (
+    _move_block,
+    _move_block,
+    _add_block,
+    _type_text,
+)
 
 
 @pytest.mark.sampled("seed", keep=2)
@@ -93,7 +98,7 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
     page.select_option("#robot", "tinibot32")
     start(page, dice.choice(PROGRAMS), "usual")
     past = [state_of(page)]
-    for act in (_moves, *dice.choices(ACTS, k=5)):
+    for act in (_move_block, *dice.choices(ACTS, k=5)):
         act(page, dice)
         if (now := state_of(page)) != past[-1]:
             past.append(now)
@@ -110,7 +115,7 @@ def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
     drag(page, "Events", "each time", None)
     whole = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
-    becomes(page, whole)
+    wait_for_text(page, whole)
     for begins in ("dragged", "written"):
         if begins == "written":
             start(page, whole)

@@ -9,7 +9,14 @@ import pytest
 from PIL import Image
 
 from tests.support.noted_effects import NOTE_EFFECTS
-from tests.support.studio import Pages, enter, in_phase, wait_for_blocks, wait_until_checked, write
+from tests.support.studio import (
+    Pages,
+    enter,
+    wait_for_blocks,
+    wait_for_phase,
+    wait_until_checked,
+    write,
+)
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
@@ -74,9 +81,9 @@ def run(page: Page, program: str) -> None:
     write(page, program)
     page.select_option("#speed", "20")
     page.select_option("#world", "obstacles")  # the last run is no longer seen
-    in_phase(page, "off")
+    wait_for_phase(page, "off")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
 
 
 @drawn
@@ -162,11 +169,11 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
     for button, phase in (("pause", "paused"), ("stop", "ended")):
         before = page.evaluate("window.stopped")
         page.click("#run")
-        in_phase(page, "running")
+        wait_for_phase(page, "running")
         until(lambda: page.evaluate("window.heard.length"), "a sound")
         page.evaluate("window.heard = []")
         page.click(f"#{button}")
-        in_phase(page, phase)
+        wait_for_phase(page, phase)
         assert page.evaluate("window.stopped") == before + 1
 
 
@@ -242,7 +249,7 @@ def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     assert page.locator("#doing").inner_text().startswith("Opened")
     write(page, "F(4, 80)")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     assert page.locator("#score").inner_text() == "⚑ 2/2   230   ★★★"
     assert count(page, "2a9d6f") > 100  # the flags that were taken
     heard_text = page.locator("#where").inner_text()
@@ -292,6 +299,6 @@ def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
         write(page, program)
         page.click("#run")
         page.locator("#doing", has_text=message).wait_for()
-        in_phase(page, "ended")
+        wait_for_phase(page, "ended")
         assert page.locator("#score").inner_text() == score
         assert message in page.locator("#where").inner_text()

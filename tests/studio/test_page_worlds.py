@@ -9,19 +9,19 @@ import pytest
 from tests.support.page_worlds import (
     Place,
     drag,
-    on_screen,
-    put,
+    open_world_file,
     read_start,
     save_world,
+    screen_position,
     wait_for_status,
 )
 from tests.support.studio import (
     SETTLED_SCRIPT,
     Pages,
     finger,
-    in_phase,
     speak,
     turn,
+    wait_for_phase,
     wait_until_checked,
     write,
 )
@@ -87,16 +87,16 @@ def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
     drag(floor, [(140, 60), (170, 80)])
     wanted_world = save_world(floor)
     for undo in ("key", "button"):
-        floor.mouse.move(*on_screen(floor, (155, 70)))
+        floor.mouse.move(*screen_position(floor, (155, 70)))
         floor.mouse.down()
-        floor.mouse.move(*on_screen(floor, (155, 110)), steps=4)
+        floor.mouse.move(*screen_position(floor, (155, 110)), steps=4)
         floor.keyboard.press("Delete")  # the object being dragged is not deleted
         if undo == "key":
             floor.keyboard.press("Control+z")
         else:
             # Touched by a second finger.
             floor.evaluate("document.querySelector('#world_undo').click()")
-        floor.mouse.move(*on_screen(floor, (155, 120)), steps=2)
+        floor.mouse.move(*screen_position(floor, (155, 120)), steps=2)
         floor.mouse.up()
         assert save_world(floor).boxes == wanted_world.boxes
     floor.click("#world_undo")
@@ -122,9 +122,9 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
         if floor.get_attribute("#world_add_walls", "aria-pressed") == "false":
             floor.click("#world_add_walls")
         wanted_text = picture(floor)
-        floor.mouse.move(*on_screen(floor, (60, 30)))
+        floor.mouse.move(*screen_position(floor, (60, 30)))
         floor.mouse.down()
-        floor.mouse.move(*on_screen(floor, (100, 60)), steps=4)
+        floor.mouse.move(*screen_position(floor, (100, 60)), steps=4)
         assert picture(floor) != wanted_text
         if way == "undo":
             # Touched by a second finger.
@@ -144,7 +144,7 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     floor.click("#world_add_lines")
     drag(floor, [(150, 60), (150, 90), (120, 140), (60, 140)])
     floor.click("#world_add_lamps")
-    floor.mouse.click(*on_screen(floor, (200, 180)))
+    floor.mouse.click(*screen_position(floor, (200, 180)))
     world = save_world(floor)
     assert [(round(x), round(y)) for x, y in world.walls[0]] == [(60, 30), (100, 60)]
     line = [(round(x), round(y)) for x, y in world.lines[0].points]
@@ -153,9 +153,9 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     name_at = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 82.5): "Robot",
                (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
     for place, name in name_at.items():
-        floor.mouse.click(*on_screen(floor, place))
+        floor.mouse.click(*screen_position(floor, place))
         assert read_chosen_world(floor) == name
-    floor.mouse.click(*on_screen(floor, (80, 45)))
+    floor.mouse.click(*screen_position(floor, (80, 45)))
     drag(floor, [(60, 30), (60, 50)])  # an end of the wall, by its handle
     assert [(round(x), round(y)) for x, y in save_world(floor).walls[0]] == [(60, 50), (100, 60)]
 
@@ -209,13 +209,13 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     drag(floor, [(210, 70), (205, 105), (170, 110)])  # the handle of a part that is long
     assert read_chosen_world(floor) == "Box 7" and abs(number(floor, "heading") - 90) <= 5
     floor.select_option("#world_part", label="Floor")
-    floor.mouse.click(*on_screen(floor, (56, 82.5)))
+    floor.mouse.click(*screen_position(floor, (56, 82.5)))
     drag(floor, [(75, 82.5), (75, 98), (56, 103)])  # the handle in front of it
     assert save_world(floor).start == (56, 82.5, 90)
     floor.click("#world_undo")
     assert save_world(floor).start == (56, 82.5, 0)
     floor.click("#world_add_flags")
-    floor.mouse.click(*on_screen(floor, (150, 100)))
+    floor.mouse.click(*screen_position(floor, (150, 100)))
     assert read_chosen_world(floor) == "Flag 1"
     floor.check("#world_rests")
     flag = save_world(floor).flags[0]
@@ -254,7 +254,7 @@ def test_nothing_leaves_the_floor(floor: Page) -> None:
 def draw(page: Page, way: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
     page.evaluate(SETTLED_SCRIPT)  # earlier taps may have changed the floor's size
-    finger(page, [on_screen(page, place) for place in way])
+    finger(page, [screen_position(page, place) for place in way])
 
 
 @drawn
@@ -298,13 +298,13 @@ def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     page.select_option("#world", "light")
     write(page, "SHOW(DISTANCE);\nF(1, 80)")
     page.select_option("#speed", "20")
-    page.mouse.move(*on_screen(page, (40, 40), (240, 180)))
+    page.mouse.move(*screen_position(page, (40, 40), (240, 180)))
     page.mouse.down()
-    page.mouse.move(*on_screen(page, (80, 60), (240, 180)), steps=3)
+    page.mouse.move(*screen_position(page, (80, 60), (240, 180)), steps=3)
     page.mouse.up()
     assert page.locator("#world option:checked").inner_text() == "my world"
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     shown_text = (page.locator("#trace").text_content() or "").partition("SHOW ")[2].split()[0]
     page.click("#world_draw")
     world = save_world(page)
@@ -338,7 +338,7 @@ es = "aula"
 
 @drawn
 def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
-    put(floor, OWN)
+    open_world_file(floor, OWN)
     wait_for_status(floor, "Opened: own.toml")
     wanted_world = read(OWN.decode(), "own")
     world = save_world(floor)
@@ -356,11 +356,11 @@ def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
         (OWN.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
         (b"#" * 3_000_000, "has more than"),
     ):
-        put(floor, data)
+        open_world_file(floor, data)
         wait_for_status(floor, why)
         assert floor.input_value("#world_width_cm") == "90"
     speak(floor, "es")
-    put(floor, b"\xff")
+    open_world_file(floor, b"\xff")
     wait_for_status(floor, "no se abrió")
 
 
@@ -378,5 +378,5 @@ def test_a_damaged_world_does_no_harm(page: Page) -> None:
     assert page.input_value("#world") == "obstacles"
     wait_for_status(page, "drew can no longer be read.")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.keyboard.press("Escape")

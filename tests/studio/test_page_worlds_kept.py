@@ -10,13 +10,13 @@ from tests.support.page_worlds import (
     NO_BORDER,
     drag,
     draw_wall,
-    on_screen,
-    put,
+    open_world_file,
     read_start,
     save_world,
+    screen_position,
     wait_for_status,
 )
-from tests.support.studio import Pages, in_phase, speak, wait_until_checked, write
+from tests.support.studio import Pages, speak, wait_for_phase, wait_until_checked, write
 from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
     assert walls_of(page, "my world (before)") == 0
     assert walls_of(page, "my world (before)") == 1
     page.click("#world_draw")
-    put(page, NO_BORDER, "aula.toml")  # nor to a file that is opened
+    open_world_file(page, NO_BORDER, "aula.toml")  # nor to a file that is opened
     wait_for_status(page, "Opened: aula.toml")
     page.click("#world_done")
     assert list_own_worlds(page) == ["aula", "my world (before)", "my world (before 2)"]
@@ -83,7 +83,7 @@ def test_changes_of_one_world_make_no_other(page: Page) -> None:
 def test_five_worlds_before_are_kept(page: Page) -> None:
     page.click("#world_draw")
     for k in range(8):
-        put(page, NO_BORDER, f"w{k}.toml")
+        open_world_file(page, NO_BORDER, f"w{k}.toml")
         wait_for_status(page, f"Opened: w{k}.toml")
     numbers = ["", " 2", " 3", " 4", " 5"]
     names = ["w7", *(f"w{6 - k} (before{number})" for k, number in enumerate(numbers))]
@@ -138,9 +138,9 @@ def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
 
 @drawn
 def test_a_drag_ends_where_another_world_begins(page: Page) -> None:
-    page.mouse.move(*on_screen(page, OBSTACLES_START))
+    page.mouse.move(*screen_position(page, OBSTACLES_START))
     page.mouse.down()
-    page.mouse.move(*on_screen(page, (56, 100)), steps=3)
+    page.mouse.move(*screen_position(page, (56, 100)), steps=3)
     page.select_option("#world", "light")
     page.mouse.up()
     assert page.input_value("#world") == "light"
@@ -153,14 +153,14 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     write(page, "F(30, 80)")
     page.select_option("#speed", "20")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("#values dd").first.filter(has_text="s").wait_for()
     page.click("#world_draw")
     save_world(page)  # after the question about stopping is answered
     assert page.locator("#values dd").first.inner_text() == "–"
     page.click("#world_done")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     page.locator("#values dd").nth(1).filter(has_text="80").wait_for()
     page.select_option("#world", "light")
     assert read_start(page) == (40, 40)
@@ -171,7 +171,7 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
 @drawn
 def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
     page.click("#world_draw")
-    put(page, NO_BORDER)
+    open_world_file(page, NO_BORDER)
     wait_for_status(page, "Opened")
     page.select_option("#world_part", label="Robot")
     page.locator("#arena").focus()

@@ -31,7 +31,7 @@ LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 
 TINIBOT = robots.load("tinibot")
 
 
-def first(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
+def first_line(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
     if of == recordings.VIRTUAL:
         more = {"world": "obstacles", **more}
     return header_line(of, text, TINIBOT, compile(text).checksum, **more)
@@ -40,7 +40,7 @@ def first(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
 def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
     rows = [Row(*event) for event in events]
     end_ms = rows[-1].ms if rows else 0
-    return encode(first(text, **more), rows, end_ms).encode()
+    return encode(first_line(text, **more), rows, end_ms).encode()
 
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
@@ -195,7 +195,7 @@ VIRTUAL = {"of": recordings.VIRTUAL}
         (file().replace(b'"real"', b'"unreal"'), "unreadable", 1),
         (file(*LINES)[:-3], "unreadable", 7),  # within its last row
         (file(*LINES)[:-14], "cut", 6),
-        (first().encode(), "cut", 1),
+        (first_line().encode(), "cut", 1),
         (file((5, "SHOW 1"), (4, "SHOW 2")), "unreadable", 3),
         (file((5, "MISSED"), (6, "SHOW 2")), "unreadable", 3),
         (file((5, "END"), (6, "SHOW 2")), "unreadable", 3),
@@ -255,7 +255,7 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
     rows = Rows()
     added = [rows.add(Row(ms, f"READ DISTANCE {ms % 400}.5")) for ms in range(100_000)]
     assert rows.is_full and added == sorted(added, reverse=True)
-    data = encode(first(), rows.rows, rows.rows[-1].ms).encode()
+    data = encode(first_line(), rows.rows, rows.rows[-1].ms).encode()
     assert len(data) < recordings.MOST_BYTES
     assert decode(data).rows == tuple(rows.rows)
     short = Rows()

@@ -18,7 +18,7 @@ from tiniscript.virtual import worlds
 TREAD, LIT, WAVE = "#b9c2cb", "#fff3a8", "#7a2fb8"
 
 
-def after(text: str, robot: str, ms: int) -> dict[str, Any]:
+def state_after(text: str, robot: str, ms: int) -> dict[str, Any]:
     """Return the state of a robot some time after its program has begun."""
     simulation = Simulation(robot, worlds.load("obstacles"), compile(text, robot).image)
     simulation.advance(ms)
@@ -30,7 +30,7 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     known = {robot["name"]: robot for robot in description()["robots"]}
     grabber = json.loads(json.dumps(known["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
-    state = after("SI|GRIPPER(45);W(9)", "grabber", 100)
+    state = state_after("SI|GRIPPER(45);W(9)", "grabber", 100)
     both: list[tuple[Any, dict[str, int]]] = [(known["grabber"], {}), (grabber, {"GRIPPER": -45})]
     requests = [
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
@@ -69,10 +69,10 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
 def test_what_is_on_is_seen() -> None:
     """A lamp, the robot's own light where its button would start it, and the buzzer's sound."""
     of_rows = (
-        ("grabber", after("LED(TRUE);W(1)", "grabber", 300), STANDING_STILL),
-        ("grabber", after("W(1)", "grabber", 300), STANDING_STILL),
-        ("tinibot", after("SB|F(1, 80)", "tinibot", 300), STANDING_STILL),
-        ("tinibot", after("F(1, 80)", "tinibot", 300), STANDING_STILL),
+        ("grabber", state_after("LED(TRUE);W(1)", "grabber", 300), STANDING_STILL),
+        ("grabber", state_after("W(1)", "grabber", 300), STANDING_STILL),
+        ("tinibot", state_after("SB|F(1, 80)", "tinibot", 300), STANDING_STILL),
+        ("tinibot", state_after("F(1, 80)", "tinibot", 300), STANDING_STILL),
         ("tinibot", None, {**STANDING_STILL, "isBeeping": True}),
         ("tinibot", None, STANDING_STILL),
     )
@@ -87,7 +87,7 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
         right, left = shapes(drawing, "stroke", "#37434f")
         return left[-1] - right[-1]
 
-    states = [after(f"GRIPPER({angle});W(1)", "grabber", 300) for angle in (0, 90, 180)]
+    states = [state_after(f"GRIPPER({angle});W(1)", "grabber", 300) for angle in (0, 90, 180)]
     closed, half, wide = map(
         gap, drawings_of(*(("grabber", state, STANDING_STILL) for state in states))
     )
@@ -96,7 +96,7 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
 
 
 def test_a_cone_is_as_long_as_what_is_read() -> None:
-    state = after("W(1)", "tinibot", 300)
+    state = state_after("W(1)", "tinibot", 300)
     [drawing] = drawings_of(("tinibot", state, STANDING_STILL))
     [cone] = shapes(drawing, "fill", "#e0452f33")
     assert cone[4] == state["readings"][2]["value"] > 0  # index after the tip and the middle
@@ -113,6 +113,6 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
 
 def test_a_robot_tells_where_it_touches_something() -> None:
     """It turns right into a box, whose left side is 184 cm from the left wall."""
-    assert after("F(1, 80)", "tinibot", 300)["touches"] is None
-    state = after("F(9, 80)", "tinibot", 4000)
+    assert state_after("F(1, 80)", "tinibot", 300)["touches"] is None
+    state = state_after("F(9, 80)", "tinibot", 4000)
     assert state["bumps"] == 1 and state["touches"][0] == pytest.approx(184, abs=0.5)

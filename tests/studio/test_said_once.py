@@ -48,7 +48,7 @@ def stem(word: str) -> str:
     return word[:STEM]
 
 
-def twice(parts: Parts) -> list[str]:
+def list_repetitions(parts: Parts) -> list[str]:
     """Return immediate repetitions: a word after itself, or after a block that shows it."""
     text = "".join(part for _, part in parts)
     repeated_words = [
@@ -101,7 +101,7 @@ def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> l
     return [[(bool(is_block), text) for is_block, text in json.loads(line)] for line in lines]
 
 
-def spoken_in(text: str) -> dict[str, dict[str, Any]]:
+def blocks_of_code(text: str) -> dict[str, dict[str, Any]]:
     return block_speech.blocks_of(CODE.findall(text), profile_of("tinibot").kit)
 
 
@@ -113,12 +113,12 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, lang
         spoken_blocks = page_lessons.spoken_blocks(number, language)
         rows += [{"robot": robot, "sentence": sentence, "spoken": spoken_blocks}
                  for sentence in sentences_of(number, language, BLOCKS)]  # fmt: skip
-    rows += [{"robot": "tinibot", "sentence": sentence, "spoken": spoken_in(sentence)}
+    rows += [{"robot": "tinibot", "sentence": sentence, "spoken": blocks_of_code(sentence)}
              for sentence in found_sentences(language)]  # fmt: skip
     parts = shown_parts(page_data, language, rows)
     assert sum(is_block for row in parts for is_block, _ in row) > 100
     wrong = {"".join(f"[{text}]" if is_block else text for is_block, text in row): repeated_words
-             for row in parts if (repeated_words := twice(row))}  # fmt: skip
+             for row in parts if (repeated_words := list_repetitions(row))}  # fmt: skip
     assert wrong == {}
 
 
@@ -159,7 +159,7 @@ def test_code_in_a_sentence_is_what_is_read_as_a_block(sentence: str, marked_tex
 def test_no_text_has_a_word_twice(language: str) -> None:
     for number in range(1, len(catalogue.folders()) + 1):
         for text in sentences_of(number, language, TEXT):
-            assert twice([(False, text.replace("`", ""))]) == [], text
+            assert list_repetitions([(False, text.replace("`", ""))]) == [], text
 
 
 @pytest.mark.parametrize("parts, repeated_texts", [
@@ -171,4 +171,4 @@ def test_no_text_has_a_word_twice(language: str) -> None:
     ([(True, "turn left"), (False, ". Turn the key.")], []),
 ])  # fmt: skip
 def test_what_is_twice_is_found(parts: Parts, repeated_texts: list[str]) -> None:
-    assert twice(parts) == repeated_texts
+    assert list_repetitions(parts) == repeated_texts

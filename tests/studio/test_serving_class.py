@@ -44,17 +44,17 @@ def served_class(tmp_path: Path) -> Iterator[Class]:
         yield Class(server, room)
 
 
-def own(taught: Class) -> str:
+def host_header(taught: Class) -> str:
     return f"{HOST}:{taught.server.server_port}"
 
 
 def post(taught: Class, request: object, token: str = "", **headers: str) -> int:
     """Post as a page of the class does; return the status."""
     body = json.dumps(request).encode()
-    return page_server.post(own(taught), token, body, headers=headers)[0]
+    return page_server.post(host_header(taught), token, body, headers=headers)[0]
 
 
-def joins(taught: Class) -> str:
+def join_class(taught: Class) -> str:
     request = {"do": "join", "code": taught.room.code, "name": "Ana"}
     return str(taught.room.answer("", OTHER_HOST, request)["token"])
 
@@ -65,16 +65,16 @@ def joins(taught: Class) -> str:
 def test_the_host_is_the_shown_address_exactly(served_class: Class, host: str) -> None:
     port = served_class.server.server_port
     for name in (host, f"{host}:{port}", f"{host}:1"):
-        if name == own(served_class):
+        if name == host_header(served_class):
             continue
         assert post(served_class, {"do": "join"}, Host=name) == 403
         assert post(served_class, {"do": "join"}, Origin=f"http://{name}") == 403
-        assert ask(own(served_class), headers={"Host": name})[0].status == 403
+        assert ask(host_header(served_class), headers={"Host": name})[0].status == 403
     assert post(served_class, {"do": "join", "code": "", "name": ""}) == 200
 
 
 def test_the_page_is_packed_marked_and_fetched_once(served_class: Class) -> None:
-    connection = HTTPConnection(own(served_class), timeout=HANG_LIMIT_S)
+    connection = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     connection.request("GET", "/", headers={"Accept-Encoding": "gzip, deflate"})
     answer = connection.getresponse()
     data = answer.read()
@@ -93,7 +93,7 @@ def test_the_page_is_packed_marked_and_fetched_once(served_class: Class) -> None
 
 
 def test_a_token_opens_its_own_door_alone(served_class: Class) -> None:
-    ana, teacher = joins(served_class), served_class.server.entrances.token
+    ana, teacher = join_class(served_class), served_class.server.entrances.token
     assert post(served_class, {"do": "here"}, ana) == 200
     assert post(served_class, {"do": "class"}, ana) == 400
     assert post(served_class, {"do": "class"}, teacher) == 200
@@ -106,7 +106,7 @@ def test_a_token_opens_its_own_door_alone(served_class: Class) -> None:
 def test_who_has_no_token_sends_little(served_class: Class) -> None:
     request = {"do": "join", "code": "", "name": "x" * 2000}
     assert post(served_class, request) == 400
-    ana = joins(served_class)
+    ana = join_class(served_class)
     assert post(served_class, {"do": "here", "text": "x" * 150_000}, ana) == 200
     assert post(served_class, {"do": "here", "text": "x" * 300_000}, ana) == 400
 
@@ -116,9 +116,9 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
     """They come from one computer, a pupil's or another, and send nothing or half a request. The
     pupil's connection stays, and a new pupil is answered.
     """
-    token = joins(served_class)
-    headers = {"Origin": f"http://{own(served_class)}", serving.TOKEN_HEADER: token}
-    pupil = HTTPConnection(own(served_class), timeout=HANG_LIMIT_S)
+    token = join_class(served_class)
+    headers = {"Origin": f"http://{host_header(served_class)}", serving.TOKEN_HEADER: token}
+    pupil = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
     kept_socket, before = pupil.sock, active_count()
@@ -132,7 +132,7 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
             strangers.enter_context(some)
             pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
             assert pupil.getresponse().read()
-            assert ask(own(served_class))[0].status == 200
+            assert ask(host_header(served_class))[0].status == 200
         assert pupil.sock is kept_socket
         assert active_count() - before <= serving.MOST_CLASS_CONNECTIONS + 30
     pupil.close()
@@ -140,7 +140,7 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
 
 def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
-    early = HTTPConnection(own(served_class), timeout=HANG_LIMIT_S)
+    early = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     early.connect()
     with crowd(
         served_class.server.server_port,
@@ -148,7 +148,7 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) 
         host=HOST,
         source=OTHER_HOST,
     ):
-        assert ask(own(served_class))[0].status == 200  # therefore all of them have arrived
+        assert ask(host_header(served_class))[0].status == 200  # therefore all of them have arrived
         early.request("GET", "/")
         assert early.getresponse().status == 200
     early.close()

@@ -135,7 +135,7 @@ class BleRobot(Peripheral):
             self.tell(data)
 
 
-def uploading(ble: BleRobot, port: str = ADDRESS_PORT) -> Command:
+def start_endless_upload(ble: BleRobot, port: str = ADDRESS_PORT) -> Command:
     """A program that runs, and the command that attends to it."""
     command = Command("upload", "-e", FOREVER, "--port", port)
     command.until("running")

@@ -26,7 +26,7 @@ ROLES = {
 }  # fmt: skip
 
 
-def of_word(word: str) -> str:
+def program_with_word(word: str) -> str:
     role = WORDS[word].role.name
     if role == "until":
         return "W(1) UNTIL(DISTANCE < 10)"

@@ -60,12 +60,12 @@ def save_program(table: Table) -> None:
     table.upload_program(SAVED)
 
 
-def in_memory(table: Table) -> None:
+def load_into_memory(table: Table) -> None:
     table.upload_program(SAVED)
     table.upload_program(MEMORY, is_saved=False)
 
 
-def types(text: str, power: int = SAVED) -> Callable[[Table], None]:
+def typing_of(text: str, power: int = SAVED) -> Callable[[Table], None]:
     """Return a function that types; `power` is that of the program which the button then starts."""
 
     def enter(table: Table) -> None:
@@ -77,7 +77,7 @@ def types(text: str, power: int = SAVED) -> Callable[[Table], None]:
     return enter
 
 
-def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
+def live_line_of(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
     """Return a function that sends a live line from a computer, and continues."""
 
     def enter(table: Table) -> None:
@@ -89,13 +89,13 @@ def runs(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
     return enter
 
 
-def runs_memory(table: Table) -> None:
+def run_from_memory(table: Table) -> None:
     table.upload_program(SAVED)
     table.send(f"SI|F(600, {MEMORY})", saves=False)
     table.program = MEMORY
 
 
-def runs_saved(table: Table) -> None:
+def run_saved(table: Table) -> None:
     table.upload_program(SAVED)
     assert table.robot.until(table.session, table.session.start()) == OK
 
@@ -106,7 +106,7 @@ def enter_stopped(table: Table) -> None:
     table.talk(300)
 
 
-def receives(table: Table) -> None:
+def interrupt_upload(table: Table) -> None:
     table.upload_program(SAVED)
     request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER}); ' * 90}"))
     while request.done_bytes < 60:
@@ -114,19 +114,19 @@ def receives(table: Table) -> None:
     table.talks = None  # the rest never arrives, or is late
 
 
-def saves(table: Table) -> None:
+def save_typed(table: Table) -> None:
     table.send(f"SB|F(600, {SAVED})")
     table.program = SAVED
 
 
-def brings_back(table: Table) -> None:
+def undo_upload(table: Table) -> None:
     table.upload_program(SAVED)
     table.upload_program(OTHER)
     assert table.robot.until(table.session, table.session.undo()) == OK
     table.program = SAVED
 
 
-def keeps_trim(table: Table) -> None:
+def store_trim(table: Table) -> None:
     table.upload_program(SAVED)
     table.session.trim(b"\0\0\1")
     table.talk(40)
@@ -162,19 +162,19 @@ def reset_down(table: Table) -> None:
 STATES: dict[str, Callable[[Table], None]] = {
     "holds no program": empty,
     "holds a saved program": save_program,
-    "holds a program in memory only": in_memory,
-    "holds a program that was typed": types(f"SB|F(600, {TYPED})\n", TYPED),
-    "is running a program in memory": runs_memory,
-    "is running the saved program": runs_saved,
-    "is running a live line": runs(f"SI|F(600, {LINE})"),
-    "is running text": types(f"SI|F(600, {TYPED})\n"),
-    "has an open block of text": types(f"SI|LOOP(2)\nF(600, {TYPED})\n"),
+    "holds a program in memory only": load_into_memory,
+    "holds a program that was typed": typing_of(f"SB|F(600, {TYPED})\n", TYPED),
+    "is running a program in memory": run_from_memory,
+    "is running the saved program": run_saved,
+    "is running a live line": live_line_of(f"SI|F(600, {LINE})"),
+    "is running text": typing_of(f"SI|F(600, {TYPED})\n"),
+    "has an open block of text": typing_of(f"SI|LOOP(2)\nF(600, {TYPED})\n"),
     "was stopped": enter_stopped,
-    "has a fault": runs("SI|X = 0; SHOW(5 / X)", 300),
-    "is receiving an upload": receives,
-    "is saving its program": saves,
-    "is bringing back the previous program": brings_back,
-    "is saving a trim": keeps_trim,
+    "has a fault": live_line_of("SI|X = 0; SHOW(5 / X)", 300),
+    "is receiving an upload": interrupt_upload,
+    "is saving its program": save_typed,
+    "is bringing back the previous program": undo_upload,
+    "is saving a trim": store_trim,
     "is being claimed": begin_claim,
     "has an owner": enter_owned,
     "was reset with the button down": reset_down,

@@ -31,5 +31,7 @@ def claim_with_button(pty_robot: PtyRobot, *options: str) -> CommandResult:
     return result
 
 
-def as_another(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str = "another") -> None:
+def become_another_computer(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str = "another"
+) -> None:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / name))

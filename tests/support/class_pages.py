@@ -39,7 +39,7 @@ def join_class(pages: Pages, class_: Class, name: str) -> Page:
     return page
 
 
-def teaches(pages: Pages, class_: Class) -> Page:
+def open_teacher_page(pages: Pages, class_: Class) -> Page:
     page = pages.visit(class_.server.entrance(), "wall")
     page.locator("[data-teacher=class_count]").wait_for(state="attached")
     return page
@@ -61,16 +61,16 @@ def lines(page: Page) -> list[str]:
     return [str(row) for row in texts]
 
 
-def has(page: Page, *rows: str) -> None:
+def wait_for_lines(page: Page, *rows: str) -> None:
     until(lambda: [row.strip() for row in lines(page) if row.strip()] == list(rows),
           f"{rows}, but {lines(page)}", 30)  # fmt: skip
 
 
-def goes_to(page: Page, row: str) -> None:
+def go_to_line(page: Page, row: str) -> None:
     """Press at the end of a line."""
     page.locator(".cm-line").filter(has_text=row).first.click()
     page.keyboard.press("End")
 
 
-def types(page: Page, text: str) -> None:
+def type_slowly(page: Page, text: str) -> None:
     page.keyboard.type(text, delay=20)

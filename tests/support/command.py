@@ -63,7 +63,7 @@ class Tsc:
         return CommandResult(code, capture_result.out, capture_result.err)
 
 
-def inside(*arguments: str | Path, data: bytes = b"") -> CommandResult:
+def run_in_process(*arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` in this process."""
     streams = [
         io.TextIOWrapper(io.BytesIO(data_in), encoding="utf-8") for data_in in (data, b"", b"")

@@ -6,7 +6,7 @@ import hashlib
 from functools import lru_cache, partial
 from pathlib import Path
 
-from tests.machines.host import BUILD_CACHE, once
+from tests.machines.host import BUILD_CACHE, make_once
 from tests.support.casefile import ROOT
 from tools.builds import conformance
 
@@ -25,7 +25,9 @@ def have_kit() -> None:
     for path in sorted(path for pattern in SOURCES for path in ROOT.glob(pattern)):
         digest.update(bytes(path.relative_to(ROOT)) + path.read_bytes())
     for name in conformance.FILES:
-        built_path = once(BUILD_CACHE / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name))
+        built_path = make_once(
+            BUILD_CACHE / f"{digest.hexdigest()[:16]}-{name}", partial(_make, name)
+        )
         _put(built_path.read_bytes(), conformance.FOLDER / name)
 
 

@@ -14,7 +14,7 @@ from itertools import product
 
 from tests.machines import Senses
 from tests.machines.host import Process
-from tests.machines.python import lists_of, ran_python
+from tests.machines.python import lists_of, run_in_python
 from tests.oracle import programs
 from tests.oracle.task_programs import task_program
 from tests.support.images import image_for
@@ -88,7 +88,7 @@ def compare_verdicts(
 def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that both machines run accepted code alike; return the ending."""
     image = image_for(code, kit)
-    ours, theirs = ran_python(image, kit, senses), machine.run(image, kit, senses)
+    ours, theirs = run_in_python(image, kit, senses), machine.run(image, kit, senses)
     assert machine.agrees(theirs, ours, senses.max_ms), f"{code.hex(' ')}:\n{ours}\nnot\n{theirs}"
     return theirs.trace.split()[-1]
 
@@ -244,7 +244,7 @@ def check_task_codes(machine: Process, seed: int, count: int) -> None:
 def check_task_programs(machine: Process, first: int, count: int) -> None:
     for image, senses in some_task_programs(first, count):
         run = machine.run(image, KIT, senses)
-        assert machine.agrees(run, ran_python(image, KIT, senses), senses.max_ms), first
+        assert machine.agrees(run, run_in_python(image, KIT, senses), senses.max_ms), first
 
 
 class SlowRobot(TracedRobot):
@@ -344,7 +344,7 @@ def check_way_programs(machine: Process, first: int, count: int) -> None:
     ends: Counter[str] = Counter()
     for image, kit, senses in some_way_programs(first, count):
         run = machine.run(image, kit, senses)
-        want = ran_python(image, kit, senses)
+        want = run_in_python(image, kit, senses)
         assert machine.agrees(run, want, senses.max_ms), image.hex(" ")
         ends[run.trace.split()[-1]] += 1
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends

@@ -42,13 +42,17 @@ def crowd(
         for port in ports:
             for begin in range(0, count, CONNECTIONS_PER_PROCESS):
                 stack.enter_context(
-                    _some(port, min(CONNECTIONS_PER_PROCESS, count - begin), says, host, source)
+                    _open_connections(
+                        port, min(CONNECTIONS_PER_PROCESS, count - begin), says, host, source
+                    )
                 )
         yield
 
 
 @contextmanager
-def _some(port: int, count: int, says: Sequence[bytes], host: str, source: str) -> Iterator[None]:
+def _open_connections(
+    port: int, count: int, says: Sequence[bytes], host: str, source: str
+) -> Iterator[None]:
     packets = ",".join(data.hex() for data in says)
     words = [sys.executable, "-I", "-S", "-c", CODE, host, str(port), source, str(count), packets]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:

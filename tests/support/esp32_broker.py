@@ -21,7 +21,7 @@ ID = "12345678"
 DEAD_MAN_MS = 1050
 
 
-def at(
+def connect_to_broker(
     broker: Mosquitto, keys: Keys, settings: wifi.BrokerSettings | None = None
 ) -> tuple[Esp32Robot, Session]:
     """Return a robot with an owner, which is at the broker, and the owner's session by cable."""
@@ -53,10 +53,10 @@ def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str
     return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
 
 
-def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPresence]:
+def list_present_robots(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPresence]:
     robot.wait(20)
     return at.list_robots(group)
 
 
-def motors(robot: Esp32Robot) -> str:
+def motor_state(robot: Esp32Robot) -> str:
     return [line for line in actions_of(robot) if "MOTORS" in line][-1]

@@ -7,17 +7,17 @@ from pathlib import Path
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.esp32_pty_robot import Esp32PtyRobot
-from tests.support.esp32_radio import in_reach
+from tests.support.esp32_radio import set_network_in_reach
 
 NETWORK, PASSWORD = "Aula 3", b"a secret of the school"
 DRIVE_PROGRAM = "SI|F(0.2, 80)"
 DRIVE_ACTIONS = ["MOTORS 80 80", "MOTORS 0 0"]
 
 
-def near(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:
+def put_network_in_reach(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:
     def reach(host_firmware: HostFirmware) -> None:
         assert isinstance(host_firmware, Esp32Robot)
-        in_reach(host_firmware, NETWORK, password.decode())
+        set_network_in_reach(host_firmware, NETWORK, password.decode())
 
     robot.ask(reach)
 

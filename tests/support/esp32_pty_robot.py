@@ -21,12 +21,12 @@ class Esp32PtyRobot(PtyRobot):
     def hang(self, milliseconds: int) -> None:
         """Stop the main loop for a while."""
 
-        def stand(robot: HostFirmware) -> None:
+        def hang(robot: HostFirmware) -> None:
             assert isinstance(robot, Esp32Robot)
             robot.hang(milliseconds)
             robot.step(ticks=0)
 
-        self.ask(stand)
+        self.ask(hang)
 
     def restart(self) -> None:
         """Carry out the reset that the watchdog has requested."""

@@ -76,7 +76,7 @@ class LowEnergy:
         answer = self.robot.radio("n", self._number)
         count, answer = int.from_bytes(answer[:4], "little"), answer[4:]
         for _ in range(count):
-            data, answer = _next(answer)
+            data, answer = _split_first(answer)
             self.lengths.append(len(data))
             self._waiting.append(data)
         self._looks += 1
@@ -100,7 +100,7 @@ class SerialPort:
             self.robot.radio("W", _text(data))
 
     def take(self) -> bytes:
-        return _next(self.robot.radio("S"))[0]
+        return _split_first(self.robot.radio("S"))[0]
 
     def leave(self) -> None:
         self.robot.radio("C", b"\0")
@@ -157,7 +157,7 @@ def radios(robot: Esp32Robot) -> Radios:
     answer = robot.radio("I")
     texts = []
     for _ in range(7):
-        text, answer = _next(answer)
+        text, answer = _split_first(answer)
         texts.append(text.decode())
     advertised_text, serial_port, host, instance, service, network, password = texts
     return Radios(advertised_text, serial_port, host, instance, service, network, password,
@@ -168,12 +168,12 @@ def port_of(robot: Esp32Robot) -> int:
     return int.from_bytes(robot.radio("P"), "little")
 
 
-def in_reach(robot: Esp32Robot, name: str, password: str) -> None:
+def set_network_in_reach(robot: Esp32Robot, name: str, password: str) -> None:
     """Put a network in reach; an empty name removes it."""
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
-def takes(robot: Esp32Robot, most: int) -> None:
+def limit_accepted_bytes(robot: Esp32Robot, most: int) -> None:
     """Limit the bytes that a client in a network accepts at once; 0 accepts none for now."""
     robot.radio("t", pack("<H", most))
 
@@ -210,6 +210,6 @@ def _text(data: bytes) -> bytes:
     return pack("<I", len(data)) + data
 
 
-def _next(answer: bytes) -> tuple[bytes, bytes]:
+def _split_first(answer: bytes) -> tuple[bytes, bytes]:
     length = int.from_bytes(answer[:4], "little")
     return answer[4 : 4 + length], answer[4 + length :]

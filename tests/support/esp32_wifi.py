@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Network, in_reach, talk
+from tests.support.esp32_radio import Network, set_network_in_reach, talk
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import Ends, boot, claim_robot, wait_for_outcome
 from tiniscript.link import wifi
@@ -32,7 +32,7 @@ def far_owner(keys: Keys) -> tuple[Esp32Robot, Network, Session]:
 
 
 def school_in_reach(robot: Esp32Robot) -> None:
-    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    set_network_in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
 
 
 def restart_with_school_in_reach(robot: Esp32Robot) -> Esp32Robot:

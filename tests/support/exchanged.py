@@ -44,7 +44,7 @@ class Elsewhere(Exception):
     """Raised if the difference is in no function that can be found."""
 
 
-def answers(tries: Sequence[Try], folder: Path) -> list[str]:
+def list_outcomes(tries: Sequence[Try], folder: Path) -> list[str]:
     """Return for each whether its test FAILS, PASSES or SKIPS, or the reason why that is unknown.
 
     `folder` is a copy of the repository. In this run, the tests of Python, which are quick, must
@@ -74,7 +74,7 @@ class Plugin:
         ]
         quick = [item for tried_test, row in zip(self.tries, items_by_test, strict=True)
                  for item in row if tried_test.file.endswith(".py")]  # fmt: skip
-        assert _in_child(quick, lambda: None) != FAILS, "they fail without a mutant, too"
+        assert _run_in_child(quick, lambda: None) != FAILS, "they fail without a mutant, too"
         self.answers += map(_run_try, self.tries, items_by_test)
         return True
 
@@ -83,18 +83,18 @@ def _run_try(tried_test: Try, items: Sequence[pytest.Item]) -> str:
     path = ROOT / tried_test.file
     if path.suffix == ".py":
         try:
-            return _in_child(items, _exchange(tried_test))
+            return _run_in_child(items, _exchange(tried_test))
         except Elsewhere as why:
             return str(why)
     right = path.read_bytes()
     path.write_text(tried_test.text, encoding="utf-8")
     try:
-        return _in_child(items, lambda: None)
+        return _run_in_child(items, lambda: None)
     finally:
         path.write_bytes(right)
 
 
-def _in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
+def _run_in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
     """Run tests after `begin`; an endless loop fails."""
     child = os.fork()
     if child == 0:
@@ -141,7 +141,7 @@ def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
     """Yield the functions that differ in the code of a module or a class, outermost ones."""
     old, new = ([const for const in code.co_consts if isinstance(const, CodeType)]
                 for code in (old_code, becomes))  # fmt: skip
-    if _own(old_code) != _own(becomes) or len(old) != len(new):
+    if _own_content(old_code) != _own_content(becomes) or len(old) != len(new):
         raise Elsewhere("what differs is in no function")
     for pair in zip(old, new, strict=True):
         if pair[0] != pair[1]:
@@ -151,7 +151,7 @@ def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
                 yield from _pairs(*pair)
 
 
-def _own(code: CodeType) -> tuple[object, ...]:
+def _own_content(code: CodeType) -> tuple[object, ...]:
     others = [const for const in code.co_consts if not isinstance(const, CodeType)]
     return code.co_code, code.co_names, repr(others)
 

@@ -462,5 +462,5 @@ def packets_of(
     return [*rows, f"damaged {receiver.damaged % 256}, dropped {receiver.dropped % 256}"]
 
 
-def with_found(case: LinkCase, rows: list[str]) -> list[str]:
+def with_new_results(case: LinkCase, rows: list[str]) -> list[str]:
     return [*(row for row in case.rows if row[:1] != "="), *(f"= {row}" for row in rows)]

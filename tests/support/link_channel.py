@@ -47,13 +47,13 @@ def cut(data: bytes, at: int, draw: random.Random) -> bytes:
     return data[:at] + data[at + draw.randrange(1, 20) :]
 
 
-def talked_over(data: bytes, at: int, draw: random.Random) -> bytes:
+def with_module_text(data: bytes, at: int, draw: random.Random) -> bytes:
     """Return the data with text inserted by radio modules."""
     return data[:at] + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n")) + data[at:]
 
 
 DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
-    lose_byte, change_byte, double_byte, swap_bytes, insert_byte, cut, talked_over,
+    lose_byte, change_byte, double_byte, swap_bytes, insert_byte, cut, with_module_text,
 )  # fmt: skip
 
 

@@ -29,7 +29,7 @@ class Mosquitto:
         need("" if PROGRAM else "needs the broker mosquitto")
         assert PROGRAM
         self.clients: list[Broker] = []
-        lines = ["persistence false", f"user {_me()}", more]
+        lines = ["persistence false", f"user {_user_name()}", more]
         if user:
             passwords = folder / "passwords"
             passwords.touch(mode=0o600)
@@ -123,7 +123,7 @@ def free_port() -> int:
         return int(connection.getsockname()[1])
 
 
-def _me() -> str:
+def _user_name() -> str:
     import pwd
 
     return pwd.getpwuid(os.getuid()).pw_name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tests.support.studio import hears, wait_for_blocks, write
+from tests.support.studio import wait_for, wait_for_blocks, write
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -30,7 +30,7 @@ def text_of(page: Page) -> str:
     return kept_text
 
 
-def becomes(page: Page, text: str) -> None:
+def wait_for_text(page: Page, text: str) -> None:
     """Wait until the blocks have become this text; the page hears of a change a moment later."""
     for _ in range(PATIENCE_MS // 50):
         if text_of(page) == text:
@@ -39,8 +39,8 @@ def becomes(page: Page, text: str) -> None:
     assert text_of(page) == text
 
 
-def becomes_other(page: Page, text: str) -> None:
-    hears(page, lambda: text_of(page) != text, f"another text than {text}")
+def wait_for_other_text(page: Page, text: str) -> None:
+    wait_for(page, lambda: text_of(page) != text, f"another text than {text}")
 
 
 def block(page: Page, words: str) -> Locator:

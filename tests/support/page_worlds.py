@@ -25,7 +25,7 @@ y_cm = 78
 """
 
 
-def on_screen(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
+def screen_position(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
     """Return the screen position of a place on the floor, in centimetres."""
     box = page.locator("#arena").bounding_box()
     assert box is not None
@@ -38,10 +38,10 @@ def on_screen(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
 
 def drag(page: Page, way: Sequence[Place]) -> None:
     """Go along a way on the floor with the mouse down."""
-    page.mouse.move(*on_screen(page, way[0]))
+    page.mouse.move(*screen_position(page, way[0]))
     page.mouse.down()
     for place in way[1:]:
-        page.mouse.move(*on_screen(page, place), steps=4)
+        page.mouse.move(*screen_position(page, place), steps=4)
     page.mouse.up()
 
 
@@ -67,7 +67,7 @@ def read_start(page: Page) -> Place:
     return start.x_cm, start.y_cm
 
 
-def put(page: Page, data: bytes, name: str = "own.toml") -> None:
+def open_world_file(page: Page, data: bytes, name: str = "own.toml") -> None:
     page.set_input_files(
         "#world_file", {"name": name, "mimeType": "application/toml", "buffer": data}
     )

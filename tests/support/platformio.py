@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host import once
+from tests.machines.host import make_once
 from tests.support.casefile import ROOT
 from tests.support.command import CommandResult
 from tests.support.copies import link_copy
@@ -82,4 +82,4 @@ def firmware(board: str, own: Path, shared_path: Path) -> Path:
         pio(project, "run", "-e", board).gives(0)
         shutil.copy(project / ".pio" / "build" / board / "firmware.elf", path)
 
-    return once(shared_path / f"{board}.elf", make)
+    return make_once(shared_path / f"{board}.elf", make)

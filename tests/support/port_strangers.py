@@ -61,7 +61,7 @@ def mutate_data(chance: Random) -> bytes:
     return bytes(data)
 
 
-def say(registration: Registration, data: bytes, chance: Random) -> None:
+def send_and_leave(registration: Registration, data: bytes, chance: Random) -> None:
     """Say something in one or more pieces, and leave in one of several ways."""
     with (
         socket.create_connection((protocol.HOST, registration.number), 10) as peer,
@@ -80,7 +80,7 @@ def say_all(port: str, seed: int, count: int) -> None:
     """Send everything strange, and so many variations."""
     chance, registration = Random(seed), registration_of(port)
     for data in (*STRANGE_LINES, *(mutate_data(chance) for _ in range(count))):
-        say(registration, data, chance)
+        send_and_leave(registration, data, chance)
 
 
 def registration_of(port: str) -> Registration:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from tests.machines.host_firmware import EMPTY_EEPROM, POWER_ON, HostFirmware
 from tests.support import waiting
-from tests.support.command import FOREVER, Command, CommandResult, inside
+from tests.support.command import FOREVER, Command, CommandResult, run_in_process
 from tests.support.simulated_port import STRIDE_MS, PtyPort, simulate
 from tiniscript.base.kit import Kit
 
@@ -204,10 +204,10 @@ def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> Comman
     command sends.
     """
     with nullcontext() if Command.is_any_there() else simulate(pty_robot):
-        return inside(*arguments, "--port", pty_robot.port, data=data)
+        return run_in_process(*arguments, "--port", pty_robot.port, data=data)
 
 
-def uploading(pty_robot: PtyRobot, text: str = FOREVER) -> Command:
+def start_endless_upload(pty_robot: PtyRobot, text: str = FOREVER) -> Command:
     """A program that runs, and the command that attends to it."""
     command = Command("upload", "-e", text, "--port", pty_robot.port)
     command.until("running")

@@ -56,7 +56,7 @@ def wait_until_saved(robot: HostFirmware, session: Session, limit_ms: int = 10_0
     raise AssertionError("the program is not saved")
 
 
-def holding(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
+def robot_with_saved_program(text: str = "SB|F(0.2, 80)") -> tuple[HostFirmware, Session]:
     """Return a robot that has saved a program, and its session."""
     robot, session = switched_on(), computer()
     send(robot, session, text)

@@ -107,7 +107,9 @@ def _mark(rows: list[pytest.Item]) -> pytest.Mark:
     return mark
 
 
-def some_of(config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1) -> Sequence[Row]:
+def sample_of(
+    config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1
+) -> Sequence[Row]:
     """Return a sample of the rows that one test iterates over, in their order."""
     if config.getoption("--whole") or is_narrowed(config):
         return rows

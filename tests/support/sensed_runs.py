@@ -12,7 +12,7 @@ from typing import NamedTuple
 from tests.machines.host_firmware import TICKS
 from tests.support.debugging import Debugged
 from tests.support.robot_on_host import KIT
-from tests.support.shown_in_loops import Did, apart_ms
+from tests.support.shown_in_loops import TimedAction, largest_difference_ms
 from tiniscript.link.outcomes import Event
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.requests import OK
@@ -23,7 +23,7 @@ LARGEST_DELAY_MS = 1  # a byte
 
 
 class SensedRun(NamedTuple):
-    did: list[Did]
+    did: list[TimedAction]
     events: list[Event]
     values: list[list[int]]  # successive values of each sensor
 
@@ -56,4 +56,4 @@ def sensed_run(
 def is_steady(text: str, seed: int) -> bool:
     """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
     usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
-    return all(apart_ms(usual, other) <= LARGEST_DELAY_MS for other in others)
+    return all(largest_difference_ms(usual, other) <= LARGEST_DELAY_MS for other in others)

@@ -11,7 +11,7 @@ from math import inf
 
 SENSORS = ("DISTANCE", "LIGHT_L", "LIGHT_R")
 MOST_DEPTH = 2
-Did = tuple[float, str]  # time and text of an action
+TimedAction = tuple[float, str]  # time and text of an action
 
 
 def program(rng: random.Random) -> str:
@@ -49,7 +49,7 @@ def _check(rng: random.Random) -> str:
     return rng.choice((f"{rng.choice(SENSORS)} < 0", f"{rng.choice(SENSORS)} >= 0"))
 
 
-def apart_ms(one: list[Did], other: list[Did]) -> float:
+def largest_difference_ms(one: list[TimedAction], other: list[TimedAction]) -> float:
     """Return the largest time difference of two runs while both last: `inf` if their actions
     differ.
     """

@@ -28,7 +28,7 @@ def until(simulator: Simulator, is_so: Callable[[], bool]) -> None:
     raise AssertionError("it does not come to that")
 
 
-def until_answered(simulator: Simulator, client: socket.socket, end: bytes = b"\0") -> None:
+def wait_until_answered(simulator: Simulator, client: socket.socket, end: bytes = b"\0") -> None:
     heard_bytes = bytearray()
     until(simulator, lambda: end in receive(client, heard_bytes))
 

@@ -350,12 +350,12 @@ def turn(page: Page, half: str) -> None:
         page.click("#other")
 
 
-def in_phase(page: Page, phase: str) -> None:
+def wait_for_phase(page: Page, phase: str) -> None:
     """Wait until the virtual robot's run is there: `off`, `running`, `paused` or `ended`."""
     page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
 
 
-def hears(page: Page, is_so: Callable[[], object], what: str) -> None:
+def wait_for(page: Page, is_so: Callable[[], object], what: str) -> None:
     """Wait until something is so that a page tells of while it is waited for."""
     end_s = monotonic() + HANG_LIMIT_S
     while not is_so():
@@ -380,7 +380,7 @@ def wait_for_blocks(page: Page) -> None:
     wait_until_checked(page)
 
 
-def drives(page: Page, robot: PtyRobot) -> None:
+def start_drive(page: Page, robot: PtyRobot) -> None:
     """Make a page's robot drive, and wait until it does.
 
     A busy computer can keep a page silent for so long that its robot is stopped before this thread
@@ -494,7 +494,7 @@ def dances_like_the_command(page: Page) -> list[str]:
     write(page, DANCE)
     page.select_option("#speed", "20")
     page.click("#run")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     wanted_texts = [f"{event.ms} {event.text}" for event in run(DANCE).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
     return wanted_texts

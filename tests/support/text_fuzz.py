@@ -9,7 +9,7 @@ from collections.abc import Callable
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
 from tests.support.robot_on_host import computer, switched_on
-from tests.support.text_robot import holding
+from tests.support.text_robot import robot_with_program
 from tiniscript.base.words import WORDS
 
 TURNS = 25
@@ -34,7 +34,7 @@ class Fuzz:
         self.rng = random.Random(seed)
         self.robot: HostFirmware
         if seed % 2:
-            self.robot, self.session = holding()
+            self.robot, self.session = robot_with_program()
         else:
             self.robot, self.session = switched_on(), computer()
 

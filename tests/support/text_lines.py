@@ -12,7 +12,7 @@ from tiniscript.codegen.text.line import line_of, plain_code
 from tiniscript.diagnostics import codes
 
 
-def written_out(word: re.Match[str]) -> str:
+def expanded_word(word: re.Match[str]) -> str:
     """Return the meaning of a word with fixed values; others stay unchanged."""
     known_word = WORDS.get(word[0].upper())
     return (known_word and known_word.stands_for) or word[0]
@@ -24,7 +24,7 @@ def check_line(text: str, kit: Kit) -> None:
     assert re.fullmatch(r"[ -}]*~[0-9A-F]{8}", line), line
     assert "//" not in line and "  " not in line
     assert line == line.upper()
-    longest = re.sub(r"\w+", written_out, text)
+    longest = re.sub(r"\w+", expanded_word, text)
     assert len(line) <= len(longest.encode()) + len("SI|~00000000")
     compiled_line = compile_text(line, kit)
     assert compiled_line.is_right and compiled_line.image == compilation.image, line

@@ -19,7 +19,9 @@ def type_text(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) ->
     return (sent_bytes + robot.wait(milliseconds)).decode("latin-1").splitlines()
 
 
-def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
+def robot_with_program(
+    text: str = "SB|B(0.2, 60)", saves: bool = True
+) -> tuple[HostFirmware, Session]:
     """Return a robot that holds a program, and whose client has left."""
     robot, session = switched_on(), computer()
     send(robot, session, text, saves=saves)
@@ -40,7 +42,7 @@ def fetch_image(robot: HostFirmware, session: Session) -> bytes:
 
 def read_back(saves: bool = True) -> tuple[HostFirmware, Session, bytes]:
     """Return a robot that holds a program, and that program, when its client has gone."""
-    robot, session = holding(saves=saves)
+    robot, session = robot_with_program(saves=saves)
     bytes_before = fetch_image(robot, session)
     robot.wait(4000)
     return robot, session, bytes_before

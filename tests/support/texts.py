@@ -21,7 +21,7 @@ def catalogue_texts(language: str, name: str = "command") -> dict[str, str]:
     }
 
 
-def in_all(key: str) -> list[str]:
+def texts_in_all_languages(key: str) -> list[str]:
     """Return a text of the command in each language, English first."""
     return [catalogue_texts(language)[key] for language in languages()]
 

@@ -33,24 +33,24 @@ class Thief:
             return how, mine
         if how == "reflected":
             reply = decode_frame(chance.choice(self.replies))
-            return how, wire_of(reply._replace(is_reply=False)) if reply else mine
+            return how, encoded(reply._replace(is_reply=False)) if reply else mine
         if how == "other session":
             return how, chance.choice(self.old)
         if how == "cut":
-            return how, wire_of(frame._replace(payload=frame.payload[: -chance.randrange(1, 13)]))
+            return how, encoded(frame._replace(payload=frame.payload[: -chance.randrange(1, 13)]))
         if how == "changed":
             changed_bytes = bytearray(frame.payload)
             changed_bytes[chance.randrange(len(changed_bytes))] ^= 1 << chance.randrange(8)
-            return how, wire_of(frame._replace(payload=bytes(changed_bytes)))
+            return how, encoded(frame._replace(payload=bytes(changed_bytes)))
         if how == "unsealed":
             payload = frame.payload[5:-8]
-            return how, wire_of(frame._replace(payload=payload, seq=seq, is_sealed=False))
+            return how, encoded(frame._replace(payload=payload, seq=seq, is_sealed=False))
         if how == "moved":  # changes the number of the request, the message or the counter
             count = chance.choice((seq, chance.randrange(256))) if chance.random() < 0.5 else 0
             rising = frame.payload[:1] + (2**32 - 1).to_bytes(4, "little") + frame.payload[5:]
             number = chance.choice((frame.number, 7, 8, 9, 19))
             payload = chance.choice((frame.payload, rising))
-            return how, wire_of(frame._replace(payload=payload, seq=count, number=number))
+            return how, encoded(frame._replace(payload=payload, seq=count, number=number))
         acting = [
             message for message in MESSAGES if 6 <= message.number < 32 and message.number != 17
         ]
@@ -61,11 +61,11 @@ class Thief:
         if how == "forged":
             counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
             whole = b"\0" + counter + asked_frame.payload + chance.randbytes(8)
-            return how, wire_of(asked_frame._replace(payload=whole, is_sealed=True))
+            return how, encoded(asked_frame._replace(payload=whole, is_sealed=True))
         seal = Seal(chance.randbytes(16))
         seal.sent_counter = 10_000
-        return how, wire_of(seal.seal_frame(asked_frame))
+        return how, encoded(seal.seal_frame(asked_frame))
 
 
-def wire_of(frame: Frame) -> bytes:
+def encoded(frame: Frame) -> bytes:
     return encode_frame(frame)[:-1]

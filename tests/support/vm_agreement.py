@@ -5,7 +5,7 @@ from __future__ import annotations
 from tests.support.random_programs import MAX_MS
 
 
-def same(want: str, actual: str) -> bool:
+def are_equivalent(want: str, actual: str) -> bool:
     """Return whether two traces are equivalent; the place of a cut by `max-steps` does not
     count.
     """

@@ -27,7 +27,7 @@ CHUNK_COUNT = 16
 PROGRAMS_PER_CHUNK = 150
 
 
-def after(text: str) -> str:
+def formatted(text: str) -> str:
     return format_source(Source(text))
 
 
@@ -140,7 +140,7 @@ LAYOUTS: dict[str, tuple[str, str]] = {
 def test_layout(text: str, layout: str) -> None:
     """Check that the layout is the expected one, and that formatting it again changes nothing."""
     assert not has_mistakes(text)
-    assert after(text) == layout
+    assert formatted(text) == layout
     check(text)
 
 
@@ -185,8 +185,8 @@ def comments_of(text: str) -> str:
 
 def check(text: str) -> str:
     """Return the layout of a text with a correct shape, without the parts that need a kit."""
-    layout = after(text)
-    assert after(layout) == layout
+    layout = formatted(text)
+    assert formatted(layout) == layout
     assert not has_mistakes(layout)
     assert code_of(layout) == code_of(text)
     assert comments_of(layout) == comments_of(text)
@@ -213,7 +213,7 @@ def codes_of(compilation: Compilation) -> list[codes.Code]:
     ]
 
 
-def laid_out_anew(rng: random.Random, text: str) -> str:
+def with_other_layout(rng: random.Random, text: str) -> str:
     """Return the same tokens with other spaces, lines, comments and empty instructions."""
     newline = rng.choice(("\n", "\n", "\r\n", "\r"))
     calm = rng.choice((0.0, 0.5, 0.9))  # probability of ordinary layout
@@ -262,7 +262,7 @@ def test_every_program_stays_the_same_program(chunk: int) -> None:
         of = compiler_kit(oracle_kit)
         check_compiled(text, of)
         if "check_connection" not in text.lower():
-            check_compiled(laid_out_anew(rng, text), of)
+            check_compiled(with_other_layout(rng, text), of)
 
 
 def test_one_line_stays_one_line_and_several_stay_several() -> None:
@@ -276,7 +276,7 @@ def test_one_line_stays_one_line_and_several_stay_several() -> None:
         if instructions < 2 or (not is_one_line and ";" in text):
             continue
         counts[is_one_line] += 1
-        lines = [line.strip() for line in after(text).split("\n")]
+        lines = [line.strip() for line in formatted(text).split("\n")]
         code_lines = [line for line in lines if line not in ("", "SI|", "SB|") and line[:2] != "//"]
         assert len(code_lines) == (1 if is_one_line else instructions)
     assert min(counts.values()) > 50
@@ -288,7 +288,7 @@ def test_texts_with_other_mistakes_are_formatted_too() -> None:
     checked_count = 0
     for _ in range(1000):
         text = break_text(rng, program(rng, WIDE_KIT))
-        after(text)
+        formatted(text)
         if not has_mistakes(text):
             check(text)
             checked_count += 1
@@ -315,5 +315,5 @@ def test_depth_exhausts_nothing(inner: str) -> None:
     """An instruction may hold as much as it likes."""
     count = 20_000
     text = "SHOW(" + inner * count + "1" + ")" * (inner.count("(") * count) + ")"
-    assert code_of(after(text)) == code_of(text)
-    assert after(after(text)) == after(text)
+    assert code_of(formatted(text)) == code_of(text)
+    assert formatted(formatted(text)) == formatted(text)

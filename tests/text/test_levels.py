@@ -25,7 +25,7 @@ TINIBOT = robots.load("tinibot").kit
 UNO = LEVELS["uno"]
 
 
-def lacking(text: str, level: Level = UNO) -> list[Diagnostic]:
+def find_unsupported(text: str, level: Level = UNO) -> list[Diagnostic]:
     compilation = compile_text(text, TINIBOT)
     assert compilation.program is not None and compilation.is_right, compilation.diagnostics
     return find_misfits(compilation.source, compilation.program, TINIBOT, level)
@@ -35,7 +35,7 @@ def problems_of(text: str, level: Level = UNO) -> list[tuple[str, str, dict[str,
     """Return the code of each diagnostic, the text that it points at, and its values without the
     level."""
     problems = []
-    for diagnostic in lacking(text, level):
+    for diagnostic in find_unsupported(text, level):
         values = dict(diagnostic.values)
         assert values.pop("level") == level.name
         problems.append((diagnostic.code.number, text[slice(*diagnostic.span)], values))
@@ -127,7 +127,7 @@ def test_short_jumps_alone_count() -> None:
     assert problems_of(text)[0][2] == {"code": "303", "limit": "255", "over": "48"}
 
 
-def most(text: str, level: Level = UNO) -> int:
+def most_bytes(text: str, level: Level = UNO) -> int:
     """Return the bytes that a reader needs for a text."""
     reader = Reader(scan(text).tokens, TINIBOT, level.sensor_bytes)
     reader.program()
@@ -163,12 +163,12 @@ def most(text: str, level: Level = UNO) -> int:
     ],
 )
 def test_what_a_reader_needs(text: str, bytes_: int) -> None:
-    assert most(text) == bytes_
+    assert most_bytes(text) == bytes_
 
 
 def test_a_set_of_sensors_is_wider_where_there_may_be_more() -> None:
-    assert most("LOOP(2);END_LOOP", LEVELS["mega"]) == most("LOOP(2);END_LOOP") + 3 * 2
-    assert most("DEF A;END_DEF", LEVELS["mega"]) == most("DEF A;END_DEF") + 4 * 2
+    assert most_bytes("LOOP(2);END_LOOP", LEVELS["mega"]) == most_bytes("LOOP(2);END_LOOP") + 3 * 2
+    assert most_bytes("DEF A;END_DEF", LEVELS["mega"]) == most_bytes("DEF A;END_DEF") + 4 * 2
 
 
 @pytest.mark.sampled("first")

@@ -17,7 +17,7 @@ from tests.support.kits import KITS
 from tests.support.number_codes import NUMBER_CODES
 from tests.support.random_programs import MAX_MS, MAX_STEPS
 from tests.support.rows import each_row
-from tests.support.vm_agreement import same
+from tests.support.vm_agreement import are_equivalent
 from tests.support.vm_cases import CASES, having
 from tiniscript import Compilation, compile_text, robots
 from tiniscript.base.kit import Kit
@@ -177,7 +177,9 @@ def check_same(compilation: Compilation, kit: Kit, senses: Senses) -> None:
         used = {row[25:].split()[0] for row in disassemble(code.code).splitlines()}
         assert not [name for name in used if FUSED_OPCODE.match(name)], used
     trace = run_python(image_for(code.code, kit, compilation.program.start), kit, senses)
-    assert same(run_python(compilation.image, kit, senses), trace), compilation.source.text
+    assert are_equivalent(run_python(compilation.image, kit, senses), trace), (
+        compilation.source.text
+    )
 
 
 @pytest.mark.sampled("first")

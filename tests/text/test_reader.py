@@ -23,7 +23,7 @@ MORE_NEEDED = Answer()
 BLOCK_BYTES = 3 + 3 * 4  # including a bit for each of 32 sensors
 
 
-def one(text: str | bytes) -> Answer:
+def answer_to(text: str | bytes) -> Answer:
     """Return a robot's answer to one line."""
     data = text if isinstance(text, bytes) else text.encode()
     (answer,) = read_lines(KIT, data + b"\n")
@@ -31,7 +31,7 @@ def one(text: str | bytes) -> Answer:
 
 
 def code_of(text: str) -> list[str]:
-    answer = one(text)
+    answer = answer_to(text)
     assert answer.is_program, answer
     return [row[25:] for row in disassemble(answer.code).splitlines()]
 
@@ -52,8 +52,8 @@ def test_line_ends(end: bytes) -> None:
 def test_a_program_goes_on_until_its_blocks_are_closed() -> None:
     answers = read_lines(KIT, b"LOOP(2)\nF(1,\n80)\nEND_LOOP\nS\n")
     assert answers[:3] == [MORE_NEEDED] * 3
-    assert answers[3] == one("LOOP(2);F(1,80);END_LOOP")
-    assert answers[4] == one("S")
+    assert answers[3] == answer_to("LOOP(2);F(1,80);END_LOOP")
+    assert answers[4] == answer_to("S")
 
 
 @pytest.mark.parametrize("cut", range(1, len("F(FOREVER,80)UNTIL(NOT(1<DISTANCE))")))
@@ -63,18 +63,18 @@ def test_a_line_may_end_in_brackets_alone(cut: int) -> None:
         return
     answers = read_lines(KIT, f"{whole[:cut]} // )\n{whole[cut:]}\n".encode())
     if whole[:cut].count("(") > whole[:cut].count(")"):
-        assert answers == [MORE_NEEDED, one(whole)]
+        assert answers == [MORE_NEEDED, answer_to(whole)]
     else:
         assert answers[0].problem
 
 
 def test_a_problem_ends_a_program() -> None:
     answers = read_lines(KIT, b"LOOP(2)\nF(1, 800)\nS\n")
-    assert answers[1].problem == "RANGE" and answers[2] == one("S")
+    assert answers[1].problem == "RANGE" and answers[2] == answer_to("S")
 
 
 def test_an_empty_line_begins_anew_on_this_computer() -> None:
-    assert read_lines(KIT, b"LOOP(2)\n\nS\n") == [MORE_NEEDED, one("S")]
+    assert read_lines(KIT, b"LOOP(2)\n\nS\n") == [MORE_NEEDED, answer_to("S")]
 
 
 @pytest.mark.parametrize("line", ["", "  ", "// only a note", "SI|", ";;"])
@@ -88,17 +88,17 @@ def test_programs_that_do_nothing(line: str) -> None:
 
 
 def test_a_line_with_its_checksum_runs() -> None:
-    assert one(add_checksum(b"F(2, 80)")) == one("F(2, 80)")
-    assert one(add_checksum(b"F(2, 80)").upper() + b" \t") == one("F(2, 80)")
-    assert one(add_checksum(b"F(2, 80) // and a note")) == one("F(2, 80)")
-    assert one("\ufeff".encode() + add_checksum(b"S")) == one("S")
+    assert answer_to(add_checksum(b"F(2, 80)")) == answer_to("F(2, 80)")
+    assert answer_to(add_checksum(b"F(2, 80)").upper() + b" \t") == answer_to("F(2, 80)")
+    assert answer_to(add_checksum(b"F(2, 80) // and a note")) == answer_to("F(2, 80)")
+    assert answer_to("\ufeff".encode() + add_checksum(b"S")) == answer_to("S")
 
 
 def test_each_line_of_a_program_may_have_one() -> None:
     lines = (
         b"\r\n".join(map(add_checksum, (b"LOOP(2)", b"F(1,", b"80)", b"", b"END_LOOP"))) + b"\r\n"
     )
-    assert read_lines(KIT, lines)[-1] == one("LOOP(2);F(1,80);END_LOOP")
+    assert read_lines(KIT, lines)[-1] == answer_to("LOOP(2);F(1,80);END_LOOP")
 
 
 def test_every_damage_of_one_byte_is_noticed() -> None:
@@ -107,23 +107,25 @@ def test_every_damage_of_one_byte_is_noticed() -> None:
         for byte in b"~/0aF(\x00\xc2":
             damaged_bytes = line[:at] + bytes((byte,)) + line[at + 1 :]
             if damaged_bytes.lower() != line.lower():
-                assert not one(damaged_bytes).is_program or at > line.index(b"/"), damaged_bytes
+                assert not answer_to(damaged_bytes).is_program or at > line.index(b"/"), (
+                    damaged_bytes
+                )
 
 
 @pytest.mark.parametrize("bytes_before", [b"LOOP(2)", b"LOOP(2) // ~0", b"LOOP(2) // ~0 and more"])
 def test_a_checksum_is_that_of_its_own_line(bytes_before: bytes) -> None:
     lines = read_lines(KIT, bytes_before + b"\n" + add_checksum(b"S;END_LOOP") + b"\n")
-    assert lines == [MORE_NEEDED, one("LOOP(2);S;END_LOOP")]
+    assert lines == [MORE_NEEDED, answer_to("LOOP(2);S;END_LOOP")]
 
 
 @pytest.mark.parametrize("line", [b"F(2, 80)~", b"S~1234567", b"S~1234567G", b"~S", b"S~ 12345678"])
 def test_what_is_no_checksum(line: bytes) -> None:
-    assert one(line).problem == "CHECKSUM"
+    assert answer_to(line).problem == "CHECKSUM"
 
 
 def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
-    assert one(add_checksum(b"F(2, 80)").replace(b"F", b"G")).problem == "CHECKSUM"
-    assert one(add_checksum(b"G(2, 80)")).problem == "UNKNOWN_WORD"
+    assert answer_to(add_checksum(b"F(2, 80)").replace(b"F", b"G")).problem == "CHECKSUM"
+    assert answer_to(add_checksum(b"G(2, 80)")).problem == "UNKNOWN_WORD"
 
 
 # -- characters ---------------------------------------------------------------------------------
@@ -131,25 +133,25 @@ def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
 
 @pytest.mark.parametrize("space", "\t\u00a0\u2000\u200b\u202f\u3000\ufeff")
 def test_spaces(space: str) -> None:
-    assert one(f"F{space}(2,{space}80){space}") == one("F(2,80)")
+    assert answer_to(f"F{space}(2,{space}80){space}") == answer_to("F(2,80)")
 
 
 @pytest.mark.parametrize("control", [chr(k) for k in range(1, 0x20) if chr(k) not in "\t\n\r\b"])
 @pytest.mark.parametrize("line", ["F(2,{}80)", "F(2,80){}", "F(2,80) // {}", "F{}(2,80)"])
 def test_no_control_byte_is_overlooked(line: str, control: str) -> None:
     """A flipped bit makes one of a point or a digit: `F(0.5,80)` must not drive for 5 s."""
-    answer = one(line.format(control))
+    answer = answer_to(line.format(control))
     assert answer.problem == "CHARACTER" and answer.column == line.index("{") + 1
 
 
 @pytest.mark.parametrize("dash", "\u2010\u2013\u2014\u2015\u2212")
 def test_dashes(dash: str) -> None:
-    assert one(f"M({dash}5,80)") == one("M(-5,80)")
+    assert answer_to(f"M({dash}5,80)") == answer_to("M(-5,80)")
 
 
 @pytest.mark.parametrize("odd", ["é", "#", "\u2009\u2016", "\U0001f600", "\u00b0", "{", "=="])
 def test_other_characters(odd: str) -> None:
-    assert one(f"S{odd}").problem
+    assert answer_to(f"S{odd}").problem
 
 
 # -- its messages and their places ---------------------------------------------------------------
@@ -202,7 +204,7 @@ PROBLEM_BY_LINE = {
 
 @pytest.mark.parametrize("line", PROBLEM_BY_LINE)
 def test_what_is_wrong_and_where(line: str) -> None:
-    answer = one(line)
+    answer = answer_to(line)
     assert (answer.problem, answer.column) == PROBLEM_BY_LINE[line]
 
 
@@ -234,7 +236,7 @@ def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
     """
     refused_count, gap = 0, tail.find("/") > 0
     for token in scan(line).tokens[:-1]:
-        answer = one(line[: token.end] + tail)
+        answer = answer_to(line[: token.end] + tail)
         if answer.problem and answer.problem not in PROBLEMS_AT_A_WORD:
             assert answer.column == token.end + 1 + gap, line[: token.end]
             refused_count += 1
@@ -242,10 +244,10 @@ def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
 
 
 def test_columns_from_255_on_are_255() -> None:
-    assert one(" " * 253 + "5").column == 254
-    assert one(" " * 300 + "5").column == 255
-    assert one("ñ" * 3).column == 1
-    assert one("// ñandú\u00a0").is_program is True
+    assert answer_to(" " * 253 + "5").column == 254
+    assert answer_to(" " * 300 + "5").column == 255
+    assert answer_to("ñ" * 3).column == 1
+    assert answer_to("// ñandú\u00a0").is_program is True
 
 
 def test_every_problem_has_its_test() -> None:
@@ -341,8 +343,8 @@ def chain(calls: int) -> str:
     ],
 )  # fmt: skip
 def test_limits_of_the_language(right: str, wrong: str) -> None:
-    assert one(right).is_program
-    assert one(wrong).problem == "LIMIT"
+    assert answer_to(right).is_program
+    assert answer_to(wrong).problem == "LIMIT"
 
 
 def test_a_name_may_begin_in_the_deepest_block() -> None:
@@ -357,14 +359,14 @@ def test_a_name_may_begin_in_the_deepest_block() -> None:
 
 
 def test_at_most_255_bytes_of_code() -> None:
-    assert len(one("S;" * 255).code) == 255
-    assert one("S;" * 256).problem == "FULL"
+    assert len(answer_to("S;" * 255).code) == 255
+    assert answer_to("S;" * 256).problem == "FULL"
 
 
 def test_at_most_254_brackets_that_are_open() -> None:
-    assert one("X=" + "(" * 254 + "1" + ")" * 254).is_program
-    assert one("X=" + "(" * 255 + "1" + ")" * 255).problem == "FULL"
-    assert one("X=" + "(" * 600 + "1" + ")" * 600).problem == "FULL"
+    assert answer_to("X=" + "(" * 254 + "1" + ")" * 254).is_program
+    assert answer_to("X=" + "(" * 255 + "1" + ")" * 255).problem == "FULL"
+    assert answer_to("X=" + "(" * 600 + "1" + ")" * 600).problem == "FULL"
 
 
 def test_names_are_told_apart_to_their_last_letter() -> None:
@@ -391,15 +393,15 @@ def test_what_lies_in_the_buffer() -> None:
 def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
     """They may follow it, as long as the program continues."""
     move = "SI|F(FOREVER, 60)"
-    assert one(f"{move}; TASK; END_TASK").is_program
-    assert one(f"TASK; END_TASK; {move[3:]}").is_program
-    assert one(move) == Answer(problem="FOREVER_HERE", column=6)
-    assert one(f"{move}; W(FOREVER)") == Answer(problem="FOREVER_HERE", column=6)
+    assert answer_to(f"{move}; TASK; END_TASK").is_program
+    assert answer_to(f"TASK; END_TASK; {move[3:]}").is_program
+    assert answer_to(move) == Answer(problem="FOREVER_HERE", column=6)
+    assert answer_to(f"{move}; W(FOREVER)") == Answer(problem="FOREVER_HERE", column=6)
     loop = "LOOP(1);F(FOREVER, 60)\nEND_LOOP"
     assert read_lines(KIT, f"{loop};WHEN(TRUE)\nS\nEND_WHEN\n".encode())[-1].is_program
     assert read_lines(KIT, f"{loop}\nS\n".encode())[1:] == [
         Answer(problem="FOREVER_HERE", column=1),  # the word is in an earlier line
-        one("S"),
+        answer_to("S"),
     ]
 
 
@@ -407,9 +409,9 @@ def test_a_way_keeps_its_bracket_open() -> None:
     assert read_lines(KIT, b"F(20 CM\n// cm\n,60)\n") == [
         MORE_NEEDED,
         MORE_NEEDED,
-        one("F(20cm,60)"),
+        answer_to("F(20cm,60)"),
     ]
-    assert read_lines(KIT, b"R(90\xc2\xb0\n,60)\n") == [MORE_NEEDED, one("R(90 DEG,60)")]
+    assert read_lines(KIT, b"R(90\xc2\xb0\n,60)\n") == [MORE_NEEDED, answer_to("R(90 DEG,60)")]
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -417,12 +419,12 @@ def test_a_way_keeps_its_bracket_open() -> None:
 
 @each_row("number, code", NUMBER_CODES)
 def test_shortest_push(number: str, code: str) -> None:
-    assert one(f"SHOW({number})").code.hex(" ") == f"{code} 39"
+    assert answer_to(f"SHOW({number})").code.hex(" ") == f"{code} 39"
 
 
 @pytest.mark.parametrize("number", ["2147483.6475", "-2147483.6485", "9999999999999999999999"])
 def test_numbers_that_are_too_big(number: str) -> None:
-    assert one(f"X = {number}").problem == "TOO_BIG"
+    assert answer_to(f"X = {number}").problem == "TOO_BIG"
 
 
 def test_readings_stand_before_their_instruction() -> None:
@@ -473,14 +475,16 @@ def test_the_values_of_a_call_are_set_one_after_the_other() -> None:
 
 def test_tasks_may_have_different_defs_with_values() -> None:
     begin = "DEF A(X);END_DEF;DEF C(X);A(X);END_DEF;DEF G(X);END_DEF;"
-    assert one(begin + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
-    assert one(begin + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
-    assert one(begin + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem == "ONE_TASK"
+    assert answer_to(begin + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
+    assert answer_to(begin + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
+    assert (
+        answer_to(begin + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem == "ONE_TASK"
+    )
 
 
 def test_a_call_goes_on_in_the_next_line() -> None:
     answers = read_lines(KIT, b"DEF A(X,\nP)\nF(X,P)\nEND_DEF;A(1\n+1,\n50)\n")
-    assert answers[-1] == one("DEF A(X,P);F(X,P);END_DEF;A(1+1,50)")
+    assert answers[-1] == answer_to("DEF A(X,P);F(X,P);END_DEF;A(1+1,50)")
 
 
 # -- backspace ----------------------------------------------------------------------------------
@@ -500,12 +504,12 @@ def test_backspace_takes_back_what_is_not_done(
     key: str, typed_text: str, meant_text: str | None
 ) -> None:
     """`<` is the key, and only letters of the word that is typed are not done."""
-    answer = one(typed_text.replace("<", key))
+    answer = answer_to(typed_text.replace("<", key))
     if meant_text is None:
         assert answer.problem == "CHARACTER"
     else:
-        assert answer == one(meant_text) and answer.is_program
+        assert answer == answer_to(meant_text) and answer.is_program
 
 
 def test_columns_after_a_backspace_are_those_that_are_seen() -> None:
-    assert one("FO\b(2, 80); GO").column == one("F(2, 80); GO").column == 11
+    assert answer_to("FO\b(2, 80); GO").column == answer_to("F(2, 80); GO").column == 11

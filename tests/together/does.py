@@ -8,7 +8,7 @@ from tiniscript.together.form import Operation
 from tiniscript.together.page import Page
 
 
-def does(page: Page, operations: Iterable[Operation]) -> bool:
+def apply_edits(page: Page, operations: Iterable[Operation]) -> bool:
     page.leave()
     was_done = page.apply(operations)
     page.leave()

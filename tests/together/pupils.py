@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from random import Random
 
-from tests.together.does import does
+from tests.together.does import apply_edits
 from tiniscript.syntax.formatter import instruction_text
 from tiniscript.syntax.lexer import scan
 from tiniscript.together.form import Delete, Insert, Move, Operation, Place, Replace, Unwrap, Wrap
@@ -95,7 +95,7 @@ class Pupil:
             was_done = page.undo()
         else:
             make: Callable[[Tree, list[str], str], list[Operation]] = getattr(self, f"_{deed}")
-            was_done = does(page, make(view, ids, self._near(ids) if ids else ""))
+            was_done = apply_edits(page, make(view, ids, self._near(ids) if ids else ""))
         self.deeds[f"{deed}{'' if was_done else ', not possible'}"] += 1
         return was_done
 

@@ -42,14 +42,14 @@ def history(seed: int, deeds: int, pages: int) -> World:
             pupil.drops()
         world.at(chance.uniform(0.5, 5), act, name)
 
-    def trouble(name: str) -> None:
+    def make_trouble(name: str) -> None:
         if chance.random() < 0.6:
             world.off_until_s[name] = world.now_s + chance.uniform(5, 60)
             world.counts["breaks"] += 1
         else:
             world.reload(name)
             world.counts["reloads"] += 1
-        world.at(chance.uniform(20, 200), trouble, name)
+        world.at(chance.uniform(20, 200), make_trouble, name)
 
     def crash() -> None:
         world.crash()
@@ -57,7 +57,7 @@ def history(seed: int, deeds: int, pages: int) -> World:
 
     for name in world.pupils:
         world.at(chance.uniform(0, 3), act, name)
-        world.at(chance.uniform(20, 200), trouble, name)
+        world.at(chance.uniform(20, 200), make_trouble, name)
         world.ask(name, 0)
     world.at(chance.uniform(30, 300), crash)
     world.run(lambda: change_count >= deeds)
@@ -123,7 +123,7 @@ def _counts(worlds: list[World]) -> tuple[int, int]:
     return change_count, sum(sum(world.why.values()) for world in worlds)
 
 
-def _tell(worlds: list[World]) -> None:
+def _print_counts(worlds: list[World]) -> None:
     change_count, refused = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
     why = sum((world.why for world in worlds), Counter[str]())
@@ -138,8 +138,8 @@ if __name__ == "__main__":
     given = make_options(10_000, 0, "lessons")
     if given.lessons:
         for pages in (2, 3, 4):
-            _tell([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])
+            _print_counts([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])
     else:
         per_part = 1000
-        _tell([history(given.seed + k, min(per_part, given.count - k * per_part), 4)
-               for k in range(-(-given.count // per_part))])  # fmt: skip
+        _print_counts([history(given.seed + k, min(per_part, given.count - k * per_part), 4)
+                       for k in range(-(-given.count // per_part))])  # fmt: skip

@@ -36,7 +36,7 @@ def change_program(program: SharedProgram, value: int, page: str = "a") -> bool:
     return program.submit([Change(uid, (operation,))])
 
 
-def same(one: SharedProgram, other: SharedProgram) -> bool:
+def are_same(one: SharedProgram, other: SharedProgram) -> bool:
     return (one.number, one.last_count_by_page, one.refusals_by_page, one.tree.checksum()) == (
         other.number, other.last_count_by_page, other.refusals_by_page, other.tree.checksum()
     )  # fmt: skip
@@ -64,7 +64,7 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     change_program(resumed, 2000)
     whole = Journal(path).resume("e3")
     assert whole is not None
-    assert same(whole, resumed)
+    assert are_same(whole, resumed)
 
 
 def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
         change_program(program, value)
         resumed = Journal(path).resume("e2")
         assert resumed is not None
-        assert same(resumed, program)
+        assert are_same(resumed, program)
 
 
 @pytest.mark.parametrize("says_so", ["write", "in part", "fsync"])
@@ -86,17 +86,17 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
     journal, program = begin_journal(path)
     write = os.write
 
-    def full(*_: object) -> int:
+    def fail_full_disk(*_: object) -> int:
         raise OSError(errno.ENOSPC, "full")
 
-    def takes_part(file: int, data: bytes) -> int:
+    def write_half(file: int, data: bytes) -> int:
         return write(file, data[: len(data) // 2])
 
     with monkeypatch.context() as disk:
         if says_so == "in part":
-            disk.setattr(os, "write", takes_part)
+            disk.setattr(os, "write", write_half)
         else:
-            disk.setattr(os, says_so, full)
+            disk.setattr(os, says_so, fail_full_disk)
         assert change_program(program, 7)
         assert journal.is_incomplete
     assert change_program(program, 8)
@@ -120,7 +120,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
         reopened.close()
         assert resumed is not None and resumed.number >= kept_number
 
-    def on_disk(call: Callable[..., Any]) -> Callable[..., Any]:
+    def checked_call(call: Callable[..., Any]) -> Callable[..., Any]:
         def write_before(*arguments: Any, **more: Any) -> Any:
             look()
             if is_full:
@@ -129,8 +129,8 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
 
         return write_before
 
-    monkeypatch.setattr(os, "write", on_disk(os.write))
-    monkeypatch.setattr(journals, "replace", on_disk(files.replace))
+    monkeypatch.setattr(os, "write", checked_call(os.write))
+    monkeypatch.setattr(journals, "replace", checked_call(files.replace))
     for value in range(1, 40):
         is_full = chance.random() < (0.8 if is_full else 0.2)
         assert change_program(program, value)
@@ -149,7 +149,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     is_full = False
     assert change_program(program, 99) and not journal.is_incomplete
     final = Journal(path).resume("e3")
-    assert final is not None and same(final, program)
+    assert final is not None and are_same(final, program)
 
 
 def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from tests.together.does import does
+from tests.together.does import apply_edits
 from tiniscript.together.form import (
     CHANGED,
     CIRCLE,
@@ -75,7 +75,7 @@ class Two:
         self, page: Page, container: str, previous: str, text: str = "BEEP(1, 440)"
     ) -> None:
         node = Subtree(page.new_id(), text)
-        assert does(page, [Insert(Place(container, previous), (node,))])
+        assert apply_edits(page, [Insert(Place(container, previous), (node,))])
 
     def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""
@@ -94,7 +94,7 @@ def two() -> Two:
 def test_a_delete_spares_what_its_author_has_not_seen(two: Two) -> None:
     loop = two.find("LOOP(3)")
     two.inserts(two.ana, loop, two.find("B(1, 40)"))
-    does(two.luz, [Delete(tuple(two.luz.view.subtree_ids(loop)))])
+    apply_edits(two.luz, [Delete(tuple(two.luz.view.subtree_ids(loop)))])
     assert "LOOP(3); B(1, 40); BEEP(1, 440);" in two.meet()
     assert two.luz.refusals[-1][1] == HAS_NEW
     assert "  BEEP(1, 440);" in two.luz.lines
@@ -112,26 +112,26 @@ def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
 def test_a_block_goes_around_what_was_put_between(two: Two) -> None:
     first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
     two.inserts(two.ana, two.find("LOOP(3)"), first)
-    does(two.luz, [Wrap((first, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
+    apply_edits(two.luz, [Wrap((first, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
 
 
 def test_a_place_whose_neighbour_has_gone_is_where_that_stood(two: Two) -> None:
-    does(two.ana, [Delete((two.find("R(1, 40)"),))])
+    apply_edits(two.ana, [Delete((two.find("R(1, 40)"),))])
     two.inserts(two.luz, two.find("LOOP(3)"), two.find("R(1, 40)"))
     assert "B(1, 40); BEEP(1, 440); END_LOOP" in two.meet()
 
 
 def test_the_first_place_of_a_block_that_was_taken_away_stays(two: Two) -> None:
-    does(two.ana, [Unwrap(two.find("LOOP(3)"))])
+    apply_edits(two.ana, [Unwrap(two.find("LOOP(3)"))])
     two.inserts(two.luz, two.find("LOOP(3)"), "")
     assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in two.meet()
 
 
 def test_two_blocks_that_go_into_each_other_make_no_circle(two: Two) -> None:
     loop, branch = two.find("LOOP(3)"), two.find("IF(X < 1)")
-    does(two.ana, [Move((loop,), Place(branch, ""))])
-    does(two.luz, [Move((branch,), Place(loop, ""))])
+    apply_edits(two.ana, [Move((loop,), Place(branch, ""))])
+    apply_edits(two.luz, [Move((branch,), Place(loop, ""))])
     assert "IF(X < 1); LOOP(3)" in two.meet()
     assert two.luz.refusals[-1][1] == CIRCLE
 
@@ -160,7 +160,7 @@ def test_an_undo_that_comes_after_anothers_change_is_refused(two: Two) -> None:
 def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
     loop = two.find("LOOP(3)")
     before = text_of(two.program.tree)
-    does(two.ana, [Delete(tuple(two.ana.view.subtree_ids(loop)))])
+    apply_edits(two.ana, [Delete(tuple(two.ana.view.subtree_ids(loop)))])
     two.meet()
     assert two.ana.undo()
     two.meet()
@@ -181,21 +181,21 @@ def test_a_line_that_two_have_cut_and_pasted_is_there_once(two: Two) -> None:
 def test_a_page_makes_no_change_that_leaves_no_program() -> None:
     two = Two("DEF TURN\nR(1, 40)\nEND_DEF\nLOOP(2)\nTURN\nEND_LOOP\n")
     page, turn = two.ana, two.find("TURN")
-    assert not does(page, [Move((two.find("DEF TURN"),), Place(two.find("LOOP(2)"), ""))])
+    assert not apply_edits(page, [Move((two.find("DEF TURN"),), Place(two.find("LOOP(2)"), ""))])
     for text in ("S; S", "END_LOOP", "s", "S // note", "LOOP(2)", ""):
-        assert not does(page, [Replace(turn, (("text", text),))])
+        assert not apply_edits(page, [Replace(turn, (("text", text),))])
     assert not page.pending_changes
 
 
 def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(two: Two) -> None:
     two.types(two.ana, "B(1, 40);", "B(1, 4", is_hot=True)
     assert not two.ana.pending_changes
-    does(two.luz, [Move((two.find("B(1, 40)"),), Place(ROOT, two.find("L(1, 60)")))])
+    apply_edits(two.luz, [Move((two.find("B(1, 40)"),), Place(ROOT, two.find("L(1, 60)")))])
     two.sends(two.luz)
     two.hears(two.ana)
     assert two.ana.lines[-1] == "  B(1, 4"
     assert two.ana.caret == len(two.ana.lines) - 1
-    does(two.luz, [Delete((two.find("B(1, 40)"),))])
+    apply_edits(two.luz, [Delete((two.find("B(1, 40)"),))])
     two.sends(two.luz)
     two.hears(two.ana)
     assert two.ana.lines[-1] == "  B(1, 4"
@@ -237,7 +237,7 @@ def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) ->
 
 
 def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
-    does(two.luz, [Delete((two.find("R(1, 40)"),))])
+    apply_edits(two.luz, [Delete((two.find("R(1, 40)"),))])
     two.types(two.ana, "R(1, 40)", "R(2, 40)")
     for page in (two.luz, two.ana) * 2:
         two.sends(page)
@@ -338,7 +338,7 @@ def exchange(two: Two, message: str) -> None:
         two.hears(two.ana)
 
 
-def story(seed: int, makes_copies: bool) -> list[Any]:
+def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
     """Return what Ana's page shows after each step, with a copy in its place each time, or as it
     is. Nothing hears of what is changed on the old page then."""
     chance, other_chance, two = Random(seed), Random(seed), Two(FLAT_PROGRAM)
@@ -364,7 +364,7 @@ def story(seed: int, makes_copies: bool) -> list[Any]:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) -> None:
-    assert story(seed, makes_copies=True) == story(seed, makes_copies=False)
+    assert list_shown_pages(seed, makes_copies=True) == list_shown_pages(seed, makes_copies=False)
 
 
 @pytest.mark.parametrize("seed", range(20))

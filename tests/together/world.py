@@ -217,7 +217,10 @@ class World:
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks form the same program.
         round_tripped = format_blocks(read_blocks(text, KIT)).text
-        one, other = compile_text(_whole(text), KIT), compile_text(_whole(round_tripped), KIT)
+        one, other = (
+            compile_text(_with_x_set(text), KIT),
+            compile_text(_with_x_set(round_tripped), KIT),
+        )
         assert one.image and one.image == other.image, (text, round_tripped, one.diagnostics)
         # No two pupils' values were mixed; no node is there twice.
         for node in tree.node_by_id.values():
@@ -268,7 +271,7 @@ def _list_added_ids(operation: Operation) -> set[str]:
     return {operation.node.id} if isinstance(operation, Wrap) else set()
 
 
-def _whole(text: str) -> str:
+def _with_x_set(text: str) -> str:
     """Give X a value, because the line that assigns it may have been deleted."""
     start = re.search(r"\b(SI|SB)\|", text)
     return text.replace(start[0], "X = 0\n", 1) if start else "X = 0\n" + text

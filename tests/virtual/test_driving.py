@@ -76,12 +76,12 @@ def test_a_cone_sees_the_nearest_point_inside(
 # -- driving --------------------------------------------------------------------------------------
 
 
-def driving(world: World, start: Pose | None = None, robot: Robot = TINIBOT) -> Driving:
+def make_driving(world: World, start: Pose | None = None, robot: Robot = TINIBOT) -> Driving:
     return Driving(robot.body, world.obstacles(), start or world.start)
 
 
 def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
-    drive = driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
+    drive = make_driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
     pose = Pose(1000, 1000, 0)
     now_ms = 0.0
     ways = ((80, 80, 1000), (60, -60, 500), (100, 30, 2500), (-50, 20, 700))
@@ -94,7 +94,7 @@ def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
 
 
 def test_a_robot_stops_at_a_wall_that_it_drives_into() -> None:
-    drive = driving(floor())
+    drive = make_driving(floor())
     drive.set_motors(0, 100, 100)
     pose = drive.advance_to(10_000)
     assert pose == pytest.approx((200 - NOSE_CM, 100, 0), abs=0.01)
@@ -107,7 +107,7 @@ def test_a_robot_stops_at_a_wall_that_it_drives_into() -> None:
 @pytest.mark.parametrize("heading", [30, -30, 2])
 def test_a_robot_turns_along_a_wall_that_it_drives_into(heading: float) -> None:
     """Its nose is pushed aside, though both motors get the same."""
-    drive = driving(floor(start=f"x_cm = 150\ny_cm = 100\nheading = {heading}"))
+    drive = make_driving(floor(start=f"x_cm = 150\ny_cm = 100\nheading = {heading}"))
     drive.set_motors(0, 100, 100)
     pose = drive.advance_to(2400)
     assert pose.heading == pytest.approx(math.copysign(90, heading), abs=2)
@@ -119,7 +119,7 @@ def test_a_robot_turns_along_a_wall_that_it_drives_into(heading: float) -> None:
 def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
     """Its turns may be slower and faster than the distance of its wheels says."""
     robot = TINIBOT._replace(body=TINIBOT.body._replace(turn_s=turn_s))
-    drive = driving(floor(start="x_cm = 150\ny_cm = 100\nheading = 30"), robot=robot)
+    drive = make_driving(floor(start="x_cm = 150\ny_cm = 100\nheading = 30"), robot=robot)
     drive.set_motors(0, 100, 100)
     poses = [drive.advance_to(now_ms) for now_ms in range(0, 2400, 10)]
     aside_cm = 0.0
@@ -133,7 +133,7 @@ def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
 @pytest.mark.parametrize("aside", [2, 5, -7])
 def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: float) -> None:
     end = 100 + aside
-    drive = driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
+    drive = make_driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
     drive.set_motors(0, 60, 60)
     assert drive.advance_to(4000).x_cm > 150
     assert drive.bumps >= 1
@@ -146,7 +146,7 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
     """This holds in a corner and at the end of a wall, however long it pushes."""
     world = floor("[[walls]]\npoints = [[20, 140], [120, 140], [120, 160]]\n")
     for heading in range(0, 360, 40):
-        drive = driving(world, Pose(60, 100, heading), robot)
+        drive = make_driving(world, Pose(60, 100, heading), robot)
         drive.set_motors(0, *powers)
         advance_to_before = drive.advance_to(0)
         for now_ms in range(250, 15_000, 250):
@@ -164,7 +164,7 @@ def test_looking_changes_nothing() -> None:
     """A picture of it may be drawn whenever one likes."""
     ends = []
     for looks in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
-        drive = driving(
+        drive = make_driving(
             floor("[[boxes]]\nx_cm=150\ny_cm=95\nlength_cm=20\nwidth_cm=20\nheading=20")
         )
         drive.set_motors(0, 90, 80)
@@ -175,7 +175,7 @@ def test_looking_changes_nothing() -> None:
 
 
 def test_the_way_has_no_gaps_and_few_corners() -> None:
-    drive = driving(floor())
+    drive = make_driving(floor())
     drive.set_motors(0, 50, 50)
     drive.set_motors(3000, 30, -30)
     drive.set_motors(4000, 50, 50)

@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.foreign_protocols import FOREIGN_GREETINGS, tls_hello
 from tests.support.rows import each_row
-from tests.support.simulator_visits import PING, receive, until, until_answered, visit
+from tests.support.simulator_visits import PING, receive, until, visit, wait_until_answered
 from tests.support.virtual_robot import floor, robot_in
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
@@ -102,7 +102,7 @@ def test_a_first_line_has_an_end() -> None:
 # -- at the port --------------------------------------------------------------------------------
 
 
-def until_let_go(simulator: Simulator, client: socket.socket) -> None:
+def wait_until_hung_up(simulator: Simulator, client: socket.socket) -> None:
     """Wait until it is hung up on without a word."""
 
     def try_to_send() -> bool:
@@ -132,7 +132,7 @@ def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator:
                     client.sendall(part)
                 simulator.turn(0.01)
             if header:
-                until_let_go(simulator, client)
+                wait_until_hung_up(simulator, client)
                 assert simulator.transports.visit_count == 0
                 assert simulator.robot.take_events() == []
             else:
@@ -146,7 +146,7 @@ def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulato
         with visit(simulator) as page:
             page.sendall(FOREIGN_GREETINGS["post"] + program())
             simulator.turn(0.01)
-            until_let_go(simulator, page)
+            wait_until_hung_up(simulator, page)
     until(simulator, lambda: not simulator.transports.is_connected)
     assert not _has_moved(simulator)
 
@@ -157,7 +157,7 @@ def test_a_line_that_comes_letter_by_letter_is_answered(simulator: Simulator) ->
             client.send(bytes([letter]))
             for _ in range(3):
                 simulator.turn(0.01)
-        until_answered(simulator, client, b"\n")
+        wait_until_answered(simulator, client, b"\n")
         assert simulator.transports.visit_count == 1
 
 
@@ -208,7 +208,7 @@ def test_whoever_says_nothing_has_to_leave(
     for says in (b"", b"GE"):
         with visit(simulator) as client:
             client.sendall(says)
-            until_let_go(simulator, client)
+            wait_until_hung_up(simulator, client)
 
 
 def test_a_silent_client_leaves_its_place_to_one_who_speaks(
@@ -229,7 +229,7 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
             assert simulator.transports.visit_count == 1
         now_s[0] += limits.IDLE_TIMEOUT_S
         until(simulator, lambda: simulator.transports.visit_count == 2)
-        until_answered(simulator, second)
+        wait_until_answered(simulator, second)
 
 
 def test_too_many_open_files_of_this_process_are_no_end(

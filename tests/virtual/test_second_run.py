@@ -70,20 +70,20 @@ def program(rng: random.Random, name: str) -> str:
     return f"SI|SHOW(DISTANCE);{text};{ends}"
 
 
-class Did(NamedTuple):
+class Observation(NamedTuple):
     trace: list[str]
     state: tuple[str, bool, bool, str]
     pose: Pose
     actuators: dict[int, int]
 
 
-def does(talk: Talk, text: str) -> Did:
+def run_program(talk: Talk, text: str) -> Observation:
     robot = talk.robot
     robot.take_events()
     assert talk.upload(text).status == 0
     talk.wait(RUN_MS)
     state = robot.fault, robot.is_running, robot.ended_ms is None, robot.saved_state
-    return Did(trace(robot.take_events()), state, robot.pose, robot.actuators)
+    return Observation(trace(robot.take_events()), state, robot.pose, robot.actuators)
 
 
 def check(seed: int) -> str:
@@ -103,7 +103,7 @@ def check(seed: int) -> str:
     text = program(rng, name)
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)
-    actions, want = does(Talk(robot, 7), text), does(Talk(other, 7), text)
+    actions, want = run_program(Talk(robot, 7), text), run_program(Talk(other, 7), text)
     explanation = f"seed {seed} {ends} {name} {text}\n{actions}\nnot\n{want}"
     assert actions[:2] == want[:2], explanation
     did_pose, want_pose = actions.pose, want.pose

@@ -84,12 +84,12 @@ def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
 ) -> None:
     """The line is bad, and its bytes are late."""
     for _ in range(3):
-        assert REST not in heard_by_a_client(simulator, 1)
+        assert REST not in bytes_heard_by_client(simulator, 1)
         simulator.from_robot.send_bytes(REST, simulator.robot.now_ms + late_ms)
-    assert REST not in heard_by_a_client(simulator, 2 * late_ms)
+    assert REST not in bytes_heard_by_client(simulator, 2 * late_ms)
 
 
-def heard_by_a_client(simulator: Simulator, stays_ms: int) -> bytes:
+def bytes_heard_by_client(simulator: Simulator, stays_ms: int) -> bytes:
     """Return the bytes that a client receives who connects, asks, and leaves after a while."""
     visits, end_ms = simulator.transports.visit_count, simulator.robot.now_ms + stays_ms
     with visit(simulator) as client:

@@ -267,14 +267,14 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
 
 
 def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
-    def through(rate: float, seed: int) -> bytes:
+    def bytes_through_line(rate: float, seed: int) -> bytes:
         line = BadLine(rate, Random(seed))
         line.send_bytes(bytes(range(256)) * 8, 0)
         return line.take_arrived(10_000_000)
 
-    assert through(0, 1) == bytes(range(256)) * 8
-    assert through(20, 1) == through(20, 1) != through(20, 2)
-    assert b"OK+LOST\r\n" in through(50, 1)
+    assert bytes_through_line(0, 1) == bytes(range(256)) * 8
+    assert bytes_through_line(20, 1) == bytes_through_line(20, 1) != bytes_through_line(20, 2)
+    assert b"OK+LOST\r\n" in bytes_through_line(50, 1)
 
 
 def test_a_running_robot_goes_on_by_itself() -> None:

@@ -15,7 +15,7 @@ from tests.oracle import interpreter, programs
 from tests.support.campaign import each_seed, make_options
 from tests.support.kits import KITS
 from tests.support.random_programs import MAX_MS, MAX_STEPS, RandomProgram, random_program
-from tests.support.vm_agreement import same
+from tests.support.vm_agreement import are_equivalent
 from tiniscript import compile_text
 from tiniscript.base.source import Source
 from tiniscript.bytecode.disassembly import assemble, disassemble
@@ -33,7 +33,9 @@ def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
     """Check that a machine agrees with the oracle."""
     for how, image in (("", program.short.image), (", plain", program.plain.image)):
         trace = machine(image, program.kit, program.senses)
-        assert same(program.want, trace), f"{name}, seed {program.seed}{how}:\n{program.text}"
+        assert are_equivalent(program.want, trace), (
+            f"{name}, seed {program.seed}{how}:\n{program.text}"
+        )
 
 
 def check_program(seed: int) -> None:

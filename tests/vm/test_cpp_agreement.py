@@ -352,7 +352,7 @@ def campaign(count: int, first: int) -> None:
     print(", ".join(f"{what}: {times}" for what, times in sorted(total.items())))
 
 
-def all_of_three() -> None:
+def check_all_of_three() -> None:
     for first in range(256):
         accepted_count = check_three(first)
         print(f"{first:02x}: {accepted_count} accepted", flush=True)
@@ -360,4 +360,4 @@ def all_of_three() -> None:
 
 if __name__ == "__main__":
     options = make_options(1_000_000, BATCHES, "three")
-    all_of_three() if options.three else campaign(options.count, options.seed)
+    check_all_of_three() if options.three else campaign(options.count, options.seed)

@@ -22,7 +22,7 @@ from tests.machines import board as boards
 from tests.machines.chips import Chip, agrees
 from tests.machines.host import Ran, parse_run, run_request
 from tests.machines.pace import Pace
-from tests.machines.python import ran_python
+from tests.machines.python import run_in_python
 from tests.machines.qemu import missing as emulator_missing
 from tests.machines.qemu import start_emulator
 from tests.oracle import programs
@@ -47,7 +47,7 @@ def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
 
 
 CHIPS = {
-    name: Chip(avr.missing(), partial(avr.ran_on, name), 620) for name in avr.COMPILER_ARGUMENTS
+    name: Chip(avr.missing(), partial(avr.run_on, name), 620) for name in avr.COMPILER_ARGUMENTS
 }
 CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
 
@@ -78,17 +78,17 @@ each_emulated = some_chips(*chips.CHIPS)
 one_chip = pytest.mark.sampled("chip")  # draws one chip per row; `--whole` runs all
 
 
-def has(chip: str) -> int:
+def features_of(chip: str) -> int:
     """Return the features of a chip, as in `needs`: a Nano has no tasks."""
     return ALL_NEEDS & ~TASKS if chip == avr.NANO else ALL_NEEDS
 
 
-def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
+def assert_same_on_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that the chip says and does the same as Python; return the last line."""
     want: Ran | str
     actual: Ran | str
     try:
-        want = ran_python(image, kit, senses, has=has(chip))
+        want = run_in_python(image, kit, senses, has=features_of(chip))
     except (Refused, ImageRefused) as refusal:
         want = repr(refusal)
     try:
@@ -107,7 +107,7 @@ def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
-    if needs_of(compile_case(case).code) & ~has(chip):
+    if needs_of(compile_case(case).code) & ~features_of(chip):
         with pytest.raises(ImageRefused, match="UNKNOWN_NEEDS"):
             CHIPS[chip].run(compile_case(case).image, robot.kit, senses)
         return
@@ -122,9 +122,9 @@ def test_disassembly_runs_or_is_refused(case: Case, chip: str) -> None:
     robot, senses = robot_and_senses(case)
     image = image_for(assemble(case.parts["bytecode"]), robot.kit)
     limited_senses = senses._replace(max_ms=min(senses.max_ms, 5000), max_steps=5000)
-    ending = same_on_the_chip(chip, image, robot.kit, limited_senses)
+    ending = assert_same_on_chip(chip, image, robot.kit, limited_senses)
     is_refused = "refused" in case.parts
-    lacks = not is_refused and needs_of(assemble(case.parts["bytecode"])) & ~has(chip)
+    lacks = not is_refused and needs_of(assemble(case.parts["bytecode"])) & ~features_of(chip)
     assert ("Refused" in ending) == (is_refused or bool(lacks))
 
 
@@ -138,7 +138,7 @@ def test_random_programs(chip: str, seed: int) -> None:
         image = compile_text(programs.program(rng, oracle_kit), kit).image
         if len(image) <= CHIPS[chip].most_bytes:
             readings = programs.senses(rng, oracle_kit)
-            same_on_the_chip(chip, image, kit, Senses(readings, 3000, 2000, number + 1))
+            assert_same_on_chip(chip, image, kit, Senses(readings, 3000, 2000, number + 1))
 
 
 @pytest.mark.sampled("seed")
@@ -151,7 +151,7 @@ def test_some_random_codes(chip: str, seed: int) -> None:
         if number % 20 < 1 or number % 40 == 16:  # deep blocks and expressions among them
             if len(code) <= 680:
                 image = image_for(code, kit, "SB")
-                ending = same_on_the_chip(chip, image, kit, Senses(max_ms=3000, max_steps=300))
+                ending = assert_same_on_chip(chip, image, kit, Senses(max_ms=3000, max_steps=300))
                 endings.add(ending.split(" ", 1)[-1])
     assert "DONE" in endings and len(endings) > 2
 
@@ -179,9 +179,9 @@ def test_loops_count_beyond_65535(chip: str) -> None:
     for body in ("LOOP(1); Y = X; END_LOOP;", far):
         text = f"X = 0; Y = 0; LOOP(70000); X = X + 1; {body} END_LOOP; SHOW(Y)"
         image = compile_text(text, kit).image
-        same_on_the_chip(chip, image, kit, Senses())
-        run = avr.ran_on(chip, image, kit, Senses(), not_ready=2)
-        assert run.trace == ran_python(image, kit, Senses()).trace, body
+        assert_same_on_chip(chip, image, kit, Senses())
+        run = avr.run_on(chip, image, kit, Senses(), not_ready=2)
+        assert run.trace == run_in_python(image, kit, Senses()).trace, body
 
 
 @some_chips(avr.MEGA)
@@ -190,7 +190,7 @@ def test_variables_behind_a_border_of_256_bytes(chip: str, tmp_path: Path) -> No
     names = [f"V{k}" for k in range(32)]
     text = "".join(f"{name} = {k}; {name} = {name} + 1; " for k, name in enumerate(names))
     image = compile_text(text + "; ".join(f"SHOW({name})" for name in names), KITS[0][1]).image
-    assert same_on_the_chip(chip, image, KITS[0][1], Senses()) == "0 DONE"
+    assert assert_same_on_chip(chip, image, KITS[0][1], Senses()) == "0 DONE"
     (tmp_path / "program.elf").write_bytes(avr.program(chip))
     symbols = boards.run("avr-nm", tmp_path / "program.elf")
     (machine,) = re.findall(r"^(\S+) \S \S*7machineE", symbols, re.M)
@@ -207,9 +207,9 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
     )
     image = image_for(code, kit)
     readings = {"DISTANCE": [1000, 2500, -3000]}
-    want = ran_python(image, kit, Senses(readings)).trace
+    want = run_in_python(image, kit, Senses(readings)).trace
     for not_ready in (2, 3):
-        assert avr.ran_on(avr.UNO, image, kit, Senses(readings), not_ready).trace == want
+        assert avr.run_on(avr.UNO, image, kit, Senses(readings), not_ready).trace == want
 
 
 @pytest.mark.sampled("chip", "seed")
@@ -233,8 +233,8 @@ def test_programs_with_tasks(chip: str) -> None:
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
 def test_programs_with_tasks_on_an_avr(chip: str) -> None:
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(3000, 60)):
-        same_on_the_chip(chip, image, cpp_checks.KIT, senses)
-        run = avr.ran_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
+        assert_same_on_chip(chip, image, cpp_checks.KIT, senses)
+        run = avr.run_on(chip, image, cpp_checks.KIT, senses, 2 + number % 3)
         assert run.trace == cpp_checks.slow_run(image, senses, 2 + number % 3), run.trace
 
 
@@ -247,7 +247,7 @@ def test_assembly_and_its_twin_do_the_same(chip: str, first: int) -> None:
         not_ready, pace = (0, 2, 3)[number % 3], Pace(every_ms=(1, 8, 37, 2)[number % 4])
         begin_ms = (0, 2**31 - 100, 2**32 - 100)[number // 3 % 3]
         of_assembly, of_twin = (
-            avr.ran_on(chip_name, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
+            avr.run_on(chip_name, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
             for chip_name in (chip, avr.PORTABLE_CHIP)
         )
         assert of_assembly == of_twin, image.hex(" ")
@@ -261,7 +261,7 @@ def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     for not_ready, late_ms, begin_ms, max_ms in program.how:
         senses = Senses(program.readings, max_ms)
         pace = Pace(every_ms=late_ms + 1)
-        run = avr.ran_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
+        run = avr.run_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)
         assert run.trace == cpp_checks.slow_run(image, senses, not_ready, late_ms), run.trace
 
 
@@ -272,7 +272,7 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
     text = f"A = 0;DEF D;A = A + 1;END_DEF;TASK;LOOP(2);{calls}END_LOOP;SHOW(A);END_TASK"
     image = compile_text(text, cpp_checks.KIT).image
     for most, want in ((100, ("0 LIMIT\n", 100)), (150, ("1 SHOW 260\n1 DONE\n", 261))):
-        run = avr.ran_on(chip, image, cpp_checks.KIT, Senses(max_steps=most))
+        run = avr.run_on(chip, image, cpp_checks.KIT, Senses(max_steps=most))
         assert (run.trace, run.steps) == want
 
 
@@ -284,7 +284,7 @@ def test_late_tasks_after_byte_256(chip: str) -> None:
     ):
         late_ms = (0, 7, 36)[number % 3]
         pace = Pace(every_ms=late_ms + 1)
-        run = avr.ran_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)
+        run = avr.run_on(chip, image, cpp_checks.KIT, senses, pace=pace, begin_ms=2**32 - 100)
         assert run.trace == cpp_checks.slow_run(image, senses, 0, late_ms), run.trace
 
 
@@ -300,7 +300,7 @@ def test_programs_with_ways(chip: str) -> None:
 def test_programs_with_ways_on_an_avr(chip: str) -> None:
     for image, kit, senses in cpp_checks.some_way_programs(3000, 60):
         if len(image) <= CHIPS[chip].most_bytes:
-            same_on_the_chip(chip, image, kit, senses)
+            assert_same_on_chip(chip, image, kit, senses)
 
 
 @one_chip

@@ -20,9 +20,9 @@ from tests.oracle.programs import WIDE_KIT
 from tests.sketch.agreement import with_wide_kit
 from tests.support.block_agreement import check_blocks
 from tests.support.reader_agreement import check_bytes, check_program
-from tests.support.sampling import some_of
+from tests.support.sampling import sample_of
 from tests.support.text_lines import check_line
-from tests.support.vm_agreement import same
+from tests.support.vm_agreement import are_equivalent
 from tiniscript import compile_text
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.limits import BLOCKS, CALLS, STACK_VALUES
@@ -63,7 +63,7 @@ def check(text: str) -> bool:
     for image in (compilation.image, compile_text(text, KIT, optimize=False).image):
         for run in (run_python, run_host):
             actual = run(image, KIT, SENSES)
-            assert same(want, actual), f"{text}\n{actual}not\n{want}"
+            assert are_equivalent(want, actual), f"{text}\n{actual}not\n{want}"
     assert compile_text(format_source(Source(text)), KIT).image == compilation.image, text
     check_blocks(text, KIT)
     check_line(text, KIT)
@@ -82,7 +82,7 @@ def nest(head: str, end: str, times: int) -> str:
     return f"{head};" * times + "{}" + f";{end}" * times
 
 
-def in_defs(calls: int) -> str:
+def nested_defs(calls: int) -> str:
     """Return a word after so many calls."""
     defs = ["DEF D1;{};END_DEF", *(f"DEF D{k};D{k - 1};END_DEF" for k in range(2, calls + 1))]
     return ";".join([*defs, f"D{calls}"])
@@ -114,7 +114,7 @@ def frames() -> Iterator[str]:
     for frame in ("{}", *loops):
         yield f"DEF A;{frame};END_DEF;A"
     yield from (f"DEF A;{{}};END_DEF;{loop.format('A')}" for loop in loops)
-    yield from map(in_defs, (CALLS, CALLS + 1))
+    yield from map(nested_defs, (CALLS, CALLS + 1))
     yield from ("W(FOREVER) UNTIL(TRUE);{}", "F(2, 80) UNTIL(TIME > 0.1)\n{}")
 
 
@@ -179,7 +179,7 @@ PARTS = 24  # parts of which a commit tries one in each frame, another in the ne
 
 
 def test_every_word_in_every_frame(request: pytest.FixtureRequest) -> None:
-    first = some_of(request.config, "words in frames", range(PARTS))
+    first = sample_of(request.config, "words in frames", range(PARTS))
     programs = 0
     for number, frame in enumerate(frames()):
         for part in first:
@@ -217,7 +217,7 @@ def edges(argument: Argument) -> Iterator[str]:
     yield from ("TRUE", "V", LONG_NAME, "DISTANCE", "TOUCH", "V / 0", "-V", "FOREVER", "", "V, V")
 
 
-def around(word: Word) -> str:
+def program_around(word: Word) -> str:
     """Return a program around a call of a word."""
     name, end = word.text, BLOCK_ENDS.get(word.text)
     if word.role.name in ("until", "arm", "function"):
@@ -239,7 +239,7 @@ def test_every_argument_at_its_edges(word: Word) -> None:
     for place, argument in enumerate(word.arguments):
         for edge in edges(argument):
             values = ", ".join([*samples[:place], edge, *samples[place + 1 :]])
-            call = around(word).format(f"{word.text}({values})")
+            call = program_around(word).format(f"{word.text}({values})")
             for text in (call, f"{call} {UNTIL_CLAUSE}") if word.role.is_instruction else (call,):
                 answers.add(check(f"V = 1;{LONG_NAME} = 2;{text}"))
     assert answers == {True, False}

@@ -63,7 +63,7 @@ def names_a_newer_word(text: str) -> bool:
     return any(re.search(rf"(?i)\b(?:{word}\s*=|DEF\s+{word})", text) for word in VERSION_OF_WORD)
 
 
-def of_this_version() -> Iterator[ReleasedProgram]:
+def programs_of_this_version() -> Iterator[ReleasedProgram]:
     """Yield the programs of documents, examples, cases and lessons: some compile, some do not."""
     for path in sorted((ROOT / "examples").glob("*.ts")):
         yield ReleasedProgram(example_robot(path), path.read_text(encoding="utf-8"), "")
@@ -83,7 +83,7 @@ def write_release_file() -> str:
     before = [version for version in versions() if version != __version__]
     earlier = {old[:2] for version in before for old in released_programs(version)}
     parts: dict[tuple[str, str], str] = {}
-    for old in of_this_version():
+    for old in programs_of_this_version():
         text = old.text.rstrip("\n") + "\n"
         robot = shipped_name_in(text.encode()) or old.robot
         is_plain = text.strip() and not re.search("(?m)^[=>] ", text)

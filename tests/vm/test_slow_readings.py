@@ -45,7 +45,7 @@ def run_host(pace: Pace, image: bytes, senses: Senses) -> str:
 
 
 def run_avr(chip: str, pace: Pace, image: bytes, senses: Senses) -> str:
-    return avr.ran_on(chip, image, KIT, senses, pace=pace).trace
+    return avr.run_on(chip, image, KIT, senses, pace=pace).trace
 
 
 MACHINES: dict[str, tuple[Run, str]] = {

@@ -13,7 +13,7 @@ from statistics import median, quantiles
 from typing import TYPE_CHECKING
 
 from tests.support import studio
-from tests.support.studio import in_phase, write
+from tests.support.studio import wait_for_phase, write
 from tiniscript.studio import serving
 from tools.bench import page as figures
 from tools.bench.studio import CPU_THROTTLING
@@ -55,11 +55,11 @@ def measure(page: Page, run_s: int, place_count: int) -> tuple[list[float], floa
     write(page, PROGRAM.replace(f"LOOP({RUN_S})", f"LOOP({run_s})"))
     page.select_option("#speed", "20")
     page.click("#run")
-    in_phase(page, "running")
+    wait_for_phase(page, "running")
     while page.evaluate(DURATION_SCRIPT) < run_s:
         page.wait_for_timeout(POLL_INTERVAL_MS)
     page.click("#stop")
-    in_phase(page, "ended")
+    wait_for_phase(page, "ended")
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
 
