@@ -101,10 +101,10 @@ def test_stack_effects() -> None:
             if op.control_role == "join":  # the deciding comparison stays
                 results += value == ("OR" in op.name)
             divides = op.name in ("DIV", "MOD") and value == 0
-            wanted = (1, "DIVIDE_BY_ZERO") if divides else (results, "")
+            expected = (1, "DIVIDE_BY_ZERO") if divides else (results, "")
             if op.needs == NEEDS_GO and value:  # a way, and a power that rounds to 0
-                wanted = (0, "NO_POWER")
-            assert effect_of(op, value) == wanted, (op.name, value)
+                expected = (0, "NO_POWER")
+            assert effect_of(op, value) == expected, (op.name, value)
 
 
 EDGES = (-(2**31), 1 - 2**31, -1001, -1, 0, 1, 500, 1000, 2**31 - 1)

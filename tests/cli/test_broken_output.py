@@ -197,18 +197,18 @@ def test_a_port_that_vanishes_is_no_bug(
 ) -> None:
     """The cable is pulled before the robot has confirmed a save."""
     real = connect.Connection.begin_request
-    asked = []
+    requests = []
 
     def ask_and_pull(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
         if limit_ms is None:  # a request after HELLO
-            asked.append(make)
-        if len(asked) == which:
+            requests.append(make)
+        if len(requests) == which:
             pty_robot.pull()
         return real(self, make, limit_ms)
 
     monkeypatch.setattr(connect.Connection, "begin_request", ask_and_pull)
     result = run_in_process(*words, "--port", pty_robot.port)
-    assert len(asked) == which
+    assert len(requests) == which
     assert result.code == 3
     assert "is gone" in result.err
 

@@ -298,7 +298,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 ) -> None:  # fmt: skip
     """All of them are tried, and then each robot is asked whether it has stopped; if none can be
     asked, the output reports whether a message was sent."""
-    rest, asked = [*gone], []
+    rest, calls = [*gone], []
 
     def stop(group: str) -> bool:
         has_gone = rest.pop(0)
@@ -315,13 +315,13 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
                            language="en", options_for=lambda *arguments: arguments)  # fmt: skip
 
     def ask(*arguments: object) -> int:
-        asked.append(arguments)
+        calls.append(arguments)
         return 7
 
     monkeypatch.setattr(classroom, "run_together", ask)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     if is_there:
-        assert classroom.stop(cast(Classroom, room)) == 7 and len(asked) == 1
+        assert classroom.stop(cast(Classroom, room)) == 7 and len(calls) == 1
     else:
         with pytest.raises(CommandError):
             classroom.stop(cast(Classroom, room))
@@ -396,10 +396,10 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
 ) -> None:
     place_options = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
     retain_message(broker.connect_client(), f"{ROOT}/3b/big", bytes(5000))
-    named = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
-    result = process("class", "list", *place_options).gives(3, *named)
+    named_texts = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
+    result = process("class", "list", *place_options).gives(3, *named_texts)
     assert "no answer of a broker" not in result.err
-    process("class", "stop", *place_options).gives(3, "the stop for all robots", *named)
+    process("class", "stop", *place_options).gives(3, "the stop for all robots", *named_texts)
     retain_message(broker.connect_client(), f"{ROOT}/3b/0badcafe", b"-ANA")
     process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 

@@ -75,16 +75,16 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
     trace = plain_output("-e", OBSTACLES, *SENSOR_OPTIONS).splitlines()
     top = next(k for k in range(len(lines)) if lines[k].startswith("0 "))
     assert lines[top : top + len(trace)] == trace
-    drawn = picture(lines)
-    assert lines[top + len(trace) :] == drawn and drawn[0].startswith("── TiniBot")
+    drawn_lines = picture(lines)
+    assert lines[top + len(trace) :] == drawn_lines and drawn_lines[0].startswith("── TiniBot")
     if size[0] >= 40:
         assert b"\x1b[36m" in written_bytes
-        way = drawn if size[0] == 80 else drawn[1:8]
+        way = drawn_lines if size[0] == 80 else drawn_lines[1:8]
         assert any(arrow in line for line in way for arrow in sketch.ARROWS)
         assert any("⠀" < c <= "⣿" for line in way for c in line)
-        assert row(drawn, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
-        assert row(drawn, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
-        assert row(drawn, "left motor")[2] == "0"
+        assert row(drawn_lines, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
+        assert row(drawn_lines, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
+        assert row(drawn_lines, "left motor")[2] == "0"
 
 
 def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
@@ -161,17 +161,17 @@ def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.Monkey
     clock = SimpleNamespace(now_s=100.0)
     clock.monotonic = lambda: clock.now_s
     clock.sleep = lambda seconds: setattr(clock, "now_s", clock.now_s + seconds)
-    drawn: list[float] = []
+    draw_times_ms: list[float] = []
     monkeypatch.setattr(terminal_screen, "time", clock)
     monkeypatch.setattr(
-        terminal_screen.Screen, "draw", lambda self, seen, now_ms: drawn.append(now_ms)
+        terminal_screen.Screen, "draw", lambda self, seen, now_ms: draw_times_ms.append(now_ms)
     )
     assert run_drawing.watch(iter(events), robots.load("tinibot"), pace, "en") == events[-1]
-    assert drawn == sorted(drawn)
+    assert draw_times_ms == sorted(draw_times_ms)
     if pace:
         passed_ms = (clock.now_s - 100) * 1000 * pace
         assert 3000 <= passed_ms <= 3000 + 1000 * pace * FRAME_S * 1.01
-    return len(drawn)
+    return len(draw_times_ms)
 
 
 def test_the_checks_of_until_do_not_add_frames(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -42,17 +42,17 @@ def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyP
 
 def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyPatch) -> None:
     """Such folders would repeat the program's name as the author: tiniscript\\tiniscript."""
-    asked: list[tuple[str, object]] = []
+    calls: list[tuple[str, object]] = []
 
     def path(name: str, appauthor: object = None) -> Path:
-        asked.append((name, appauthor))
+        calls.append((name, appauthor))
         return Path(name)
 
     monkeypatch.setattr(files, "_linux_folder", lambda variable, usual: None)
     monkeypatch.setattr(platformdirs, "user_cache_path", path)
     monkeypatch.setattr(platformdirs, "user_config_path", path)
     assert files.cache_folder() == files.settings_folder() == Path("tiniscript")
-    assert asked == [("tiniscript", False)] * 2
+    assert calls == [("tiniscript", False)] * 2
 
 
 def mode_of(path: Path) -> int:

@@ -67,10 +67,10 @@ def step_calls(
     """Make calls of a function, whose first argument contains a port, pass two stages."""
     whole: Callable[..., Any] = getattr(owner, name)
 
-    def interrupt_step(first: Any, *words: Any, **named: Any) -> Any:
+    def interrupt_step(first: Any, *words: Any, **keyword_arguments: Any) -> Any:
         port = first if isinstance(first, str) else first.port
         room.at(before, port)
-        outcome = whole(first, *words, **named)
+        outcome = whole(first, *words, **keyword_arguments)
         room.at(after, port)
         return outcome
 

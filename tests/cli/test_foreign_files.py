@@ -71,12 +71,12 @@ def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, la
 
 
 def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: Path) -> None:
-    program, beside = tmp_path / "photo.ts", tmp_path / "photo.bin"
+    program, neighbour_path = tmp_path / "photo.ts", tmp_path / "photo.bin"
     program.write_text(PROGRAM)
-    beside.write_bytes(b"a firmware of something else")
+    neighbour_path.write_bytes(b"a firmware of something else")
     tsc("compile", program).gives(2, "tsc did not write it.")
-    assert beside.read_bytes() == b"a firmware of something else"
-    beside.unlink()
+    assert neighbour_path.read_bytes() == b"a firmware of something else"
+    neighbour_path.unlink()
     assert tsc("compile", program).code == tsc("compile", program).code == 0
 
 

@@ -56,9 +56,9 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         result = run_in_process("upload", "-e", SHORT_PROGRAM, "--all", "--json").gives(3)
         rows = results(result)
         bad = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
-        named = {port: row for port, row in rows.items() if not row["is_absent"]}
-        assert set(named) == {pupil.port for pupil in pupils}
-        assert {port for port, row in named.items() if not row["is_done"]} == bad
+        present_rows = {port: row for port, row in rows.items() if not row["is_absent"]}
+        assert set(present_rows) == {pupil.port for pupil in pupils}
+        assert {port for port, row in present_rows.items() if not row["is_done"]} == bad
         assert "nothing responds" in str(rows[pupils[SILENT_ROBOT].port]["said"])
         assert "--robot liner" in str(rows[pupils[OTHER_KIT_ROBOT].port]["said"])
         for pupil in pupils:
@@ -69,7 +69,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         assert len(receipts) == len(set(receipts)) >= ROBOT_COUNT - 3
         shown = [row["port"] for row in events if row["event"] == "SHOW"]
         noisy = {pupils[number].port for number in NOISY_ROBOTS}  # the damaged event may be theirs
-        assert set(named) - bad - noisy <= set(shown) <= set(named) - bad
+        assert set(present_rows) - bad - noisy <= set(shown) <= set(present_rows) - bad
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 
@@ -188,7 +188,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     with weak._lock:
         weak.robot.supply(True)
     run_in_process("upload", "-e", "SB|S", "--port", weak.port)
-    heard = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
+    heard_count_by_port = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
     robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))
     alone = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
     wrong = [finding for finding in alone["findings"] if finding["is_wrong"]]
@@ -200,7 +200,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     for pupil in class_.pupils:
         assert robots_by_port[pupil.port]["is_done"] == (pupil is not weak)
         assert robots_by_port[pupil.port]["round_trips"] == 3
-        assert pings(pupil.heard[heard[pupil.port] :]) == 3 + 20 * (pupil is weak)
+        assert pings(pupil.heard[heard_count_by_port[pupil.port] :]) == 3 + 20 * (pupil is weak)
 
 
 def pings(heard_bytes: bytes) -> int:

@@ -157,11 +157,11 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
 
 def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
     """No other cause concerns a setting."""
-    named = {cause: how for how, causes in MESSAGES_BY_CAUSE.items() for cause in causes}
-    assert {*named} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
-    assert {cause for cause, how in named.items() if how not in set_up.GOOD_OUTCOMES} == {
-        cause for cause in named if CAUSES[cause].verdict == WRONG
-    }
+    outcome_by_cause = {cause: how for how, causes in MESSAGES_BY_CAUSE.items() for cause in causes}
+    assert {*outcome_by_cause} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
+    assert {
+        cause for cause, how in outcome_by_cause.items() if how not in set_up.GOOD_OUTCOMES
+    } == {cause for cause in outcome_by_cause if CAUSES[cause].verdict == WRONG}
 
 
 def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:

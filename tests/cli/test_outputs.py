@@ -41,12 +41,12 @@ ACTIONS = {"lesson": ("check", "1"), "class": ("upload",)}
 
 def arguments(verb: str, files: dict[str, Path]) -> list[str]:
     """Return the words of a command with these files for its options."""
-    known = values_of(PARSERS[verb])
+    options = values_of(PARSERS[verb])
     words = [*words_of(verb), *ACTIONS.get(verb, ())]
-    if "program" in known and "program" not in files:
+    if "program" in options and "program" not in files:
         words += ["-e", PROGRAM]
     for dest, path in files.items():
-        words += [known[dest], str(path)] if known[dest] else [str(path)]
+        words += [options[dest], str(path)] if options[dest] else [str(path)]
     return (
         [*words, "--virtual"]
         if {"plot"} & set(files) and verb not in ("robot", "lesson")
@@ -56,8 +56,8 @@ def arguments(verb: str, files: dict[str, Path]) -> list[str]:
 
 def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
     """Every new option must be classified; a name of a file in one verb is one in all."""
-    kept = {("compile", "map", "program"), ("compile", "output", "program")}
-    assert kept | {("show_port", "output", "robot")} <= set(PAIRS)
+    read_files = {("compile", "map", "program"), ("compile", "output", "program")}
+    assert read_files | {("show_port", "output", "robot")} <= set(PAIRS)
     for verb, parser in PARSERS.items():
         kinds = {option.name: option.kind for option in options_of(verb)}
         for dest in values_of(parser):

@@ -49,8 +49,11 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
     assert (replayed_result.code, replayed_result.out) == (0, result.out)
     assert replayed_result.err == f"{SAME_RUN_MESSAGE}{len(recording.rows)}.\n"
     show = next(row for row in recording.rows if row.event.startswith("SHOW"))
-    changed = recordings.encode_row(show), recordings.encode_row(show._replace(event="SHOW 100"))
-    file.write_text(file.read_text().replace(*changed))
+    old_and_new_row = (
+        recordings.encode_row(show),
+        recordings.encode_row(show._replace(event="SHOW 100")),
+    )
+    file.write_text(file.read_text().replace(*old_and_new_row))
     other = tsc("run", file, "--lang", "es").gives(1)
     assert "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual" in other.err
     assert f"hizo {show.event[5:]} a los 1.0 s" in other.err
@@ -395,13 +398,13 @@ def test_a_place_without_room_says_so(tmp_path: Path) -> None:
 
 def test_each_row_is_in_the_file_before_the_next_one_comes(tmp_path: Path) -> None:
     """This holds however the command ends."""
-    path, written = tmp_path / "rows.csv", "head\n"
-    rows = Rows(str(path), written.encode())
+    path, written_text = tmp_path / "rows.csv", "head\n"
+    rows = Rows(str(path), written_text.encode())
     for k in range(4):
         rows.add_row(k, "a")
-        written += f"{k},a\n"
-        assert path.read_text("utf-8") == written
+        written_text += f"{k},a\n"
+        assert path.read_text("utf-8") == written_text
         rows.add_line(f"line {k}")
-        written += f"line {k}\n"
-        assert path.read_text("utf-8") == written
+        written_text += f"line {k}\n"
+        assert path.read_text("utf-8") == written_text
     rows.close()

@@ -219,7 +219,7 @@ def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
     assert robot.until(session, session.live(code)) == OK
     robot.talk(session, 9000)
     at = [int(row.split()[0]) for row in robot.did[count_before:] if "MOTORS" in row]
-    return [end - begun for begun, end in zip(at[::2], at[1::2], strict=True)]
+    return [end - start for start, end in zip(at[::2], at[1::2], strict=True)]
 
 
 def test_a_measured_robot_goes_by_the_line_through_two_points() -> None:

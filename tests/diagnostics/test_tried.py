@@ -83,15 +83,15 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
     """The suggested line makes all of them known."""
     messages = messages_of(program)
     source = Source(program)
-    named = []
+    word_pairs = []
     for shown_message in messages:
         if shown_message.code == "TS119":
             rows = source.text.split("\n")
             word = rows[shown_message.line - 1][
                 shown_message.column - 1 : shown_message.end_column - 1
             ]
-            named.append((word, shown_message.fix.rpartition(" ")[2]))
-    assert named == words and len(messages) == max(1, len(words))
+            word_pairs.append((word, shown_message.fix.rpartition(" ")[2]))
+    assert word_pairs == words and len(messages) == max(1, len(words))
     if len(words) == 1:
         changed_text = f"// robot: {words[0][1]}\n{program.rpartition(chr(10))[2]}"
         assert not [

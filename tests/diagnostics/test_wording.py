@@ -29,15 +29,15 @@ def test_no_number_is_called_a_word(text: str, lang: str) -> None:
     assert not any(word in message.message.lower() for word in ("word", "palabra", "palavra"))
 
 
-@pytest.mark.sampled("around", keep=1)
+@pytest.mark.sampled("template", keep=1)
 @pytest.mark.parametrize(
-    "around",
+    "template",
     ["SI|{}\nF(1, 60)\nEND_LOOP", "SI|W(1)\n{}\nF(1, 60)\nEND", "{} {{\n F(1, 60);\n}}",
      "SI|{};F(1, 60);END_LOOP"],
 )  # fmt: skip
 @pytest.mark.parametrize("word", ["void loop()", *ENDLESS])
-def test_what_begins_a_block_is_never_called_forever_alone(word: str, around: str) -> None:
-    for diagnostic in check(around.format(word)):
+def test_what_begins_a_block_is_never_called_forever_alone(word: str, template: str) -> None:
+    for diagnostic in check(template.format(word)):
         if "LOOP(FOREVER)" in str(diagnostic.values):
             assert diagnostic.values.get("right") != "FOREVER"
 

@@ -67,10 +67,10 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
 @each_row("cause", foreign.NAMES)
 def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(cause: str) -> None:
     for language in ("en", "es", "pt"):
-        for heard in ("Distance: 34", ""):
-            sentences = sentences_of(Finding(cause, True, {"said": heard}), language)
+        for heard_text in ("Distance: 34", ""):
+            sentences = sentences_of(Finding(cause, True, {"said": heard_text}), language)
             assert all(sentences) and "{" not in "".join(sentences)
-            assert heard in sentences.evidence or cause == foreign.ECHO_SKETCH
+            assert heard_text in sentences.evidence or cause == foreign.ECHO_SKETCH
         link = foreign.explain(foreign.ForeignBoard(cause, "a\x1bb", True), language)
         assert "a?b" in link.meaning and link.advice == sentences.advice
 

@@ -88,12 +88,12 @@ def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) 
 HOLDING_GRABBER = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"'), "holds")
 
 
-@pytest.mark.parametrize(("robot_name", "sentences", "drawn"), [
+@pytest.mark.parametrize(("robot_name", "sentences", "drawn_values"), [
     ("grabber", ["RELEASE GRIPPER", "SET LED FALSE"], {1: 0}),
     ("holds", ["SET LED FALSE"], {0: 90000, 1: 0}),
 ])  # fmt: skip
 def test_the_virtual_robot_says_and_draws_it(
-    robot_name: str, sentences: list[str], drawn: dict[int, int]
+    robot_name: str, sentences: list[str], drawn_values: dict[int, int]
 ) -> None:
     profile = {"grabber": GRABBER, "holds": HOLDING_GRABBER}[robot_name]
     robot = VirtualRobot(profile, worlds.load("obstacles"))
@@ -108,6 +108,6 @@ def test_the_virtual_robot_says_and_draws_it(
     for event in events:
         if event.kind != "START":
             picture.add_event(event)
-    assert picture.value_by_actuator == drawn == robot.actuators
+    assert picture.value_by_actuator == drawn_values == robot.actuators
     robot.press()
     assert not [event for event in robot.take_events() if event.kind in ("SET", "RELEASE")]

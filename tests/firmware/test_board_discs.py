@@ -57,9 +57,12 @@ def pins(robot: Robot) -> tuple[int, int]:
 
 def counts(board: Board, ms: float) -> tuple[int, int]:
     """Return the counts at a time, measured from 20 ms on."""
-    begun = (board.register(LEFT_COUNT_REGISTER, 20), board.register(RIGHT_COUNT_REGISTER, 20))
+    first_counts = (
+        board.register(LEFT_COUNT_REGISTER, 20),
+        board.register(RIGHT_COUNT_REGISTER, 20),
+    )
     then = (board.register(LEFT_COUNT_REGISTER, ms), board.register(RIGHT_COUNT_REGISTER, ms))
-    return (then[0] - begun[0]) % 256, (then[1] - begun[1]) % 256
+    return (then[0] - first_counts[0]) % 256, (then[1] - first_counts[1]) % 256
 
 
 @pytest.mark.sampled("name")

@@ -88,11 +88,11 @@ def test_a_step_is_a_statement() -> None:
 )
 def test_what_begins_no_statement_is_no_place(text: str) -> None:
     it = Debugged(text)
-    begun = statement_starts(it.image.code)
+    starts = statement_starts(it.image.code)
     for at in range(len(it.image.code) + 3):
-        assert it.places(at) == (OK if at in begun else BAD_VALUE), at
-    assert it.places(*begun[:4]) == OK
-    assert it.places(*begun[:3], 1000) == BAD_VALUE
+        assert it.places(at) == (OK if at in starts else BAD_VALUE), at
+    assert it.places(*starts[:4]) == OK
+    assert it.places(*starts[:3], 1000) == BAD_VALUE
 
 
 def test_places_are_even_bytes_of_a_program_that_is_there() -> None:

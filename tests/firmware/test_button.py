@@ -48,12 +48,12 @@ def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
         cases.append((turn, 0, [0, *chatter, up_us, *(up_us + offset_us for offset_us in chatter)]))
     for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
         assert letters(events) == "PHR"
-        pressed, held, released = (us for us, _ in events)
-        assert pressed <= 5000 + turn
-        assert held >= pressed + STEADY_US - 1000
-        assert released >= edges[5] + STEADY_US - 1000
+        pressed_us, held_us, released_us = (us for us, _ in events)
+        assert pressed_us <= 5000 + turn
+        assert held_us >= pressed_us + STEADY_US - 1000
+        assert released_us >= edges[5] + STEADY_US - 1000
         if turn <= 1000:
-            assert released <= edges[-1] + STEADY_US + 3000
+            assert released_us <= edges[-1] + STEADY_US + 3000
 
 
 def test_a_release_that_does_not_last_is_none() -> None:

@@ -238,7 +238,7 @@ def frames_of(image: Image) -> list[tuple[str, bytes]]:
 
 
 def cut_by(
-    kind: str, memory: bytes, cut: str, between: Callable[[Line], object]
+    kind: str, memory: bytes, cut: str, act_between: Callable[[Line], object]
 ) -> tuple[Line, list[tuple[str, bytes]]]:
     """Send a part of an upload and then other bytes; return the rest."""
     line, frames = Line(ROBOT_KINDS[kind], memory), frames_of(SECOND_IMAGE)
@@ -248,7 +248,7 @@ def cut_by(
         CUT_BEFORE_COMMIT: len(frames) - 1,
     }[cut]
     assert {line.asks(*frame) for frame in frames[:count]} == {OK}
-    between(line)
+    act_between(line)
     return line, frames[count:]
 
 

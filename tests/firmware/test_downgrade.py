@@ -142,7 +142,7 @@ class Between:
         return encode_frame(frame._replace(is_sealed=False))
 
 
-def talk(between: Between, session: Session, request: PendingRequest[Any] | None) -> list[str]:
+def talk(attacker: Between, session: Session, request: PendingRequest[Any] | None) -> list[str]:
     """Let a computer talk through the attacker until its request or stop is over; return the
     events.
     """
@@ -150,7 +150,7 @@ def talk(between: Between, session: Session, request: PendingRequest[Any] | None
     now_ms, end_ms = 0, LIMIT_MS
     while now_ms < end_ms:
         data = session.poll(now_ms)
-        replies = between.hears(data, now_ms) if data else b""
+        replies = attacker.hears(data, now_ms) if data else b""
         session.receive(replies, now_ms + 1)
         names += [event.name for event in session.events()]
         if (request is not None and request.outcome) or {"STOPPED", "LOST"} & set(names):
@@ -173,8 +173,8 @@ def pass_frame(frame: Frame) -> bool:
 
 
 def talk_honestly(end: End, session: Session, request: PendingRequest[Any] | None) -> list[str]:
-    between = Between(end, random.Random(1), 0, pass_frame, cuts_stops=False)
-    return talk(between, session, request)
+    attacker = Between(end, random.Random(1), 0, pass_frame, cuts_stops=False)
+    return talk(attacker, session, request)
 
 
 def start_long_drive(end: End, draw: random.Random) -> None:
@@ -197,7 +197,7 @@ def one_trial(end: End, seed: int) -> str:
     if draw.random() < 0.3:
         greets |= {STATUS, BY_NAME["PING"].number}
     all_pass = cleared != 0 and draw.random() < 0.3
-    between = Between(end, draw, cleared, pass_frame if all_pass else lambda f: f.number in greets)
+    attacker = Between(end, draw, cleared, pass_frame if all_pass else lambda f: f.number in greets)
     kind = draw.choice(("hello", "stop", "upload", "live", "name"))
     if kind == "stop":
         if state_of(end) != STATE_RUNNING:
@@ -206,7 +206,7 @@ def one_trial(end: End, seed: int) -> str:
         if is_greeted:  # greeted by the robot itself
             talk_honestly(end, session, session.hello())
         session.stop(0)
-        names = talk(between, session, None)
+        names = talk(attacker, session, None)
         assert "STOPPED" not in names, f"seed {seed}: a stop that nobody has heard is confirmed"
         assert "LOST" in names, f"seed {seed}: {names}"
         return "stop, greeted" if is_greeted else kind
@@ -219,7 +219,7 @@ def one_trial(end: End, seed: int) -> str:
         request = session.name(b"EVE")
     else:
         request = session.hello()
-    talk(between, session, request)
+    talk(attacker, session, request)
     status = request.outcome.status if request.outcome else LOST
     if cleared & SEALS or AUTHENTICATE in greets or all_pass:
         expected = (UNPROVEN,) if cleared else (0,) if kind == "hello" else (UNPROVEN, LOST)
@@ -250,9 +250,9 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
     cleared = draw.choice((0, *CLEARED_FLAGS, OWNED | OWNERS))
     if how.startswith("id"):
         greets = draw.choice(({HELLO}, {HELLO, AUTHENTICATE}, {HELLO, STATUS}))
-        between = Between(end, draw, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
+        attacker = Between(end, draw, cleared, lambda f: f.number in greets, other_id=OTHER_ID)
     else:
-        between = Between(strange, draw, cleared, pass_frame, cuts_stops=draw.random() < 0.5)
+        attacker = Between(strange, draw, cleared, pass_frame, cuts_stops=draw.random() < 0.5)
     kind = draw.choice(("stop", "upload", "live", "hello"))
     request: PendingRequest[Any] | None = None
     if kind == "stop":
@@ -263,7 +263,7 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
         request = session.live(image_of(FOREVER).code)
     else:
         request = session.hello()
-    names = talk(between, session, request)
+    names = talk(attacker, session, request)
     assert "STOPPED" not in names, f"seed {seed}: {how}: a stop that nobody has heard is confirmed"
     if request is None:
         assert "LOST" in names, f"seed {seed}: {names}"

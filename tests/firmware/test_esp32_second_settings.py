@@ -167,11 +167,11 @@ class Life:
         seen: list[object] = []
         for number in range(count):
             self.robot.wait(began_ms + FIRST_LOOK_MS + number * LOOK_MS - self.robot.now_ms)
-            asked = radios(self.robot)
+            radio_state = radios(self.robot)
             its = wifi_reply_of(self.robot, [(None, self.owner)], self.owner)
             told = wifi.MODES[its.mode], wifi.STATES[its.state], its.network, wifi.address(its)
-            asked = asked._replace(joins=asked.joins - joins)
-            seen.append((told, asked, bool(port_of(self.robot))))
+            radio_state = radio_state._replace(joins=radio_state.joins - joins)
+            seen.append((told, radio_state, bool(port_of(self.robot))))
         return seen
 
     def restarts_until_it_rests(self) -> int:

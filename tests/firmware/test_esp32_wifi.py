@@ -59,11 +59,14 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
     wifi_reply = wifi_reply_of(robot, [(None, owner)], owner)
     assert (wifi_reply.network, wifi.STATES[wifi_reply.state]) == (network.name, "READY")
     assert wifi.address(wifi_reply) == ("192.168.4.1" if network.is_access_point else "127.0.0.1")
-    asked = radios(robot)
-    assert asked.network.encode() == network.name and asked.password.encode() == network.password
-    assert asked.is_access_point == network.is_access_point
-    assert (asked.host, asked.instance) == ("tini-5678", "tini-5678")
-    assert asked.service == "_tiniscript._tcp 8473"
+    radio_state = radios(robot)
+    assert (
+        radio_state.network.encode() == network.name
+        and radio_state.password.encode() == network.password
+    )
+    assert radio_state.is_access_point == network.is_access_point
+    assert (radio_state.host, radio_state.instance) == ("tini-5678", "tini-5678")
+    assert radio_state.service == "_tiniscript._tcp 8473"
 
 
 def test_what_there_is_no_memory_for_is_announced_later() -> None:

@@ -169,8 +169,10 @@ class Scene:
         lines = re.findall(rb"// [^\r\n]*\r\n", data)
         lines = [line for line in lines if line != NO_ZERO_LINE]  # this line may be late
         self.observed += [line for line in lines if self.is_saved or line != LOST_PROGRAM_LINE]
-        heard = (event for event in self.session.events() if not isinstance(event, TextEvent))
-        self.observed += [without_counts(event) for event in heard]
+        heard_events = (
+            event for event in self.session.events() if not isinstance(event, TextEvent)
+        )
+        self.observed += [without_counts(event) for event in heard_events]
         if self.is_saved:
             self.observed.append(self.robot.is_lit)
         self.robot.did.clear()

@@ -136,5 +136,5 @@ def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> N
     assert values.pace == struct_pack("<4H", *pace, *pace), "it is read"
     send(robot, session, "SI|F(20 CM, 60)", saves=False)
     robot.talk(session, 1000)
-    begun, ended = [int(line.split()[0]) for line in robot.did if "MOTORS" in line][-2:]
-    assert ended - begun == pytest.approx(741, abs=2)
+    start_ms, end_ms = [int(line.split()[0]) for line in robot.did if "MOTORS" in line][-2:]
+    assert end_ms - start_ms == pytest.approx(741, abs=2)

@@ -496,8 +496,8 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
             for _ in range((before_ms if not is_second else STEPS * STEP_MS + 500) - 1):
                 robot.step()
                 was_lit.append(robot.is_lit)
-        wanted = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500
-        assert was_lit == wanted, before_ms
+        expected = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500
+        assert was_lit == expected, before_ms
         beeps = [line.split() for line in robot.did if "BEEP" in line]
         assert beeps == [
             [str(begun_ms + k * STEP_MS), "BEEP", str(hertz), "200"] for k, hertz in enumerate(tune)

@@ -292,7 +292,7 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
     whole."""
     chance = Random(seed)
     robot, session = robot_with_saved_program()
-    programs, kept = (
+    programs, kept_index = (
         [bytes_of("SB|F(0.2, 80)")],
         0,
     )  # accepted programs, and the saved one
@@ -308,8 +308,8 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
             robot.talk(session, chance.choice((1, 20, 60, 130, 400, 700)))
         programs.append(bytes_of(text))
         if read_saved_state(robot, session) == "STORED":
-            kept = len(programs) - 1
-        assert program_after_power_off(robot) in programs[kept:], number
+            kept_index = len(programs) - 1
+        assert program_after_power_off(robot) in programs[kept_index:], number
     robot.supply(is_low=False)
     robot.talk(session, 3000)
     assert read_saved_state(robot, session) == "STORED"

@@ -140,7 +140,7 @@ class Client:
         passed_ms = now_ms - self.confirmed_ms
         must = not self.causes or passed_ms > AGAIN_MS + 2
         self.stops.append(Stop(now_ms, must, None if self.causes else self.epoch))
-        is_clear_pending = CLEAR in (asked for asked, _ in self.waiting.values())
+        is_clear_pending = CLEAR in (asked_number for asked_number, _ in self.waiting.values())
         if not self.causes or passed_ms >= AGAIN_MS - 2 or is_clear_pending:
             self.confirmed_ms = now_ms
         self.causes.append((now_ms, cause))
@@ -207,9 +207,9 @@ class Client:
                 "an end that is none, another one, or told twice"
             )
         else:
-            asked, asked_ms = self.waiting.pop(frame.seq, (0, 0))
-            assert frame.is_reply and asked == frame.number, "a reply that nobody waits for"
-            if asked == CLEAR and frame.payload[0] == OK:
+            asked_number, asked_ms = self.waiting.pop(frame.seq, (0, 0))
+            assert frame.is_reply and asked_number == frame.number, "a reply that nobody waits for"
+            if asked_number == CLEAR and frame.payload[0] == OK:
                 self.stood_until(asked_ms + 1)
 
     def take_epoch(self, frame: Frame) -> None:
@@ -237,7 +237,8 @@ class Client:
         cause = frame.payload[0]
         assert self.stops, "a stop that is none, or told twice"
         cleared_ms = min(
-            (ms for asked, ms in self.waiting.values() if asked == CLEAR), default=None
+            (ms for asked_number, ms in self.waiting.values() if asked_number == CLEAR),
+            default=None,
         )
         first = {self.cause}
         if cleared_ms is not None:  # this may have happened earlier

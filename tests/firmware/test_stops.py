@@ -69,13 +69,13 @@ INTERVENING_STOPS: dict[str, Callable[[HostFirmware, Session], object]] = {
 }
 
 
-@pytest.mark.parametrize("between", INTERVENING_STOPS)
-def test_a_button_that_was_down_meanwhile_starts_nothing(between: str) -> None:
+@pytest.mark.parametrize("intervening_stop", INTERVENING_STOPS)
+def test_a_button_that_was_down_meanwhile_starts_nothing(intervening_stop: str) -> None:
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
     robot.talk(session, 1, flags=1)
     robot.talk(session, 50)
-    INTERVENING_STOPS[between](robot, session)
+    INTERVENING_STOPS[intervening_stop](robot, session)
     robot.did.clear()
     robot.talk(session, 1, flags=2)
     robot.talk(session, 500)

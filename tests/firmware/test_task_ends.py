@@ -51,8 +51,8 @@ def test_all_tasks_end(state: str, end: str) -> None:
 
     send(state)
     driven = {"a task waits": [], "the body of a WHEN moves": ["MOTORS -40 -40"]}
-    begun = driven.get(state, ["MOTORS 80 80"])
-    assert actions_of(robot) == begun
+    first_actions = driven.get(state, ["MOTORS 80 80"])
+    assert actions_of(robot) == first_actions
     # fewer than all 400
     assert (0 < count_shows(session) < 300) == (state == "a SHOW finds no room")
     robot.did.clear()
@@ -64,7 +64,7 @@ def test_all_tasks_end(state: str, end: str) -> None:
     count_shows(session)
     robot.talk(session, 2000)
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]
-    assert moves == ["MOTORS 0 0"] * len(begun)
+    assert moves == ["MOTORS 0 0"] * len(first_actions)
     assert count_shows(session) == 0
     values = robot.complete(session, session.status())
     assert (values.state, values.fault) == (STATE_FAULTED if fault else STATE_STOPPED, fault)

@@ -381,14 +381,14 @@ def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
 
 def test_a_fault_is_told_recorded_and_kept() -> None:
     robot, session = robot_with_program()
-    held = status(robot, session).program
+    program_checksum = status(robot, session).program
     robot.wait(4000)
     assert type_text(robot, "SI|X=0;F(0.1,50);X=1/X\n", 300) == ["// OK", "// FAULT DIVIDE_BY_ZERO"]
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
     values = status(robot, session)
     # A robot's own code is not fused, so no compiled image has its checksum.
-    assert values.fault == 2 and values.program == held
-    assert values.fault_program not in (0, held)
+    assert values.fault == 2 and values.program == program_checksum
+    assert values.fault_program not in (0, program_checksum)
     robot.wait(3000)
     kept_status = status(switched_on(robot.memory()), computer(2))
     assert (kept_status.fault, kept_status.fault_at) == (2, values.fault_at)
@@ -721,16 +721,16 @@ def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> Non
     assert 0 < times_lost < 12
 
 
-@pytest.mark.parametrize("between", ["zero", "frame", "button", "two tabs"])
-def test_the_rest_of_a_program_that_was_lost_is_not_run(between: str) -> None:
+@pytest.mark.parametrize("intervening_bytes", ["zero", "frame", "button", "two tabs"])
+def test_the_rest_of_a_program_that_was_lost_is_not_run(intervening_bytes: str) -> None:
     """Its lines are whole, and have another meaning on their own."""
     robot, session = switched_on(), computer()
     type_text(robot, "SI|LOOP(2)\n")
-    if between == "zero":
+    if intervening_bytes == "zero":
         type_text(robot, b"R(0.1,\0")
-    elif between == "frame":
+    elif intervening_bytes == "frame":
         assert robot.until(session, session.clear()) == OK
-    elif between == "button":
+    elif intervening_bytes == "button":
         robot.step(flags=2)
         robot.push()
     else:

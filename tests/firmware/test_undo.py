@@ -235,8 +235,8 @@ def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
     assert robot.until(session, session.start()) == OK
     robot.talk(session, 3000)
     assert read_saved_state(robot, session) == "SAVING"
-    changed = sum(a != b for a, b in zip(memory, robot.memory(), strict=True))
-    assert changed <= 3, "at most what it wrote before the start"
+    changed_count = sum(a != b for a, b in zip(memory, robot.memory(), strict=True))
+    assert changed_count <= 3, "at most what it wrote before the start"
     session.stop(robot.now_ms)
     robot.talk(session, 1000)
     assert program_after_power_off(robot) == bytes_of(DRIVE_PROGRAM)

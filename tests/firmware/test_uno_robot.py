@@ -66,11 +66,11 @@ def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
     start_cycle = uno.cycle
     assert wired_uno.until(wired_uno.session.undo()) == OK
     wired_uno.run(500)
-    written = [
+    write_cycles = [
         event.cycle for event in uno.events if event.kind == "eeprom" and event.cycle > start_cycle
     ]
-    assert len(written) == 13
-    assert written[-1] - written[0] < 60 * CYCLES_PER_MS
+    assert len(write_cycles) == 13
+    assert write_cycles[-1] - write_cycles[0] < 60 * CYCLES_PER_MS
     uno.press("button")
     uno.run_ms(130)
     assert states(uno) == FORWARD
@@ -124,7 +124,7 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
     assert wired_uno.until(wired_uno.session.hello()) == OK
     wired_uno.run(1000)  # a new robot stores its identity
     code = image_of("SI|F(0.1, 80)").code
-    taken = []
+    delays = []
     for turn in range(25):
         uno.run_to(uno.cycle + 7 * turn)
         assert wired_uno.until(wired_uno.session.live(code)) == OK
@@ -137,10 +137,10 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
             for name in ("left", "right")
         )
         zero = max(byte.cycle for byte in uno.received_bytes if byte.cycle < on)
-        taken.append(on - zero)
+        delays.append(on - zero)
         wired_uno.run(140)
-    assert sorted(taken)[len(taken) * 3 // 4] <= LIVE_CYCLES
-    assert max(taken) <= LATE_CYCLES
+    assert sorted(delays)[len(delays) * 3 // 4] <= LIVE_CYCLES
+    assert max(delays) <= LATE_CYCLES
     assert wired_uno.complete(wired_uno.session.status()).damaged == 0
 
 

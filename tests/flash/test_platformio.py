@@ -65,8 +65,8 @@ def test_tests_pass(native: Path) -> None:
     log = pio(native, "test", "-e", "native").gives(0).out
     count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
     files = "".join(path.read_text(encoding="utf-8") for path in native.glob("test/*.cpp"))
-    written = len(re.findall(r"^(?:TEST_)?CASE\(", files, re.MULTILINE))
-    assert count and int(count[1]) == int(count[2]) == written > 300, log
+    case_count = len(re.findall(r"^(?:TEST_)?CASE\(", files, re.MULTILINE))
+    assert count and int(count[1]) == int(count[2]) == case_count > 300, log
     assert "\nPASSED: blocks: BREAK leaves the innermost loop\n" in log
     assert names_stand_in_if_used(log)
 
@@ -183,16 +183,16 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
 ) -> None:
     """Only the upload differs: it uses PlatformIO's board for such Nanos."""
     builds: list[bytes] = []
-    held: list[int] = []
+    program_sizes: list[int] = []
     for name in (new_env, old_env):
         log = pio(project, "run", "-e", name).gives(0).out
-        held += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
+        program_sizes += map(int, re.findall(r"Flash: .*bytes from (\d+)", log))
         builds.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
     assert builds[0] == builds[1]
     assert (
         "nanoatmega328new" in pio(project, "project", "config").out.partition(f"env:{new_env}\n")[2]
     )
-    assert held == [30_720] * 2
+    assert program_sizes == [30_720] * 2
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
@@ -220,8 +220,8 @@ def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
     text = re.search(r"Every robot can run it:  (.*)\n", source)
     array = re.search(r"program\[.*?\] = \{(.*?)\n\};", source, re.S)
     assert text and array
-    written = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))
-    code = bytes(ord(letter) if letter else int(number, 0) for letter, number in written)
+    byte_literals = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))
+    code = bytes(ord(letter) if letter else int(number, 0) for letter, number in byte_literals)
     for name in robots.names():
         assert code == compile_text(text[1], robots.load(name).kit).image
 

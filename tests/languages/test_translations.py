@@ -250,13 +250,13 @@ def test_plurals_follow_the_rule_of_the_language(place: Path) -> None:
          {0: "zero", 1: "one", 2: "two", 7: "few", 11: "many", 100: "other", 1103: "few"}),
         ("other", "0", {0: "other", 1: "other", 5: "other"}),
     )  # fmt: skip
-    for names, rule, wanted in rules:
+    for names, rule, form_by_number in rules:
         forms = names.split()
         write(place / "xx" / ABOUT_FILE, f"forms = {forms}\nwhich_form = '{rule}'\n")
         rows = "".join(f"n.{form} = '{{n}} {form}'\n" for form in forms)
         assert problems(open_translation(place, rows)) == []
         languages.forget_languages()
-        for number, form in wanted.items():
+        for number, form in form_by_number.items():
             assert languages.plural_text("some", "n", number, "xx") == f"{{n}} {form}"
     write(place / "xx" / "some.toml", OWN)
     languages.forget_languages()

@@ -202,11 +202,11 @@ def test_a_connection_that_was_closed_leaves_nothing_open(
     monkeypatch.setattr(Device, "opened", [])
     monkeypatch.setattr("tiniscript.link.ports.open_port", Device)
     monkeypatch.setattr(Device, "is_gone", is_gone)
-    kept = []
+    clients = []
     for _ in range(3):
-        kept.append(Client(ADDRESS, "upload", robots.load("tinibot")))
+        clients.append(Client(ADDRESS, "upload", robots.load("tinibot")))
         assert registry.find_registration(ADDRESS) is not None
-        kept[-1].close()
+        clients[-1].close()
         assert not any(device.is_open for device in Device.opened)
         assert registry.find_registration(ADDRESS) is None
 

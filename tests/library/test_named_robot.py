@@ -26,9 +26,9 @@ NAMELESS = [
 
 @each_row("text", NAMING)
 def test_a_comment_before_the_first_instruction_names_it(text: str) -> None:
-    named = named_robot(text)
-    assert named is not None
-    assert named.name.lower() == "liner" and text[slice(*named.span)] == named.name
+    name_span = named_robot(text)
+    assert name_span is not None
+    assert name_span.name.lower() == "liner" and text[slice(*name_span.span)] == name_span.name
 
 
 @each_row("text", NAMELESS)
@@ -40,25 +40,25 @@ def test_any_other_comment_tells_people_something(text: str) -> None:
 @each_row("text", [text for text in NAMING if "\nS" in text or "\nF" in text])
 def test_the_formatter_keeps_it(text: str) -> None:
     laid_out = format_source(Source(text.removeprefix("\ufeff")))
-    named = named_robot(laid_out)
-    assert named is not None and named.name.lower() == "liner"
+    name_span = named_robot(laid_out)
+    assert name_span is not None and name_span.name.lower() == "liner"
     assert laid_out == format_source(Source(laid_out))
 
 
 @pytest.mark.parametrize("text", NAMING)
 def test_another_one_takes_its_place(text: str) -> None:
-    changed = rename_robot(text, "grabber")
-    named = named_robot(changed)
-    assert named is not None and named.name == "grabber"
-    assert changed[: named.span.start] + changed[named.span.end :] == text.replace(
-        text[slice(*_span(text))], "", 1
-    )
+    renamed_text = rename_robot(text, "grabber")
+    name_span = named_robot(renamed_text)
+    assert name_span is not None and name_span.name == "grabber"
+    assert renamed_text[: name_span.span.start] + renamed_text[
+        name_span.span.end :
+    ] == text.replace(text[slice(*_span(text))], "", 1)
 
 
 def _span(text: str) -> tuple[int, int]:
-    named = named_robot(text)
-    assert named is not None
-    return named.span
+    name_span = named_robot(text)
+    assert name_span is not None
+    return name_span.span
 
 
 def test_a_long_row_of_anything_is_looked_at_once() -> None:

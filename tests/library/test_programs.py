@@ -50,9 +50,9 @@ def test_a_diagnostic_is_data() -> None:
 
 
 def test_a_program_with_mistakes_is_an_error_that_shows_them() -> None:
-    with pytest.raises(tiniscript.ProgramError) as raised:
+    with pytest.raises(tiniscript.ProgramError) as error_info:
         tiniscript.compile("SI|F(2 80);Q", language="es")
-    error = raised.value
+    error = error_info.value
     assert error.diagnostics == tuple(tiniscript.check("SI|F(2 80);Q", language="es"))
     assert "línea 1:" in str(error) and "^" in str(error)
     assert error.reason == "mistakes"
@@ -158,12 +158,12 @@ def test_an_image_runs_on_the_robot_whose_kit_it_has() -> None:
 def test_a_damaged_image_is_refused() -> None:
     image = bytearray(tiniscript.compile(PROGRAM).image)
     image[-1] ^= 1
-    with pytest.raises(tiniscript.ProgramError) as raised:
+    with pytest.raises(tiniscript.ProgramError) as error_info:
         tiniscript.run(bytes(image))
-    assert (raised.value.reason, raised.value.diagnostics) == ("DAMAGED", ())
-    with pytest.raises(tiniscript.ProgramError) as raised:
+    assert (error_info.value.reason, error_info.value.diagnostics) == ("DAMAGED", ())
+    with pytest.raises(tiniscript.ProgramError) as error_info:
         tiniscript.run(pack("SI", 0, b"\xff"))  # whole, and no code
-    assert raised.value.reason in RULES
+    assert error_info.value.reason in RULES
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -176,11 +176,11 @@ def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
         whole[:-1]: "TRUNCATED", whole + b"?": "TRAILING",
         b"TS\xff" + whole[3:]: "OTHER_VERSION", pack("SI", 0, b"\xff"): "",
     }.items():  # fmt: skip
-        with pytest.raises(tiniscript.ProgramError) as raised:
+        with pytest.raises(tiniscript.ProgramError) as error_info:
             tiniscript.show(image, language=language)
-        message = str(raised.value)
-        assert raised.value.reason == reason or not reason
-        assert raised.value.reason in message
+        message = str(error_info.value)
+        assert error_info.value.reason == reason or not reason
+        assert error_info.value.reason in message
         assert "robot" not in message.lower()
         assert ("ompila" if language == "es" else "ompile") in message
     assert set(REFUSALS) <= set(all_said("en", "library"))
@@ -227,14 +227,14 @@ MISUSES: dict[str, Callable[[], object]] = {
 
 @pytest.mark.parametrize("reason", MISUSES)
 def test_wrong_use_is_an_error_with_a_sentence(reason: str) -> None:
-    with pytest.raises(tiniscript.UsageError) as raised:
+    with pytest.raises(tiniscript.UsageError) as error_info:
         MISUSES[reason]()
-    assert raised.value.reason == reason
-    assert isinstance(raised.value, ValueError)
-    assert str(raised.value).endswith((".", "]"))
-    assert "{" not in str(raised.value)
+    assert error_info.value.reason == reason
+    assert isinstance(error_info.value, ValueError)
+    assert str(error_info.value).endswith((".", "]"))
+    assert "{" not in str(error_info.value)
     if reason == "bad_choice":
-        assert str(raised.value) == "machine must be python or cpp, not 'perl'."
+        assert str(error_info.value) == "machine must be python or cpp, not 'perl'."
 
 
 @pytest.mark.parametrize(
@@ -320,12 +320,12 @@ def test_a_program_may_be_a_file(tmp_path: Path) -> None:
     )  # fmt: skip
     for name in (str(path), str(image)):
         for use in (tiniscript.run, tiniscript.compile):
-            with pytest.raises(tiniscript.UsageError) as raised:
+            with pytest.raises(tiniscript.UsageError) as error_info:
                 use(name)
-            assert raised.value.reason == "file_name" and "drive" in str(raised.value)
-    with pytest.raises(tiniscript.UsageError) as raised:
+            assert error_info.value.reason == "file_name" and "drive" in str(error_info.value)
+    with pytest.raises(tiniscript.UsageError) as error_info:
         tiniscript.run(tmp_path / "none.ts")
-    assert raised.value.reason == "unreadable"
+    assert error_info.value.reason == "unreadable"
 
 
 VALUES = """SI|
@@ -340,11 +340,17 @@ IF(N > 3); SHOW(N); END_IF
 
 
 def test_a_listing_names_each_variable_as_the_text_does() -> None:
-    named: dict[str, set[str]] = {}
+    words_by_number: dict[str, set[str]] = {}
     for line in tiniscript.compile(VALUES).listing().splitlines():
         instruction, _, remark = line[25:].partition(" ; ")
         if "VAR" in instruction:
             number = re.findall(r"[0-9]+", instruction.replace("VAR8", "").replace("VAR16", ""))[0]
-            named.setdefault(number, set()).add(remark.split()[0])
+            words_by_number.setdefault(number, set()).add(remark.split()[0])
     # SIDE's values, those of PAUSE for the program and for the task, and N
-    assert sorted(named.values(), key=min) == [{"LONG"}, {"LONG"}, {"N"}, {"SIZE"}, {"SPEED"}]
+    assert sorted(words_by_number.values(), key=min) == [
+        {"LONG"},
+        {"LONG"},
+        {"N"},
+        {"SIZE"},
+        {"SPEED"},
+    ]

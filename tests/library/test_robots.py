@@ -263,11 +263,11 @@ def test_a_stop_that_nobody_confirms_is_an_error(
 ) -> None:
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.5)
     robot = tiniscript.connect(pty_robot.port)
-    with pytest.raises(tiniscript.StopNotConfirmed, match="batteries") as raised, robot:
+    with pytest.raises(tiniscript.StopNotConfirmed, match="batteries") as error_info, robot:
         robot.upload(FOREVER)
         pty_robot.switch_off()
         raise ZeroDivisionError
-    assert isinstance(raised.value.__context__, ZeroDivisionError)
+    assert isinstance(error_info.value.__context__, ZeroDivisionError)
 
 
 class ToldEvents:
@@ -429,11 +429,11 @@ def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Comma
 
 def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
     robot = tiniscript.connect(pty_robot.port)
-    with pytest.raises(tiniscript.StopNotConfirmed) as raised, robot:
+    with pytest.raises(tiniscript.StopNotConfirmed) as error_info, robot:
         robot.upload(FOREVER)
         pty_robot.pull()
         robot.wait()
-    before = raised.value.__context__
+    before = error_info.value.__context__
     assert isinstance(before, tiniscript.RobotError)
     assert before.reason == "port_gone"
 
@@ -443,11 +443,11 @@ def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()
     before = threading.active_count()
-    with pytest.raises(tiniscript.RobotError) as raised:
+    with pytest.raises(tiniscript.RobotError) as error_info:
         tiniscript.connect(pty_robot.port, language="es")
     assert threading.active_count() == before
-    assert raised.value.reason == "link_silent"
-    assert "Nada responde" in str(raised.value)
+    assert error_info.value.reason == "link_silent"
+    assert "Nada responde" in str(error_info.value)
     # and the port is free again
     pty_robot.switch_on()
     with tiniscript.connect(pty_robot.port) as robot:
@@ -455,9 +455,9 @@ def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_a_port_that_is_not_there_is_an_error() -> None:
-    with pytest.raises(tiniscript.RobotError) as raised:
+    with pytest.raises(tiniscript.RobotError) as error_info:
         tiniscript.connect("/dev/no-such-port" if os.name == "posix" else "COM199")
-    assert raised.value.reason in ("port_missing", "port_missing_but")
+    assert error_info.value.reason in ("port_missing", "port_missing_but")
 
 
 def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -466,9 +466,9 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
 
     for listed in ([], [ports.ListedPort("/dev/other", "")]):
         monkeypatch.setattr(ports, "list_ports", lambda listed=listed: listed)
-        with raises_error(tiniscript.RobotError, "port_missing") as raised:
+        with raises_error(tiniscript.RobotError, "port_missing") as error_info:
             tiniscript.connect("/dev/none-here")
-        assert ("/dev/other" in str(raised.value)) == bool(listed)
+        assert ("/dev/other" in str(error_info.value)) == bool(listed)
 
 
 @pytest.mark.parametrize("watches", [True, False])

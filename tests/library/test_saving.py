@@ -142,10 +142,10 @@ def test_what_becomes_of_a_program_is_told_while_it_runs(
     monkeypatch.setattr(run_monitor, "monotonic", clock)
     rng = random.Random(seed)
     late_s = rng.uniform(0, 0.5)
-    story, wanted = [], []
+    story, expected_reasons = [], []
     for _ in range(rng.randrange(4)):
         story += [(rng.uniform(2, 5), SAVED_SAVING), (rng.uniform(2, 5), SAVED_LOW_SUPPLY)]
-        wanted.append("LOW_SUPPLY")
+        expected_reasons.append("LOW_SUPPLY")
     story += [(rng.uniform(2, 5), SAVED_SAVING), (5.0, SAVED_STORED)]
     line, printed_names = Line(), list[str]()
     printer = SimpleNamespace(
@@ -159,5 +159,5 @@ def test_what_becomes_of_a_program_is_told_while_it_runs(
                 line.asked[-1].outcome = Reply(OK, 0, status(saved))
             saving.poll()
             clock.now_s += LOOK_S
-    assert printed_names == [*wanted, "SAVED"]
+    assert printed_names == [*expected_reasons, "SAVED"]
     assert len(line.asked) <= 1 + clock.now_s / run_monitor.STATUS_INTERVAL_S

@@ -131,14 +131,16 @@ def test_a_value_is_called_so_whatever_was_shown_before() -> None:
     """This also holds after a reset of the robot, which restarts its run numbers."""
     programs = [compile_right_text(f"SHOW({name})") for name in ("DISTANCE", "LIGHT_R", "TIME")]
     at = rows(programs[0].code)[-1].offset
-    known = {checksum(program.image): make_source_map(program) for program in programs[:2]}
+    map_by_checksum = {
+        checksum(program.image): make_source_map(program) for program in programs[:2]
+    }
     events = [event(checksum(program.image), at, run) for program in programs for run in (1, 2)]
     for before in product(events, repeat=2):
         for shown_last in events:
-            finder = ShowFinder(known)
+            finder = ShowFinder(map_by_checksum)
             for shown_before in before:
                 finder.show_of(shown_before)
-            assert finder.show_of(shown_last) == ShowFinder(known).show_of(shown_last), (
+            assert finder.show_of(shown_last) == ShowFinder(map_by_checksum).show_of(shown_last), (
                 before,
                 shown_last,
             )

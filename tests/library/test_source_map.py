@@ -127,7 +127,7 @@ def test_a_map_is_written_as_json_writes_it() -> None:
 
 
 @pytest.mark.parametrize(
-    "changed",
+    "changed_fields",
     [
         {"version": source_map.VERSION + 1},
         {"version": None},
@@ -139,13 +139,13 @@ def test_a_map_is_written_as_json_writes_it() -> None:
         {"yes_no": 5},
     ],
 )
-def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
+def test_what_is_no_map_is_refused(changed_fields: dict[str, object]) -> None:
     fields = json.loads(source_map.as_json(make_source_map(compile_right_text("S"))))
     assert source_map.from_json(json.dumps(fields)).variables == ()
     earlier = {name: fields[name] for name in ("version", "name", "lines", "places")}
     assert source_map.from_json(json.dumps(earlier)) == source_map.from_json(json.dumps(fields))
     with pytest.raises(ValueError):
-        source_map.from_json(json.dumps({**fields, **changed}))
+        source_map.from_json(json.dumps({**fields, **changed_fields}))
     del fields["places"]
     with pytest.raises(ValueError, match="no map"):
         source_map.from_json(json.dumps(fields))
@@ -181,5 +181,5 @@ def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
         source_map.remember(compilation.image, make_source_map(compilation))
         path = source_map._path(checksum(compilation.image))
         os.utime(path, (k + 1, k + 1))
-    kept = [source_map.recall(checksum(program.image)) is not None for program in programs]
-    assert kept == [False, False, True, True, True]
+    is_recalled = [source_map.recall(checksum(program.image)) is not None for program in programs]
+    assert is_recalled == [False, False, True, True, True]

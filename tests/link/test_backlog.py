@@ -47,8 +47,8 @@ class Chatterbox:
                 return b""
             self.rest = CHATTER[1:]
             return CHATTER[:1]
-        taken, self.rest = self.rest, b""
-        return taken
+        data, self.rest = self.rest, b""
+        return data
 
     def write(self, data: bytes) -> int:
         return len(data)
@@ -89,10 +89,10 @@ class Socket(Chatterbox):
         return 1
 
     def read(self, count: int) -> bytes:
-        taken, self.rest = self.rest[:count], self.rest[count:]
-        if not taken:
+        data, self.rest = self.rest[:count], self.rest[count:]
+        if not data:
             raise OSError("socket disconnected")
-        return taken
+        return data
 
 
 def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -49,16 +49,16 @@ def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     assert ble.robot.actions == DRIVE_ACTIONS
 
 
-@pytest.mark.sampled("heard", keep=3)
-@pytest.mark.parametrize("heard", [1, 20, 40, 60, 100, 160, 220, 280])
+@pytest.mark.sampled("heard_count", keep=3)
+@pytest.mark.parametrize("heard_count", [1, 20, 40, 60, 100, 160, 220, 280])
 def test_a_program_that_is_cut_leaves_the_one_before(
-    ble: BleRobot, tmp_path: Path, heard: int
+    ble: BleRobot, tmp_path: Path, heard_count: int
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
     before, after = tmp_path / "before.bin", tmp_path / "after.bin"
     assert run_in_process("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
     assert run_in_process("show", "-o", before, "--port", ADDRESS_PORT).code == 0
-    ble.parts_after = len(ble.received_data) + heard
+    ble.parts_after = len(ble.received_data) + heard_count
     result = run_in_process("upload", "-e", LONG, "--port", ADDRESS_PORT)
     assert result.code == 3
     assert f"lost the Bluetooth connection to {ADDRESS_PORT}" in result.err
@@ -208,7 +208,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
     """It drops earlier bytes; 20 bytes take 20.8 ms at 9600 baud."""
     from tiniscript.link.transports import bluetooth
 
-    now_s, slept, written = [0.0], [], []
+    now_s, slept, write_sizes = [0.0], [], []
 
     async def sleep(seconds: float) -> None:
         if seconds > 0:
@@ -216,7 +216,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
             now_s[0] += seconds
 
     async def write(_: object, data: bytes, response: bool) -> None:
-        written.append(len(data))
+        write_sizes.append(len(data))
 
     loop: Any = SimpleNamespace(run=lambda work, _: asyncio.run(work))
     port = bluetooth.BluetoothPort(loop, 9600)
@@ -235,7 +235,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
         get_running_loop=lambda: SimpleNamespace(time=lambda: now_s[0]),
     ))  # fmt: skip
     port.write(bytes(65))
-    assert (written, slept) == (sizes, waits)
+    assert (write_sizes, slept) == (sizes, waits)
 
 
 def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -204,18 +204,18 @@ def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, siz
 
 @pytest.mark.parametrize("size", [SKIPPED_BYTES + 1, (256 << 20) - 1])
 def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -> None:
-    taken = 0
+    sent_count = 0
 
     def serve() -> None:
-        nonlocal taken
+        nonlocal sent_count
         peer, _ = listening.accept()
         with peer:
             peer.recv(4096)
             peer.sendall(LET_IN + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
             peer.sendall(message(size))
             try:
-                while taken < size:
-                    taken += peer.send(PIECE)
+                while sent_count < size:
+                    sent_count += peer.send(PIECE)
             except ConnectionError:
                 pass
 
@@ -227,4 +227,4 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
         assert client.end_reason == f"the broker sends a message of {size} bytes"
         serving.join(HANG_LIMIT_S)
         client.close()
-    assert taken < 32 << 20  # size of the system's buffers
+    assert sent_count < 32 << 20  # size of the system's buffers

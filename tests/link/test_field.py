@@ -152,7 +152,7 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
             session.receive(robot.sent[before:], robot.now_ms)
         assert request.outcome and request.outcome.status == OK, f"seed {seed}: {request.outcome}"
 
-    heard = 0
+    heard_count = 0
     ask(session.hello())
     for _ in range(12):
         robot.wait(draw.choice((0, 20, 160, 360, 440, 900, 1200)))
@@ -165,11 +165,13 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
         # a computer's frame without a 0x00, where the person's line has ended, may be a stop
         if "STOP" in robot.did:
             return "a frame was a stop"
-        begun = {row for row in robot.did[event_count:] if row.startswith("TEXT")}
-        assert begun == wanted_of[text], f"seed {seed}: {text!r} did {robot.did[event_count:]}"
-        heard += 1
+        started_programs = {row for row in robot.did[event_count:] if row.startswith("TEXT")}
+        assert started_programs == wanted_of[text], (
+            f"seed {seed}: {text!r} did {robot.did[event_count:]}"
+        )
+        heard_count += 1
     robot.wait(TEXT_MS + 100)
-    return f"{heard} lines"
+    return f"{heard_count} lines"
 
 
 CHECKS = (check_never_silent, check_no_other_program, check_both_are_heard)

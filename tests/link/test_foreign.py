@@ -112,12 +112,12 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
 @each_recording
 def test_noise_of_a_wrong_speed_is_no_board(recording: Recording) -> None:
     for sent in BAUDS:
-        for heard in BAUDS:
-            noise = at_speed(recording.data, sent, heard)
-            assert (noise == recording.data) == (sent == heard)
-            if sent != heard:
-                assert identify_board(noise) is None, (sent, heard)
-                assert identify_stranger(noise) is None, (sent, heard)
+        for heard_baud in BAUDS:
+            noise = at_speed(recording.data, sent, heard_baud)
+            assert (noise == recording.data) == (sent == heard_baud)
+            if sent != heard_baud:
+                assert identify_board(noise) is None, (sent, heard_baud)
+                assert identify_stranger(noise) is None, (sent, heard_baud)
 
 
 @given(st.binary(max_size=300))

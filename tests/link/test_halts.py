@@ -42,12 +42,12 @@ def fetch(session: Session) -> PendingRequest[Any]:
     return session.fetch()
 
 
-@pytest.mark.parametrize("wanted", [None, live, upload, long_upload, name, fetch])
+@pytest.mark.parametrize("make_request", [None, live, upload, long_upload, name, fetch])
 @pytest.mark.parametrize("after_ms", [0, 1, 20, 150])
-def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms: int) -> None:
+def test_its_run_ends_and_what_others_want_is_done(make_request: Ask | None, after_ms: int) -> None:
     """This holds whatever is in progress."""
     session, robot, run = driving_robot()
-    request = wanted(session) if wanted else None
+    request = make_request(session) if make_request else None
     robot.talk(session, after_ms)
     session.end_run(run, robot.now_ms)
     began_ms = robot.now_ms
@@ -59,7 +59,7 @@ def test_its_run_ends_and_what_others_want_is_done(wanted: Ask | None, after_ms:
     assert int(ends[-1].split()[0]) - began_ms < 300
     events = [event.name for event in session.events()]
     assert events.count("STOPPED") <= 1
-    if wanted in (live, upload, long_upload):
+    if make_request in (live, upload, long_upload):
         assert "SHOW" in events
     assert session.is_open
 

@@ -154,8 +154,8 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
         else:
             robot.does(authority.disown(ring, robot.info, which))
         robot.does(authority.show_keys(ring, robot.info, NONCE, lambda: 0, is_needed=False))
-        kept = {key.key for key in ring.keys_of_robot(1)}
-        assert {*robot.keys.values()} <= kept
+        kept_keys = {key.key for key in ring.keys_of_robot(1)}
+        assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
         for which, right in robot.keys.items():
             shown = authority.show_keys(ring, robot.info, NONCE, lambda: 0, which, is_needed=False)

@@ -171,10 +171,10 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
             now_ms += wait_ms
             data = b"\0" * (wait_ms > 0 or number == 0) + data
             stream += [(now_ms, byte) for byte in data]
-        held = draw.choice((0, 10, 100, 250))
-        rows = packets_of(stream, held, is_large=True)
-        assert cpp_link(is_large=True).packets(stream, held) == rows
-        waited += held > 0
+        held_ms = draw.choice((0, 10, 100, 250))
+        rows = packets_of(stream, held_ms, is_large=True)
+        assert cpp_link(is_large=True).packets(stream, held_ms) == rows
+        waited += held_ms > 0
     assert waited > 100
 
 

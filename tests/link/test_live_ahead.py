@@ -101,14 +101,16 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
             assert robot.step(now_ms, end) == NOTHING, (code, end)
 
 
-@pytest.mark.parametrize(("before", "between"), [("", "b"), ("r", "f")], ids=["button", "fault"])
-def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, between: str) -> None:
+@pytest.mark.parametrize(
+    ("before", "interruption"), [("", "b"), ("r", "f")], ids=["button", "fault"]
+)
+def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, interruption: str) -> None:
     robot = open_session()
     if before:
         robot.happens(before)
     data = live(CODES[0])
     assert not robot.step(10, data[:-1]).did
-    robot.happens(between, 65)
+    robot.happens(interruption, 65)
     step = robot.step(20, data[-1:])
     assert not [row for row in step.did if "START" in row]
     assert step.sent

@@ -211,8 +211,8 @@ REQUESTS_AND_STOPS: dict[str, Callable[[Session, HostFirmware], object]] = {
 }
 
 
-@pytest.mark.parametrize("heard", REQUESTS_AND_STOPS)
-def test_a_line_that_was_heard_has_its_whole_time_again(heard: str) -> None:
+@pytest.mark.parametrize("request_name", REQUESTS_AND_STOPS)
+def test_a_line_that_was_heard_has_its_whole_time_again(request_name: str) -> None:
     """This holds however near its end was, with and without a running program."""
     robot, session = switched_on(), computer()
     for dead_ms in range(0, DEAF_MS, 215):
@@ -224,7 +224,7 @@ def test_a_line_that_was_heard_has_its_whole_time_again(heard: str) -> None:
         for _ in range(dead_ms // 10):
             session.poll(robot.now_ms)
             robot.wait(10)
-        REQUESTS_AND_STOPS[heard](session, robot)
+        REQUESTS_AND_STOPS[request_name](session, robot)
         robot.talk(session, 500)
         assert "LOST" not in [event.name for event in session.events()]
         assert lost_after_ms(session, robot) >= DEAF_MS, dead_ms

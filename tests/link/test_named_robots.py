@@ -207,26 +207,26 @@ def test_a_packet_may_announce_anything(
 ) -> None:
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
     monkeypatch.setattr(network, "LIST_S", 0.5)
-    heard = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
+    announced_names = ["_tcp", "a.b", "plain", "x" * 63, "\u202ex"]
     robots: list[AnnouncedRobot] = []
 
     def all_are_heard() -> bool:
         robots[:] = robots_of_this_test(network.list_robots(), 7007)
-        return len(robots) >= len(heard)
+        return len(robots) >= len(announced_names)
 
-    with packets("\x1b[31mx", "a\r\nb", *heard, number=7007):
+    with packets("\x1b[31mx", "a\r\nb", *announced_names, number=7007):
         until(all_are_heard, "all are heard")
-    assert robots == [(name, "socket://127.0.0.1:7007") for name in heard]
+    assert robots == [(name, "socket://127.0.0.1:7007") for name in announced_names]
 
 
 def test_names_without_an_address_do_not_hold_up_the_list(
     listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked, limits_ms = network.query_service, []
+    query, limits_ms = network.query_service, []
 
     def look(zeroconf: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
         limits_ms.append(limit_ms)
-        service_info: ServiceInfo | None = asked(zeroconf, name, limit_ms)
+        service_info: ServiceInfo | None = query(zeroconf, name, limit_ms)
         return service_info
 
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)

@@ -63,8 +63,8 @@ class Hand:
         self._requests = [session.press()]
         self._said_ms = 0
 
-    def holds(self, held: RemoteState) -> None:
-        self.held = held
+    def holds(self, held_state: RemoteState) -> None:
+        self.held = held_state
         self._say()
 
     def _say(self) -> None:
@@ -103,7 +103,7 @@ def hand() -> Hand:
 
 def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     one = hand()
-    for held in (
+    for held_state in (
         KEY_UP,
         RemoteState(0, 100, -100),
         remote_state_of(["UP", "B"], -1, 30),
@@ -111,11 +111,11 @@ def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
         KEY_A,
         NOTHING_PRESSED,
     ):
-        one.holds(held)
+        one.holds(held_state)
         one.talk(40)
-        assert one.robot.remote() == remote_readings(held)
+        assert one.robot.remote() == remote_readings(held_state)
         one.talk(700)
-        assert one.robot.remote() == remote_readings(held)
+        assert one.robot.remote() == remote_readings(held_state)
     assert set(one.outcomes) <= {OK, CANCELLED}
     assert [event.name for event in one.session.events()] == []
 
@@ -136,10 +136,10 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
 
 def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
     one = hand()
-    for held in (KEY_UP, NOTHING_PRESSED, KEY_A, KEY_UP, NOTHING_PRESSED):
-        one.holds(held)
+    for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, KEY_UP, NOTHING_PRESSED):
+        one.holds(held_state)
         one.talk(5)
-        assert one.words[-1][1] == held
+        assert one.words[-1][1] == held_state
     one.loses = lambda: True
     count = len(one.words)
     one.holds(KEY_UP)
@@ -320,10 +320,10 @@ def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
     assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     name = one.session.name(b"Ana")
     one.talk(300)
-    for held in (KEY_UP, NOTHING_PRESSED, KEY_A, NOTHING_PRESSED):
-        one.holds(held)
+    for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, NOTHING_PRESSED):
+        one.holds(held_state)
         one.talk(60)
-        assert one.robot.remote() == remote_readings(held)
+        assert one.robot.remote() == remote_readings(held_state)
     while name.outcome is None:
         one.talk(1)
     assert name.outcome.status == STATUSES["SAVING"]
@@ -499,8 +499,8 @@ class Wire:
             Frame(number, self.seq, self.epoch if epoch is None else epoch, payload)
         )
 
-    def keys(self, held: RemoteState, epoch: int | None = None) -> bytes:
-        return self.frame("KEYS", encode_payload(KEYS.request, held._asdict()), epoch)
+    def keys(self, held_state: RemoteState, epoch: int | None = None) -> bytes:
+        return self.frame("KEYS", encode_payload(KEYS.request, held_state._asdict()), epoch)
 
     def answer(self, sent: bytes) -> str:
         """Return the status of the last answer."""

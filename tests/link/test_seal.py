@@ -59,9 +59,9 @@ def sealed_by_hand(frame: Frame, counter: int) -> bytes:
     return head + frame.payload + siphash(key, head + frame.payload)
 
 
-def seal(heard: int = 0, sent: int = 0) -> Seal:
+def seal(heard_counter: int = 0, sent_counter: int = 0) -> Seal:
     made_seal = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH))
-    made_seal.heard_counter, made_seal.sent_counter = heard, sent
+    made_seal.heard_counter, made_seal.sent_counter = heard_counter, sent_counter
     return made_seal
 
 
@@ -98,7 +98,7 @@ def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> 
     for _ in range(300):
         frame, counter = random_frame(chance, False), counters(chance)
         sent = sealed_by_hand(frame, counter)
-        assert whole_frame(seal(sent=counter - 1).seal_frame(frame)) == sent
+        assert whole_frame(seal(sent_counter=counter - 1).seal_frame(frame)) == sent
         assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
         assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
 
@@ -109,10 +109,10 @@ def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> 
         frame, counter = random_frame(chance, True), counters(chance)
         marked, sent = whole_frame(frame._replace(is_sealed=True)), sealed_by_hand(frame, counter)
         assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
-        mine = seal(heard=counter - 1)
+        mine = seal(heard_counter=counter - 1)
         assert mine.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
         assert mine.open_frame(frame_of(sent)) is None  # once
-        assert seal(heard=counter).open_frame(frame_of(sent)) is None
+        assert seal(heard_counter=counter).open_frame(frame_of(sent)) is None
 
 
 def test_each_bit_and_each_length_counts() -> None:
@@ -149,7 +149,7 @@ def test_another_origin_is_another_key() -> None:
 
 
 def test_a_counter_at_its_end_seals_nothing_more() -> None:
-    mine = seal(sent=LAST_COUNTER - 1)
+    mine = seal(sent_counter=LAST_COUNTER - 1)
     assert not mine.is_spent
     mine.seal_frame(Frame(2, 1, 1))
     assert mine.is_spent
@@ -167,7 +167,9 @@ def test_no_sealed_frame_is_a_line_of_text() -> None:
     """Its 0 comes early: so it begins with a byte up to 4."""
     chance = random.Random(5)
     for _ in range(2000):
-        wire = encode_frame(seal(sent=counters(chance) - 1).seal_frame(random_frame(chance, False)))
+        wire = encode_frame(
+            seal(sent_counter=counters(chance) - 1).seal_frame(random_frame(chance, False))
+        )
         assert wire[0] <= 4
         receiver = Receiver()
         for byte in b"\0" + wire:

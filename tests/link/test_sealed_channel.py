@@ -114,16 +114,16 @@ class SealedWorld(World):
         seq, epoch = draw.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
 
-    def answer_unsealed(self, asked: Frame) -> bytes:
+    def answer_unsealed(self, request_frame: Frame) -> bytes:
         """Return an unsealed answer: HELLO as from a robot without seals, or success."""
-        message = next(message for message in MESSAGES if message.number == asked.number)
+        message = next(message for message in MESSAGES if message.number == request_frame.number)
         payload = b"\0" + self.draw.randbytes(sum(field.least_bytes for field in message.reply))
         if message.name == "HELLO" and self.greeting:
             values = decode_payload(message.reply, self.greeting[1:])
             cleared = self.draw.choice((OWNED, SEALS, OWNED | SEALS))
             values["features"] = int(values["features"]) & ~cleared
             payload = b"\0" + encode_payload(message.reply, values)
-        return encode_frame(asked._replace(payload=payload, is_reply=True, is_sealed=False))
+        return encode_frame(request_frame._replace(payload=payload, is_reply=True, is_sealed=False))
 
 
 class QuietWorld(SealedWorld):

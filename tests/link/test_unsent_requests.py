@@ -42,23 +42,23 @@ def stopped_by_hand(robot: HostFirmware) -> HostFirmware:
 REQUEST_NAMES = ["heartbeat", "status", "fetch", "identify", "clear"]
 
 
-@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+@pytest.mark.parametrize("make_request", [live, upload, long_upload])
 @pytest.mark.parametrize("asks", REQUEST_NAMES)
-def test_it_is_done_after_a_reset(asks: str, wanted: Ask) -> None:
+def test_it_is_done_after_a_reset(asks: str, make_request: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
         session, robot = open_session()
         busy_line(session, robot, asks)
-        request = wanted(session)
+        request = make_request(session)
         robot = reset(robot, seed)
         assert robot.until(session, request) == OK, seed
 
 
-@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+@pytest.mark.parametrize("make_request", [live, upload, long_upload])
 @pytest.mark.parametrize("asks", REQUEST_NAMES)
-def test_it_is_void_after_a_stop(asks: str, wanted: Ask) -> None:
+def test_it_is_void_after_a_stop(asks: str, make_request: Ask) -> None:
     session, robot = running()
     busy_line(session, robot, asks)
-    requests = [wanted(session), wanted(session)]
+    requests = [make_request(session), make_request(session)]
     robot = stopped_by_hand(robot)
     robot.codes()
     for request in requests:
@@ -67,14 +67,14 @@ def test_it_is_void_after_a_stop(asks: str, wanted: Ask) -> None:
     assert robot.is_latched and not robot.codes()
 
 
-@pytest.mark.parametrize("wanted", [live, upload, long_upload])
+@pytest.mark.parametrize("make_request", [live, upload, long_upload])
 @pytest.mark.parametrize("is_told", [True, False])
-def test_it_is_done_after_a_program_that_faults(is_told: bool, wanted: Ask) -> None:
+def test_it_is_done_after_a_program_that_faults(is_told: bool, make_request: Ask) -> None:
     session, robot = open_session()
     assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
-    request = wanted(session)
+    request = make_request(session)
     fault_event = robot.wait(1000)
     if is_told:
         session.receive(fault_event, robot.now_ms)
@@ -83,12 +83,12 @@ def test_it_is_done_after_a_program_that_faults(is_told: bool, wanted: Ask) -> N
 
 
 @pytest.mark.parametrize("first", ["upload", "live"])
-@pytest.mark.parametrize("wanted", [live, upload, long_upload])
-def test_one_after_a_program_that_faults_at_once_is_done(first: str, wanted: Ask) -> None:
+@pytest.mark.parametrize("make_request", [live, upload, long_upload])
+def test_one_after_a_program_that_faults_at_once_is_done(first: str, make_request: Ask) -> None:
     session, robot = open_session()
     faulty = image(FAULTS)
     begun = session.live(faulty.code) if first == "live" else session.upload(faulty)
-    request = wanted(session)
+    request = make_request(session)
     assert robot.until(session, begun) == OK
     assert robot.until(session, request) == OK
     robot.talk(session, 1000)

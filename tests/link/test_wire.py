@@ -22,9 +22,9 @@ class Port:
         if not self._left:
             self.waits.append(self.timeout)
             self._left = self.answers.pop(0) if self.answers else b""
-        taken, self._left = self._left[:count], self._left[count:]
+        data, self._left = self._left[:count], self._left[count:]
         self.in_waiting = len(self._left)
-        return taken
+        return data
 
     def __setattr__(self, name: str, value: object) -> None:
         if name in ("dtr", "rts"):

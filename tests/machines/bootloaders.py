@@ -45,8 +45,8 @@ def optiboot(folder: Path, text: str) -> Path:
     """Build a source of Optiboot; return the file."""
     source, elf, file = (folder / f"optiboot.{kind}" for kind in ("c", "elf", "hex"))
     source.write_text(text, encoding="utf-8")
-    beside = f"-I{FOLDER / 'optiboot'}"
-    subprocess.run(["avr-gcc", *FLAGS, beside, source, "-o", elf], check=True)
+    include_option = f"-I{FOLDER / 'optiboot'}"
+    subprocess.run(["avr-gcc", *FLAGS, include_option, source, "-o", elf], check=True)
     sections = ("-j", ".text", "-j", ".version", "--set-section-flags", ".version=alloc,load")
     subprocess.run(["avr-objcopy", *sections, "-O", "ihex", elf, file], check=True)
     return file

@@ -76,12 +76,12 @@ class CppLink:
         """Something happens to the robot: done, fault, show, button, run by the button, wait."""
         return bool(self.ask(b"R", letter.encode() + pack("<I", value & 0xFFFFFFFF))[0])
 
-    def packets(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
+    def packets(self, stream: Sequence[tuple[int, int]], held_ms: int = 0) -> list[str]:
         """Return the packets that a receiver finds in times and bytes, in the form of
         `packets_of`.
         """
         parts = b"".join(pack("<HB", now_ms & 0xFFFF, byte) for now_ms, byte in stream)
-        packets, _ = first_text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
+        packets, _ = first_text(self.ask(b"I", pack("<BI", held_ms, len(stream)) + parts))
         return packets.decode().splitlines()
 
     def siphash(self, key: bytes, message: bytes) -> bytes:
@@ -94,14 +94,22 @@ class CppLink:
         answer = self._seal(key, origin, heard, sent, body, b"")
         return first_text(answer)[0][1:]
 
-    def opens(self, key: bytes, origin: bytes, heard: int, frame: bytes) -> bool:
+    def opens(self, key: bytes, origin: bytes, heard_counter: int, frame: bytes) -> bool:
         """Return whether the robot takes a frame, from its type to its MAC."""
-        return bool(self._seal(key, origin, heard, 0, bytes(9), b"\0" + frame)[-1])
+        return bool(self._seal(key, origin, heard_counter, 0, bytes(9), b"\0" + frame)[-1])
 
     def _seal(
-        self, key: bytes, origin: bytes, heard: int, sent: int, own: bytes, given_bytes: bytes
+        self,
+        key: bytes,
+        origin: bytes,
+        heard_counter: int,
+        sent_counter: int,
+        own: bytes,
+        given_bytes: bytes,
     ) -> bytes:
-        return self.ask(b"X", key + origin + pack("<II", heard, sent) + texts(own, given_bytes))
+        return self.ask(
+            b"X", key + origin + pack("<II", heard_counter, sent_counter) + texts(own, given_bytes)
+        )
 
     def fetch_image(self) -> bytes:
         """Return the image that the robot holds."""

@@ -126,11 +126,11 @@ class Text:
     def arguments(self, at: int) -> list[tuple[int, int]]:
         """Return the ranges of the values in the brackets that begin here."""
         last, spans, depth = self.closes(at), [], 0
-        begun = at + 1
+        start = at + 1
         for place in range(at + 1, last):
             text = self.tokens[place].text
             depth += {"(": 1, ")": -1}.get(text, 0)
             if text == "," and depth == 0:
-                spans.append((begun, place))
-                begun = place + 1
-        return [*spans, (begun, last)] if begun < last else spans
+                spans.append((start, place))
+                start = place + 1
+        return [*spans, (start, last)] if start < last else spans

@@ -63,8 +63,8 @@ def tokens_of(text: str) -> list[Token]:
             names, meaning = FIXED_WORDS[word]
             values, at = _read_values(text, at, len(names)) if names else ([], at)
             for token in tokens_of(meaning)[:-1]:
-                given = dict(zip(names, values, strict=True)).get(token.text, [token])
-                tokens += (one._replace(line=line) for one in given)
+                replacements = dict(zip(names, values, strict=True)).get(token.text, [token])
+                tokens += (one._replace(line=line) for one in replacements)
         elif kind != "space" and not (kind == "newline" and depth > 0):
             tokens.append(Token(kind, word, line))
         if kind == "newline":

@@ -96,16 +96,18 @@ def instructions() -> dict[int, Instruction]:
     role_of = {
         name.strip("` "): role for role, names, *_ in rows("roles") for name in names.split(",")
     }
-    written = {
+    table_rows = {
         int(code.replace(" ", ""), 16): (
             words.split(),
             [len(side.split()) for side in effect.split("--")],
         )
         for code, words, effect, *_ in rows("instructions")
     }
-    kind_of = {words[0]: _label_and_kind(words[1])[1] for words, _ in written.values() if words[1:]}
+    kind_of = {
+        words[0]: _label_and_kind(words[1])[1] for words, _ in table_rows.values() if words[1:]
+    }
     table = {}
-    for code, ((name, *operands), (takes, leaves)) in written.items():
+    for code, ((name, *operands), (takes, leaves)) in table_rows.items():
         op_operands = tuple(
             Operand(*halves, *kinds[halves[1]]) for halves in map(_label_and_kind, operands)
         )

@@ -273,9 +273,9 @@ def test_a_version_of_the_changelog_has_each_heading_once() -> None:
 def test_modules_that_are_named_exist() -> None:
     """Modules of `python -m` in documents, sources and scripts exist."""
     paths = [*DOCUMENTS, *SOURCES, *ROOT.glob("tools/*.sh"), *ROOT.glob(".ci/*")]
-    named = {(path.name, module) for path in paths for module in modules_in(path)}
-    assert ("CONTRIBUTING.md", "tools.generate") in named
-    for name, module in sorted(named):
+    named_modules = {(path.name, module) for path in paths for module in modules_in(path)}
+    assert ("CONTRIBUTING.md", "tools.generate") in named_modules
+    for name, module in sorted(named_modules):
         module_spec = find_spec(module)
         assert module_spec is not None, f"{name}: {module}"
         if module_spec.submodule_search_locations is not None:

@@ -126,12 +126,12 @@ def test_a_test_that_fails_beside_others_is_tried_alone(
 ) -> None:
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
     _, steps = run_script(clone, ["tools/test.sh"], "", "true")
-    beside = next(step for step in steps if step.startswith("-m pytest -n 4"))
-    alone = "-m pytest --last-failed --last-failed-no-failures none"
+    parallel_step = next(step for step in steps if step.startswith("-m pytest -n 4"))
+    single_step = "-m pytest --last-failed --last-failed-no-failures none"
     monkeypatch.setenv("CODE", "1")  # exit code of pytest after failures
-    fails = f"{beside}\n{alone}" if fails_alone else beside
+    fails = f"{parallel_step}\n{single_step}" if fails_alone else parallel_step
     code, steps = run_script(clone, ["tools/test.sh"], fails, "true")
-    assert alone in steps and bool(code) == fails_alone
+    assert single_step in steps and bool(code) == fails_alone
 
 
 @pytest.mark.parametrize("fails", ["upload", "studio"])

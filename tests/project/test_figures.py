@@ -70,8 +70,8 @@ FILLED_TABLES = [
 def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
     """The rows are in order; the text after a table was measured once."""
     module = import_module(f"tools.bench.{name}")
-    known = module.page_rows() if name == "firmware_size" else module.ROWS
-    rows = [*(known.values() if isinstance(known, dict) else known)]
+    table_rows = module.page_rows() if name == "firmware_size" else module.ROWS
+    rows = [*(table_rows.values() if isinstance(table_rows, dict) else table_rows)]
     rows += module.OTHER_BOARDS.values() if name == "link" else ()
     tables = page.tables(name)
     shown_texts = [page.cells(row)[0] for table in tables for row in table.rows]

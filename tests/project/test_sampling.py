@@ -95,19 +95,19 @@ def collect_tests(
     for side in SIDES:
         (folder / f"test_{side}.py").write_text(FILE.format(side), encoding="utf-8")
     (folder / "pytest.ini").write_text("[pytest]", encoding="utf-8")
-    asked = folder if of is None else f"{folder / 'test_rows.py'}{of}"
+    selection = folder if of is None else f"{folder / 'test_rows.py'}{of}"
     plugin = Plugin(commits)
     options = ("-q", "--collect-only", "--import-mode=importlib", "-p", "no:cacheprovider",
-               "-p", "no:xdist", *words, f"{asked}")  # fmt: skip
+               "-p", "no:xdist", *words, f"{selection}")  # fmt: skip
     assert pytest.main([*options], [plugin]) == pytest.ExitCode.OK
     return plugin.drawn
 
 
 def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> None:
     commits = [*map(str, range(15)), "7"]
-    drawn = collect_tests(tmp_path, commits=commits)
+    collections = collect_tests(tmp_path, commits=commits)
     counts = Counter[str]()
-    for commit, (names, output) in zip(commits, drawn, strict=True):
+    for commit, (names, output) in zip(commits, collections, strict=True):
         assert f"--sample {commit} " in output
         count = Counter(name.partition("[")[0] for name in names)
         assert (count["test_case"], count["test_pin"], count["test_usual"]) == (20, 2, 1)
@@ -124,7 +124,7 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> Non
     assert sum("board" in name for name in counts) == 3
     assert sum("same_kit" in name for name in counts) == 4
     assert set("abcd") <= set(counts)
-    assert drawn[7] == drawn[15]
+    assert collections[7] == collections[15]
     # `-k` with a name that no test has.
     ((questions, output),) = collect_tests(tmp_path, "-k", "not usual")
     assert sum("_case" in name for name in questions) == 20 and output
@@ -142,8 +142,8 @@ def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path:
 def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> None:
     commits = [*map(str, range(20)), "7"]
     counts = Counter[str]()
-    drawn = collect_tests(tmp_path, of=None, commits=commits)
-    for collected_names, _ in drawn:
+    collections = collect_tests(tmp_path, of=None, commits=commits)
+    for collected_names, _ in collections:
         names = [name for name in collected_names if any(side in name for side in SIDES)]
         whole = [name.removeprefix("test_more_of_") for name in names if "more_of" in name]
         assert len(whole) == 2 and len(names) == 4
@@ -152,7 +152,7 @@ def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> N
         }
         counts.update(names)
     assert len(counts) == 3 * len(SIDES)
-    assert drawn[7] == drawn[20]
+    assert collections[7] == collections[20]
     left = f"{tmp_path / 'test_left.py'}"
     for collected_names, _ in collect_tests(tmp_path, left, of=None, commits=commits):
         assert "test_more_of_left" in collected_names  # named on the command line
@@ -164,15 +164,17 @@ def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path:
     def long_tests(
         *words: str, of: str | None = None, commits: Sequence[str] = ("7",)
     ) -> list[list[str]]:
-        drawn = collect_tests(tmp_path, *words, of=of, commits=commits)
-        return [[name for name in names if name.startswith("test_long")] for names, _ in drawn]
+        collections = collect_tests(tmp_path, *words, of=of, commits=commits)
+        return [
+            [name for name in names if name.startswith("test_long")] for names, _ in collections
+        ]
 
     assert long_tests() == [[]]
     assert [len(names) for names in (*long_tests("--whole"), *long_tests(of=""))] == [20, 20]
-    drawn = long_tests("--tenth", commits=[*map(str, range(60))])
-    assert {len(names) for names in drawn} == {2}
-    assert len({name for names in drawn for name in names}) == 20
-    assert long_tests("--tenth") == [drawn[7]]
+    names_by_commit = long_tests("--tenth", commits=[*map(str, range(60))])
+    assert {len(names) for names in names_by_commit} == {2}
+    assert len({name for names in names_by_commit for name in names}) == 20
+    assert long_tests("--tenth") == [names_by_commit[7]]
 
 
 def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:

@@ -190,13 +190,13 @@ def test_twins_have_the_same_names(twins: Twins) -> None:
     assert cpp - python == set(twins.in_cpp)
     assert python - cpp == set(twins.in_python)
     for reason_by_name, names in ((twins.in_cpp, python), (twins.in_python, cpp)):
-        named = {
+        excused_names = {
             word.strip(" _")
             for names in reason_by_name.values()
             if names[0] != "("
             for word in names.split(",")
         }
-        assert named <= names
+        assert excused_names <= names
 
 
 FIELD = re.compile(r"^  [\w<>]+[ *]+(\w+)(?:\[.*\])?;", re.M)

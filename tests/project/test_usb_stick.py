@@ -282,14 +282,14 @@ def wheel(folder: Path, name: str, needs: Sequence[str] = (), tag: str = "py3-no
 
 
 def fetch_packages(
-    folder: Path, target: Path, system: str, python: str, wanted: str | Path
+    folder: Path, target: Path, system: str, python: str, package: str | Path
 ) -> set[str]:
     """Return the names of the packages that pip chooses from a folder for a system and a Python."""
     words = ["download", "--quiet", "--no-index", "--find-links", str(folder), "--dest",
              str(target), "--only-binary=:all:", "--python-version", python]  # fmt: skip
     for tag in SYSTEMS[system].tags:
         words += ["--platform", tag]
-    stick_wheels._pip([*words, str(wanted)], SYSTEMS[system].markers(python))
+    stick_wheels._pip([*words, str(package)], SYSTEMS[system].markers(python))
     return {path.name for path in target.iterdir()}
 
 

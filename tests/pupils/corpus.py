@@ -50,7 +50,7 @@ def entries() -> tuple[Entry, ...]:
     entries = []
     for language in LANGUAGES:
         for part in PART.findall((FOLDER / f"{language}.txt").read_text(encoding="utf-8")):
-            program, rows, changed = (rows.split("\n")[:-1] for rows in part)
+            program, rows, changed_rows = (rows.split("\n")[:-1] for rows in part)
             asides = tuple(
                 row for row in rows if row.startswith((INTENT_PREFIX, INTENDED_PROGRAM_PREFIX))
             )
@@ -60,7 +60,7 @@ def entries() -> tuple[Entry, ...]:
                 for row in message_rows
                 if row != ">"
             )
-            mended_text = _mend(program, message_rows, changed)
+            mended_text = _mend(program, message_rows, changed_rows)
             entries.append(Entry(language, "\n".join(program), messages, mended_text, asides))
     return tuple(entries)
 
@@ -137,18 +137,18 @@ def _rows(entry: Entry) -> list[str]:
         return [*above, *(message_rows or [">"])]
     program, mended_lines = entry.program.split("\n"), entry.mended.split("\n")
     pairs = enumerate(zip(program, mended_lines, strict=False), 1)
-    changed = {number: new for number, (old, new) in pairs if old.rstrip() != new}
+    line_by_number = {number: new for number, (old, new) in pairs if old.rstrip() != new}
     marked = list(message_rows)
     for k, row in enumerate(entry.messages):
         number, _, fix = (*row.split(" ", 2), "")[:3]
-        line, new = program[int(number) - 1], changed.get(int(number))
+        line, new = program[int(number) - 1], line_by_number.get(int(number))
         if fix and new == _indent(line) + fix:
             marked[k] = f">= {row}"
-            del changed[int(number)]
+            del line_by_number[int(number)]
         elif fix and new is not None and (part := _part(line, fix, new)):
             marked[k] = f">= {row}{PLACE_SEPARATOR}{part}"
-            del changed[int(number)]
-    rows = [f"={number} {line}".rstrip() for number, line in changed.items()]
+            del line_by_number[int(number)]
+    rows = [f"={number} {line}".rstrip() for number, line in line_by_number.items()]
     if _mend(program, marked, rows) == entry.mended:
         return [*above, *marked, *rows]
     return [*above, *message_rows, *(f"= {line}".rstrip() for line in mended_lines)]

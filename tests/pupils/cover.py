@@ -130,19 +130,19 @@ def choose_cover(branches: Sequence[frozenset[Branch]], before: Iterable[int] = 
 
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
     """
-    kept, uncovered = set(before), set().union(*branches)
-    heap = [(-len(branch_set), k not in kept, k) for k, branch_set in enumerate(branches)]
+    chosen_before, uncovered = set(before), set().union(*branches)
+    heap = [(-len(branch_set), k not in chosen_before, k) for k, branch_set in enumerate(branches)]
     heapq.heapify(heap)
-    taken = []
+    chosen = []
     while uncovered:
         _, is_new, k = heapq.heappop(heap)
         adds = -len(branches[k] & uncovered)
         if heap and (adds, is_new, k) > heap[0]:
             heapq.heappush(heap, (adds, is_new, k))
             continue
-        taken.append(k)
+        chosen.append(k)
         uncovered -= branches[k]
-    return sorted(taken)
+    return sorted(chosen)
 
 
 def main() -> None:
@@ -150,13 +150,13 @@ def main() -> None:
     known_entries = set(list_covering_entries()) if LIST.exists() else set()
     current_entry(programs[0])  # caches filled by the first program count for none
     branches = list_reached_branches(programs)
-    taken = choose_cover(
+    chosen = choose_cover(
         branches, [k for k, entry in enumerate(programs) if entry in known_entries]
     )
     first = head(
-        len(taken), len(frozenset().union(*branches)), [program.program for program in programs]
+        len(chosen), len(frozenset().union(*branches)), [program.program for program in programs]
     )
-    rows = (_row(programs[k].program) for k in taken)
+    rows = (_row(programs[k].program) for k in chosen)
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
     list_covering_entries.cache_clear()
     print(first[2:].partition(";")[0] + ".")

@@ -35,10 +35,10 @@ REPEATED = [
 
 
 @pytest.mark.sampled("mistake", keep=2)
-@pytest.mark.parametrize("between", ["\n", ";"], ids=["lines", "one-line"])
+@pytest.mark.parametrize("separator", ["\n", ";"], ids=["lines", "one-line"])
 @pytest.mark.parametrize("mistake", REPEATED)
-def test_many_mistakes_take_no_more_than_in_proportion(mistake: str, between: str) -> None:
+def test_many_mistakes_take_no_more_than_in_proportion(mistake: str, separator: str) -> None:
     one = mistake.replace("{k}", "1")
     compile_source(one.encode(), ROBOT, "prog.ts", is_strict=False)  # the tables are read
-    text = "".join(mistake.replace("{k}", str(k)) + between for k in range(MISTAKES))
+    text = "".join(mistake.replace("{k}", str(k)) + separator for k in range(MISTAKES))
     assert calls_of_check(text) < MOST_CALLS * len(text)

@@ -107,8 +107,10 @@ def test_the_corpus_is_as_it_was(
         new = [now.program for old_entry, now in pairs if now.messages and not old_entry.messages]
         add(new, [entry.program for entry in programs])
         return
-    changed = [(old, new) for old, new in zip(programs, entries, strict=True) if old != new]
-    assert not changed, f"{len(changed)} of {len(entries)}, the first: {changed[0]}"
+    changed_entries = [(old, new) for old, new in zip(programs, entries, strict=True) if old != new]
+    assert not changed_entries, (
+        f"{len(changed_entries)} of {len(entries)}, the first: {changed_entries[0]}"
+    )
 
 
 def test_each_repair_helps_and_keeps_the_numbers(programs: tuple[Entry, ...]) -> None:

@@ -33,14 +33,14 @@ def mend(wrong: str) -> str:
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("end", LOOP_ENDS)
 def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) -> None:
-    for name, (first, last), body, between in product(NAMES, RANGES, BODIES, SEPARATORS):
+    for name, (first, last), body, separator in product(NAMES, RANGES, BODIES, SEPARATORS):
         values = {"v": name, "a": first, "b": last, "c": last + 1}
         begun_text, inside, ended_text = (part.format(**values) for part in (head, body, end))
-        wrong = f"SI|W(3)\n{begun_text}{between}{inside}\n{ended_text}\nS"
+        wrong = f"SI|W(3)\n{begun_text}{separator}{inside}\n{ended_text}\nS"
         loop = f"LOOP({last - first + 1});{name.upper()} = {name.upper()} + 1"
         right = f"{name.upper()} = {first - 1};{loop}"
         assert right in [message(it, Source(wrong), "en").fix for it in check(wrong)], wrong
-        assert mend(wrong) == f"SI|W(3)\n{right}{between}{inside}\nEND_LOOP\nS"
+        assert mend(wrong) == f"SI|W(3)\n{right}{separator}{inside}\nEND_LOOP\nS"
         assert not check(mend(wrong))
 
 

@@ -41,13 +41,13 @@ def places(body: tuple[str, ...]) -> str:
     return ", ".join(line.split(";")[-1] for line in body)
 
 
-@pytest.mark.parametrize("between", [";", "; ", " ; "])
+@pytest.mark.parametrize("separator", [";", "; ", " ; "])
 @pytest.mark.parametrize(("begun_text", "block"), [*product(PROGRAM_HEADS, BLOCKS)])
 def test_each_place_is_named_and_none_is_made(
-    begun_text: str, block: tuple[str, str], between: str
+    begun_text: str, block: tuple[str, str], separator: str
 ) -> None:
     for body in BODIES:
-        text = begun_text + between.join((block[0], *body))
+        text = begun_text + separator.join((block[0], *body))
         _, tried_text = code_and_fix(text)
         assert (
             tried_text
@@ -56,15 +56,15 @@ def test_each_place_is_named_and_none_is_made(
         assert repair_program(text, check).text == text
 
 
-@pytest.mark.parametrize("around", ENCLOSING_BLOCKS)
+@pytest.mark.parametrize("enclosing_block", ENCLOSING_BLOCKS)
 @pytest.mark.parametrize("block", BLOCKS[2:])
 @pytest.mark.parametrize("body", BODIES[:3])
 def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
-    body: tuple[str, ...], block: tuple[str, str], around: tuple[str, str]
+    body: tuple[str, ...], block: tuple[str, str], enclosing_block: tuple[str, str]
 ) -> None:
-    if (block[1], around[1]) == ("END_LOOP", "END_LOOP"):
+    if (block[1], enclosing_block[1]) == ("END_LOOP", "END_LOOP"):
         return  # the end may be of either
-    text = "SI|" + ";".join((around[0], block[0], *body, around[1]))
+    text = "SI|" + ";".join((enclosing_block[0], block[0], *body, enclosing_block[1]))
     name = block[0].partition("(")[0]
     assert code_and_fix(text) == (
         f"This {name} has no {block[1]}",

@@ -96,14 +96,14 @@ SEPARATORS = (", ", " ", ";", "; ", " y ", ".")
 def test_no_repair_loses_a_sign_or_a_point(word: str) -> None:
     """`R .5 60` is not `R(5, 60)`, nor `M: -50 50` `M(50, 50)`."""
     pairs = (["0.5", "60"], [".5", "60"], ["1.25", "70"], ["-50", "50"], ["50", "-50"])
-    changed = []
-    for values, form, between in product(pairs, FORMS, SEPARATORS):
-        wrong = form.format(word, between.join(values))
+    losses = []
+    for values, form, separator in product(pairs, FORMS, SEPARATORS):
+        wrong = form.format(word, separator.join(values))
         repaired_text = repair_program(wrong, check).text
         numbers = [float(number) for number in re.findall(r"-?[0-9]*\.?[0-9]+", repaired_text)]
         if repaired_text != wrong and numbers != [float(value) for value in values]:
-            changed.append((wrong, repaired_text))
-    assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in changed)  # `F.2.80` is F(2, 80)
+            losses.append((wrong, repaired_text))
+    assert all(re.match(r"[RM]\.[0-9]+\.", wrong) for wrong, _ in losses)  # `F.2.80` is F(2, 80)
 
 
 @pytest.mark.parametrize(

@@ -24,12 +24,12 @@ def codes_of(text: str) -> list[str]:
 @pytest.mark.parametrize("use", USES)
 @pytest.mark.parametrize("result", RESULTS)
 @pytest.mark.parametrize("word", RETURNS)
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 def test_a_return_and_its_uses_are_one_mistake(
-    use: str, result: str, word: str, between: str
+    use: str, result: str, word: str, separator: str
 ) -> None:
     lines = ["SI|DEF DOUBLE(N)", f"{word} {result}", "END_DEF", *use.split(";")]
-    text = between.join(lines)
+    text = separator.join(lines)
     (diagnostic,) = check(text)
     assert text[slice(*diagnostic.span)] == word
     full_message = message(diagnostic, Source(text), "en")
@@ -38,32 +38,32 @@ def test_a_return_and_its_uses_are_one_mistake(
 
 
 @pytest.mark.parametrize("use", USES)
-@pytest.mark.parametrize("between", SEPARATORS)
-def test_what_the_message_says_to_do_is_right(use: str, between: str) -> None:
+@pytest.mark.parametrize("separator", SEPARATORS)
+def test_what_the_message_says_to_do_is_right(use: str, separator: str) -> None:
     call = ["DOUBLE(4)", *use.replace("DOUBLE(4)", "RESULT").split(";")]
-    join_after = between.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])
+    join_after = separator.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])
     assert not any(diagnostic.is_mistake for diagnostic in check(join_after))
 
 
 @pytest.mark.parametrize("use", USES)
-@pytest.mark.parametrize("beside", ["", ";F(2 80)", ";BLA(3)"])
-def test_a_call_as_a_value_without_a_return_is_told_once(use: str, beside: str) -> None:
-    text = f"SI|DEF DOUBLE(N);SHOW(N);END_DEF;{use}{beside}"
+@pytest.mark.parametrize("other_statement", ["", ";F(2 80)", ";BLA(3)"])
+def test_a_call_as_a_value_without_a_return_is_told_once(use: str, other_statement: str) -> None:
+    text = f"SI|DEF DOUBLE(N);SHOW(N);END_DEF;{use}{other_statement}"
     first, *others = check(text)
     assert (first.code.number, first.values.get("called")) == ("TS051", "DOUBLE")
-    assert len(others) == bool(beside)
+    assert len(others) == bool(other_statement)
 
 
 def test_questions_and_wholes_are_read_on() -> None:
     text = "SI|DEF NEAR(N);RETURN DISTANCE < N;END_DEF;IF(NEAR(4) AND KEY_A);S;ENDIF"
     assert codes_of(text) == ["TS051"]
-    for asked in (
+    for question_template in (
         "WHILE({});S;END_WHILE",
         "IF({});S;ENDIF",
         "F(2, 80) UNTIL({})",
         "IF(NOT {});S;ENDIF",
     ):
-        twice = ";".join(asked.format(call) for call in ("A(4)", "A(5)"))
+        twice = ";".join(question_template.format(call) for call in ("A(4)", "A(5)"))
         assert codes_of(f"SI|DEF A(N);SHOW(N);END_DEF;{twice}") == ["TS051"]
 
 

@@ -40,14 +40,14 @@ def apply_fix(text: str, diagnostic: Diagnostic) -> str:
 # -- ends that are crossed ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize(("outer", "inner"), [*permutations(BLOCKS, 2)])
 @pytest.mark.parametrize("rest", ["R(1, 60)", "R(1, 60);W(2)", "LOOP(2);R(1, 60);END_LOOP"])
 def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
-    outer: tuple[str, str], inner: tuple[str, str], rest: str, between: str
+    outer: tuple[str, str], inner: tuple[str, str], rest: str, separator: str
 ) -> None:
     lines = ["SI|S", outer[0], inner[0], "F(1, 60)", "{}", *rest.split(";"), "{}", "BEEP(1, 440)"]
-    text = between.join(lines)
+    text = separator.join(lines)
     wrong, right = text.format(outer[1], inner[1]), text.format(inner[1], outer[1])
     assert not any(diagnostic.is_mistake for diagnostic in check(right))
     (diagnostic,) = check(wrong)
@@ -78,11 +78,11 @@ def test_an_end_that_has_no_other_or_an_arm_between_is_not_swapped() -> None:
 
 @pytest.mark.parametrize("word", ["IF", "SI", "SE", "=SI"])
 @pytest.mark.parametrize("sign", ["; ", ";", ", "])
-@pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{}", "SI|LOOP(2)\n{}\nEND_LOOP", "{};W(1)"])
-def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, around: str) -> None:
+@pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{}", "SI|LOOP(2)\n{}\nEND_LOOP", "{};W(1)"])
+def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, template: str) -> None:
     asked_text = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
-    wrong = around.format(f"{word}({asked_text})")
-    right = around.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
+    wrong = template.format(f"{word}({asked_text})")
+    right = template.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
     assert apply_fix(wrong, check(wrong)[0]).replace("; ", ";") == right
 
 
@@ -94,11 +94,11 @@ def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
 # -- a DEF that is set ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize("value", ["40", "V + 1", "DISTANCE"])
-def test_a_def_with_one_value_that_is_set_is_called(between: str, value: str) -> None:
+def test_a_def_with_one_value_that_is_set_is_called(separator: str, value: str) -> None:
     lines = ["SI|DEF PASSO(N)", "F(N CM, 60)", "END_DEF", "V = 3", f"PASSO = {value}", "S"]
-    wrong = between.join(lines)
+    wrong = separator.join(lines)
     assert codes_and_fixes(wrong)[0] == ("TS110", f"PASSO({value})")
     assert apply_fix(wrong, check(wrong)[0]) == wrong.replace(f"PASSO = {value}", f"PASSO({value})")
 
@@ -127,9 +127,9 @@ def test_a_letter_between_two_values_multiplies(text: str, sign: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["V = 3\nV = 2 x V", "A = 1;B1 = A x A;SHOW(B1)", "V = V x 2"])
-@pytest.mark.parametrize("beside", ["", ";F(2 80", ";BLA(2)", "\nSHOW(ROUND(TIME, 1)"])
-def test_nothing_that_multiplies_becomes_a_note(text: str, beside: str) -> None:
-    assert not any("//" in fix for _, fix in codes_and_fixes(f"SI|{text}{beside}"))
+@pytest.mark.parametrize("other_statement", ["", ";F(2 80", ";BLA(2)", "\nSHOW(ROUND(TIME, 1)"])
+def test_nothing_that_multiplies_becomes_a_note(text: str, other_statement: str) -> None:
+    assert not any("//" in fix for _, fix in codes_and_fixes(f"SI|{text}{other_statement}"))
 
 
 def test_a_variable_x_is_only_shown_as_a_sign() -> None:
@@ -145,24 +145,24 @@ def test_a_variable_x_is_only_shown_as_a_sign() -> None:
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
-@pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
+@pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
 @pytest.mark.parametrize(("power", "way"), [("70", "30"), ("60", "90"), ("40", "25"), ("99", "20")])
 def test_a_unit_stays_with_its_number_and_the_other_reading_is_beside_it(
-    word: str, unit: str, around: str, power: str, way: str
+    word: str, unit: str, template: str, power: str, way: str
 ) -> None:
-    wrong = around.format(f"{word}({power}, {way} {unit})")
+    wrong = template.format(f"{word}({power}, {way} {unit})")
     own, other = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
     assert codes_and_fixes(wrong) == [("TS076", f"{own} or {other}")]
     assert repair_program(wrong, check).text == wrong
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
-@pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
+@pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
 @pytest.mark.parametrize(("little", "power"), [("2", "60"), ("5", "20"), ("0.5", "100")])
 def test_what_hardly_moves_a_robot_is_no_power_where_another_number_is_one(
-    word: str, unit: str, around: str, little: str, power: str
+    word: str, unit: str, template: str, little: str, power: str
 ) -> None:
-    wrong = around.format(f"{word}({little}, {power} {unit})")
+    wrong = template.format(f"{word}({little}, {power} {unit})")
     first, other = f"{word}({little} {unit}, {power})", f"{word}({power} {unit}, {little})"
     assert codes_and_fixes(wrong) == [("TS076", f"{first} or {other}")]
     assert repair_program(wrong, check).text == wrong
@@ -176,21 +176,21 @@ def test_each_of_several_moves_has_both_readings() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize(
     ("unit", "word", "way"), [("CM", "F", "CM"), ("cm", "B", "CM"), ("graus", "R", "DEG")]
 )
 def test_the_unit_of_a_value_of_a_def_goes_into_its_body(
-    between: str, unit: str, word: str, way: str
+    separator: str, unit: str, word: str, way: str
 ) -> None:
     lines = [f"SI|DEF LADO(LARGO {unit})", f"{word}(LARGO, 60)", "W(1)", "LADO(30)", "END_DEF"]
-    whole = between.join(lines)
+    whole = separator.join(lines)
     (diagnostic,) = check(whole)
     assert f"{word}(LARGO {way}, 60)" in apply_fix(whole, diagnostic) and "lost" not in {
         name for name, value in diagnostic.values.items() if value
     }
     body = [line.removeprefix("SI|") for line in lines[:3]]
-    late = between.join(["SI|LADO(30)", *body, lines[4]])
+    late = separator.join(["SI|LADO(30)", *body, lines[4]])
     assert f"{word}(LARGO {way}, 60)" in apply_fix(late, check(late)[0])
 
 
@@ -215,11 +215,11 @@ def test_a_slip_of_a_unit_is_one(word: str, unit: str) -> None:
 
 
 @pytest.mark.parametrize("word", PAIRS)
-@pytest.mark.parametrize("beside", ["", "BLA(2);", "F(2 80;", "W(1)\n"])
-def test_a_semicolon_between_two_values_is_named(word: str, beside: str) -> None:
+@pytest.mark.parametrize("other_statement", ["", "BLA(2);", "F(2 80;", "W(1)\n"])
+def test_a_semicolon_between_two_values_is_named(word: str, other_statement: str) -> None:
     call = f"{word}(40; 60)" if word in PAIRS[:6] else f"SHOW({word}(1; 2))"
     comma = call.replace(";", ",")
-    text = f"SI|{beside}{call}"
+    text = f"SI|{other_statement}{call}"
     offers = [(code, fix) for code, fix in codes_and_fixes(text) if comma in fix]
     assert offers and offers[0][0] in ("TS017", "TS019"), codes_and_fixes(text)
     assert not {"TS042", "TS088"} & {code for code, _ in codes_and_fixes(text)}
@@ -235,19 +235,21 @@ def test_a_right_unit_before_it_is_not_told_of(word: str, unit: str) -> None:
 # -- consequences of one mistake ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize(
     ("head", "end", "slip"),
     [("DEF GIRO", "END_DEF", "END_DFE"), ("LOOP(2)", "END_LOOP", "END_LOPO"),
      ("IF(DISTANCE < 9)", "ENDIF", "ENIDF"), ("WHILE(TRUE)", "END_WHILE", "END_WIHLE")],
 )  # fmt: skip
-@pytest.mark.parametrize("beside", ["", "BLA(2)"])
+@pytest.mark.parametrize("other_statement", ["", "BLA(2)"])
 def test_a_misspelt_end_is_that_end(
-    between: str, head: str, end: str, slip: str, beside: str
+    separator: str, head: str, end: str, slip: str, other_statement: str
 ) -> None:
-    lines = [f"SI|{head}", "L(1, 60)", slip, "GIRO" if "DEF" in head else "S", beside]
-    diagnostics = check(between.join(filter(None, lines)))
-    assert [diagnostic.code.number for diagnostic in diagnostics] == ["TS101"] * (1 + bool(beside))
+    lines = [f"SI|{head}", "L(1, 60)", slip, "GIRO" if "DEF" in head else "S", other_statement]
+    diagnostics = check(separator.join(filter(None, lines)))
+    assert [diagnostic.code.number for diagnostic in diagnostics] == ["TS101"] * (
+        1 + bool(other_statement)
+    )
     assert diagnostics[0].values["near"] == end
 
 
@@ -261,10 +263,10 @@ def test_an_end_after_dots_is_not_missing(head: str, dots: str) -> None:
     assert code == "TS082" and ("DEF" in head) == (f"{head}; F(1, 60); {end}" in fix)
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
-def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -> None:
+@pytest.mark.parametrize("separator", SEPARATORS)
+def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(separator: str) -> None:
     lines = ["SI|DEF LADO(30)", "F(LARGO CM, 60)", "W(LARGO)", "END_DEF", "LADO(30)", "W(ZZZ)"]
-    assert [code for code, _ in codes_and_fixes(between.join(lines))] == ["TS091", "TS103"]
+    assert [code for code, _ in codes_and_fixes(separator.join(lines))] == ["TS091", "TS103"]
 
 
 # -- the content of a message ----------------------------------------------------------------------
@@ -275,10 +277,10 @@ def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(between: str) -
     [("LADO(pot=60, lar=20)", "LADO(20, 60)"), ("LADO(20, pot = 60)", "LADO(20, 60)"),
      ("LADO(pot=60, 20)", "LADO(20, 60)"), ("LADO(LAR=V + 1, POT=60)", "LADO(V + 1, 60)")],
 )  # fmt: skip
-@pytest.mark.parametrize("between", SEPARATORS)
-def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, between: str) -> None:
+@pytest.mark.parametrize("separator", SEPARATORS)
+def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, separator: str) -> None:
     lines = ["SI|DEF LADO(LAR, POT)", "F(LAR CM, POT)", "END_DEF", "V = 4", call]
-    assert codes_and_fixes(between.join(lines)) == [("TS052", right)]
+    assert codes_and_fixes(separator.join(lines)) == [("TS052", right)]
     assert not check("DEF A(Q);IF(Q);S;ENDIF;END_DEF;X = 3;A(X = 3)")
 
 
@@ -322,9 +324,11 @@ def test_the_question_after_until_is_shown(asked_text: str, next_move: str) -> N
 
 
 @pytest.mark.parametrize("number", ["15", "32.5"])
-@pytest.mark.parametrize("beside", ["W(9) UNTIL(DISTANCE < {})", "IF(DISTANCE < {});S;ENDIF"])
-def test_an_example_takes_the_number_of_the_program(number: str, beside: str) -> None:
-    other = beside.format(number)
+@pytest.mark.parametrize(
+    "other_statement", ["W(9) UNTIL(DISTANCE < {})", "IF(DISTANCE < {});S;ENDIF"]
+)
+def test_an_example_takes_the_number_of_the_program(number: str, other_statement: str) -> None:
+    other = other_statement.format(number)
     for text in (f"SI|F(FOREVER, 50);{other}", f"SI|{other}\nB(FOREVER, 50)"):
         assert codes_and_fixes(text)[0][1].endswith(f"UNTIL(DISTANCE < {number})")
     assert codes_and_fixes("SI|F(FOREVER, 50)")[0][1].startswith(
@@ -351,9 +355,9 @@ def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: st
     wrong = place.format(text)
     compared = [fix for _, fix in codes_and_fixes(wrong.format(COMPARISON))]
     assert compared and COMPARISON in compared[0]
-    for asked in ("KEY_A", "NOT KEY_LEFT", "KEY_UP AND KEY_B"):
-        as_compared = [fix.replace(COMPARISON, asked) for fix in compared]
-        assert [fix for _, fix in codes_and_fixes(wrong.format(asked))] == as_compared
+    for question in ("KEY_A", "NOT KEY_LEFT", "KEY_UP AND KEY_B"):
+        as_compared = [fix.replace(COMPARISON, question) for fix in compared]
+        assert [fix for _, fix in codes_and_fixes(wrong.format(question))] == as_compared
 
 
 @pytest.mark.sampled("order", keep=2)
@@ -361,16 +365,16 @@ def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: st
 @pytest.mark.parametrize(
     ("word", "end"), [("IF", "ENDIF"), ("WHILE", "END_WHILE"), ("WHEN", "END_WHEN")]
 )
-@pytest.mark.parametrize("around", ["{}", "W(1);{}", "W(1)\n{}", "{};W(2)"])
+@pytest.mark.parametrize("template", ["{}", "W(1);{}", "W(1)\n{}", "{};W(2)"])
 def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
-    order: str, word: str, end: str, around: str
+    order: str, word: str, end: str, template: str
 ) -> None:
     for question in ("KEY_A", COMPARISON):
         line = f"{order} {word}({question});B(1, 50)"
-        text = f"SI|DEF P;S;END_DEF\n{around.format(line)}"
+        text = f"SI|DEF P;S;END_DEF\n{template.format(line)}"
         assert any(diagnostic.is_mistake for diagnostic in check(text))
         assert repair_program(text, check).text == text
-        ended_text = f"SI|DEF P;S;END_DEF\n{around.format(f'{line};{end}')}"
+        ended_text = f"SI|DEF P;S;END_DEF\n{template.format(f'{line};{end}')}"
         assert (
             f"{order};{word}({question});B(1, 50);{end}" in repair_program(ended_text, check).text
         )
@@ -379,8 +383,8 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
 # -- what is named, and what is reported once -------------------------------------------------
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
-@pytest.mark.parametrize("around", ["SI|{}", "SI|F(2, 80);{}", "{};S"])
+@pytest.mark.parametrize("separator", SEPARATORS)
+@pytest.mark.parametrize("template", ["SI|{}", "SI|F(2, 80);{}", "{};S"])
 @pytest.mark.parametrize(
     ("head", "named_text"),
     [
@@ -390,9 +394,9 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
     ],
 )  # fmt: skip
 def test_what_counts_is_named_without_what_it_counts(
-    head: str, named_text: str, around: str, between: str
+    head: str, named_text: str, template: str, separator: str
 ) -> None:
-    text = around.format(between.join((head, "L(1, 60)", "END_LOOP")))
+    text = template.format(separator.join((head, "L(1, 60)", "END_LOOP")))
     diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS102")
     assert (diagnostic.values["found"], text[slice(*diagnostic.span)]) == (named_text, named_text)
 

@@ -54,10 +54,10 @@ def add_labels(label: str, program: tuple[str, ...]) -> list[str]:
 @pytest.mark.sampled("label", keep=32)
 @pytest.mark.parametrize("label", LABELS)
 def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> None:
-    for program, (begun_text, between) in product(PROGRAMS, PLACES):
-        wrong = begun_text + between.join(add_labels(label, program))
+    for program, (begun_text, separator) in product(PROGRAMS, PLACES):
+        wrong = begun_text + separator.join(add_labels(label, program))
         assert {diagnostic.code.number for diagnostic in check(wrong)} == {"TS054"}, wrong
-        assert repair_program(wrong, check).text == begun_text + between.join(program), wrong
+        assert repair_program(wrong, check).text == begun_text + separator.join(program), wrong
 
 
 @pytest.mark.parametrize("label", LABELS)

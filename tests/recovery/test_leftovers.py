@@ -62,9 +62,9 @@ def test_a_second_start_behind_an_instruction_is_a_separator(
     assert repair_program(text, check).text == f"SI|F(2, 80);{text_before}; {text_after};W(1)"
 
 
-@pytest.mark.parametrize("between", [";", "\n"])
-def test_a_task_that_is_called_has_no_name_and_begins_by_itself(between: str) -> None:
-    wrong = between.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
+@pytest.mark.parametrize("separator", [";", "\n"])
+def test_a_task_that_is_called_has_no_name_and_begins_by_itself(separator: str) -> None:
+    wrong = separator.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
     fixes = [message(diagnostic, Source(wrong), "en").fix for diagnostic in check(wrong)]
     assert fixes == ["TASK", "Remove siren"]
 

@@ -27,9 +27,9 @@ POWERS = (("60", "60"), ("-30", "45"))
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("pair", PAIRS)
 def test_a_pair_is_one_m_with_both_powers(pair: tuple[str, str], place: str) -> None:
-    for between, (left, right), is_turned in product(SEPARATORS, POWERS, (False, True)):
+    for separator, (left, right), is_turned in product(SEPARATORS, POWERS, (False, True)):
         calls = (f"{pair[0]}({left})", f"{pair[1]}({right})")
-        wrong = place.format(between.join(calls[::-1] if is_turned else calls))
+        wrong = place.format(separator.join(calls[::-1] if is_turned else calls))
         edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
         assert apply_edits(wrong, edits) == place.format(f"M({left}, {right})"), wrong
         assert repair_program(wrong, check).text == wrong  # elsewhere its power is not a percentage
@@ -47,10 +47,10 @@ def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> N
             assert "M(50, 80)" in shown_message.fix, text
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
-def test_a_name_that_a_program_defines_is_its_own(between: str) -> None:
+@pytest.mark.parametrize("separator", SEPARATORS)
+def test_a_name_that_a_program_defines_is_its_own(separator: str) -> None:
     defs = (f"DEF MOTOR_{side}(X);M(X, X);END_DEF" for side in "LR")
-    text = between.join((*defs, "MOTOR_L(60)", "MOTOR_R(30)", "F(2 80)"))
+    text = separator.join((*defs, "MOTOR_L(60)", "MOTOR_R(30)", "F(2 80)"))
     assert [diagnostic.code.number for diagnostic in check(text)] == ["TS017"]
 
 
@@ -63,11 +63,11 @@ OFF = ("stop()", "mBot.stop()", "S", "parar()")
 @pytest.mark.parametrize("place", [it for it in PLACES if it != "{}"])
 @pytest.mark.parametrize("off", OFF)
 def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:
-    for between, (on, word), (wait, time) in product(SEPARATORS, ON.items(), WAITS.items()):
-        wrong = place.format(between.join((f"{on}(50)", wait, off)))
+    for separator, (on, word), (wait, time) in product(SEPARATORS, ON.items(), WAITS.items()):
+        wrong = place.format(separator.join((f"{on}(50)", wait, off)))
         edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
         assert apply_edits(wrong, edits) == place.format(f"{word}({time}, 50)"), wrong
-        twice = place.format(between.join((f"{on}(50)", wait, "left(40)", wait, off)))
+        twice = place.format(separator.join((f"{on}(50)", wait, "left(40)", wait, off)))
         edits = [edit for diagnostic in check(twice) for edit in edits_of(diagnostic) or []]
         assert apply_edits(twice, edits) == place.format(f"{word}({time}, 50);L({time}, 40)"), twice
 

@@ -97,12 +97,12 @@ def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: st
 @pytest.mark.parametrize("count", range(1, PARAMETERS + 1))
 def test_another_count_of_values_shows_the_call_and_says_how_many(count: int) -> None:
     usage = f"SIDE({', '.join(NAMES[:count])})"
-    for given in range(PARAMETERS + 2):
-        text = f"DEF {usage}\nS\nEND_DEF\nSIDE({', '.join(['60'] * given)})"
+    for value_count in range(PARAMETERS + 2):
+        text = f"DEF {usage}\nS\nEND_DEF\nSIDE({', '.join(['60'] * value_count)})"
         diagnostics = [
             diagnostic for diagnostic in check(text) if diagnostic.code.number == "TS141"
         ]
-        assert len(diagnostics) == (given != count), text
+        assert len(diagnostics) == (value_count != count), text
         for language, diagnostic in product(languages(), diagnostics):
             full_message = message(diagnostic, Source(text, ""), language)
             assert usage in full_message.message + full_message.fix, full_message
@@ -188,9 +188,9 @@ UNKNOWN_WORDS = ("I", "FOO", "HACER", "XX")
     "place", ["{}", "SI|{}", "SI|W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"]
 )
 def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> None:
-    known = ("F(2, 80)", "W(1)", "BEEP(1, 440)")
-    for one, word, gap in product(known, UNKNOWN_WORDS, (" ", "  ", "")):
-        calls = (one, f"{word}(1, 60)", known[0])
+    known_calls = ("F(2, 80)", "W(1)", "BEEP(1, 440)")
+    for one, word, gap in product(known_calls, UNKNOWN_WORDS, (" ", "  ", "")):
+        calls = (one, f"{word}(1, 60)", known_calls[0])
         wrong = place.format(gap.join(calls))
         first, *others = check(wrong)
         assert first.code.number == "TS013", wrong

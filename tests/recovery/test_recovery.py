@@ -119,17 +119,17 @@ BLOCK_GAPS = {"whole", "line", "lines", "times", "ends"}
 def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
     """Each value of a slip is used by a text, and every used value exists."""
     names = {*slips.NAMES_OF_CODE[code]}
-    asked = []
+    gap_sets = []
     for part in ("message", "try"):
         text = languages.find_text("messages", f"{code.number}/{part}", "en")
         for k in count(2):
             if text is None:
                 break
-            asked.append({*re.findall(r"\{@?(\w+)\}", text)})
+            gap_sets.append({*re.findall(r"\{@?(\w+)\}", text)})
             text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
-    assert names <= set().union(*asked) | DEDUPED_GAPS.get(code, set())
+    assert names <= set().union(*gap_sets) | DEDUPED_GAPS.get(code, set())
     own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
-    whole = [names & own for names in asked if names <= own | BLOCK_GAPS]
+    whole = [names & own for names in gap_sets if names <= own | BLOCK_GAPS]
     assert code in CODES_SAID_ELSEWHERE or set().union(*whole) <= names
 
 

@@ -24,11 +24,11 @@ KIT = robots.load(robots.DEFAULT).kit
 def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
     wrong, expected = row.example
     name, _, value = expected.partition("=")
-    beside = [suggestion.diagnostic for suggestion in find_suggestions(wrong, KIT)]
-    assert len(beside) < 2
+    suggested = [suggestion.diagnostic for suggestion in find_suggestions(wrong, KIT)]
+    assert len(suggested) < 2
     diagnostics = [
         diagnostic
-        for diagnostic in beside or check(wrong)
+        for diagnostic in suggested or check(wrong)
         if row.code in (diagnostic.code, None)
         and expected in (f"{name}={diagnostic.values.get(name)}", diagnostic.code.number)
     ]
@@ -56,13 +56,13 @@ def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
 
 @pytest.mark.parametrize("table", [SIGNS, TOKENS, SUGGESTIONS])
 def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
-    known = {*re.findall("^- `([a-z]+)`:", recovery_rows.__doc__ or "", re.MULTILINE)}
+    headings_in_doc = {*re.findall("^- `([a-z]+)`:", recovery_rows.__doc__ or "", re.MULTILINE)}
     lines = table.strip().splitlines()
     headings = [line for line in lines if line.startswith("# ")]
-    assert lines[0] in headings and len(known) > 5
+    assert lines[0] in headings and len(headings_in_doc) > 5
     for heading in headings:
         laws = heading.rpartition(": ")[2].split(", ")
-        assert {*laws} <= known, heading
+        assert {*laws} <= headings_in_doc, heading
 
 
 @pytest.mark.parametrize(

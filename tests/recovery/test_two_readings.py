@@ -44,14 +44,14 @@ def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> No
         assert repair_program(text, check).text == text
 
 
-@pytest.mark.parametrize("between", [";", "\n"])
-@pytest.mark.parametrize("around", SURROUNDINGS)
+@pytest.mark.parametrize("separator", [";", "\n"])
+@pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize(("asked_text", "other"), IFS)
 def test_an_else_that_asks_the_opposite_asks_nothing(
-    asked_text: str, other: str, around: str, between: str
+    asked_text: str, other: str, template: str, separator: str
 ) -> None:
-    body = between.join((f"IF({asked_text})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
-    wrong = around.format(body)
+    body = separator.join((f"IF({asked_text})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
+    wrong = template.format(body)
     diagnostic = next(
         diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
     )
@@ -62,10 +62,10 @@ def test_an_else_that_asks_the_opposite_asks_nothing(
     assert wrong[slice(*edit.span)] == f"ELSE({other})" and edit.text == "ELSE"
 
 
-@pytest.mark.parametrize("around", SURROUNDINGS)
+@pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("other", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
-def test_an_else_that_asks_something_else_is_an_elseif(around: str, other: str) -> None:
-    wrong = around.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")
+def test_an_else_that_asks_something_else_is_an_elseif(template: str, other: str) -> None:
+    wrong = template.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")
     diagnostic = next(
         diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
     )

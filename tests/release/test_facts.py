@@ -23,8 +23,15 @@ CHANGELOG = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All
 
 
 def git(root: Path, *words: str) -> None:
-    known = ("-c", "user.name=a", "-c", "user.email=a@localhost", "-c", "init.defaultBranch=main")
-    subprocess.run(["git", "-C", root, *known, *words], check=True, capture_output=True)
+    identity_options = (
+        "-c",
+        "user.name=a",
+        "-c",
+        "user.email=a@localhost",
+        "-c",
+        "init.defaultBranch=main",
+    )
+    subprocess.run(["git", "-C", root, *identity_options, *words], check=True, capture_output=True)
 
 
 def replace_in_file(name: str, old: str, new: str) -> Callable[[Path], None]:

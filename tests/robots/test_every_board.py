@@ -30,8 +30,8 @@ def test_a_board_is_drawn_and_built(board: str) -> None:
 
 @pytest.mark.parametrize("board", AVRS)
 def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
-    written = {firmware_board for firmware_board, _ in bootloaders.BOARDS.values()}
-    assert board in written, "flash/bootloaders.py says how its firmware is written"
+    flashed_boards = {firmware_board for firmware_board, _ in bootloaders.BOARDS.values()}
+    assert board in flashed_boards, "flash/bootloaders.py says how its firmware is written"
     assert board in writing.BOARD_TITLES, "sketch/writing.py says how a sketch calls it"
     assert board in VARIANTS, "tests/machines/board.py names the core's folder with its pins"
 

@@ -31,38 +31,38 @@ def move_values(text: str) -> dict[str, str]:
     return {key: values[key] for key in ("whole", "running") if key in values}
 
 
-@pytest.mark.parametrize("around", SURROUNDINGS)
-@pytest.mark.parametrize("beside", [";", "\n", "  // on;S\n", "\n\n// it drives\n"])
-def test_a_wait_and_an_s_end_it_wherever_it_stands(around: str, beside: str) -> None:
+@pytest.mark.parametrize("template", SURROUNDINGS)
+@pytest.mark.parametrize("separator", [";", "\n", "  // on;S\n", "\n\n// it drives\n"])
+def test_a_wait_and_an_s_end_it_wherever_it_stands(template: str, separator: str) -> None:
     for wait, whole in WAITS.items():
-        parts = beside.join(("F(FOREVER, 60)", wait, "STOP"))
-        assert move_values(around.format(parts)) == {"whole": whole}, parts
+        parts = separator.join(("F(FOREVER, 60)", wait, "STOP"))
+        assert move_values(template.format(parts)) == {"whole": whole}, parts
 
 
-@pytest.mark.parametrize("around", SURROUNDINGS)
+@pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize(("move", "motors"), [
     ("F", "M(60, 60)"), ("B", "M(-60, -60)"), ("L", "M(-60, 60)"), ("R", "M(60, -60)"),
 ])  # fmt: skip
-def test_an_s_further_on_ends_its_motors(around: str, move: str, motors: str) -> None:
+def test_an_s_further_on_ends_its_motors(template: str, move: str, motors: str) -> None:
     text = f"{move}(FOREVER, 60);BEEP(1, 440);LOOP(2);BEEP(1, 880);END_LOOP;S"
-    assert move_values(around.format(text)) == {"running": motors}
+    assert move_values(template.format(text)) == {"running": motors}
 
 
-@pytest.mark.parametrize("around", SURROUNDINGS)
+@pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("tail", [
     "", " // on; S", ";W(3)", ";W(3) // S", ";B(1, 50);S", ";IF(DISTANCE < 9);S;ENDIF",
     ";W(1) UNTIL(DISTANCE < 9);W(1);S",
 ])  # fmt: skip
-def test_nothing_else_does(around: str, tail: str) -> None:
-    rest = around.replace("{};", "{}\n")  # a note ends with its line
+def test_nothing_else_does(template: str, tail: str) -> None:
+    rest = template.replace("{};", "{}\n")  # a note ends with its line
     assert move_values(rest.format(f"F(FOREVER, 60){tail}")) == {}
 
 
-@pytest.mark.sampled("around")
-@pytest.mark.parametrize("around", SURROUNDINGS)
+@pytest.mark.sampled("template")
+@pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("word", [*WORDS, "espera"])
-def test_no_word_with_forever_is_taken_for_a_move(around: str, word: str) -> None:
+def test_no_word_with_forever_is_taken_for_a_move(template: str, word: str) -> None:
     """This holds for any number of values: FOREVER alone, first, last or between others."""
     for values in ("FOREVER", "FOREVER, 60", "60, FOREVER", "FOREVER, 60, 60", ""):
-        check(around.format(f"{word}({values});W(3);S"))
+        check(template.format(f"{word}({values});W(3);S"))
     check(f"{word} hasta que presione el boton")

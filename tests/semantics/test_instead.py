@@ -27,18 +27,18 @@ def mistakes(text: str) -> list[str]:
 # -- a sensor that is set ---------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize("word", "FB")
 @pytest.mark.parametrize("value", ["30", "7.5"])
-@pytest.mark.parametrize("around", ["SI|{}", "SI|W(1);{}", "SI|{};S"])
+@pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{}", "SI|{};S"])
 def test_a_number_for_a_distance_that_is_driven_is_centimetres(
-    between: str, word: str, value: str, around: str
+    separator: str, word: str, value: str, template: str
 ) -> None:
-    text = around.format(f"DISTANCE = {value}{between}{word}(DISTANCE, 60){between}S")
+    text = template.format(f"DISTANCE = {value}{separator}{word}(DISTANCE, 60){separator}S")
     (diagnostic,) = check(text)
     assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
-    right = around.format(f"{word}({value} CM, 60){between}S")
+    right = template.format(f"{word}({value} CM, 60){separator}S")
     assert apply_edits(text, diagnostic.repair.edits) == right and not mistakes(right)
 
 
@@ -78,41 +78,41 @@ HEADS = ["IF(DISTANCE < 10)", "IF(KEY_A AND LIGHT_L > 3)"]
 RESTS = [["BEEP(1, 440)"], ["F(1, 60)", "S"], ["LOOP(2);S;END_LOOP"]]
 
 
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("inside", [[], ["S"], ["B(1, 60)", "W(1)"]])
 @pytest.mark.parametrize("rest", RESTS)
 @pytest.mark.parametrize(
-    "around", ["SI|{}", "SI|F(2, 60);{}", "DEF A;{};END_DEF;A", "TASK;{};END_TASK;F(9, 60)"]
+    "template", ["SI|{}", "SI|F(2, 60);{}", "DEF A;{};END_DEF;A", "TASK;{};END_TASK;F(9, 60)"]
 )
 def test_the_rest_after_a_break_goes_into_the_other_branch(
-    between: str, head: str, inside: list[str], rest: list[str], around: str
+    separator: str, head: str, inside: list[str], rest: list[str], template: str
 ) -> None:
-    text = around.format(between.join([head, *inside, "BREAK", "ENDIF", *rest]))
+    text = template.format(separator.join([head, *inside, "BREAK", "ENDIF", *rest]))
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
     right = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
     assert diagnostic.values["fix"] == ";".join(right)
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
     joined_text = text_after.replace("\n", ";").replace("; ", ";")
-    assert joined_text == around.format(";".join(right)).replace("; ", ";")
+    assert joined_text == template.format(";".join(right)).replace("; ", ";")
     assert not mistakes(text_after)
 
 
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("inside", [[], ["S"], ["B(1, 60)", "W(1) // wait"]])
 @pytest.mark.parametrize("rest", [["BEEP(1, 440)"], ["F(1, 60)", "S // and stand"]])
-@pytest.mark.parametrize("around", ["SI|{}", "SI|F(2, 60)\n{}", "DEF A\n{}\nEND_DEF\nA"])
+@pytest.mark.parametrize("template", ["SI|{}", "SI|F(2, 60)\n{}", "DEF A\n{}\nEND_DEF\nA"])
 def test_the_notes_of_a_break_and_around_it_stay(
-    head: str, inside: list[str], rest: list[str], around: str
+    head: str, inside: list[str], rest: list[str], template: str
 ) -> None:
-    text = around.format("\n".join([head, *inside, "BREAK // it ends", "ENDIF // if", *rest]))
+    text = template.format("\n".join([head, *inside, "BREAK // it ends", "ENDIF // if", *rest]))
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
     last = " // it ends" if inside else "S // it ends"
     lines = [head, *inside, last, "ELSE // if", *rest, "ENDIF"]
-    assert text_after == around.format("\n".join(lines))
+    assert text_after == template.format("\n".join(lines))
     assert not mistakes(text_after)
     plain = [line.partition(" //")[0] for line in (*(inside or ["S"]), "ELSE", *rest)]
     assert diagnostic.values["fix"] == ";".join([head, *plain, "ENDIF"])
@@ -150,11 +150,11 @@ def find_diagnostics(text: str, kit: Kit) -> list[Diagnostic]:
     return check_text(text, kit).diagnostics
 
 
-@pytest.mark.parametrize("around", ["SI|{}", "SI|W(2);{};F(1, 60)", "LOOP(2);{};END_LOOP"])
+@pytest.mark.parametrize("template", ["SI|{}", "SI|W(2);{};F(1, 60)", "LOOP(2);{};END_LOOP"])
 @pytest.mark.parametrize("given_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, around: str) -> None:
-    text = around.format(f"{word}({given_text})")
+def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, template: str) -> None:
+    text = template.format(f"{word}({given_text})")
     (shown_message,) = [message(it, Source(text), "en") for it in find_diagnostics(text, TINIBOT)]
     assert shown_message.code == "TS122"
     assert f"no lamp that a program can switch with {word}" in shown_message.message
@@ -183,15 +183,15 @@ def test_lamps_are_told_once_and_a_light_that_is_not_switched_is_none() -> None:
 
 
 @pytest.mark.parametrize(("lang", "name"), [("en", "SIZE"), ("es", "LARGO"), ("pt", "TAMANHO")])
-@pytest.mark.parametrize("between", SEPARATORS)
+@pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize(
     "inside", ["F({} CM, 60)", "R({}, 60)", "W(1 + {})", "LOOP({});S;END_LOOP"]
 )
 def test_a_number_in_a_def_gets_its_name_in_the_body_too(
-    lang: str, name: str, between: str, inside: str
+    lang: str, name: str, separator: str, inside: str
 ) -> None:
     lines = ["SI|DEF SIDE(40)", "B(1, 60)", *inside.format("40").split(";"), "END_DEF", "SIDE(40)"]
-    text = between.join(lines)
+    text = separator.join(lines)
     fix = fix_of(text, lang)
     assert inside.format(name).split(";")[0] in fix and f"DEF SIDE({name})" in fix
     assert "SIDE(40)" in fix

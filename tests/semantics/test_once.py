@@ -45,18 +45,18 @@ def diagnostics_of(code: codes.Code, text: str) -> list[Diagnostic]:
     return [diagnostic for diagnostic in compilation.diagnostics if diagnostic.code is code]
 
 
-@pytest.mark.sampled("around", keep=3)
-@pytest.mark.parametrize("around", SURROUNDINGS)
+@pytest.mark.sampled("template", keep=3)
+@pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_a_question_that_is_asked_once_is_told(around: str, read: str, question: str) -> None:
+def test_a_question_that_is_asked_once_is_told(template: str, read: str, question: str) -> None:
     asked_text = read.format(q=question)
-    text = around.format(asked_text)
+    text = template.format(asked_text)
     (diagnostic,) = diagnostics_of(codes.ASKED_ONCE, text)
     name = re.findall(r"(?:KEY|PAD)_\w+", question)[0]
     assert text[slice(*diagnostic.span)] == name
     assert name in (diagnostic.values.get("early"), diagnostic.values.get("name"))
-    is_early = around in ("{}", "SI|{}", *SURROUNDINGS[4:5], SURROUNDINGS[6], SURROUNDINGS[9])
+    is_early = template in ("{}", "SI|{}", *SURROUNDINGS[4:5], SURROUNDINGS[6], SURROUNDINGS[9])
     assert ("early" in diagnostic.values) == is_early or "W(1);ELSEIF" in asked_text
     if diagnostic.repair and "IF(DISTANCE < 9)" not in text and "WHEN" not in text:
         assert not diagnostics_of(codes.ASKED_ONCE, apply_edits(text, diagnostic.repair.edits))
@@ -68,14 +68,14 @@ def test_a_stick_that_is_read_once_is_told_in_each_place_of_a_value(text: str, v
     assert len(diagnostics_of(codes.ASKED_ONCE, text.format(v=value))) == 1
 
 
-@pytest.mark.sampled("around", keep=3)
-@pytest.mark.parametrize("around", REPEATED)
+@pytest.mark.sampled("template", keep=3)
+@pytest.mark.parametrize("template", REPEATED)
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
 def test_what_is_asked_again_or_waited_for_is_not_told(
-    around: str, read: str, question: str
+    template: str, read: str, question: str
 ) -> None:
-    assert not diagnostics_of(codes.ASKED_ONCE, around.format(read.format(q=question)))
+    assert not diagnostics_of(codes.ASKED_ONCE, template.format(read.format(q=question)))
 
 
 def test_several_are_told_once_and_the_loop_is_around_all() -> None:
@@ -106,18 +106,18 @@ MOVES = ["F(5, 50)", "R(90 DEG, 60)", "B(2, 50) UNTIL(DISTANCE > 30)"]
 BEEP = "BEEP(5, 440)"
 
 
-@pytest.mark.parametrize("between", [";", "\n"])
+@pytest.mark.parametrize("separator", [";", "\n"])
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("move", MOVES)
 def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
-    move: str, order: int, between: str
+    move: str, order: int, separator: str
 ) -> None:
     inside = [move, BEEP][:: -1 if order else 1]
-    text = f"SI|{between.join(['TASK', *inside, 'END_TASK'])}"
+    text = f"SI|{separator.join(['TASK', *inside, 'END_TASK'])}"
     (diagnostic,) = diagnostics_of(codes.LONE_TASK, text)
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
-    assert text_after == f"SI|{between.join(['TASK', BEEP, 'END_TASK', move])}"
+    assert text_after == f"SI|{separator.join(['TASK', BEEP, 'END_TASK', move])}"
     assert not diagnostics_of(codes.LONE_TASK, text_after)
     assert diagnostic.values["fix"] == f"TASK;{BEEP};END_TASK;{move}"
 
@@ -130,10 +130,13 @@ def test_each_task_with_nothing_beside_it_is_told(inside: str, text_before: str)
     assert "fix" not in diagnostics_of(codes.LONE_TASK, text)[0].values
 
 
-@pytest.mark.parametrize("beside", ["S", "F(1, 50)", "TASK;W(9);END_TASK", "SHOW(1)",
-                                    "WHEN(DISTANCE < 9);S;W(1);END_WHEN"])  # fmt: skip
-def test_a_task_with_anything_beside_it_is_not_told(beside: str) -> None:
-    for text in (f"TASK;{BEEP};END_TASK;{beside}", f"{beside};TASK;F(5, 50);END_TASK"):
+@pytest.mark.parametrize("other_statement", ["S", "F(1, 50)", "TASK;W(9);END_TASK", "SHOW(1)",
+                                             "WHEN(DISTANCE < 9);S;W(1);END_WHEN"])  # fmt: skip
+def test_a_task_with_anything_beside_it_is_not_told(other_statement: str) -> None:
+    for text in (
+        f"TASK;{BEEP};END_TASK;{other_statement}",
+        f"{other_statement};TASK;F(5, 50);END_TASK",
+    ):
         assert not diagnostics_of(codes.LONE_TASK, text)
 
 

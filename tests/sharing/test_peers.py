@@ -290,12 +290,12 @@ def test_who_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> N
     """Somebody has removed ours meanwhile, and another command has the port."""
     path = tmp_path / "port"
     for is_others in (False, True):
-        held = registry._try_lock(path)
-        assert held is not None
+        locked_file = registry._try_lock(path)
+        assert locked_file is not None
         if is_others:
             path.unlink()
             path.write_text("of another command")
-        held.close()
+        locked_file.close()
         assert path.exists() == is_others
 
 

@@ -43,7 +43,7 @@ def dead() -> Registration:
         return registration(server.getsockname()[1], "upload")
 
 
-def call_at_line(wanted: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
+def call_at_line(wanted_line: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
     """Call `runs`, and call `does` just before its line number `wanted` in the registry. Return
     whether it has so many lines."""
     lines = 0
@@ -54,7 +54,7 @@ def call_at_line(wanted: int, does: Callable[[], object], runs: Callable[[], obj
             return None
         if event == "line":
             lines += 1
-            if lines == wanted:
+            if lines == wanted_line:
                 sys.settrace(None)
                 does()
         return trace
@@ -65,7 +65,7 @@ def call_at_line(wanted: int, does: Callable[[], object], runs: Callable[[], obj
         runs()
     finally:
         sys.settrace(gettrace_before)
-    return lines >= wanted
+    return lines >= wanted_line
 
 
 def each_line(
@@ -73,13 +73,13 @@ def each_line(
 ) -> Iterator[bool]:
     """Run it with something that happens at its first line, its second, and so on, until it has no
     more lines; yield each time whether it has happened."""
-    wanted, is_more = 0, True
+    wanted_line, is_more = 0, True
     while is_more:
-        wanted += 1
+        wanted_line += 1
         does, runs = prepare()
-        is_more = call_at_line(wanted, does, runs)
+        is_more = call_at_line(wanted_line, does, runs)
         yield is_more
-    assert wanted > 5
+    assert wanted_line > 5
 
 
 @pytest.mark.parametrize("other", ["tidies", "leaves"])

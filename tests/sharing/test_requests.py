@@ -53,17 +53,21 @@ REQUESTS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("asked", REQUESTS, ids=str)
-def test_it_is_asked_of_the_session_as_of_the_client(asked: Asked) -> None:
+@pytest.mark.parametrize("request_case", REQUESTS, ids=str)
+def test_it_is_asked_of_the_session_as_of_the_client(request_case: Asked) -> None:
     session = Mock()
-    request = request_maker(asked.message(), 700)(session)
-    ((name, taken, named),) = session.method_calls
-    assert (name, taken, named) == (asked.method, asked.given, {})
+    request = request_maker(request_case.message(), 700)(session)
+    ((name, passed_arguments, keyword_arguments),) = session.method_calls
+    assert (name, passed_arguments, keyword_arguments) == (
+        request_case.method,
+        request_case.given,
+        {},
+    )
     assert request.limit_ms == 700
 
 
-def of(method: str, *arguments: object, **changed: object) -> dict[str, Any]:
-    return {**Asked(method, arguments).message(), **changed}
+def of(method: str, *arguments: object, **changed_fields: object) -> dict[str, Any]:
+    return {**Asked(method, arguments).message(), **changed_fields}
 
 
 BAD_MESSAGES: tuple[dict[str, Any], ...] = (
@@ -145,8 +149,8 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
     it."""
     session = Mock()
     request_maker(Asked("nod", values).message(), 700)(session)
-    ((name, taken, _),) = session.method_calls
-    assert (name, taken) == ("nod", values)
+    ((name, passed_arguments, _),) = session.method_calls
+    assert (name, passed_arguments) == ("nod", values)
     given_fields = dict(zip((its.name for its in NOD_MESSAGE.request), values, strict=True))
     assert next(exchange_by_name("nod")(Mock(), **given_fields)) == Request("NOD", given_fields)
 

@@ -114,16 +114,16 @@ STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
 ]
 
 
-@pytest.mark.parametrize("asked", range(len(STARTS)))
+@pytest.mark.parametrize("start_index", range(len(STARTS)))
 def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
-    line: FakeLine, asked: int
+    line: FakeLine, start_index: int
 ) -> None:
     """Such requests end, and later ones without a start are sent."""
     with (
         closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
         closing(cast(SharedConnection, join(PORT, "upload"))) as command,
     ):
-        request = command.begin(STARTS[asked])
+        request = command.begin(STARTS[start_index])
         assert command.wait(request).status == CANCELLED
         command.begin(lambda requests: requests.status())
         until(lambda: bool(line.asked), "the request arrives")

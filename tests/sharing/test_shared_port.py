@@ -361,8 +361,8 @@ def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command
 def test_of_three_who_want_a_place_one_gets_it(
     pty_robot: PtyRobot, place: str, request: pytest.FixtureRequest
 ) -> None:
-    wanted = pty_robot.port if place == "port" else request.getfixturevalue("address")
-    commands = [Command("monitor", "--hold", "--port", wanted) for _ in range(3)]
+    port = pty_robot.port if place == "port" else request.getfixturevalue("address")
+    commands = [Command("monitor", "--hold", "--port", port) for _ in range(3)]
     pty_robot.until(
         lambda: sum(command.process.poll() is not None for command in commands) == 2, "one stays"
     )
@@ -370,7 +370,7 @@ def test_of_three_who_want_a_place_one_gets_it(
     losers = [command.wait_for_result() for command in commands if command is not holder]
     assert [loser.code for loser in losers] == [3, 3]
     assert all("already shared" in loser.err for loser in losers)
-    assert process("stop", "--port", wanted).code == 0
+    assert process("stop", "--port", port).code == 0
     holder.signal(signal.SIGINT)
     result = holder.wait_for_result()
     assert (result.code, result.err) == (0, "\n")
@@ -382,9 +382,9 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
     def start_command(*words: str) -> Command:
         return Command(*words, "--port", pty_robot.port, code=PATIENT_COMMAND_CODE)
 
-    asked = [["doctor", "--identify"]] * 3 + [["upload", "-e", "SB|S"]]
-    commands = [start_command(*words) for words in asked]
-    for words, command in zip(asked, commands, strict=True):
+    command_lines = [["doctor", "--identify"]] * 3 + [["upload", "-e", "SB|S"]]
+    commands = [start_command(*words) for words in command_lines]
+    for words, command in zip(command_lines, commands, strict=True):
         result = command.wait_for_result()
         for _ in range(TRIES):
             if "has ended; without --detach" in result.err:

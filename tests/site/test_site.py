@@ -92,8 +92,8 @@ def test_every_document_is_on_the_site_and_in_a_part_of_it(site_folder: Path) ->
     sources = {source for document in listed_documents for source in document.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
              *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
-    kept = {path.relative_to(ROOT).as_posix() for path in paths}
-    assert kept | {name for name in built_texts() if name.endswith(".md")} == sources
+    document_paths = {path.relative_to(ROOT).as_posix() for path in paths}
+    assert document_paths | {name for name in built_texts() if name.endswith(".md")} == sources
     assert {document.part for document in listed_documents} == set(PARTS)
     for document in listed_documents:
         for language in document.sources:

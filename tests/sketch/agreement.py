@@ -163,10 +163,10 @@ def signal_differences(
         if until - at > 2 * near and not all(agree(value, v) for v in inner):
             wrong.append(f"{value} from {at} to {until}, but {inner[:4]}")
     for at, until, value in theirs:
-        around = [v for a, u, v in ours if a < until + near and u > at - near]
+        values_around = [v for a, u, v in ours if a < until + near and u > at - near]
         if at > end - near:  # events after the end
             continue
-        if until - at > 2 * near and not any(agree(value, v) for v in around):
+        if until - at > 2 * near and not any(agree(value, v) for v in values_around):
             wrong.append(f"{value} from {at:.1f} to {until:.1f} is not in the trace")
     return wrong
 

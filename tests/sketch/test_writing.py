@@ -37,14 +37,14 @@ def part(text: str, header: str) -> list[str]:
 def test_each_instruction_has_its_tiniscript_beside_it() -> None:
     text = sketch("SI|f( 2 , 80 );\nIF(LIGHT_R > 100); S; ELSE; W(1); ENDIF")
     rows = text.splitlines()
-    for code, beside in (
+    for code, comment in (
         ("  forward(2, 80);", "f( 2 , 80 )"),
         ("  if (lightR > 100) {", "IF(LIGHT_R > 100)"),
         ("    stopMotors();", "S"),
         ("  } else {", "ELSE"),
         ("    wait(1);", "W(1)"),
     ):
-        assert f"{code:<38}  // {beside}" in rows
+        assert f"{code:<38}  // {comment}" in rows
 
 
 def test_a_simple_program_has_simple_numbers() -> None:
@@ -137,7 +137,18 @@ def test_a_long_comment_is_broken_where_the_line_ends(block: str) -> None:
 
 def test_names_are_like_those_of_cpp() -> None:
     names = Names("en")
-    asked = ("MY_SPEED", "X", "OLD__D_", "OLD_D", "DELAY", "FORWARD", "I", "I2", "FIRST1", "NUMBER")
+    own_names = (
+        "MY_SPEED",
+        "X",
+        "OLD__D_",
+        "OLD_D",
+        "DELAY",
+        "FORWARD",
+        "I",
+        "I2",
+        "FIRST1",
+        "NUMBER",
+    )
     names_in_cpp = [
         "mySpeed",
         "x",
@@ -150,7 +161,7 @@ def test_names_are_like_those_of_cpp() -> None:
         "myFirst1",
         "number",
     ]
-    assert [names.name_of(word) for word in asked] == names_in_cpp
+    assert [names.name_of(word) for word in own_names] == names_in_cpp
     assert (
         Names("en").name_of("COUNTED") == "myCounted" and Names("es").name_of("VALOR") == "miValor"
     )

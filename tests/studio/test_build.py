@@ -42,8 +42,11 @@ def page() -> Path:
 
 
 def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
-    wanted = json.loads((SOURCES / "package.json").read_text(encoding="utf-8"))
-    for version in (*wanted["dependencies"].values(), *wanted["devDependencies"].values()):
+    package_fields = json.loads((SOURCES / "package.json").read_text(encoding="utf-8"))
+    for version in (
+        *package_fields["dependencies"].values(),
+        *package_fields["devDependencies"].values(),
+    ):
         assert re.fullmatch(r"\d+\.\d+\.\d+", version)
     lock = json.loads((SOURCES / "package-lock.json").read_text(encoding="utf-8"))
     for name, package in lock["packages"].items():

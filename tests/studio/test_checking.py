@@ -208,16 +208,16 @@ def test_blocks_keep_the_robot() -> None:
 
 
 def test_the_page_knows_every_robot_and_its_words() -> None:
-    known = description()
-    assert [robot["name"] for robot in known["robots"]] == robots.names()
-    for robot_row in known["robots"]:
+    page_description = description()
+    assert [robot["name"] for robot in page_description["robots"]] == robots.names()
+    for robot_row in page_description["robots"]:
         kit = robots.load(robot_row["name"]).kit
         names = [device["text"] for device in robot_row["devices"]]
         assert names == list(kit.names)
         assert set(robot_row["labels"]) == set(LANGUAGES)
-    words = {word["text"] for word in known["words"]}
+    words = {word["text"] for word in page_description["words"]}
     assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"SEND", "ENDLOOP"}
-    assert known["worlds"][0]["name"] == "obstacles"
+    assert page_description["worlds"][0]["name"] == "obstacles"
 
 
 def mistakes(messages: list[Message]) -> int:
@@ -265,9 +265,9 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
     """For a program with a hundred warnings; the buttons' effects are tried during a pause."""
     texts: list[bytes] = []
 
-    def count_compilation(data: bytes, *arguments: Any, **named: Any) -> Compilation:
+    def count_compilation(data: bytes, *arguments: Any, **keyword_arguments: Any) -> Compilation:
         texts.append(data)
-        return compile_source(data, *arguments, **named)
+        return compile_source(data, *arguments, **keyword_arguments)
 
     monkeypatch.setattr(checking, "compile_source", count_compilation)
     text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"

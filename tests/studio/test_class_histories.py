@@ -109,13 +109,13 @@ class History:
             return
         page.text = fields.get("text", page.text)
         page.lessons = fields.get("lessons", page.lessons)
-        given = answer.get("given")
-        if given and self.chance.random() < 0.7:
-            took = {"key": given["key"], "text": given["text"]}
+        given_work = answer.get("given")
+        if given_work and self.chance.random() < 0.7:
+            took = {"key": given_work["key"], "text": given_work["text"]}
             version_before = self.version(page)
             if self.answer(page, "here", took=took) is not None:
-                page.text = given["text"]
-                page.lessons = sorted({*given["lessons"], *page.lessons})
+                page.text = given_work["text"]
+                page.lessons = sorted({*given_work["lessons"], *page.lessons})
                 assert (
                     self.version(page) > version_before
                 )  # otherwise the teacher sees the previous program
@@ -182,9 +182,9 @@ class History:
         return any(row["name"] == page.name and row["robot"] for row in self.rows())
 
     def gives(self) -> None:
-        kept, page = self.state()["kept"], self.somebody()
-        if kept and page is not None:
-            key = self.chance.choice(kept)["key"]
+        kept_work, page = self.state()["kept"], self.somebody()
+        if kept_work and page is not None:
+            key = self.chance.choice(kept_work)["key"]
             self.room.teaches("class_give_back", key=key, pupil=self.room.number(page.name))
 
     def takes_robot(self) -> None:
@@ -310,9 +310,9 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         fresh = Room(0).teaches("class")
         settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
         ports = [{**robot, "pupil": "", "left_s": 0} for robot in before["robots"]]
-        named = {robot["port"]: robot["name"] for robot in anew["robots"]}
+        name_by_port = {robot["port"]: robot["name"] for robot in anew["robots"]}
         assert anew == fresh | settings | {
-            "robots": [{**port, "name": named[port["port"]]} for port in ports]
+            "robots": [{**port, "name": name_by_port[port["port"]]} for port in ports]
         }
         assert room.teaches("class_work")["pupils"] == []
         for page in old:

@@ -220,11 +220,11 @@ def test_codes_are_not_guessed() -> None:
         room.now_s += 0.01
     assert right <= 20 + 50 / 3 + 1
     # From that address, even the right code is refused; from others it is accepted.
-    known = {"do": "join", "code": code, "name": "Eve"}
-    assert room.made.answer("", PUPIL_ADDRESS, known) == {"failure": "class_slow"}
-    assert "token" in room.made.answer("", "192.0.2.10", known)
+    join_request = {"do": "join", "code": code, "name": "Eve"}
+    assert room.made.answer("", PUPIL_ADDRESS, join_request) == {"failure": "class_slow"}
+    assert "token" in room.made.answer("", "192.0.2.10", join_request)
     room.now_s += 4
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, known)
+    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_request)
 
 
 def test_a_code_may_be_written_small_and_apart() -> None:
@@ -395,9 +395,9 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     state = room.teaches("class_give_back", key=key, pupil=number)
     assert state["kept"] == [{**row, "given": number}]
     for _ in range(2):  # an answer may be lost
-        given = room.checks_in(eve)["given"]
-        assert given == {"key": key, **BROUGHT_WORK}
-    assert "given" not in room.checks_in(eve, took=take_change(given))
+        given_work = room.checks_in(eve)["given"]
+        assert given_work == {"key": key, **BROUGHT_WORK}
+    assert "given" not in room.checks_in(eve, took=take_change(given_work))
     assert room.teaches("class")["kept"] == []
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
 
@@ -479,8 +479,8 @@ def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
     states = [room.made.state_to_keep()]
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
     states.append(room.made.state_to_keep())
-    given = room.checks_in(ana)["given"]
-    room.checks_in(ana, took=take_change(given))
+    given_work = room.checks_in(ana)["given"]
+    room.checks_in(ana, took=take_change(given_work))
     states.append(room.made.state_to_keep())
     for k, state in enumerate(states):
         room_after = Room(0)
@@ -488,7 +488,10 @@ def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
         assert "F(1, 50)" in texts_of(room_after)
         assert ("given" in room_after.checks_in(ana)) is (k == 1)
         if k == 1:  # under the same key: a page that has it does not take it again
-            assert room_after.checks_in(ana)["given"] == {**given, "lessons": ("01_first_line",)}
+            assert room_after.checks_in(ana)["given"] == {
+                **given_work,
+                "lessons": ("01_first_line",),
+            }
 
 
 def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
@@ -502,8 +505,8 @@ def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
     # The teacher has looked at it.
     room.teaches("class_give_back", key=key_of(room), pupil=pupils[1]["number"])
     assert "given" not in room.checks_in(eve)
-    given = room.checks_in(ana)["given"]
-    room.checks_in(eve, took=take_change(given), text="")
+    given_work = room.checks_in(ana)["given"]
+    room.checks_in(eve, took=take_change(given_work), text="")
     assert texts_of(room) == ["F(1, 50)"]
 
 
@@ -916,9 +919,9 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
         seen, works[token] = pupils, text
         hands = [one for one in hands if one != token or is_up]
         hands += [token] * (is_up and token not in hands)
-        raised = [pupil for pupil in pupils if pupil["hand"]]
-        raised.sort(key=lambda pupil: pupil["hand"])
-        assert [tokens[pupils.index(pupil)] for pupil in raised] == hands
+        raised_hands = [pupil for pupil in pupils if pupil["hand"]]
+        raised_hands.sort(key=lambda pupil: pupil["hand"])
+        assert [tokens[pupils.index(pupil)] for pupil in raised_hands] == hands
 
 
 # -- the newest run of a pupil ---------------------------------------------------------------------
@@ -928,8 +931,10 @@ def ask_for_run(room: Room, pupil: int, asks: bool = False) -> Any:
     return room.made.teach({"do": "class_run", "pupil": pupil, "asks": asks})["run"]
 
 
-def give_run_part(room: Room, token: str, asked: int, start: int, part: str, is_last: bool) -> None:
-    request = {"do": "run", "asked": asked, "from": start, "part": part, "is_last": is_last}
+def give_run_part(
+    room: Room, token: str, run_number: int, start: int, part: str, is_last: bool
+) -> None:
+    request = {"do": "run", "asked": run_number, "from": start, "part": part, "is_last": is_last}
     room.made.answer(token, PUPIL_ADDRESS, request)
 
 
@@ -938,18 +943,18 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
     ana, ben = room.joins("Ana"), room.joins("Ben")
     assert "run" not in room.checks_in(ana)
     assert ask_for_run(room, 1, True) is None
-    asked = room.checks_in(ana)["run"]
+    run_number = room.checks_in(ana)["run"]
     assert "run" not in room.checks_in(ben)
-    give_run_part(room, ben, asked, 0, "nobody has asked", True)
-    give_run_part(room, ana, asked + 1, 0, "another question", True)
+    give_run_part(room, ben, run_number, 0, "nobody has asked", True)
+    give_run_part(room, ana, run_number + 1, 0, "another question", True)
     assert ask_for_run(room, 1) is None
-    give_run_part(room, ana, asked, 0, "one, ", False)
-    assert ask_for_run(room, 1) is None and room.checks_in(ana)["run"] == asked
-    give_run_part(room, ana, asked, 5, "two", True)
+    give_run_part(room, ana, run_number, 0, "one, ", False)
+    assert ask_for_run(room, 1) is None and room.checks_in(ana)["run"] == run_number
+    give_run_part(room, ana, run_number, 5, "two", True)
     assert "run" not in room.checks_in(ana)
     assert ask_for_run(room, 1) == "one, two"
     assert ask_for_run(room, 1, True) is None
-    assert room.checks_in(ana)["run"] > asked, "it is asked anew"
+    assert room.checks_in(ana)["run"] > run_number, "it is asked anew"
     give_run_part(room, ana, room.checks_in(ana)["run"], 0, "half of an", False)
     assert ask_for_run(room, 1, True) is None
     give_run_part(room, ana, room.checks_in(ana)["run"], 0, "newer", True)
@@ -969,8 +974,8 @@ def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
     room = Room()
     ana = room.joins("Ana")
     ask_for_run(room, 1, True)
-    asked = room.checks_in(ana)["run"]
-    right = {"do": "run", "asked": asked, "from": 0, "part": "x", "is_last": True}
+    run_number = room.checks_in(ana)["run"]
+    right = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
         room.made.answer(ana, PUPIL_ADDRESS, {**right, **wrong})
     room.made.answer(ana, PUPIL_ADDRESS, right)

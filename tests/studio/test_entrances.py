@@ -148,10 +148,10 @@ def test_which_addresses_are_here(peer: socket.socket) -> None:
 @pytest.mark.usefixtures("of_another")
 def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<!doctype html>")
-    asked: list[object] = []
+    requests: list[object] = []
 
     def answer(request: dict[str, Any]) -> dict[str, Any]:
-        asked.append(request)
+        requests.append(request)
         return {}
 
     new_server = serving.Server(serving.files(tmp_path), 0, answer)
@@ -160,7 +160,7 @@ def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
         code = server.entrance(is_for_this_computer=True).rpartition("=")[2]
         assert enter(own, code) == (200, {"failure": "host_used"})
         assert post(own, server.entrances.token, {"do": "ports"})[0] == 403
-    assert asked == []
+    assert requests == []
 
 
 def enter(own: str, code: str) -> tuple[int, Any]:

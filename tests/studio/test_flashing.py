@@ -61,9 +61,9 @@ def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
             assert row["ended"] == "done", row
         if row["losses"] >= TRY_COUNT:
             assert row["ended"] == "flash_nobody", row
-        asked = 4 * row["pages"] + 3
+        request_count = 4 * row["pages"] + 3
         finds_ms = 2 * TRY_COUNT * (SYNC_MS + ANSWER_MS)
-        assert row["took_ms"] <= finds_ms + asked * row["slow_ms"] + 2 * ANSWER_MS, row
+        assert row["took_ms"] <= finds_ms + request_count * row["slow_ms"] + 2 * ANSWER_MS, row
 
 
 # -- onto simulated boards
@@ -224,8 +224,8 @@ def test_it_can_be_cancelled(tmp_path: Path) -> None:
         board = FakeBoard()
         with plug_in(board) as port:
             assert flash(port, "uno", file, part) == how
-        written = board.commands.count(0x64)
-        assert written == {"-1": 0, "0.25": 4}.get(part, 8)
+        page_count = board.commands.count(0x64)
+        assert page_count == {"-1": 0, "0.25": 4}.get(part, 8)
 
 
 def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:

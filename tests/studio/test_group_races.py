@@ -37,8 +37,8 @@ class Mate:
 
     def __init__(self, group: Group, name: str) -> None:
         self.group, self.name = group, name
-        joined = group.room.answer("", name, {"do": "join", "code": group.room.code, "name": name})
-        self.token = joined["token"]
+        answer = group.room.answer("", name, {"do": "join", "code": group.room.code, "name": name})
+        self.token = answer["token"]
         text = FOREVER + "\n"
         assert "group" in self.ask("group_join", name="Red", text=text)
         self.presses = self.ids = self.connection = self.newest_number = self.saw_stops = 0

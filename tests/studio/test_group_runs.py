@@ -99,10 +99,10 @@ class Page:
         self.heard: list[Json] = []
 
     def looks(self) -> list[Json]:
-        known = self.ran[1] if self.ran[0] == self.runs.key else 0
+        known_count = self.ran[1] if self.ran[0] == self.runs.key else 0
         number, items = self.runs.news_after(self.ran, self.name)
-        items = [item for item in json.loads(json.dumps(items)) if item["number"] > known]
-        self.ran = [self.runs.key, max(known, number)]
+        items = [item for item in json.loads(json.dumps(items)) if item["number"] > known_count]
+        self.ran = [self.runs.key, max(known_count, number)]
         self.heard += items
         return list(items)
 
@@ -221,8 +221,8 @@ def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     runs.add_news("ana", [begin, value, {"event": "DONE"}])
     assert Page(runs, "teo").looks() == []
     runs.add_news("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
-    heard = [item["event"] for item in Page(runs, "eva").looks()]
-    assert heard == ["STARTED", "SHOW", "PLACE"]
+    heard_events = [item["event"] for item in Page(runs, "eva").looks()]
+    assert heard_events == ["STARTED", "SHOW", "PLACE"]
     other = GroupRuns(lambda: 0.0)
     other.add_news("ana", [begin])
     page = Page(runs, "luz")

@@ -192,14 +192,14 @@ def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.sends()
     luz.sends()
-    heard: list[Json] = []
-    waiting = start_thread(lambda: heard.append(ana.asks("group", **ana.request(waits=True))))
+    answers: list[Json] = []
+    waiting = start_thread(lambda: answers.append(ana.asks("group", **ana.request(waits=True))))
     until(lambda: members_hold(school, ana) > 0, "the page waits")
     assert school.checks_in(luz.token)["group"] == "Red"  # the class is not held
     luz.types("80", "95")
     luz.sends()
     waiting.join(HANG_LIMIT_S)
-    assert "F(1, 95)" in json.dumps(heard)
+    assert "F(1, 95)" in json.dumps(answers)
 
 
 def test_a_page_holds_one_request(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -234,8 +234,8 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     robot = school.connects(ana.token)
     ana.sends()
     luz.sends()
-    heard: list[Json] = []
-    waiting = start_thread(lambda: heard.append(luz.asks("group", **luz.request(waits=True))))
+    answers: list[Json] = []
+    waiting = start_thread(lambda: answers.append(luz.asks("group", **luz.request(waits=True))))
     until(lambda: members_hold(school, luz) > 0, "the page waits")
     group = school.made._groups.group_of(luz.token)
     assert group is not None and robot.witness is not None
@@ -249,7 +249,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
         telling.join(HANG_LIMIT_S)
         assert not telling.is_alive()
     waiting.join(HANG_LIMIT_S)
-    assert [run["event"] for run in heard[0]["runs"]] == ["STARTED"]
+    assert [run["event"] for run in answers[0]["runs"]] == ["STARTED"]
     assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
 
 
@@ -508,8 +508,10 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
         checks = [[school.checks_in(member.token) for member in members]
                 for school, members in zip(schools, both, strict=True)]  # fmt: skip
         assert checks[0] == checks[1]
-        asked = [[request["do"] for request in school.hosting.asked] for school in schools]
-        assert asked[0] == asked[1]
+        requests_by_school = [
+            [request["do"] for request in school.hosting.asked] for school in schools
+        ]
+        assert requests_by_school[0] == requests_by_school[1]
         assert schools[0].teaches("class")["robots"] == schools[1].teaches("class")["robots"]
 
 
@@ -679,8 +681,8 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
             presses[member] += 1
             member.asks("stop", group_stops=presses[member], stops=presses[member])
             is_own = turn.pupil.token == member.token
-            asked = school.hosting.asked[-1]
-            assert (asked["do"], asked["page"]) == ("stop", page_of(school, member))
+            last_request = school.hosting.asked[-1]
+            assert (last_request["do"], last_request["page"]) == ("stop", page_of(school, member))
             assert is_own or robot.stopped == before + 1
 
 

@@ -44,10 +44,10 @@ def test_what_shows_nothing_is_no_name_and_hides_in_none(blank: str) -> None:
 def test_a_name_that_is_taken_gets_a_number() -> None:
     assert free_name("Ana", []) == "Ana"
     assert free_name("Ana", ["Luz", "Аna", "ANA (2)"]) == "Ana (3)"
-    taken: list[str] = []
+    used_names: list[str] = []
     for k in range(5):
-        taken.append(free_name("ana" if k % 2 else "Ana", taken))
-    assert taken == ["Ana", "ana (2)", "Ana (3)", "ana (4)", "Ana (5)"]
+        used_names.append(free_name("ana" if k % 2 else "Ana", used_names))
+    assert used_names == ["Ana", "ana (2)", "Ana (3)", "ana (4)", "Ana (5)"]
 
 
 def test_the_table_is_unicodes() -> None:

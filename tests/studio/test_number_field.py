@@ -21,20 +21,20 @@ def test_a_comma_and_a_point_are_decimal_signs_and_groups_of_thousands_may_have_
     for _ in range(2000):
         decimals = rng.randint(0, 3)
         number = round(rng.choice([1, 100, 1_000_000]) * rng.uniform(-2, 2), decimals)
-        written = f"{number:.{decimals}f}"
-        rows += [(written, number), (f" {number:,.{decimals}f}", number)]
+        number_text = f"{number:.{decimals}f}"
+        rows += [(number_text, number), (f" {number:,.{decimals}f}", number)]
         if decimals in (1, 2) or abs(number) < 1:
-            rows.append((written.replace(".", ","), number))
-    given = "".join(f"{json.dumps(written)}\n" for written, _ in rows)
-    for (written, number), row in zip(
-        rows, in_node(SCRIPT, str(page_data), given=given), strict=True
+            rows.append((number_text.replace(".", ","), number))
+    input_lines = "".join(f"{json.dumps(number_text)}\n" for number_text, _ in rows)
+    for (number_text, number), row in zip(
+        rows, in_node(SCRIPT, str(page_data), given=input_lines), strict=True
     ):
         value, text = json.loads(row)
-        assert value == number and float(text) == number, written
+        assert value == number and float(text) == number, number_text
 
 
 def test_what_is_no_number_changes_nothing(page_data: Path) -> None:
     typed = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
-    given = "".join(f"{json.dumps(text)}\n" for text in typed)
-    for text, row in zip(typed, in_node(SCRIPT, str(page_data), given=given), strict=True):
+    input_lines = "".join(f"{json.dumps(text)}\n" for text in typed)
+    for text, row in zip(typed, in_node(SCRIPT, str(page_data), given=input_lines), strict=True):
         assert json.loads(row)[0] == 7, text

@@ -33,7 +33,7 @@ def play_story(path: Path, *story: Any) -> dict[str, Any]:
 
 def sent_to_robot(path: Path, *story: Any) -> list[Any]:
     """Return the messages to the robot, without its side."""
-    return [[ms, *held] for ms, _, *held in play_story(path, *story)["told"]]
+    return [[ms, *held_keys] for ms, _, *held_keys in play_story(path, *story)["told"]]
 
 
 def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -> None:
@@ -106,14 +106,14 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: 
         ["gamepads", [[0, 0], []]], ["passes", 100], ["keydown", "b"],
     )  # fmt: skip
     let_go = packets.index([10, *NOTHING])
-    assert [10, A | 32, 0, 100] in [[10, *held] for _, *held in packets[:let_go]]
+    assert [10, A | 32, 0, 100] in [[10, *held_keys] for _, *held_keys in packets[:let_go]]
     assert [held for _, *held in packets[let_go + 1 :]] == [[32, 0, 0]]
 
 
 def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
     """The key was released in another window."""
     story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
-    helds = [held for _, *held in sent_to_robot(page_data, WHOLE, *story)]
+    helds = [held_keys for _, *held_keys in sent_to_robot(page_data, WHOLE, *story)]
     assert helds == [[32, 0, 0], NOTHING, [UP, 0, 0]]
 
 
@@ -123,7 +123,7 @@ def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
         ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
         ["passes", 500],
     )  # fmt: skip
-    assert [held for _, *held in packets] == [[4 | 32, 10, 100], NOTHING]
+    assert [held_keys for _, *held_keys in packets] == [[4 | 32, 10, 100], NOTHING]
     assert packets[1][0] - packets[0][0] <= 20, "it need not be told of"
 
 

@@ -77,10 +77,10 @@ def test_every_wrong_program_gets_the_words_of_the_command(
     ]
     for request, answer in zip(requests, checks(page, requests), strict=True):
         text = request["text"]
-        wanted = [message._asdict() for message in messages_of(text, request["language"])]
+        expected = [message._asdict() for message in messages_of(text, request["language"])]
         findings = [{key: finding[key] for key in Message._fields}
                for finding in answer["findings"] if finding["code"] not in LACKING]  # fmt: skip
-        assert findings == wanted, text
+        assert findings == expected, text
 
 
 def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
@@ -217,16 +217,16 @@ DAMAGED_WORK = (
 
 
 def test_damaged_work_does_no_harm(page: Page, pytestconfig: pytest.Config) -> None:
-    for kept in sample_of(pytestconfig, "damaged work", DAMAGED_WORK):
+    for stored_text in sample_of(pytestconfig, "damaged work", DAMAGED_WORK):
         page.evaluate(
             "kept => { for (const s of [sessionStorage, localStorage])"
             " s.setItem('tiniscript.work', kept.shift()); }",
-            kept,
+            stored_text,
         )
         page.reload()
         wait_until_checked(page)
         assert page.input_value("#robot") == "tinibot"
-        assert (image(page) == compile("S").image) == ('"S"' in kept[1])
+        assert (image(page) == compile("S").image) == ('"S"' in stored_text[1])
     page.click("#view_text")
 
 
@@ -259,8 +259,8 @@ def test_a_file_that_is_no_program_leaves_the_program(page: Page, tmp_path: Path
         path.write_bytes(data)
         page.set_input_files("#file", path)
         wait_for_note(page, path.name)
-        wanted = open_text(data, "tinibot", "en")
-        assert isinstance(wanted, Message) and wanted.message in page.inner_text("#note"), name
+        expected = open_text(data, "tinibot", "en")
+        assert isinstance(expected, Message) and expected.message in page.inner_text("#note"), name
         assert image(page) == image_before, name
 
 

@@ -129,8 +129,8 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     source = page.locator(FLYOUT).nth(1)
     source.wait_for()
     page.evaluate(SETTLED_SCRIPT)
-    held, target = box_of(source), box_of(block(page, "gira a la derecha"))
-    x, y = held["x"] + 8, held["y"] + 10
+    source_box, target = box_of(source), box_of(block(page, "gira a la derecha"))
+    x, y = source_box["x"] + 8, source_box["y"] + 10
     to_x, to_y = target["x"] + 10, target["y"] + target["height"] + 8
     finger(page, [(x + (to_x - x) * k / 12, y + (to_y - y) * k / 12) for k in range(13)])
     page.locator("#blocks[data-state=shown]").wait_for()
@@ -259,17 +259,17 @@ def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
     page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
     source = page.locator(FLYOUT).filter(has_text="times").first
     source.wait_for()
-    held = box_of(source)
-    page.mouse.move(held["x"] + 8, held["y"] + 10)
+    source_box = box_of(source)
+    page.mouse.move(source_box["x"] + 8, source_box["y"] + 10)
     page.mouse.down()
     marker = page.locator(f"{PROGRAM} .blocklyInsertionMarker")
     moves_and_beeps = ".move, .beep"
-    for above, taken in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
+    for above, field_count in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
         page.mouse.move(700, 330, steps=8)  # away from all others: no block is lost
         assert block(page, "when it starts").locator(moves_and_beeps).count() == 3
         place = box_of(block(page, above))
         page.mouse.move(place["x"] + 10, place["y"] + place["height"] + 8, steps=8)
-        assert marker.locator(moves_and_beeps).count() == taken
+        assert marker.locator(moves_and_beeps).count() == field_count
     page.mouse.up()
     wrapped = "SI|F(2, 80);\nLOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\n"
     wait_for_text(page, wrapped)
@@ -538,8 +538,8 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
         for name in robots.names():
             page.select_option("#robot", name)
             wait_for_blocks(page)
-            for words, _, below, beside, _ in page.evaluate(LOWEST):
-                assert below <= 1 and beside <= 1, (language, name, words)
+            for words, _, below, overhang, _ in page.evaluate(LOWEST):
+                assert below <= 1 and overhang <= 1, (language, name, words)
 
 
 def test_every_word_that_has_a_block_can_be_dragged_out(
@@ -865,11 +865,13 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     names = set(re.findall(r"[A-Z][A-Z0-9_]+", core))
     messages = (BLOCKLY / "msg" / "en.js").read_text(encoding="utf-8")
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
-    wanted = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
+    wanted_texts = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
     texts = page_texts("en")
     own = {key: texts[key] for key in texts if key.startswith("blockly/")}
     assert own == {
-        key: wanted[key] for key in wanted if key in own or not UNUSED_MESSAGE.search(key)
+        key: wanted_texts[key]
+        for key in wanted_texts
+        if key in own or not UNUSED_MESSAGE.search(key)
     }
 
 

@@ -91,8 +91,8 @@ class Radio:
             chosen = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
             self._page.send("DeviceAccess.selectPrompt", chosen)
 
-    def _gatt(self, asked: Any) -> None:
-        if asked["type"] == "discovery" and not self._made:
+    def _gatt(self, request: Any) -> None:
+        if request["type"] == "discovery" and not self._made:
             self._made = True
             service = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
             for uuid, properties in self._characteristics():
@@ -101,7 +101,7 @@ class Radio:
                 if "notify" in properties:
                     self._ask("addDescriptor", characteristicId=characteristic["characteristicId"],
                               descriptorUuid="00002902-0000-1000-8000-00805f9b34fb")  # fmt: skip
-        self._ask("simulateGATTOperationResponse", address=ADDRESS, type=asked["type"], code=0)
+        self._ask("simulateGATTOperationResponse", address=ADDRESS, type=request["type"], code=0)
 
     def _characteristics(self) -> list[tuple[str, dict[str, bool]]]:
         to_robot = {"write": True, "writeWithoutResponse": True}
@@ -111,19 +111,19 @@ class Radio:
         return [(NORDIC.replace("0001-b5", "0002-b5"), to_robot),
                 (NORDIC.replace("0001-b5", "0003-b5"), to_computer)]  # fmt: skip
 
-    def _characteristic(self, asked: Any) -> None:
+    def _characteristic(self, request: Any) -> None:
         answer: dict[str, Any] = {}
-        if asked["type"] == "write":
-            data = base64.b64decode(asked["data"])
+        if request["type"] == "write":
+            data = base64.b64decode(request["data"])
             self.writes.append(len(data))
             self._there += data
-            if asked.get("writeType") == "write-without-response":
+            if request.get("writeType") == "write-without-response":
                 return
-        elif asked["type"] == "read":
+        elif request["type"] == "read":
             data = self._read_robot()
             answer = {"data": base64.b64encode(data).decode()}
         self._ask("simulateCharacteristicOperationResponse",
-                  characteristicId=asked["characteristicId"], type=asked["type"], code=0,
+                  characteristicId=request["characteristicId"], type=request["type"], code=0,
                   **answer)  # fmt: skip
 
     def _read_robot(self) -> bytes:

@@ -150,8 +150,8 @@ def remove_all_but_ana(taught: Class) -> None:
     for pupil in taught.room.teach({"do": "class"})["pupils"]:
         if pupil["name"] != "Ana":
             taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
-    for kept in taught.room.teach({"do": "class"})["kept"]:
-        taught.room.teach({"do": "class_forget", "key": kept["key"]})
+    for kept_work in taught.room.teach({"do": "class"})["kept"]:
+        taught.room.teach({"do": "class_forget", "key": kept_work["key"]})
 
 
 def click_ask(page: Page) -> None:

@@ -99,8 +99,8 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
     program = check(text.encode(), "tinibot", "en")
     rows = text.split("\n")
     first = [next(place for place in program.places if place.line == line) for line in lines]
-    wanted = {place[1:3] for place in first}
-    breaks = tuple(place.offset for place in program.places if place[1:3] in wanted)
+    wanted_spans = {place[1:3] for place in first}
+    breaks = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
     parts = tuple(place.offset for place in program.places)
     marks = Marks(parts, breaks, len(program.variables), is_held=steps)
     it = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
@@ -132,8 +132,8 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
 def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, name: str) -> None:
     text, lines = PROGRAMS[name]
     write_with_breakpoints(page, text, lines)
-    wanted = virtual_states(text, lines, steps=False)
-    assert list_halts(page, "#link_upload", "#link_go_on", text) == wanted
+    expected = virtual_states(text, lines, steps=False)
+    assert list_halts(page, "#link_upload", "#link_go_on", text) == expected
 
 
 @pytest.mark.sampled("name")
@@ -142,8 +142,8 @@ def test_a_step_goes_to_the_next_part_of_the_program(page: Page, name: str) -> N
     """It begins at the first part. Two parts joined by the compiler are one step."""
     text, _ = PROGRAMS[name]
     write_with_breakpoints(page, text, ())
-    wanted = [row for row in virtual_states(text, (), steps=True) if row[0] != "DISTANCE"]
-    assert list_halts(page, "#link_step", "#link_step", text) == wanted
+    expected = [row for row in virtual_states(text, (), steps=True) if row[0] != "DISTANCE"]
+    assert list_halts(page, "#link_step", "#link_step", text) == expected
 
 
 def halts(page: Page, line: int) -> None:

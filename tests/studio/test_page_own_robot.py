@@ -47,8 +47,10 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     assert GREEN_COLOUR in colors_of(page, "#arena")
     text_before = page.inner_text("#doing")
     name_robot(page, "  Pip ", 3)
-    drawn = page.evaluate("getComputedStyle(document.querySelector('#drawn_robot path')).fill")
-    assert drawn == f"rgb({PINK_COLOUR.replace(',', ', ')})"
+    drawn_colour = page.evaluate(
+        "getComputedStyle(document.querySelector('#drawn_robot path')).fill"
+    )
+    assert drawn_colour == f"rgb({PINK_COLOUR.replace(',', ', ')})"
     assert page.inner_text("#start_own").split() == ["Your", "robot", "Pip"]
     page.click("#start_own")
     assert axe(page, within="#own") == []

@@ -213,12 +213,12 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
     for program, answer in zip(
         sample, ask_worker(page, [{"do": "line", **request} for request in requests]), strict=True
     ):
-        wanted = line_for_robot(program.text.encode(), program.robot, "es")
-        if isinstance(wanted, str):
-            assert answer == {"text": wanted}, program.name
+        expected = line_for_robot(program.text.encode(), program.robot, "es")
+        if isinstance(expected, str):
+            assert answer == {"text": expected}, program.name
         else:
             refused_count += 1
-            assert answer == {"message": wanted.message, "fix": wanted.fix}, program.name
+            assert answer == {"message": expected.message, "fix": expected.fix}, program.name
     assert 0 < refused_count < len(sample)
 
 

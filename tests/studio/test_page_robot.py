@@ -64,9 +64,9 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
             simulation.advance(400)
         elif request["do"] == "stop":
             simulation.stop()
-        wanted = simulation.state()
-        wanted["events"] = [list(event) for event in wanted["events"]]
-        assert answer == wanted
+        expected = simulation.state()
+        expected["events"] = [list(event) for event in expected["events"]]
+        assert answer == expected
 
 
 def test_the_list_is_the_trace_of_the_command(page: Page) -> None:

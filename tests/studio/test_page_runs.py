@@ -153,14 +153,16 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     open_run(page, real_recording(*rows), tmp_path / "run.tsr")
     wait_for_status(page, "Both robots did the same. Values compared: 4.")
-    changed = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
-    open_run(page, real_recording(*changed), tmp_path / "run.tsr")
+    changed_rows = (*rows[:2], (451, "SHOW 6"), (452, "DONE"))
+    open_run(page, real_recording(*changed_rows), tmp_path / "run.tsr")
     wait_for_status(
         page, "Line 5: the robot reported 6 after 0.5 s, but the virtual robot reported 5 after"
     )
     names = run_names(page)
     assert names[0].startswith("Run ") and "real robot" in names[0]
-    assert [row.event for row in decode(save_run(page, 0)).rows] == [event for _, event in changed]
+    assert [row.event for row in decode(save_run(page, 0)).rows] == [
+        event for _, event in changed_rows
+    ]
     page.click("#runs_close")
     text = "SI|X = DISTANCE;\nSHOW(X)"
     open_run(page, real_recording((20, "SHOW 3"), text=text), tmp_path / "run.tsr")

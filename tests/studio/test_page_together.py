@@ -331,11 +331,11 @@ def test_work_that_is_given_back_is_in_my_programs_for_who_does_not_want_it_in_t
     shared_class.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
                        "lessons": []})  # fmt: skip
     state = shared_class.room.teach({"do": "class"})
-    [kept] = state["kept"]
+    [kept_work] = state["kept"]
     number = next(pupil["number"] for pupil in state["pupils"] if pupil["name"] == "Luz")
     with luz.expect_event("dialog") as asked_event_info:
         luz.once("dialog", lambda dialog: dialog.dismiss())
-        shared_class.room.teach({"do": "class_give_back", "key": kept["key"], "pupil": number})
+        shared_class.room.teach({"do": "class_give_back", "key": kept_work["key"], "pupil": number})
     assert "whole group" in asked_event_info.value.message
     wait_for_note(luz, "It is in My programs.")
     until(lambda: not shared_class.room.teach({"do": "class"})["kept"], "the class has heard of it")

@@ -182,10 +182,10 @@ def test_a_value_for_a_block_that_is_deleted_is_marked_as_of_this_page_alone(
 @drawn
 def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, Page]) -> None:
     ana, luz = two
-    held, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
-    ana.mouse.move(held["x"] + 8, held["y"] + 10)
+    source_box, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
+    ana.mouse.move(source_box["x"] + 8, source_box["y"] + 10)
     ana.mouse.down()
-    ana.mouse.move(held["x"] + 60, held["y"] + 40, steps=4)
+    ana.mouse.move(source_box["x"] + 60, source_box["y"] + 40, steps=4)
     go_to_line(luz, "B(1, 40)")
     type_slowly(luz, "\nBEEP(1, 440)\n")
     until(lambda: "BEEP" in text_of(ana), "the others' line arrives after a while")

@@ -49,8 +49,8 @@ def state_of(page: Page) -> BlocksState:
     return text, page.locator(f"{PROGRAM} > .blocklyBlock").evaluate_all(STACKS)
 
 
-def wait_for_state(page: Page, wanted: BlocksState) -> None:
-    wait_for(page, lambda: state_of(page) == wanted, str(wanted))
+def wait_for_state(page: Page, wanted_state: BlocksState) -> None:
+    wait_for(page, lambda: state_of(page) == wanted_state, str(wanted_state))
 
 
 def move(page: Page, words: str, to: tuple[float, float]) -> None:
@@ -102,12 +102,12 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
         act(page, dice)
         if (now := state_of(page)) != past[-1]:
             past.append(now)
-    for wanted in past[-2::-1]:
+    for wanted_state in past[-2::-1]:
         page.click("#undo")
-        wait_for_state(page, wanted)
-    for wanted in past[1:]:
+        wait_for_state(page, wanted_state)
+    for wanted_state in past[1:]:
         page.click("#redo")
-        wait_for_state(page, wanted)
+        wait_for_state(page, wanted_state)
 
 
 def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:

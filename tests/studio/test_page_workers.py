@@ -188,8 +188,8 @@ def test_a_browser_that_asks_for_a_strangers_worker_is_told_that_it_goes() -> No
             answer, data = page_server.ask(own, path, headers={"Service-Worker": "script"})
             assert answer.status == 200 and b"registration.unregister()" in data
             assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
-        asked = page_server.ask(
+        response = page_server.ask(
             own, f"/{serving.WORKER_FILE}", headers={"Service-Worker": "script"}
         )
-        assert asked[1] == b"y"
+        assert response[1] == b"y"
         assert page_server.ask(own, "/evil.js")[0].status == 404

@@ -27,11 +27,14 @@ def state_after(text: str, robot: str, ms: int) -> dict[str, Any]:
 
 def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     """A servo with a sensor has no jaws."""
-    known = {robot["name"]: robot for robot in description()["robots"]}
-    grabber = json.loads(json.dumps(known["grabber"]))
+    robot_by_name = {robot["name"]: robot for robot in description()["robots"]}
+    grabber = json.loads(json.dumps(robot_by_name["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
     state = state_after("SI|GRIPPER(45);W(9)", "grabber", 100)
-    both: list[tuple[Any, dict[str, int]]] = [(known["grabber"], {}), (grabber, {"GRIPPER": -45})]
+    both: list[tuple[Any, dict[str, int]]] = [
+        (robot_by_name["grabber"], {}),
+        (grabber, {"GRIPPER": -45}),
+    ]
     requests = [
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
         for robot, turned in both
@@ -46,7 +49,7 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
 
 
 def test_wheels_turn_as_far_as_they_have_rolled() -> None:
-    still, ahead, backward, around, turned = drawings_of(
+    still, ahead, backward, turning, turned = drawings_of(
         *(("tinibot", None, {**STANDING_STILL, "rolled": rolled})
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
     )  # fmt: skip
@@ -60,7 +63,7 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
         treads_before = treads(still, is_left)
         assert len(treads_before) == 4
         assert [tread - 0.5 for tread in treads(ahead, is_left)][1:] == pytest.approx(treads_before)
-        assert treads(around, is_left) == pytest.approx(treads_before)
+        assert treads(turning, is_left) == pytest.approx(treads_before)
         assert treads(backward, is_left) != treads_before
     assert treads(turned, True) == treads(ahead, True)
     assert treads(turned, False) == treads(still, False)

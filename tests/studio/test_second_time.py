@@ -449,7 +449,7 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
     """The kind and the number of earlier requests there do not matter."""
     chance = Random(seed)
     httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-    longest = begun = 0
+    longest = request_count = 0
     for _ in range(40):
         is_odd = chance.random() < 0.06
         what = chance.choice(
@@ -457,13 +457,13 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
         )
         padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
         fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-        wanted = ask(fresh, what, padding)
+        expected = ask(fresh, what, padding)
         fresh.close()
-        assert ask(httpconnection, what, padding) == wanted, (what, padding)
-        begun += 1
-        longest = max(longest, begun)
-        if wanted[2]:
+        assert ask(httpconnection, what, padding) == expected, (what, padding)
+        request_count += 1
+        longest = max(longest, request_count)
+        if expected[2]:
             httpconnection.close()
-            begun = 0
+            request_count = 0
     httpconnection.close()
     assert longest > 4

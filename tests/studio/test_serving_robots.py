@@ -216,12 +216,12 @@ def test_the_page_that_has_asked_last_is_kept(
     pages = [
         HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S) for _ in range(3)
     ]
-    kept = []
+    sockets = []
     for k in (0, 1, 0, 2, 0):
         pages[k].request("POST", serving.ROBOTS_PATH, PORTS, headers)
         pages[k].getresponse().read()
-        kept.append(pages[k].sock)
-    assert kept[0] is kept[2] is kept[4]
+        sockets.append(pages[k].sock)
+    assert sockets[0] is sockets[2] is sockets[4]
     assert pages[1].sock.recv(1) == b""
     for page in pages:
         page.close()

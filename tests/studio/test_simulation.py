@@ -97,14 +97,14 @@ def test_it_is_told_where_each_task_is() -> None:
 def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
     free, simulation = (started_simulation(TASKS, at, robot="tinibot32") for at in ((), parts))
     free.advance(600)
-    held: set[int | None] = set()
+    held_places: set[int | None] = set()
     while simulation.robot.now_ms < free.robot.now_ms:
-        held.add(simulation.held_at)
+        held_places.add(simulation.held_at)
         simulation.go_on()
         simulation.advance(1)
     assert trace_of(simulation) == trace_of(free)
     places = [place.offset for place in check(TASKS.encode(), "tinibot32", "en").places]
-    assert {places[k] for k in parts} <= held
+    assert {places[k] for k in parts} <= held_places
 
 
 def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:

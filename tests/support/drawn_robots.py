@@ -16,9 +16,9 @@ Drawing = list[tuple[str, list[float], str]]
 
 def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> list[Drawing]:
     """Return the drawings of robots, each with its name, its state and other visible parts."""
-    known = {robot["name"]: robot for robot in description()["robots"]}
+    robot_by_name = {robot["name"]: robot for robot in description()["robots"]}
     requests = [
-        {"robot": known[name], "state": state, "seen": robot_state}
+        {"robot": robot_by_name[name], "state": state, "seen": robot_state}
         for name, state, robot_state in wanted
     ]
     drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])

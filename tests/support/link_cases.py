@@ -76,7 +76,7 @@ def link_cases(kind: str) -> list[LinkCase]:
 
 def _read(path: Path) -> list[LinkCase]:
     cases: list[LinkCase] = []
-    named = names_of(path)
+    rows_by_name = names_of(path)
     title, fence = "", ""
     for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if row.startswith("```"):
@@ -89,7 +89,7 @@ def _read(path: Path) -> list[LinkCase]:
             cases.append(LinkCase(path, number, fence, row, []))
         elif fence in KINDS:
             time, _, name = row.lstrip().partition(" ")
-            lines = named.get(name, []) if time.isdigit() else []
+            lines = rows_by_name.get(name, []) if time.isdigit() else []
             cases[-1].rows.extend([f"{time:>6} {text}" for text in lines] or [row])
         elif not fence and row.startswith("#"):
             title = row.lstrip("# ")
@@ -414,7 +414,7 @@ class Written:
 def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
     """Return the times and bytes of a `packets` fence, and how long a packet is held."""
     stream = []
-    now_ms = held = 0
+    now_ms = held_ms = 0
     for row in case.rows:
         words = row.split()
         if words[0] == ">":
@@ -424,12 +424,12 @@ def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
         elif words[0] == "wait":
             now_ms += int(words[1])
         elif words[0] == "held":
-            held = int(words[1])
-    return stream, held
+            held_ms = int(words[1])
+    return stream, held_ms
 
 
 def packets_of(
-    stream: Iterable[tuple[int, int]], held: int = 0, is_large: bool = False
+    stream: Iterable[tuple[int, int]], held_ms: int = 0, is_large: bool = False
 ) -> list[str]:
     """Return the packets that the receiver in Python finds: the same rows as the one in C++.
 
@@ -453,8 +453,8 @@ def packets_of(
         if not packet.is_text:
             row += " damaged" if decode_frame(packet.data) is None else " whole"
         rows.append(row)
-        left = held + 1
-        if not held:
+        left = held_ms + 1
+        if not held_ms:
             receiver.take()
             left = 0
     assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))

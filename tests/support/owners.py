@@ -78,8 +78,8 @@ class Owned:
         seed: int = 0x12345678,
         defines: tuple[str, ...] | None = None,
     ) -> None:
-        given = self.DEFINES if defines is None else defines
-        self.robot = HostFirmware(KIT, memory, seed=seed, defines=given)
+        all_defines = self.DEFINES if defines is None else defines
+        self.robot = HostFirmware(KIT, memory, seed=seed, defines=all_defines)
         self.robot.wait(300)
 
     @property

@@ -81,8 +81,8 @@ def drag(
 
 def meet(a: dict[str, float], b: dict[str, float]) -> bool:
     """Return whether two boxes overlap by more than a notch."""
-    beside = a["left"] > b["right"] - 1 or b["left"] > a["right"] - 1
-    return not (beside or a["top"] > b["bottom"] - 8 or b["top"] > a["bottom"] - 8)
+    are_apart = a["left"] > b["right"] - 1 or b["left"] > a["right"] - 1
+    return not (are_apart or a["top"] > b["bottom"] - 8 or b["top"] > a["bottom"] - 8)
 
 
 # Opens one group after the other: the kinds of the blocks that can be dragged out.

@@ -113,8 +113,8 @@ def sample_of(
     """Return a sample of the rows that one test iterates over, in their order."""
     if config.getoption("--whole") or is_narrowed(config):
         return rows
-    kept = random.Random(f"{seed(config)} {draw}").sample(range(len(rows)), keep)
-    return [rows[k] for k in sorted(kept)]
+    kept_indexes = random.Random(f"{seed(config)} {draw}").sample(range(len(rows)), keep)
+    return [rows[k] for k in sorted(kept_indexes)]
 
 
 def how_to_repeat(config: pytest.Config) -> str:
@@ -126,8 +126,8 @@ def how_to_repeat(config: pytest.Config) -> str:
 
 
 def is_narrowed(config: pytest.Config) -> bool:
-    asked = config.option.keyword  # "not this one" selects none
-    return (asked and not asked.startswith("not ")) or any("::" in arg for arg in config.args)
+    keyword = config.option.keyword  # "not this one" selects none
+    return (keyword and not keyword.startswith("not ")) or any("::" in arg for arg in config.args)
 
 
 def seed(config: pytest.Config) -> str:

@@ -163,10 +163,14 @@ class Firmware(Nobody):
         if message.name == "HELLO" and self.refuses is not None:
             payload = bytes([self.refuses[0]]) + self.refuses[1].to_bytes(2, "little")
         elif message.name in ("HELLO", "STATUS", "PING"):
-            known = {**self.hello, **self.counts}
+            known_values = {**self.hello, **self.counts}
             payload += encode_payload(
                 message.reply,
-                {field.name: known[field.name] for field in message.reply if field.name in known},
+                {
+                    field.name: known_values[field.name]
+                    for field in message.reply
+                    if field.name in known_values
+                },
             )
         elif message.name != "TRIM" or self.trim is None:
             payload = bytes([STATUSES["UNKNOWN_MESSAGE"], 0, 0])

@@ -77,14 +77,16 @@ def describe(operations: list[Operation]) -> str:
     return ", ".join(rows)
 
 
-@each_row("what, before, after, wanted, stay", CASES)
-def test_what_is_the_same_stays(what: str, before: str, after: str, wanted: str, stay: int) -> None:
+@each_row("what, before, after, wanted_operations, stay", CASES)
+def test_what_is_the_same_stays(
+    what: str, before: str, after: str, wanted_operations: str, stay: int
+) -> None:
     numbers, new_numbers = count(1), count(1)
     old = parse_tree(before, lambda: f"o.{next(numbers)}")
     operations = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
     new = apply_change(old, Change("n:1", tuple(operations))).tree
     assert new.shape() == parse_tree(after).shape()
-    assert wanted in ("*", describe(operations))
+    assert wanted_operations in ("*", describe(operations))
     assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
 
 

@@ -37,14 +37,14 @@ class Editor:
         self.text = ""
         self.begin(None)
 
-    def begin(self, kept: Json | None) -> None:
+    def begin(self, stored_data: Json | None) -> None:
         """Join the group, with the page's stored data from before a reload."""
         self.at, self.is_hot = 0, False
         self.keys: list[str] = []  # that are to be pressed
         self.news: list[Json] = []
         self.python: tuple[Any, Any] = (None, None)
         news = {**self.program.news(self.name, -1, ""), "page": self.name}
-        self.take(self.ask({"do": "group_begin", "news": news, "kept": kept}))
+        self.take(self.ask({"do": "group_begin", "news": news, "kept": stored_data}))
 
     @property
     def loose(self) -> list[str]:

@@ -140,7 +140,7 @@ def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(two: T
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.luz, "F(1, 80)", "F(1, 99)")
     assert "F(1, 99)" in two.meet()
-    assert any("F(2, 80)" in str(taken) for taken in two.program.taken_changes)
+    assert any("F(2, 80)" in str(change) for change in two.program.taken_changes)
     assert not two.ana.undo()  # her text is gone
     assert two.luz.undo()
     assert "F(2, 80)" in two.meet()
@@ -212,7 +212,7 @@ def test_a_half_typed_value_is_no_change_though_it_parses(two: Two) -> None:
     assert "L(1, 60)" in two.meet()
     two.ana.leave()
     assert "L(1, 95)" in two.meet()
-    assert sum("L(1, 9" in str(taken) for taken in two.program.taken_changes) == 1
+    assert sum("L(1, 9" in str(change) for change in two.program.taken_changes) == 1
 
 
 def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) -> None:
@@ -253,10 +253,10 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
 def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.ana, "W(1);", "W(9)", is_hot=True)
-    kept = json.loads(json.dumps(two.ana.store_data()))
+    stored_data = json.loads(json.dumps(two.ana.store_data()))
     two.types(two.luz, "L(1, 60)", "L(3, 60)")
     two.sends(two.luz)
-    two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+    two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
     assert two.ana.lines[two.ana.caret] == "  W(9)"
     two.ana.leave()  # no one has continued that line
     assert "F(2, 80)" in two.meet()
@@ -289,8 +289,8 @@ def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Tw
     two.program.submit(two.ana.pending_changes)  # and the answer is lost
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     for time_s, name in enumerate("zyx", 2):
-        kept = json.loads(json.dumps(two.ana.store_data()))
-        two.ana = Page.of(name, two.program.news(name, -1, ""), kept)
+        stored_data = json.loads(json.dumps(two.ana.store_data()))
+        two.ana = Page.of(name, two.program.news(name, -1, ""), stored_data)
         two.types(two.ana, f"L({time_s - 1}, 60)", f"L({time_s}, 60)")  # before the rest is sent
         two.types(two.ana, f"W({time_s - 1})", f"W({time_s})")
     assert two.meet().count("BEEP(1, 440)") == 1
@@ -379,8 +379,8 @@ def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> 
                 edits(two.ana, chance)
                 continue
             case "reload":
-                kept = json.loads(json.dumps(two.ana.store_data()))
-                two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+                stored_data = json.loads(json.dumps(two.ana.store_data()))
+                two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
             case message:
                 exchange(two, message)
         assert program_of(two.ana) == typed

@@ -155,7 +155,7 @@ class World:
             if isinstance(operation, Replace) and operation.id in before:
                 by = before[operation.id].mark(operation.fields[0][0])
                 self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
-                    taken.uid == by and taken.number > since for taken in self.all_taken[-50:]
+                    change.uid == by and change.number > since for change in self.all_taken[-50:]
                 )  # fmt: skip
 
     def _arrive(self, name: str, turn: int, news: Json) -> None:
@@ -172,9 +172,9 @@ class World:
         """The page is reloaded; it has the data stored in its browser."""
         pupil = self.pupils[name]
         pupil.page.flush()
-        kept = self._send_and_parse(pupil.page.store_data())
+        stored_data = self._send_and_parse(pupil.page.store_data())
         news = self._send_and_parse(self.program.news(name, -1, ""))
-        pupil.page = Page.of(name, news, kept)
+        pupil.page = Page.of(name, news, stored_data)
         self.turn[name] += 1
         self.ask(name, self.turn[name])
 
@@ -255,8 +255,8 @@ class World:
     def check_nothing_is_lost(self) -> None:
         """Every node is still there unless a delete or an unwrap removed it."""
         alive = set(self.first)
-        for taken in self.all_taken:
-            for operation in taken.operations:
+        for change in self.all_taken:
+            for operation in change.operations:
                 alive |= _list_added_ids(operation)
                 if isinstance(operation, Delete):
                     alive -= set(operation.ids)

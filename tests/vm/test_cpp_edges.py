@@ -70,9 +70,9 @@ def test_what_is_closed_takes_no_room() -> None:
         compare_runs(host(), piece * 40, WIDE_KIT, Senses(max_ms=1000, max_steps=1000))
     # Needs of one procedure are not needs of the next.
     for needs in (0, 8, COUNTERS):
-        for around in range(COUNTERS + 1):
+        for loop_count in range(COUNTERS + 1):
             code = procedure(loops(stop, needs)) + procedure(stop)
-            code += loops(jump("CALL", True, 5 + 2 * around), around)
+            code += loops(jump("CALL", True, 5 + 2 * loop_count), loop_count)
             compare_verdicts(host(), [code], 3, 2)
     for count in range(CALLS + 1):
         compare_verdicts(host(), [calls_in_calls(CALLS) + calls_in_calls(count)], 3, 2)
@@ -82,12 +82,12 @@ def test_a_procedure_needs_what_it_calls_needs() -> None:
     """A procedure needs what it calls needs; loops and procedures are remembered at once."""
     stop = simple("STOP")
     for needs in (0, 1, 8):
-        for between in (0, 1, 7):
-            for around in range(COUNTERS + 1):
+        for loops_before in (0, 1, 7):
+            for loop_count in range(COUNTERS + 1):
                 first = loops(stop, needs)
-                second = loops(jump("CALL", True, len(first) + 7 + 2 * between), between)
+                second = loops(jump("CALL", True, len(first) + 7 + 2 * loops_before), loops_before)
                 code = procedure(first) + procedure(second)
-                code += loops(jump("CALL", True, len(second) + 4 + 2 * around), around)
+                code += loops(jump("CALL", True, len(second) + 4 + 2 * loop_count), loop_count)
                 compare_verdicts(host(), [code], 3, 2)
     for count in (DEFS - 1, DEFS, DEFS + 1):
         code = procedure(stop) * count + jump("CALL", True, 5)

@@ -97,26 +97,26 @@ def write_release_file() -> str:
 def test_they_compile_still_and_do_the_same(version: str) -> None:
     olds = [old for old in released_programs(version) if not names_a_newer_word(old.text)]
     assert len(olds) > (300 if version == FIRST_VERSION else 0)
-    changed = []
+    changed_traces = []
     for old in olds:
         try:
             trace = trace_of(old)
         except ProgramError as error:
             trace = str(error)
         if trace != old.trace:
-            changed.append((old.text, old.trace, trace))
-    assert not changed, f"{len(changed)}, the first: {changed[0]}"
+            changed_traces.append((old.text, old.trace, trace))
+    assert not changed_traces, f"{len(changed_traces)}, the first: {changed_traces[0]}"
 
 
 def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
     """Each of these words is a name in one of them."""
-    named = set()
+    named_words = set()
     for old in released_programs():
         messages = [message for message in check(old.text, old.robot) if message.code == "TS842"]
         if messages:
             assert all(message.severity == "warning" for message in messages)
-            named |= {message.message.split()[0] for message in messages}
-    assert named == KIT_WORDS_SINCE.keys()
+            named_words |= {message.message.split()[0] for message in messages}
+    assert named_words == KIT_WORDS_SINCE.keys()
 
 
 def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:

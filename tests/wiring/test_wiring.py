@@ -89,9 +89,9 @@ def test_every_driver_is_drawn_with_all_its_pins(driver: Driver) -> None:
 def test_every_board_that_has_firmware_is_drawn_with_all_its_pins() -> None:
     for name, sides in SIDES.items():
         chip = CHIPS[name]
-        drawn = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
-        drawn |= set(range(22, 54)) if name == "mega" else set()
-        assert drawn == chip.digital_pins | chip.analog_pins | chip.link_pins
+        drawn_pins = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
+        drawn_pins |= set(range(22, 54)) if name == "mega" else set()
+        assert drawn_pins == chip.digital_pins | chip.analog_pins | chip.link_pins
 
 
 # -- every pin, in both languages
@@ -135,9 +135,9 @@ def test_each_rail_has_one_tag_at_the_board(robot: Robot) -> None:
     """
     plan = plan_of(robot, "en")
     left, _, width, _ = layout_of(plan).board
-    beside = (f"{left - 29}", f"{left + width + 29}")
+    tag_positions = (f"{left - 29}", f"{left + width + 29}")
     words = Tree.fromstring(drawing_of(plan)).iter(f"{SVG}text")
-    tags = [word.text or "" for word in words if word.get("x") in beside]
+    tags = [word.text or "" for word in words if word.get("x") in tag_positions]
     assert sorted(tags) == sorted(set(BOARD_RAILS) & set(plan.rails))
 
 
@@ -398,8 +398,8 @@ def test_a_small_plate_is_drawn_with_small_wheels(
         for element in Tree.fromstring(svg).iter(f"{SVG}rect")
         if element.get("fill") == "#333333"
     ]
-    drawn = [float(wheels[0].attrib[side]) / (520 / size_cm) for side in ("height", "width")]
-    assert len(wheels) == 2 and drawn == pytest.approx(wheel_cm)
+    drawn_cm = [float(wheels[0].attrib[side]) / (520 / size_cm) for side in ("height", "width")]
+    assert len(wheels) == 2 and drawn_cm == pytest.approx(wheel_cm)
     left, right = (float(wheel.attrib["x"]) for wheel in wheels)
     assert right - left == pytest.approx(520)  # length of the axle, which is the plate's width
 
