@@ -235,7 +235,7 @@ def test_a_disassembly_names_the_devices_that_the_kit_has() -> None:
 
 
 @pytest.mark.parametrize("text", ["0001  58", "0000  5", "zzzz  58", "0000 58", "nonsense"])
-def test_what_is_no_disassembly_is_refused(text: str) -> None:
+def test_anything_but_a_disassembly_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no line of a disassembly"):
         assemble(text)
 

@@ -192,7 +192,7 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "which"), [(["set", "name", "TINI"], 1), (["set", "trim", "--reset"], 2)]
 )
-def test_a_port_that_vanishes_is_no_bug(
+def test_a_port_that_vanishes_is_not_reported_as_a_bug(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:
     """The cable is pulled before the robot has confirmed a save."""
@@ -256,7 +256,7 @@ def start_unread_command(*words: str) -> Command:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
 @pytest.mark.parametrize("extra", [[], ["--json"]])
-def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) -> None:
+def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
         command = start_unread_command("upload", "-e", TALKS, *port_options, *extra)
@@ -271,9 +271,7 @@ def test_a_fleet_whose_output_nobody_reads_ends_with_ctrl_c(extra: list[str]) ->
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
 @pytest.mark.parametrize("verb", ["upload", "monitor"])
-def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
-    pty_robot: PtyRobot, verb: str
-) -> None:
+def test_a_command_with_unread_output_ends_with_ctrl_c(pty_robot: PtyRobot, verb: str) -> None:
     port_option = ("--port", pty_robot.port)
     if verb == "monitor":
         assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
@@ -288,7 +286,7 @@ def test_a_command_whose_output_nobody_reads_ends_with_ctrl_c(
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
 @pytest.mark.parametrize("reader", ["reads", "is slow", "has gone"])
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_who_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
+def test_whoever_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
     monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
 ) -> None:
     """In `(tsc upload prog; echo done) | less`, the next command may wait for the reader."""

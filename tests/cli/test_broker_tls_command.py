@@ -64,7 +64,7 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     assert "no program; nothing is running; yours" in run_in_process(*next_command, data=b"a secret\n").out
 
 
-def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:
+def test_an_invalid_certificate_is_reported_before_the_robot_is_asked(tmp_path: Path) -> None:
     authority, other = Authority(tmp_path), Authority(tmp_path, "Otra")
     text = authority.file.read_bytes()
     begin = text.index(b"-----BEGIN")

@@ -168,9 +168,7 @@ def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None
         assert (folder / "b.ts").read_bytes() == bom + right.encode()
 
 
-def test_what_is_no_text_and_a_line_with_a_checksum_stay_as_they_are(
-    folder: Path, tsc: Tsc
-) -> None:
+def test_binary_data_and_a_line_with_a_checksum_stay_as_they_are(folder: Path, tsc: Tsc) -> None:
     for data, code in ((b"F(2 80)\xff", "TS003"), (b"SI|F(2 80);S~21FFE748\n", "TS")):
         (folder / "b.ts").write_bytes(data)
         result = tsc("check", "--fix", "b.ts")

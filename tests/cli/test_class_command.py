@@ -176,7 +176,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
 
 
 @drawn
-def test_who_only_looks_changes_nothing(room: Class) -> None:
+def test_whoever_only_looks_changes_nothing(room: Class) -> None:
     """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)

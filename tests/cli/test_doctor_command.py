@@ -128,7 +128,7 @@ def test_a_port_that_another_program_has_locked() -> None:
         assert run_in_process("doctor", "--port", end.port).code == 0
 
 
-def test_what_is_no_robot_and_what_others_have_written(tsc: Tsc) -> None:
+def test_other_devices_and_foreign_firmware_are_recognized(tsc: Tsc) -> None:
     """Uses a real port; each cause by itself is in `tests/doctor/`."""
     with PtyEnd(Firmware(57_600)) as pty_end:
         result = tsc("doctor", "--port", pty_end.port, "--json")
@@ -185,7 +185,7 @@ def test_an_upload_says_what_is_there_instead_of_a_robot(
         assert sentence in rows[0]["said"]
 
 
-def test_wrong_use_and_no_such_port(tsc: Tsc) -> None:
+def test_wrong_use_and_a_missing_port_are_reported(tsc: Tsc) -> None:
     for words in (
         ("--watch", "601"), ("--watch", "-1"), ("--baud", "x"), ("--robot", "nobody"),
         ("--port", ""),

@@ -108,7 +108,7 @@ def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
     assert "unreliable" not in on(robot, "set", "wifi").out
 
 
-def test_what_is_no_password_changes_nothing(robot_in_network: Esp32PtyRobot) -> None:
+def test_anything_but_a_password_changes_nothing(robot_in_network: Esp32PtyRobot) -> None:
     for data in (b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
                  b"1234567\x1b[2J\n", b"x" * 5000):  # fmt: skip
         result = on(robot_in_network, "set", "wifi", "Other", data=data)

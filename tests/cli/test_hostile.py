@@ -101,7 +101,7 @@ def test_files_that_are_none_or_may_not_be_read(
     tsc(verb, program).gives(2, "no permission to read")
 
 
-def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
+def test_a_missing_verb_and_an_unknown_verb_are_refused(tsc: Tsc) -> None:
     assert tsc().code == 0
     assert tsc().out == tsc("--help").out == help.overview("en")
     assert tsc("--lang", "es", "--help").out == help.overview("es")
@@ -169,7 +169,7 @@ def test_output_that_is_not_unicode(
         assert b"l\\xednea 1:" in output
 
 
-def test_input_that_is_no_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_binary_input_is_refused(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     for encoding in ("ascii", "utf-8", "cp1252"):
         monkeypatch.setattr(sys, "stdin", in_encoding(encoding, b"F(\xff\x81\n"))
         result = tsc("live", "--virtual")
@@ -203,11 +203,11 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
 
 
 @pytest.mark.parametrize("number", ["0000801234", "99999", "00000", "٣٣٣٣", "-1", "4" * 5000])
-def test_a_number_that_no_port_has_is_no_robot(number: str) -> None:
+def test_a_number_that_no_port_has_is_not_a_robot(number: str) -> None:
     assert not directory._is_listening(f"socket://127.0.0.1:{number}")
 
 
-def test_a_cache_that_is_damaged_or_cannot_be_written_is_no_trouble(
+def test_a_damaged_or_unwritable_cache_does_no_harm(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     image = program.with_suffix(".bin")

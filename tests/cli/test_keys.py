@@ -50,7 +50,7 @@ def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
      encode_keys([OWNER_KEY]).replace(b"12345678", b"-1234567"),
      encode_keys([OWNER_KEY] * (MOST_KEYS + 1))],
 )  # fmt: skip
-def test_a_file_that_is_none_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
+def test_an_invalid_key_file_is_left_as_it_is(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
     key_file.path.write_bytes(data)
     with pytest.raises(BadKeys) as exception_info:
@@ -277,7 +277,7 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     [b"", b"[]", b"{", b"\xff", b"[" * 100_000, b'{"places": [], "accepted": []}',
      b'{"places": {"a": 7}, "accepted": []}', b'{"places": {}, "accepted": ["x"]}'],
 )  # fmt: skip
-def test_a_file_of_places_that_is_none_is_made_anew(key_file: KeyFile, data: bytes) -> None:
+def test_an_invalid_file_of_places_is_replaced(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
     key_file.path.with_name("robots.json").write_bytes(data)
     assert key_file.robot_at(ROBOT_ADDRESS) is None and not key_file.accepts(7)

@@ -150,7 +150,7 @@ def test_wrong_use_says_the_next_step(
     assert tsc("lesson", *arguments, "--lang", "es").err != result.err
 
 
-def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
+def test_anything_but_a_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     """Circular and dangling links, a pipe, an image: none blocks, and none is left out."""
     (tmp_path / "a.bin").write_bytes(b"TS\x02")
     assert "its source" in tsc("lesson", "check", "1", tmp_path / "a.bin").err

@@ -226,7 +226,7 @@ def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
     assert str(checksums.pop()) not in result.out
 
 
-def test_a_port_that_never_had_a_robot_is_no_failure(
+def test_a_port_that_never_had_a_robot_is_not_a_failure(
     class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import pty

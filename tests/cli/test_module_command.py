@@ -132,7 +132,7 @@ def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc:
     assert end.name == "BT05"
 
 
-def test_ports_that_are_none(tsc: Tsc) -> None:
+def test_invalid_ports_are_refused(tsc: Tsc) -> None:
     assert "tsc doctor --module --port P" in tsc("doctor", "--module").err
     assert tsc("doctor", "--module", "--port", "").code == 2
     for port in ("/dev/rfcomm7", "socket://127.0.0.1:9"):

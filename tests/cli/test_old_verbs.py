@@ -138,7 +138,7 @@ def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
     assert count
 
 
-def test_what_is_no_command_is_found_in_what_a_robot_says() -> None:
+def test_a_wrong_command_in_a_robot_s_message_is_found() -> None:
     for wrong in (
         "Owned: tsc set txet on, or button 2 s.",
         "Take other pins with tsc firmwear -b.",

@@ -185,7 +185,9 @@ def test_devices_and_pipes_may_be_written(tsc: Tsc, tmp_path: Path) -> None:
         tsc("compile", program, "-o", "/dev/full").gives(2, "-o")
 
 
-def test_a_file_called_as_a_shipped_robot_is_no_input(tsc: Tsc, working_folder: Path) -> None:
+def test_a_file_with_the_name_of_a_shipped_robot_is_not_read(
+    tsc: Tsc, working_folder: Path
+) -> None:
     for _ in range(2):
         assert tsc("firmware", "--board", "tinibot", "-o", "tinibot").code == 0
 

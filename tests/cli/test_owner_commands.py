@@ -43,7 +43,7 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
     assert main(["set", "owner", "--port", pty_robot.port]) == 0
 
 
-def test_who_claims_a_robot_drives_it_and_nobody_else(
+def test_whoever_claims_a_robot_drives_it_and_nobody_else(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["owner"] == "free"
@@ -201,7 +201,7 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     assert on(pty_robot, "stop").code == 0
 
 
-def test_who_claims_many_robots_at_one_cable_is_not_asked(pty_robot: PtyRobot) -> None:
+def test_whoever_claims_many_robots_at_one_cable_is_not_asked(pty_robot: PtyRobot) -> None:
     for _ in range(2):
         claim_with_button(pty_robot).gives(0, out="yours")
         assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0

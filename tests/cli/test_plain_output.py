@@ -191,7 +191,7 @@ def test_what_is_printable_stays() -> None:
     assert printable("a\x1b[31m") == "a?[31m"
 
 
-def test_one_byte_is_no_bytes() -> None:
+def test_a_single_byte_takes_the_singular() -> None:
     for language, expected in (("en", "1 byte of code"), ("es", "1 byte de código")):
         values = {"checksum": "0", "name": " (1 bytes.ts)", "saved": "x"}
         one = text("info_program", language).format(code=1, **values)

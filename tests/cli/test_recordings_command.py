@@ -360,7 +360,7 @@ def test_a_recording_ends_when_the_run_does(
     )
 
 
-def test_after_ctrl_c_saving_is_no_time_of_the_run(
+def test_after_ctrl_c_the_time_of_saving_does_not_count(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file, now_s = tmp_path / "run.tsr", [5.0]

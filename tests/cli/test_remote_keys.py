@@ -70,7 +70,7 @@ def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
 
 
 @pytest.mark.parametrize("typed_text", ["\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "\x1bx", "é"])
-def test_what_is_no_key_of_a_remote_control_holds_nothing(typed_text: str) -> None:
+def test_anything_but_a_remote_control_key_holds_nothing(typed_text: str) -> None:
     keys = HeldKeys()
     assert not keys.press_typed(typed_text + "\x1b", 0.0)
     assert not keys.press_typed("b", 0.1) and keys.keys_at(0.1) in (

@@ -142,7 +142,7 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty
     assert "there is no port" in tsc("doctor", "--ports", "--ask", "--port", "/dev/no-such").out
 
 
-def test_a_person_without_a_port_is_asked_for_one(
+def test_a_person_without_a_port_is_asked_for_a_port(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     listed_ports = [
@@ -182,7 +182,7 @@ def test_nobody_something_else_and_another_version(
 
 
 @pytest.mark.parametrize("verb", ["doctor --identify", "stop", "start", "show", "monitor", "live"])
-def test_ports_that_are_none(tsc: Tsc, verb: str, tmp_path: Path) -> None:
+def test_invalid_ports_are_refused(tsc: Tsc, verb: str, tmp_path: Path) -> None:
     for language in ("en", "es"):
         for port in ("/dev/no-such-port", str(tmp_path), os.devnull, "nix://a", "socket://a",
                      "socket://127.0.0.1:1", "a" * 5000):  # fmt: skip

@@ -35,7 +35,7 @@ def test_a_wrong_program_gets_the_usual_messages(tsc: Tsc, tmp_path: Path) -> No
     assert result.code == 1 and "TS016" in result.err and not result.out and not target.exists()
 
 
-def test_a_program_that_is_too_large_for_a_machine_is_none_for_a_sketch(tsc: Tsc) -> None:
+def test_a_program_too_large_for_a_machine_is_refused_as_a_sketch(tsc: Tsc) -> None:
     many = ";".join(f"F({k}.5, {k})" for k in range(1, 100))
     tsc("show", "--arduino", "-e", f"SI|{many};{many}").gives(0, out="forward(99.5, 99);")
 

@@ -54,7 +54,7 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 
 
 @pytest.mark.parametrize("is_shared", [False, True])
-def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
+def test_whoever_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
     server = start_endless_upload(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
     results = [command.wait_for_result() for command in stops]
@@ -221,7 +221,7 @@ def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> Non
 
 
 @pytest.mark.parametrize("is_known", [True, False])
-def test_who_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_whoever_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     now_s = [0.0]
     monkeypatch.setattr(opening, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))

@@ -278,7 +278,7 @@ def pace_of(memory: bytes) -> Pace | None:
     return trim_from_reply(robot.complete(session, session.trim())).pace
 
 
-def test_older_firmware_keeps_none() -> None:
+def test_older_firmware_stores_no_pace() -> None:
     older = TrimReply(0, 0, 0, b"")
     assert trim_from_reply(older).pace is None
     assert "centimetres" not in trim_in_words(trim_from_reply(older), "en")
@@ -294,7 +294,7 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
     assert "turns 144 degrees per second at 40 % and 288 at 80 %" in told_by_info
 
 
-def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
+def test_whoever_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
     wrong = "1\n\n33\n\n33\n"
     result = run_trim(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
     assert result.code == 0, result.err
@@ -302,7 +302,7 @@ def test_who_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
     assert stored_trim(pty_robot).pace == Pace(0, 16.51, 144, 288)
 
 
-def test_who_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
+def test_whoever_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
     run_trim(pty_robot, "--speed-40", "20").gives(2, "faster than at 40 %")
     assert stored_trim(pty_robot).pace == Pace()
     assert run_trim(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0

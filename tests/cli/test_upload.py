@@ -138,7 +138,7 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
 
 
 @pytest.mark.parametrize("is_many", [False, True])
-def test_a_reset_during_a_run_is_no_success(pty_robot: PtyRobot, is_many: bool) -> None:
+def test_a_reset_during_a_run_is_not_success(pty_robot: PtyRobot, is_many: bool) -> None:
     """After a power cycle, a program has not ended by itself, however it was started."""
     other = ("--port", "/dev/none") if is_many else ()
     command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
@@ -266,7 +266,7 @@ def test_the_file_of_the_program_is_named_where_it_is_known(
     assert "square.ts)" in on(pty_robot, "start", "--previous").out
 
 
-def test_where_there_is_none_before_the_next_step_is_said(pty_robot: PtyRobot) -> None:
+def test_without_a_previous_program_the_next_step_is_named(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", FIRST_PROGRAM).code == 0
     for language, expected, advice in (
         ("en", "no earlier program that it can run.", "Send the program that you want"),

@@ -324,7 +324,7 @@ def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], message: str) ->
     assert message not in spanish.err or message.startswith("There")
 
 
-def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_port_in_use_and_an_invalid_memory_are_refused(tsc: Tsc, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server_socket:
         result = tsc("robot", "--listen", str(server_socket.getsockname()[1]))
     assert result.code == 3

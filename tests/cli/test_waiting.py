@@ -48,7 +48,7 @@ def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         yield end.port
 
 
-def test_who_waits_for_a_robot_is_told(
+def test_whoever_waits_for_a_robot_is_told(
     tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A short wait prints nothing, and a program that reads the output sees nothing."""
@@ -62,7 +62,7 @@ def test_who_waits_for_a_robot_is_told(
     assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
 
 
-def test_who_waits_for_a_board_is_told_until_it_is_written(
+def test_whoever_waits_for_a_board_is_told_until_it_is_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     watch_output(monkeypatch)

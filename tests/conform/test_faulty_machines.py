@@ -33,6 +33,6 @@ def test_the_case_notices_the_fault(fault: Fault) -> None:
     assert answer_of(run) == right, "a fault stays behind"
 
 
-def test_each_fault_is_another_one() -> None:
+def test_each_fault_is_different() -> None:
     assert len({fault.says for fault in faults()}) == len({fault.changes for fault in faults()})
     assert len(faults()) == len({fault.says for fault in faults()})

@@ -325,7 +325,7 @@ def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(
     assert re.search(r"exit code 3\b(?!:)", result.out)
 
 
-def test_half_an_answer_is_one_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
+def test_half_an_answer_is_that_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
     source = "sys.stdin.readline()\nos.write(1, b'0 SHOW 1\\n')\nsys.exit('half')"
     conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100").gives(
         1, out=("exit code 1: half", "line 1: 0 SHOW 1")
@@ -339,7 +339,7 @@ def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path)
     assert "\0" not in result.out
 
 
-def test_a_machine_that_reads_nothing_is_no_trouble(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_machine_that_reads_nothing_does_no_harm(tsc: Tsc, tmp_path: Path) -> None:
     """The longest image is more than a pipe holds."""
     command = machine(tmp_path, "time.sleep(60)")
     result = conform(tsc, command, "--only", "the longest code", "--timeout", "1")

@@ -171,7 +171,7 @@ def test_any_text_is_told_well(seed: int) -> None:
     ["BREAK F2", "BREAK;\nF2\nS", "S\nhello", "SI|F(1,80)\nhello there", "F(1,80) SI|S\nFin",
      "IF(TRUE)\nS\nF(1 80)\nEND", "LOOP(2)\nF(1,80)\nLOOP(3)\nfoo\nEND_LOOP"],
 )  # fmt: skip
-def test_each_end_of_a_line_is_one(text: str) -> None:
+def test_each_kind_of_line_end_ends_a_line(text: str) -> None:
     compilation = check_text(text, KIT)
     check_messages(compilation)
     assert check_text(text.replace("\n", "\r"), KIT).diagnostics == compilation.diagnostics

@@ -74,7 +74,7 @@ def test_bluetooth_of_linux(linux: FakeComputer) -> None:
     assert diagnosis.inspect_computer(linux).bluetooth == OFF
 
 
-def test_who_may_use_a_port_and_who_does(linux: FakeComputer) -> None:
+def test_the_users_and_the_holder_of_a_port_are_named(linux: FakeComputer) -> None:
     port = "/dev/ttyUSB0"
     linux.write(port, "")
     linux.write("/etc/group", "root:x:0:\ndialout:x:20:ana\nbroken\n")
@@ -143,7 +143,7 @@ def test_bluetooth_of_macos(tmp_path: Path) -> None:
         assert (computer.bluetooth, computer.adapters) == (state, None), output
 
 
-def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:
+def test_the_user_of_a_port_of_macos_is_named(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "darwin")
     port = "/dev/cu.usbserial-1420"
     system.write(port, "")

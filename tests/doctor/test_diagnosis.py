@@ -403,7 +403,7 @@ def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
     assert case.diagnosis(RADIO).findings[0].cause == cause
 
 
-def test_whose_a_robot_is_says_what_it_says_after_a_key(case: Case) -> None:
+def test_the_ownership_of_a_robot_is_shown_by_its_answer_to_a_key(case: Case) -> None:
     case.expected = case.expected._replace(has_key=lambda robot: True)
     case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
     assert "of_another_owner" in [finding.cause for finding in case.diagnosis().findings]

@@ -113,7 +113,7 @@ def test_each_part_has_a_name() -> None:
     }
 
 
-def test_an_examination_finds_what_is_about_a_part_or_that_it_is_no_robot_of_ours() -> None:
+def test_an_examination_finds_what_is_about_a_part_or_that_it_is_not_a_robot_of_ours() -> None:
     names = [*CAUSES]
     about_it = names[names.index("other_robot") : names.index("fine")]
     assert {cause for cause in about_it if not CAUSES[cause].part} == {
@@ -122,7 +122,7 @@ def test_an_examination_finds_what_is_about_a_part_or_that_it_is_no_robot_of_our
     assert {CAUSES[cause].part for cause in about_it} == {"", *SELF_REPORTED_PARTS}
 
 
-def test_one_restart_is_said_as_one() -> None:
+def test_one_restart_takes_the_singular() -> None:
     """A count of 1 has a sentence of its own: "1 veces" is no Spanish."""
     for cause in ("restarts", "motors_restart"):
         for count, words in (("1", ("once", "una vez")), ("3", ("3 times", "3 veces"))):

@@ -255,7 +255,7 @@ def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
     assert [board.pin(19, START + ms) for ms in (-1, 50, 150)] == ["high", "low", "high"]
 
 
-def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
+def test_a_reading_of_the_last_program_is_not_used_by_the_next() -> None:
     """A program is stopped while it measures; the next one measures again."""
     robot = robots.load("tinibot")
     pins = robot.board.sensors[2].pins

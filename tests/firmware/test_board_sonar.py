@@ -200,7 +200,7 @@ def find_glitches(width_us: float) -> list[tuple[int, int]]:
 
 @pytest.mark.sampled("width_us")
 @pytest.mark.parametrize("width_us", [2.0, 10.0, GLITCH_US, 80.0])
-def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
+def test_a_glitch_at_any_phase_is_not_an_echo(width_us: float) -> None:
     measurements = find_glitches(width_us)
     assert len(measurements) == len(PHASES)
     for phase, cm in measurements:
@@ -268,7 +268,7 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
     assert board.pin(echo, hangs + 1100) == "in"
 
 
-def test_a_line_that_is_high_for_a_moment_only_is_no_hung_sensor() -> None:
+def test_a_line_that_is_high_for_a_moment_only_is_not_a_hung_sensor() -> None:
     """This holds after any pause: a glitch at the moment of a query is not read as 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;W(0.5);END_LOOP"
     robot = robots.load("tinibot")

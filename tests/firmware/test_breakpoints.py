@@ -86,7 +86,7 @@ def test_a_step_is_a_statement() -> None:
         "SI|DEF SIDE(SIZE, SPEED);F(SIZE, SPEED);R(9 DEG, 50);END_DEF;LOOP(3);SIDE(2, 60);END_LOOP",
     ],
 )
-def test_what_begins_no_statement_is_no_place(text: str) -> None:
+def test_an_offset_inside_a_statement_is_not_a_place(text: str) -> None:
     it = Debugged(text)
     starts = statement_starts(it.image.code)
     for at in range(len(it.image.code) + 3):
@@ -129,7 +129,7 @@ def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
     assert [state for state, _, _ in it.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
 
 
-def test_who_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
+def test_whoever_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
     it = debug(DRIVE_PROGRAM, 0, SECOND_MOVE_OFFSET, 5, 7)
     assert it.halt()
     assert fetch_image(it.robot, it.session)[15:] == it.image.code

@@ -56,7 +56,7 @@ def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
             assert released_us <= edges[-1] + STEADY_US + 3000
 
 
-def test_a_release_that_does_not_last_is_none() -> None:
+def test_a_release_that_does_not_last_does_not_count() -> None:
     """Spikes while the button is held down, at all spacings."""
     cases = [
         (turn, 0, [0, *(100_000 + us for us in spikes(5, spacing_ms * 1000)), 2_000_000])

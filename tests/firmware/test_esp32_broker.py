@@ -134,7 +134,7 @@ def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
     assert b"hunter" not in b"".join(robot.read_kept().entries.values())
 
 
-def test_what_is_no_broker_is_refused(broker: Mosquitto) -> None:
+def test_invalid_broker_settings_are_refused(broker: Mosquitto) -> None:
     robot, owner = connect_to_broker(broker, Keys())
     names = ("", "a/b", "a+", "#", "Aula", "aula 3", "ñ", "x" * 17)
     for settings in (
@@ -240,7 +240,7 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     assert motor_state(robot) == "MOTORS 0 0"
 
 
-def test_a_typed_stop_of_a_stranger_is_one(broker: Mosquitto) -> None:
+def test_a_typed_stop_of_a_stranger_stops(broker: Mosquitto) -> None:
     """It is a whole line in one message; a frame's code may contain such bytes."""
     robot, _, owner, ends = start_drive(broker)
     stranger = broker.connect_client()

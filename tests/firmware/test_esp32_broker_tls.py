@@ -150,7 +150,7 @@ def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
 @pytest.mark.parametrize(("version", "state"), [
     (ssl.TLSVersion.TLSv1_1, "NO_TLS"), (ssl.TLSVersion.TLSv1_2, "SEARCHING"),
 ])  # fmt: skip
-def test_an_old_tls_is_none(tmp_path: Path, version: ssl.TLSVersion, state: str) -> None:
+def test_an_old_tls_is_refused(tmp_path: Path, version: ssl.TLSVersion, state: str) -> None:
     """The other end has the right certificate but is no broker."""
     authority = Authority(tmp_path)
     authority.rules(NAME)
@@ -220,7 +220,7 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
 
 
 @drawn
-def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
+def test_whoever_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
     """First a computer accepts the connection and stays silent, then the broker does."""
     keys = Keys()
     robot, owner = join_network(keys)
@@ -275,7 +275,7 @@ TRUST = bytes(range(1, 201))
 PLAIN = wifi.BrokerSettings(LOCAL, 8883, "aula", name=b"x")
 
 
-def test_what_is_no_tls_is_refused() -> None:
+def test_invalid_tls_settings_are_refused() -> None:
     robot, owner = join_network(Keys())
     for settings in (
         PLAIN._replace(name=b"", tls=wifi.Tls(TRUST, TODAY)),

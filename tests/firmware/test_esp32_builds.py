@@ -55,7 +55,7 @@ def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
 
 @needs_host
 @pytest.mark.parametrize("major", [2, 3])
-def test_a_chip_whose_own_usb_is_the_port(major: int) -> None:
+def test_a_chip_with_its_own_usb_uses_it_as_the_port(major: int) -> None:
     """A board of an ESP32-C3 without a USB chip: `Serial` is a HWCDC there."""
     flags = (*flags_of("esp32c3", major), "-DARDUINO_USB_CDC_ON_BOOT=1", "-DARDUINO_USB_MODE=1")
     assert complaints(BOARD / "esp32" / "serial.cpp", *flags) == ""

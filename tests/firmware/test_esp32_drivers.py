@@ -52,7 +52,7 @@ def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
 @pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("is_detached", [False, True])
-def test_whose_program_runs_keeps_the_wheel_while_he_is_heard(
+def test_the_client_whose_program_runs_stays_the_driver_while_it_is_heard(
     is_owned: bool, is_detached: bool
 ) -> None:
     robot, page, other = pair(is_owned)
@@ -124,7 +124,7 @@ CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
 @pytest.mark.sampled("what", "is_owned", keep=3)
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("what", CHANGES)
-def test_who_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
+def test_whoever_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
     """However long it takes: each part that changes something counts. Then the next one drives."""
     robot, page, other = pair(is_owned)
     far = LowEnergy(robot)

@@ -148,7 +148,7 @@ CUT_STOPS = [
 @pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", TRANSPORTS)
 @pytest.mark.parametrize("pause_ms", [0, 300])
-def test_what_two_clients_say_is_no_stop_of_both(make: Make, pause_ms: int) -> None:
+def test_bytes_of_two_clients_do_not_form_a_stop(make: Make, pause_ms: int) -> None:
     robot, end, owner = far_owner(Keys())
     ends: Ends = [(end, owner)]
     assert upload_text(robot, ends, owner, AWAY_PROGRAM) == "OK"
@@ -286,7 +286,7 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
 
 
 @drawn
-def test_who_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
+def test_whoever_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     for _ in range(5):

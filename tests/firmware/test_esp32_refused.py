@@ -108,7 +108,7 @@ def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
 
 @pytest.mark.sampled("granted_bytes")
 @pytest.mark.parametrize("granted_bytes", [b"\0", b"\0\0\0", b"\0\3"])
-def test_an_answer_to_something_else_is_none(
+def test_an_answer_to_another_request_is_ignored(
     granted_bytes: bytes, brokers: list[StrictBroker]
 ) -> None:
     robot, owner = robot_at_broker(broker := StrictBroker(granted_bytes), brokers)

@@ -36,7 +36,7 @@ def running(text: str) -> Esp32Robot:
     return robot
 
 
-def test_a_deep_sag_while_a_program_runs_is_no_power_on() -> None:
+def test_a_deep_sag_while_a_program_runs_is_not_a_power_on() -> None:
     """The supply was gone for a moment: the bytes are still there that a reset leaves alone."""
     robot = running("SI|F(60, 80)")
     kept_memory = robot.read_kept()
@@ -49,7 +49,7 @@ def test_a_deep_sag_while_a_program_runs_is_no_power_on() -> None:
     assert cause(restarted_robot.read_kept()) == "POWER", "it is told once"
 
 
-def test_a_power_on_of_a_robot_that_stood_is_one() -> None:
+def test_a_power_on_of_a_standing_robot_counts_as_one() -> None:
     over = running("SI|F(0.1, 80)")
     assert cause(over.read_kept()) == "POWER"
     stopped_robot = running("SI|F(60, 80)")

@@ -362,7 +362,7 @@ def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
     assert restarted_robot.is_latched
 
 
-def test_a_page_that_is_erased_slowly_is_no_stall() -> None:
+def test_a_page_that_is_erased_slowly_is_not_a_stall() -> None:
     """Data sheets of flash chips allow 400 ms; the motors are off before anything is written."""
     robot, session = switched_on(Esp32Robot()), computer()
     robot.erase(150)

@@ -292,7 +292,7 @@ def damage_entry(entry: bytes) -> Iterator[bytes]:
 
 
 @pytest.mark.parametrize("key", [WIFI_KEY, BROKER_KEY])
-def test_damaged_settings_are_none(key: bytes) -> None:
+def test_damaged_settings_are_ignored(key: bytes) -> None:
     """No part of them is reported, and new settings are stored as for the first time."""
     keys = Keys()
     robot, owner = join_network(keys)

@@ -178,7 +178,7 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
     assert upload_text(robot, ends, first) == "OTHER_DRIVER"
 
 
-def test_who_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
+def test_whoever_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
     """This holds between short runs, too, and for longer than the longest allowed silence."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
@@ -190,7 +190,7 @@ def test_who_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
+def test_whoever_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)
@@ -207,7 +207,7 @@ def test_who_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     assert actions_of(robot)[-1] == "MOTORS 80 80", "nothing of others"
 
 
-def test_who_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
+def test_whoever_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
     """The task of a radio may wait in a write meanwhile."""
     robot = boot()
     driver, other = session(1, robot), session(2, robot)

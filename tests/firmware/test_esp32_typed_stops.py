@@ -123,7 +123,7 @@ def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_who_comes_next_begins_a_line(make: Make) -> None:
+def test_whoever_comes_next_begins_a_line(make: Make) -> None:
     """Unfinished text of the previous client ends with its connection."""
     robot = boot()
     driver = session(1, robot)

@@ -69,7 +69,7 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
     assert radio_state.service == "_tiniscript._tcp 8473"
 
 
-def test_what_there_is_no_memory_for_is_announced_later() -> None:
+def test_without_memory_the_announcement_comes_later() -> None:
     robot, _ = join_network(Keys())
     rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())
     rebooted_robot.wait(100)
@@ -150,7 +150,7 @@ def test_a_stranger_takes_none_away() -> None:
     assert radios(robot).network.encode() == SCHOOL.name
 
 
-def test_what_is_no_network_is_refused() -> None:
+def test_invalid_network_settings_are_refused() -> None:
     robot, owner = make_owned_robot(Keys())
     for name, password in (
         (b"x", b"short"), (b"x", b""), (b"a\0b", b"12345678"), (b"x", b"1234\0" + b"5678"),
@@ -205,7 +205,7 @@ def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
     assert state(robot, owner) == ("STATION", "READY")
 
 
-def test_a_key_that_is_taken_away_ends_all_other_sessions_of_it() -> None:
+def test_a_revoked_key_ends_its_other_sessions() -> None:
     keys = Keys()
     robot, owner = make_owned_robot(keys)
     over = remote(robot, keys)
@@ -336,7 +336,7 @@ def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
     assert wait_for_outcome(robot, [(None, owner)], owner.ping()) == "OK"
 
 
-def test_whose_first_bytes_stay_unclear_is_hung_up_on() -> None:
+def test_a_client_whose_first_bytes_stay_unclear_is_disconnected() -> None:
     robot, _ = join_network(Keys())
     slow = Network(robot)
     for _ in range(99):
@@ -419,7 +419,7 @@ ROW = (PANIC, 1000)  # a reset, and how long after the one before
     [(EXTERNAL, 1000)] * 4 + [ROW, (EXTERNAL, 1000), ROW, (EXTERNAL, 1000)],
     [ROW, ROW, (PANIC, 20_000), ROW, ROW, (PANIC, 20_000)],
 ], ids=["power-on", "external", "20 seconds"])  # fmt: skip
-def test_what_is_no_row_of_restarts(row: list[tuple[int, int]]) -> None:
+def test_an_invalid_row_of_restarts_is_ignored(row: list[tuple[int, int]]) -> None:
     robot, _ = join_network(Keys())
     for reset, lived_ms in row:
         robot = restart(robot, reset, lived_ms)

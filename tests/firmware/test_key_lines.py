@@ -95,7 +95,7 @@ def test_any_other_line_is_read_as_before(line: str) -> None:
     assert robot.remote() == RELEASED
 
 
-def test_who_presses_is_told_once_that_no_program_reads_it() -> None:
+def test_whoever_presses_is_told_once_that_no_program_reads_it() -> None:
     robot = boot()
     assert type_text(robot, "KEY_UP\n", 1500) == [UNREAD_KEYS_LINE]
     assert type_text(robot, "KEY_UP\n" * 3, 1500) == []

@@ -71,7 +71,7 @@ def test_the_next_program_replaces_it() -> None:
 
 
 @pytest.mark.parametrize("place", [FIRST_SLOT, SECOND_SLOT])
-def test_a_program_of_version_1_counts_as_none(place: int) -> None:
+def test_a_program_of_version_1_does_not_count(place: int) -> None:
     robot, session = open_session(eeprom_with((place, 7, VERSION_1)))
     assert read_saved_state(robot, session) == "NOTHING"
     assert robot.memory()[place : place + 2] == b"\xff\xff", "the slot is empty"
@@ -113,7 +113,7 @@ def test_name_and_trim_outlive_an_update() -> None:
 
 
 @pytest.mark.parametrize("trim", [b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\0\x29", b"\xff" * 3])
-def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
+def test_a_trim_stored_by_other_firmware_is_ignored(trim: bytes) -> None:
     """Numbers that no trim of this version has would make levels beyond those of a motor."""
     body = struct_pack("<I16s3s", 77, b"Ada", trim)
     robot, session = open_session(eeprom_with((4, 3, struct_pack("<I", zlib.crc32(body)) + body)))
@@ -127,7 +127,7 @@ def test_a_trim_that_other_firmware_has_kept_is_none(trim: bytes) -> None:
 
 
 @pytest.mark.parametrize("pace", [(0xFFFF, 0xFFFF), (900, 100), (500, 500), (0, 0)])
-def test_a_pace_that_other_firmware_has_kept_is_none(pace: tuple[int, int]) -> None:
+def test_a_pace_stored_by_other_firmware_is_ignored(pace: tuple[int, int]) -> None:
     """Impossible values would end a move too early, so the kit's speed is used."""
     body = bytes(15) + struct_pack("<4H", *pace, *pace)
     record = struct_pack("<I", zlib.crc32(body)) + body

@@ -312,7 +312,7 @@ def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
     assert owner_of(table, table.session(other, nonce=40)) == OWNED_BY_YOU
 
 
-def test_a_stale_key_that_is_right_after_all_is_none() -> None:
+def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
     """Another session may come between challenge and tag."""
     table, keys = Owned(), Keys()
     table.claim_session(keys)

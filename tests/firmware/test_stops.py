@@ -129,7 +129,7 @@ def test_a_stop_works_every_time(how: str) -> None:
 
 @pytest.mark.parametrize("line", [b"", b"HELLO\n", b"SI|LOOP(2)\n", b"S\n"])
 @pytest.mark.parametrize("stops", [1, 2])
-def test_who_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before(
+def test_whoever_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before(
     line: bytes, stops: int
 ) -> None:
     robot = switched_on()

@@ -116,7 +116,7 @@ STOP_ACTIONS = {
 
 
 @pytest.mark.parametrize("stop", STOP_ACTIONS)
-def test_what_is_said_after_a_stop_is_no_rest_of_what_was_said_before(stop: str) -> None:
+def test_text_after_a_stop_does_not_continue_the_text_before_it(stop: str) -> None:
     """The stop comes at any moment of an answer."""
     robot, fresh = switched_on(), switched_on()
     rng = random.Random(stop)
@@ -224,7 +224,7 @@ def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun_text: str,
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_who_makes_many_mistakes_is_told_that_once(language: str) -> None:
+def test_whoever_makes_many_mistakes_is_told_that_once(language: str) -> None:
     """After a pause they are answered again."""
     robot = HostFirmware(robots.load("tinibot").kit, language=language)
     robot.wait(1000)
@@ -700,7 +700,7 @@ def test_text_at_once_after_power_on() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_of_a_program_whose_bytes_found_no_room_nothing_is_run(seed: int) -> None:
+def test_a_program_too_long_for_the_buffer_is_not_run_in_part(seed: int) -> None:
     """The bytes may be in a line that opens a block, before it, or after it."""
     rng = random.Random(seed)
     robot = switched_on()

@@ -142,7 +142,7 @@ def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> 
 
 
 @pytest.mark.parametrize("name", FRAME_PREFIXES)
-def test_a_loose_spelling_in_a_frame_is_none(driving_at: tuple[Uno, int], name: str) -> None:
+def test_a_loose_spelling_in_a_frame_does_not_stop(driving_at: tuple[Uno, int], name: str) -> None:
     uno, _ = driving_at
     with uno.try_out():
         uno.send(FRAME_PREFIXES[name] + b"stop!\nS()\nalto\n")
@@ -166,7 +166,7 @@ def stop_time_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     "data", [b"SSS", b"s s\tS", b"FFFFSSS", b"SI|F(1,80)SSS", b"STOPSTOP", b"stop stop", b"\0xSSS",
              b"F(1,stop STOP", b"S" * 40],
 )  # fmt: skip
-def test_who_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -> None:
+def test_whoever_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -> None:
     """A held button's row of S, and a second STOP."""
     uno, baud = driving_at
     with uno.try_out():
@@ -199,7 +199,7 @@ def test_one_without_a_line_end_stops_after_a_second(
 @pytest.mark.parametrize(
     "data", [b"SS", b"S.S.S", b"// SSS", b"STO STO", b"CLASS", b"F(1,80)S S", b"ALT OSTOP"],
 )  # fmt: skip
-def test_what_is_none_without_a_line_end(driving_at: tuple[Uno, int], data: bytes) -> None:
+def test_a_stop_without_a_line_end_does_not_stop(driving_at: tuple[Uno, int], data: bytes) -> None:
     uno, _ = driving_at
     with uno.try_out():
         uno.send(data)

@@ -116,7 +116,7 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
 
 
 @pytest.mark.sampled(of="hangs of an Uno")
-def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
+def test_a_hang_without_a_program_is_not_a_fault_of_a_program(tmp_path: Path) -> None:
     with Uno(build_hanging_firmware(tmp_path, HANGING_LOOP), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
         uno.press("button")
@@ -131,7 +131,7 @@ def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
         assert what == (WATCHDOG, STALL, 0, 0)
 
 
-def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
+def test_a_reset_without_a_hang_is_not_a_fault(uno: Uno) -> None:
     """This holds in the middle of a program, too; and each nonce differs from the last, even if
     nothing happens in between and each reset takes the same number of cycles."""
     nonces = []

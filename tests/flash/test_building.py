@@ -456,7 +456,7 @@ def test_how_far_it_is(expected: str, progress: StepProgress | None) -> None:
     assert building.parse_progress(expected, 10) == progress
 
 
-def test_all_sources_are_not_yet_all_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_sources_alone_are_not_enough(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Arduino's own files follow."""
     script = tmp_path / "pretends.py"
     script.write_text(

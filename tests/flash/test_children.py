@@ -63,7 +63,9 @@ def is_over(process: int) -> bool:
 
 
 @pytest.mark.parametrize("way", CHILD_ENDS)
-def test_nothing_is_left_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str) -> None:
+def test_no_child_process_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str
+) -> None:
     end, look, failure = CHILD_ENDS[way]
     monkeypatch.setattr(children, "KILL_DELAY_S", 0.2)
     for round_ in range(2):  # the second one as the first one

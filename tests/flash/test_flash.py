@@ -273,7 +273,7 @@ def test_how_far_it_is(expected: str, progress: object) -> None:
     assert avrdude.parse_progress(expected) == progress
 
 
-def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
+def test_a_program_that_cannot_be_run_is_reported(tmp_path: Path) -> None:
     ended_write_result = avrdude.write(
         [str(tmp_path / "none")], UNO, "x", tmp_path, lambda progress: None
     )

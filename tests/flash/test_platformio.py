@@ -71,7 +71,7 @@ def test_tests_pass(native: Path) -> None:
     assert names_stand_in_if_used(log)
 
 
-def test_a_test_case_that_fails_is_one_and_has_its_name(native: Path) -> None:
+def test_a_failing_test_case_is_reported_by_name(native: Path) -> None:
     broken_path = native / "test" / "cases.cpp"
     with change_file(broken_path, ('"0 SHOW 2\\n0 MOTORS 0 0\\n0 DONE\\n")', '"0 SHOW 3\\n")')):
         log = pio(native, "test", "-e", "native").gives(1).out

@@ -157,7 +157,7 @@ def test_a_file_in_another_encoding_has_no_texts(place: Path) -> None:
     assert text_of("b") == "Stop."
 
 
-def test_what_an_editor_does_to_a_file_is_no_mistake(place: Path) -> None:
+def test_changes_that_an_editor_makes_to_a_file_are_allowed(place: Path) -> None:
     changed_text = '\ufeff# by somebody\r\n[x]\r\nb = "Alto."\r\na = """\r\nLee\r\n{file}."""\r\n'
     write(place / "xx" / "some.toml", changed_text)
     assert problems(open_translation(place)) == []
@@ -558,7 +558,7 @@ def test_a_file_that_is_missing_is_named(
     assert "languages/fr/language.toml:1: this cannot be read: No such file" in out
 
 
-def test_what_is_no_language_is_not_made(
+def test_an_unknown_language_is_not_created(
     place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     for words in (["../x"], ["X"], ["--check", "fr"], ["--seen", "fr"], ["--po", "fr"]):

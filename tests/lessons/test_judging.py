@@ -250,7 +250,7 @@ def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) 
     assert findings_of(answer_to_key("LEFT", "L(0.1, 60)"), lesson, range(1, 3))
 
 
-def test_what_is_held_is_no_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
+def test_held_keys_are_not_the_heartbeat_that_a_run_needs(tmp_path: Path) -> None:
     """A run of the judge's continues without a computer, before the first key and after the
     last."""
     lesson = lesson_of(

@@ -67,7 +67,7 @@ def test_where_pip_is_refused_it_is_pipx(tmp_path: Path, monkeypatch: pytest.Mon
     assert install_advice.command("virtual") == f'pipx install "{folder}[virtual]"'
 
 
-def test_nothing_known_is_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_metadata_it_does_not_crash(monkeypatch: pytest.MonkeyPatch) -> None:
     def nothing(name: str) -> list[str]:
         raise metadata.PackageNotFoundError(name)
 

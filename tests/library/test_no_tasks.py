@@ -63,7 +63,7 @@ def test_what_sends_nothing_takes_them(program: Path) -> None:
         assert (result.code, WORDS["en"] in result.err) == (0, False)
 
 
-def test_the_library_sends_none() -> None:
+def test_the_library_sends_no_tasks() -> None:
     program = tiniscript.compile(TEXT, ROBOT)
     with tiniscript.virtual_robot(ROBOT, hurry=math.inf) as robot:
         for send in (robot.upload, robot.live):

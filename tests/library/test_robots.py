@@ -111,7 +111,7 @@ def test_a_program_may_wait_for_the_button(virtual: tiniscript.VirtualRobotConne
     ] == [{"value": 3}]
 
 
-def test_a_program_that_goes_on_is_no_ending_and_a_line_after_its_stop_runs(
+def test_a_program_that_goes_on_is_not_an_ending_and_a_line_after_its_stop_runs(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.upload(FOREVER, save=False)
@@ -317,7 +317,7 @@ class StoppedAtFirst:
 
 @pytest.mark.parametrize("stops", range(4))
 @pytest.mark.parametrize("patience", range(4))
-def test_who_connects_while_others_stop_the_robot_meets_it(stops: int, patience: int) -> None:
+def test_whoever_connects_while_others_stop_the_robot_meets_it(stops: int, patience: int) -> None:
     """It waits for as long as its time limit allows."""
     answers = iter([True] * patience + [False] * 9)
     client = client_of(line := StoppedAtFirst(stops))
@@ -360,7 +360,7 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
             follower.follow(last, "P")
 
 
-def test_a_reset_during_a_run_is_no_end_of_the_program(pty_robot: PtyRobot) -> None:
+def test_a_reset_during_a_run_is_not_an_end_of_the_program(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|F(200, 80)", save=False)
         pty_robot.until(lambda: pty_robot.moves, "it drives")

@@ -139,7 +139,7 @@ def test_a_map_is_written_as_json_writes_it() -> None:
         {"yes_no": 5},
     ],
 )
-def test_what_is_no_map_is_refused(changed_fields: dict[str, object]) -> None:
+def test_an_invalid_map_is_refused(changed_fields: dict[str, object]) -> None:
     fields = json.loads(source_map.as_json(make_source_map(compile_right_text("S"))))
     assert source_map.from_json(json.dumps(fields)).variables == ()
     earlier = {name: fields[name] for name in ("version", "name", "lines", "places")}
@@ -151,7 +151,7 @@ def test_what_is_no_map_is_refused(changed_fields: dict[str, object]) -> None:
         source_map.from_json(json.dumps(fields))
 
 
-def test_a_variable_is_a_yes_no_where_a_show_of_it_is_one() -> None:
+def test_a_variable_is_a_yes_no_where_its_show_is() -> None:
     """In random programs, and in the copies of a DEF's values that tasks have."""
     kinds = set()
     for seed in range(40):

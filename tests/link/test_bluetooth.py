@@ -186,7 +186,7 @@ def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed:
     assert run_in_process("doctor", "--identify", "--port", f"ble://{typed}").code == 0
 
 
-def test_a_name_that_looks_like_an_address_is_none(bluez: FakeBluez, ble: BleRobot) -> None:
+def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: BleRobot) -> None:
     fake = Peripheral(ADDRESS, OTHER)
     bluez.add(fake)
     assert run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).code == 0
@@ -228,7 +228,9 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
         run_in_process(*words, "--all").gives(0, "Done: 1 of 1.")
 
 
-def test_what_is_no_robot_is_said(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_device_that_is_not_a_robot_is_reported(
+    bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP_SERVICE))
     run_in_process("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer a robot's")

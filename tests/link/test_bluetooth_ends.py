@@ -116,7 +116,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
     assert (result.code, message in result.err) == (3, True)
 
 
-def test_a_flood_is_no_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_flood_is_not_a_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
 
     class Flood(Peripheral):

@@ -140,7 +140,7 @@ def test_what_fails_leaves_the_device(
 
 
 @pytest.mark.parametrize("lacks", ["service", "writes", "notifies", "write"])
-def test_what_is_no_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> None:
+def test_a_device_that_is_not_a_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> None:
     device = Device()
     device.lacks = lacks
     with pytest.raises(PortError) as exception_info:

@@ -82,9 +82,7 @@ def test_each_robot_of_a_class_is_listed(school: Mosquitto, late_s: float, gap_s
         assert broker.list_robots("4a") == []
 
 
-def test_a_list_that_is_not_whole_is_none(
-    school: Mosquitto, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_incomplete_list_is_ignored(school: Mosquitto, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(broker, "LIST_S", 1.0)
     with (
         closing(SlowNetwork(school.port, 0, 0, is_cut=True)) as network,

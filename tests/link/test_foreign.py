@@ -63,7 +63,7 @@ def test_each_row_has_a_recording() -> None:
 
 
 @each_recording
-def test_a_recording_that_is_cut_is_of_that_board_or_of_none(recording: Recording) -> None:
+def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording) -> None:
     """A piece identifies less, but nothing wrong: an ESP32's boot messages precede the sketch's."""
     also = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
@@ -110,7 +110,7 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
 
 
 @each_recording
-def test_noise_of_a_wrong_speed_is_no_board(recording: Recording) -> None:
+def test_noise_of_a_wrong_speed_is_not_a_board(recording: Recording) -> None:
     for sent in BAUDS:
         for heard_baud in BAUDS:
             noise = at_speed(recording.data, sent, heard_baud)
@@ -125,14 +125,14 @@ def test_random_bytes_are_no_board(data: bytes) -> None:
     assert identify_board(data) is None
 
 
-def test_much_noise_is_no_board() -> None:
+def test_much_noise_is_not_a_board() -> None:
     chance = random.Random(5)
     for _ in range(300):
         assert identify_stranger(bytes(chance.choices(range(256), k=500))) is None
 
 
 @given(st.lists(st.sampled_from(OWN_ROWS), min_size=1, max_size=6), st.binary(max_size=20))
-def test_a_robot_is_no_board(traffic: list[bytes], noise: bytes) -> None:
+def test_a_robot_is_not_a_board(traffic: list[bytes], noise: bytes) -> None:
     """Frames and lines are recognized first, with any noise around them."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
         assert identify_stranger(data) is None or not foreign.is_robot(data)
@@ -154,14 +154,14 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 
 @pytest.mark.sampled("piece", keep=40)
 @pytest.mark.parametrize("piece", range(200))
-def test_a_piece_of_a_robot_s_bytes_is_no_board(piece: int) -> None:
+def test_a_piece_of_a_robot_s_bytes_is_not_a_board(piece: int) -> None:
     chance = random.Random(piece)
     data = b"".join(chance.choices(OWN_ROWS, k=5))
     first, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
     assert identify_board(data[first:last]) is None
 
 
-def test_what_a_computer_sends_is_no_robot_s() -> None:
+def test_bytes_of_a_computer_are_not_those_of_a_robot() -> None:
     """A device that echoes returns it."""
     assert not foreign.is_robot(b"\0" + encode_frame(Frame(1, 3, 7, b"123456789")))
 

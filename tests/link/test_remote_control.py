@@ -220,7 +220,7 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
     assert one.robot.remote() == remote_readings(one.held)
 
 
-def test_who_falls_silent_holds_nothing() -> None:
+def test_whoever_falls_silent_holds_nothing() -> None:
     """A command that hangs, while its session still talks."""
     session, robot = open_session()
     session.press(*KEY_UP)

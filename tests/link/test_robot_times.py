@@ -62,7 +62,7 @@ def test_a_detached_program_and_what_the_button_has_started_go_on(name: str) -> 
     assert ends_at(cpp, 30, 5000) is None
 
 
-def test_a_long_silence_is_no_short_one() -> None:
+def test_a_long_silence_is_not_a_short_one() -> None:
     """Times are 16 bits: after a minute, a robot still knows about the silence."""
     cpp = robot_with_session()
     for now_ms in range(0, 200_000, 500):
@@ -87,7 +87,7 @@ def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line
     assert 1000 < len(frames) <= 70_000 // AGAIN_MS + 1, len(frames)
 
 
-def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
+def test_many_unread_stops_are_not_lost() -> None:
     cpp = robot_with_session()
     for count in (1, 255, 256, 257, 512):
         assert "STOP" in cpp.step(10, bytes(4 * count), is_late=True).did

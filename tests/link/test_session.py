@@ -310,7 +310,7 @@ def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> N
     assert [event.name for event in session.events()] == ["STOPPED"]
 
 
-def test_an_old_answer_is_none() -> None:
+def test_an_old_answer_is_ignored() -> None:
     session = greet()
     first = session.live(FORWARD)
     data = session.poll(0)
@@ -339,7 +339,7 @@ def test_text_and_echoes_are_told() -> None:
     assert events[0] == TextEvent(b"OK+LOST")
 
 
-def test_what_a_newer_robot_sends_is_no_harm() -> None:
+def test_messages_of_a_newer_robot_do_no_harm() -> None:
     session = greet()
     for frame in (Frame(40, 0, 10, b"new", is_reply=True), Frame(35, 1, 10, b"", is_reply=True)):
         session.receive(b"\0" + encode_frame(frame), 5)
@@ -423,7 +423,7 @@ def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> N
         assert request.outcome and request.outcome.status == STATUSES["WRONG_KIT"]
 
 
-def test_a_receipt_for_another_program_is_no_success() -> None:
+def test_a_receipt_for_another_program_is_not_success() -> None:
     session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
     session.receive(answer(session.poll(0), {**receipt(1), "program": 1}), 5)
@@ -644,6 +644,6 @@ def test_a_place_is_told_when_it_is_another_one() -> None:
     assert places == [(1, 3), (2, 3), (2, 3)]
 
 
-def test_a_place_that_is_cut_or_of_nothing_that_runs_is_none() -> None:
+def test_a_truncated_place_or_one_of_another_run_is_ignored() -> None:
     assert places_told(b"\1\1", b"\1\1abc", b"\0\1\3\0abcd", b"\2\1\3\0abcd") == []
     assert places_told(b"\1\1\xff\xffabcd") == [(1, 0xFFFF)]

@@ -27,7 +27,7 @@ def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
-def test_a_reset_during_a_run_is_told_and_is_no_end_of_the_program(seed: int) -> None:
+def test_a_reset_during_a_run_is_told_and_is_not_an_end_of_the_program(seed: int) -> None:
     session, robot = running()
     robot = reset(robot, seed)
     robot.talk(session, 1500)
@@ -58,7 +58,7 @@ def test_a_robot_that_was_reset_and_started_by_its_button_has_another_run() -> N
     assert [event.name for event in session.events()][:1] == ["RESTARTED"]
 
 
-def test_a_run_in_the_place_of_ours_is_no_end_of_it() -> None:
+def test_another_run_in_the_place_of_ours_does_not_end_it() -> None:
     """The robot was not reset: another client has started another run on it."""
     session, robot = running()
     other = Session(2, 9600, KIT.fingerprint)
@@ -72,7 +72,7 @@ def test_a_run_in_the_place_of_ours_is_no_end_of_it() -> None:
     assert "STOPPED" not in [event.name for event in events]
 
 
-def test_a_stop_that_nobody_has_told_is_no_reset() -> None:
+def test_a_stop_that_nobody_has_told_is_not_a_reset() -> None:
     session, robot = running()
     robot.push()  # STOPPED is lost
     robot.talk(session, 1500)

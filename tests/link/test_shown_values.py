@@ -68,7 +68,7 @@ def test_what_an_older_robot_shows_has_no_place() -> None:
 
 
 @pytest.mark.parametrize("place", [b"\5", b"\5\2"])
-def test_a_place_that_is_cut_is_none(place: bytes) -> None:
+def test_a_truncated_place_is_ignored(place: bytes) -> None:
     session = new_session()
     cut = event("SHOW", 1, {"value": 1500, "is_yes_no": 0, "place": place}, EPOCH)
     assert events_after(session, cut) == [make_shown_event()]

@@ -168,7 +168,7 @@ def test_what_gets_no_further_is_given_up_and_the_next_one_is_done(
         assert talk.upload(300) == OK
 
 
-def test_who_asks_again_after_an_answer_finds_the_line_free() -> None:
+def test_whoever_asks_again_after_an_answer_finds_the_line_free() -> None:
     """No heartbeat comes before that, however long the answer took."""
     talk = Talk(Line(11_520, 1000))
     talk.wait(talk.session.hello())

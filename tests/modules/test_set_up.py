@@ -336,7 +336,7 @@ def test_a_name_from_an_id_fits_each() -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 @of_each
-def test_what_was_sent_before_is_no_part_of_a_command(kind: str, seed: int) -> None:
+def test_earlier_bytes_are_not_part_of_a_command(kind: str, seed: int) -> None:
     """A set-up that was interrupted anywhere in a command, however long ago."""
     chance = random.Random(f"{kind} {seed}")
     end: Simulated = KINDS[kind](*([chance.choice(BAUDS)] if not kind.startswith("HC-05") else []))

@@ -80,7 +80,7 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert "1. Responde: 20 de 20 llegaron de inmediato" in report.read_text("utf-8")
 
 
-def test_who_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
+def test_whoever_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
@@ -106,7 +106,7 @@ def test_the_typed_stop_of_the_list(board: PtyRobot, text_before: str) -> None:
 
 
 @each_list
-def test_every_command_of_the_list_is_one(language: str, path: Path) -> None:
+def test_every_command_of_the_list_exists(language: str, path: Path) -> None:
     for verb, *arguments in commands(path.read_text("utf-8")):
         command, words = command_of(verb, arguments)
         assert Options(command, language).read(words) is not None

@@ -59,7 +59,7 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
 
 @needs_chip
 @pytest.mark.parametrize("part", sizes.LIMITS)
-def test_a_part_is_no_larger_than_it_may(part: str) -> None:
+def test_a_part_is_not_larger_than_allowed(part: str) -> None:
     size, must = sizes.size(part), sizes.LIMITS[part]
     assert must.flash * 0.8 < size.flash <= must.flash
     assert must.ram / 2 < size.ram <= must.ram

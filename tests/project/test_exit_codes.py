@@ -81,7 +81,7 @@ def test_a_script_fails_where_a_step_of_it_fails(
 
 
 @needs_sh
-def test_without_ci_a_page_that_cannot_be_made_is_no_failure(tmp_path: Path) -> None:
+def test_without_ci_a_page_that_cannot_be_made_is_not_a_failure(tmp_path: Path) -> None:
     """Its tests are skipped, and say so."""
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
     (clone / "steps").write_text("")

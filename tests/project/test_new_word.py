@@ -271,7 +271,7 @@ def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
 
 
 @each_row("role", [role for role in ROLES.values() if role.is_instruction and not role.lasts])
-def test_each_role_that_is_no_statement_of_its_own_has_an_instruction_and_a_helper(
+def test_each_role_that_is_not_a_statement_of_its_own_has_an_instruction_and_a_helper(
     role: Role,
 ) -> None:
     if role.name in _STATEMENT_MAKERS or role.name == "fixed":

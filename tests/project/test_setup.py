@@ -299,7 +299,7 @@ def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path
     ],
     ids=["no sudo", "no rights", "no network"],
 )
-def test_who_cannot_install_venv_is_not_told_to_do_it_again(
+def test_whoever_cannot_install_venv_is_not_told_to_do_it_again(
     sudo: dict[str, str], locale: str, english: bool, tmp_path: Path
 ) -> None:
     fakes = {"python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100", **sudo}

@@ -101,7 +101,7 @@ def test_a_byte_of_the_eeprom_takes_its_time(tmp_path: Path) -> None:
     assert (len(content), content[:6], content[10:12]) == (1024, b"\1\2\3\4\5\xff", b"\x77\x77")
 
 
-def test_a_firmware_that_does_not_wait_loses_bytes(tmp_path: Path) -> None:
+def test_firmware_that_does_not_wait_loses_bytes(tmp_path: Path) -> None:
     with Uno(build_uno("memory", Ignores=1), eeprom=tmp_path / "eeprom") as uno:
         uno.run_ms(30)
     assert (tmp_path / "eeprom").read_bytes()[:5] == b"\1\xff\xff\xff\xff"

@@ -68,7 +68,9 @@ def test_an_output_that_windows_would_lose_is_refused(
     assert tsc("compile", "prog.ts", "-o", "good.bin").code == 0
 
 
-def test_a_device_is_no_program(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_device_is_not_a_program(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Reading the console or a serial port would wait forever."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "x").mkdir()
@@ -350,7 +352,7 @@ sys.exit(main(["help"]))
         ("linux", errno.EINVAL, "other", None, 2),
     ],
 )
-def test_a_reader_that_has_left_is_no_mistake(
+def test_a_reader_that_has_left_is_not_a_mistake(
     platform: str, number: int, about: str, value: object, code: int
 ) -> None:
     """`tsc help | more`, and then q: the C library of Windows calls that an invalid argument."""

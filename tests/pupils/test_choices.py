@@ -42,7 +42,7 @@ def test_a_program_is_checked_so_often_and_no_more() -> None:
     )
 
 
-def test_a_repair_with_a_mistake_in_it_is_none() -> None:
+def test_a_repair_that_contains_a_mistake_is_not_offered() -> None:
     (missing,) = check("F(2 80)")
     edits = [Edit(Span(3, 3), ",,,"), Edit(Span(5, 6), "")]
     for start, is_repair in ((2, True), (3, False), (5, False), (6, True)):

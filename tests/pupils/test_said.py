@@ -64,7 +64,7 @@ def test_each_order_of_a_sentence_is_written(program: str, orders: str, example:
         assert example in message(diagnostic, Source(program), language).message
 
 
-def test_the_set_up_of_a_port_is_no_start() -> None:
+def test_the_set_up_of_a_port_is_not_a_start() -> None:
     (diagnostic,) = check("Serial.begin(9600);\nF(1, 50)")
     assert (diagnostic.code, diagnostic.values["found"]) == (codes.UNKNOWN_WORD, "Serial.begin")
 

@@ -83,7 +83,7 @@ def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], t
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-def test_one_place_is_no_question(block: tuple[str, str]) -> None:
+def test_one_place_is_not_a_question(block: tuple[str, str]) -> None:
     text = f"SI|{block[0]}; F(1, 60)"
     assert code_and_fix(text)[1] == f"Write ;{block[1]} after F(1, 60)"
 

@@ -43,7 +43,7 @@ def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
 
 @pytest.mark.parametrize("place", SURROUNDINGS)
 @pytest.mark.parametrize("language", SAID)
-def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
+def test_an_example_is_called_an_example(place: str, language: str) -> None:
     for call, fix, sample in (("R(1)", "R(1, 80)", "80 %"), ("BEEP(1)", "BEEP(1, 440)", "440 Hz")):
         text = place.format(call)
         diagnostic = next(diagnostic for diagnostic in check(text) if diagnostic.is_mistake)
@@ -53,5 +53,5 @@ def test_an_example_is_said_to_be_one(place: str, language: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["F(2, 8O)", "F(dos, ochenta)", "W(uno)", "F(2 seg 80)"])
-def test_a_number_that_is_written_in_another_form_is_no_example(text: str) -> None:
+def test_a_number_that_is_written_in_another_form_is_not_an_example(text: str) -> None:
     assert not any(diagnostic.values.get("sample") for diagnostic in check(text))

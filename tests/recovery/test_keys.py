@@ -134,7 +134,7 @@ def test_names_of_a_program_and_notes_are_no_keys(text: str) -> None:
     assert {diagnostic.code.number for diagnostic in check(f"SI|{text}")} == {"TS017"}
 
 
-def test_a_button_of_the_robot_is_still_none() -> None:
+def test_the_button_of_a_robot_is_still_not_a_key() -> None:
     assert [diagnostic.code.number for diagnostic in check("SI|IF(BUTTON);F(1, 60);ENDIF")] == [
         "TS120"
     ]

@@ -159,7 +159,7 @@ def test_a_unit_stays_with_its_number_and_the_other_reading_is_beside_it(
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
 @pytest.mark.parametrize(("little", "power"), [("2", "60"), ("5", "20"), ("0.5", "100")])
-def test_what_hardly_moves_a_robot_is_no_power_where_another_number_is_one(
+def test_a_tiny_value_is_not_the_power_where_another_number_fits(
     word: str, unit: str, template: str, little: str, power: str
 ) -> None:
     wrong = template.format(f"{word}({little}, {power} {unit})")
@@ -201,7 +201,7 @@ def test_a_moved_program_says_which_unit_it_loses() -> None:
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
-def test_a_slip_of_a_unit_is_one(word: str, unit: str) -> None:
+def test_a_misspelled_unit_is_read_as_a_unit(word: str, unit: str) -> None:
     """Two neighbours exchanged, a letter wrong, missing or too much."""
     slips = {unit[1] + unit[0] + unit[2:], "X" + unit[1:], unit[:1] + unit[2:], unit + unit[-1]}
     for slip in {slip for slip in slips if len(slip) > 1} - {"XEG"}:
@@ -286,7 +286,7 @@ def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, separat
 
 @pytest.mark.parametrize("end", ["FIM", "FIN", "END"])
 @pytest.mark.parametrize("text", ["SEMPRE; F(1, 60); {}", "W(1)\nSIEMPRE\nF(1, 60)\n{}\n"])
-def test_an_end_that_ends_a_block_is_no_word_too_many(text: str, end: str) -> None:
+def test_an_end_that_closes_a_block_is_not_superfluous(text: str, end: str) -> None:
     assert not any("not needed" in message for message in messages(f"SI|{text.format(end)}"))
     assert "THEN is not needed here." in messages("IF(DISTANCE < 9) THEN;S;ENDIF")
 

@@ -44,7 +44,7 @@ def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
     ["S F(1, 60)", "S vuelta", "S DISTANCE", "DEF PASO;W(1);END_DEF;S PASO", "S otra vez", "S 3",
      "V = 3;S V", "STOP UNTIL(DISTANCE > 9)", "S stop", "S // now"],
 )  # fmt: skip
-def test_what_may_be_an_order_or_a_value_is_no_leftover(text: str) -> None:
+def test_a_possible_order_or_value_is_not_a_leftover(text: str) -> None:
     assert not any(diagnostic.values.get("needless") for diagnostic in check(f"SI|{text}"))
 
 

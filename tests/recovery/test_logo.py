@@ -60,7 +60,7 @@ def test_the_power_is_the_one_of_the_program(place: str) -> None:
         "FD 50 50",
     ],
 )
-def test_what_may_be_seconds_or_a_power_is_no_logo(text: str) -> None:
+def test_possible_seconds_or_a_power_are_not_read_as_logo(text: str) -> None:
     assert not any("CM" in diagnostic.values.get("fix", "") for diagnostic in check(text))
 
 

@@ -40,7 +40,7 @@ def test_a_unit_that_is_a_value_goes_to_its_own(
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_a_comma_between_thousands_is_none_between_values(place: str) -> None:
+def test_a_comma_in_thousands_does_not_separate_values(place: str) -> None:
     for one, other in product(THOUSANDS, THOUSANDS):
         wrong = place.format(f"BEEP(1, {one});SHOW({other});BEEP(1, {other})")
         assert repair_program(wrong, check).text == re.sub(r",(?=\d{3})", "", wrong)

@@ -32,5 +32,5 @@ def test_a_percentage_of_a_sensor_is_shown_as_its_number(
 
 
 @pytest.mark.parametrize("right", ["IF(LIGHT_L > 80 % 7)", "IF(LIGHT_L % 2 = 0)"])
-def test_a_remainder_is_no_percentage(right: str) -> None:
+def test_a_remainder_is_not_a_percentage(right: str) -> None:
     assert not check(f"{right};S;ENDIF")

@@ -76,7 +76,7 @@ def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
     "frame", ["F(5, 60) UNTIL{}", "IF{};S;ENDIF", "WHILE{};F(1, 50);END_WHILE", "WHEN{};S;END_WHEN",
               "IF(DISTANCE < 5);S;ELSEIF{};S;ENDIF", "W(5) UNTIL{}"],
 )  # fmt: skip
-def test_questions_in_brackets_of_their_own_are_one(frame: str, word: str) -> None:
+def test_questions_in_brackets_are_one_question(frame: str, word: str) -> None:
     text = frame.format(f"(DISTANCE < 10) {word} (LIGHT_L < 20)")
     mended_text = repair_program(text, check).text
     assert not [diagnostic for diagnostic in check(mended_text) if diagnostic.code.is_mistake]

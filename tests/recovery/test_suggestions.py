@@ -78,17 +78,17 @@ def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
         "F(1, 80) " + "la " * 30,
     ],
 )
-def test_what_is_no_note_is_left_to_others(wrong: str) -> None:
+def test_text_that_is_not_a_note_is_left_to_other_rules(wrong: str) -> None:
     codes = {suggestion.diagnostic.code.number for suggestion in find_suggestions(wrong, KIT)}
     assert not codes & {"TS071", "TS085"}
 
 
-def test_a_block_is_no_note_of_what_stands_before_it() -> None:
+def test_a_block_is_not_a_note_about_the_text_before_it() -> None:
     codes = {diagnostic.code.number for diagnostic in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
     assert not codes & {"TS071", "TS085"}
 
 
-def test_what_is_wrong_beside_the_words_is_told_too() -> None:
+def test_other_mistakes_beside_the_words_are_reported_too() -> None:
     diagnostics = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
     assert [(diagnostic.code.number, diagnostic.values["fix"]) for diagnostic in diagnostics] == [
         ("TS017", "F(2, 80)"),

@@ -107,7 +107,7 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
         assert header == (KITS / f"{name}.h").read_text(encoding="utf-8")
 
 
-def test_another_board_with_an_unos_chip_is_no_uno(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_board_with_an_unos_chip_is_not_a_uno(monkeypatch: pytest.MonkeyPatch) -> None:
     """The liner's battery is on a pin that an Uno lacks, whatever other device uses that pin."""
     other = CHIPS["nano"]._replace(name="promini")
     monkeypatch.setitem(CHIPS, "promini", other)

@@ -84,7 +84,7 @@ def test_a_way_knows_its_corners_and_where_the_robot_is() -> None:
     assert way.points_ahead(3000 + QUARTER_MS) == [approximate_pose(Pose(20, 20, 90))]
 
 
-def test_the_same_setting_again_is_no_corner() -> None:
+def test_the_same_setting_again_is_not_a_corner() -> None:
     way = Way(BODY)
     for now_ms in range(0, 1000, 20):
         way.set_motors(now_ms, 50, 50)

@@ -169,7 +169,7 @@ def test_a_robot_with_a_lamp_names_it(word: str, given_text: str) -> None:
     assert f"LED({answer})" in message(diagnostic, Source(text), "en").fix
 
 
-def test_lamps_are_told_once_and_a_light_that_is_not_switched_is_none() -> None:
+def test_lamps_are_reported_once_and_an_unswitched_light_is_not_a_lamp() -> None:
     assert len(find_diagnostics("SI|LIGHT(ON);W(2);LIGHT(OFF)", TINIBOT)) == 1
     assert LAMPS and "L\u00c2MPADA" in str(
         find_diagnostics("SI|L\u00c2MPADA(1)", TINIBOT)[0].values
@@ -218,5 +218,5 @@ def test_a_beside_another_initial_is_forward(place: str, other: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["A(2, 70)", "A(2, 70);F(1, 50);D(1, 50)", "A(2, 70);L(1, 50)"])
-def test_an_initial_alone_or_beside_an_f_is_no_word(text: str) -> None:
+def test_an_initial_alone_or_beside_an_f_is_not_a_word(text: str) -> None:
     assert all(it.values.get("near") != "F" for it in check(text))

@@ -87,7 +87,7 @@ def test_several_are_told_once_and_the_loop_is_around_all() -> None:
     assert not check(apply_edits(text, diagnostic.repair.edits))
 
 
-def test_a_variable_that_is_called_as_a_key_is_no_key() -> None:
+def test_a_variable_with_the_name_of_a_key_is_not_a_key() -> None:
     assert not diagnostics_of(codes.ASKED_ONCE, "KEY_A = 3;LOOP(KEY_A);S;END_LOOP;SHOW(KEY_A)")
 
 
@@ -140,5 +140,5 @@ def test_a_task_with_anything_beside_it_is_not_told(other_statement: str) -> Non
         assert not diagnostics_of(codes.LONE_TASK, text)
 
 
-def test_a_lone_when_is_no_lone_task() -> None:
+def test_a_lone_when_is_not_a_lone_task() -> None:
     assert not diagnostics_of(codes.LONE_TASK, "WHEN(KEY_A);BEEP(1, 440);END_WHEN")

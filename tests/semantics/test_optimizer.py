@@ -54,5 +54,5 @@ def short(text: str) -> str:
          "If\n  arm () TIME 5 GT\n    Stop\n  arm (2,) yes_no1\n    Move W 1\n  else\n"),
     ],
 )  # fmt: skip
-def test_what_becomes_of_it(text: str, expected: str) -> None:
+def test_the_optimizer_changes_each_form_as_expected(text: str, expected: str) -> None:
     assert short(text) == expected

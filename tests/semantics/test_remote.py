@@ -282,7 +282,7 @@ def test_a_run_takes_their_readings(tsc: Tsc) -> None:
     tsc("run", "-e", text, "--sensor", "KEY_UPP=TRUE").gives(2, "KEY_UP")
 
 
-def test_a_sketch_has_none(tsc: Tsc) -> None:
+def test_a_sketch_has_no_remote_control(tsc: Tsc) -> None:
     tsc("show", "--arduino", "-e", "SHOW(KEY_A)").gives(2, "no remote control")
     assert tsc("show", "--arduino", "-e", "KEY_A = 1;SHOW(KEY_A)").code == 0
 

@@ -85,5 +85,5 @@ def test_another_word_with_the_row_of_beep_is_looked_at_like_it() -> None:
          {"TS834"}),
     ],
 )  # fmt: skip
-def test_a_sound_that_takes_no_time_is_none_to_wait_for(text: str, codes: set[str]) -> None:
+def test_a_sound_that_takes_no_time_is_not_waited_for(text: str, codes: set[str]) -> None:
     assert codes_of(f"SI|{text}") == codes

@@ -67,7 +67,7 @@ def test_whoever_has_hung_up_can_have_been_anybody() -> None:
 
 
 @linux
-def test_of_an_end_that_is_nobody_s_the_kernel_says_so() -> None:
+def test_the_kernel_reports_an_end_that_nobody_owns() -> None:
     with pytest.raises(FileNotFoundError):
         peers._socket_owner(("127.0.0.1", 1), ("127.0.0.1", 2))
 
@@ -156,7 +156,7 @@ def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch)
     assert not peers.is_of_another_user(number)  # no server listens there
 
 
-def test_a_robot_at_whose_port_another_user_listens_is_none(
+def test_a_port_at_which_another_user_listens_is_not_a_robot(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """After a crash, the robot's file is still there."""
@@ -286,7 +286,7 @@ def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_t
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_who_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> None:
+def test_whoever_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> None:
     """Somebody has removed ours meanwhile, and another command has the port."""
     path = tmp_path / "port"
     for is_others in (False, True):

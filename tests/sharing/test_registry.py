@@ -162,7 +162,7 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
                 check_one_owner(owners)
 
 
-def test_who_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
+def test_whoever_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
     """Somebody has emptied the cache."""
     first = lock()
     registry.lock_path(PORT).unlink()

@@ -114,7 +114,7 @@ def test_a_client_of_2_0_names_no_needs() -> None:
     assert session.upload.call_args.args[0] == IMAGE
 
 
-def test_who_presses_keys_is_not_for_the_client_to_say() -> None:
+def test_a_client_cannot_claim_to_be_another_that_presses_keys() -> None:
     session = Mock()
     request_maker(of("press", 1, 0, 0, 9), 700, 2)(session)
     assert session.press.call_args.args == (1, 0, 0, 2)

@@ -49,7 +49,7 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         other.close()
 
 
-def test_who_takes_no_events_keeps_the_newest_place_alone() -> None:
+def test_whoever_takes_no_events_keeps_the_newest_place_alone() -> None:
     backlog = Backlog()
     backlog.add_events((k, PlaceEvent(1, 2, k)) for k in range(2 * MOST_EVENTS))
     backlog.add_events([(0, ShownEvent(1, 0))])

@@ -130,7 +130,7 @@ def test_nothing_is_shared_where_nothing_can_be_written(
     tsc("monitor", "--hold", "--port", pty_robot.port).gives(3, "cannot be shared")
 
 
-def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot) -> None:
+def test_a_file_that_says_nothing_is_not_a_server(pty_robot: PtyRobot) -> None:
     with Shared() as (other, registration):
         path = registry._path(other.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
@@ -141,7 +141,9 @@ def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot) -> None:
     assert registry.find_registration(other.port) is None
 
 
-def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot: PtyRobot) -> None:
+def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(
+    pty_robot: PtyRobot,
+) -> None:
     with socket.create_server((protocol.HOST, 0)) as stranger:
         number = stranger.getsockname()[1]
         registry.write(Registration(pty_robot.port, number, "a", "b", "monitor", 9600, 1))

@@ -175,7 +175,7 @@ def test_what_blocks_are_as_text(text: str, printed_text: str) -> None:
     assert format_blocks(touched_form(read_blocks(text, TINIBOT))).text == printed_text
 
 
-def test_who_changes_a_block_changes_its_line_alone() -> None:
+def test_whoever_changes_a_block_changes_its_line_alone() -> None:
     text = (
         "IF(1.50 > (X));  // a\n  F((1), 080);\nELSEIF((X) > 2);  // b\n  S;\n"
         "ELSE;  // c\nENDIF;  // d\n"

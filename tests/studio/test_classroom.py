@@ -81,7 +81,7 @@ def test_a_page_that_did_not_hear_of_its_robot_keeps_the_turn_for_another_connec
     assert room.checks_in(luz)["place"] == 0
 
 
-def test_who_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
+def test_whoever_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
     """A closed page gets no turn and keeps none; a pupil who was passed over keeps the place. A
     robot that a page has left before it answered is as good as before."""
     asleep: list[FakeRobot] = []
@@ -250,7 +250,7 @@ def test_names_are_plain(name: str, shown_text: str) -> None:
     assert room.teaches("class")["pupils"][1]["name"] == f"{shown_text} (2)"
 
 
-def test_who_comes_back_to_a_computer_is_not_a_second_one() -> None:
+def test_whoever_comes_back_to_a_computer_is_not_a_second_one() -> None:
     room = Room()
     room.joins("Ana")
     second = room.joins("Ana", "198.51.100.1")
@@ -556,7 +556,7 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
         assert room.joins("Luz", "198.51.100.77")
 
 
-def test_who_comes_back_with_the_token_of_before_has_the_same_work() -> None:
+def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None:
     """A tab was closed, or the teacher has removed the pupil."""
     room = Room()
     ana = room.joins("Ana")
@@ -674,7 +674,7 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     assert works == class_keeping.MOST_WORKS
 
 
-def test_what_is_no_class_is_put_aside(kept_at: Path, keeper: Keeper) -> None:
+def test_an_invalid_class_file_is_put_aside(kept_at: Path, keeper: Keeper) -> None:
     """Another version, or a teacher, may be able to read it."""
     aside = kept_at.with_name("class.unread.json")
     for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):

@@ -95,7 +95,7 @@ def test_half_a_firmware_is_never_called_a_whole_one(how: dict[str, Any], ended_
     assert flash("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended_text
 
 
-def test_what_is_no_firmware_of_the_board_is_not_written() -> None:
+def test_firmware_of_another_board_is_not_written() -> None:
     whole = image("esp32dev", 20_000)
     for board, data in (
         ("esp32dev", whole[0x1000:]),  # the image alone, without the part before it

@@ -242,7 +242,7 @@ def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:
      ":0200000001FD\n:00000001FF", ":01800000017E\n:00000001FF",
      ":0100000001FE\n:0100000900F6\n:00000001FF"],
 )  # fmt: skip
-def test_what_is_no_firmware_is_refused(text: str, tmp_path: Path) -> None:
+def test_anything_but_firmware_is_refused(text: str, tmp_path: Path) -> None:
     file = tmp_path / "x.hex"
     file.write_text(text, encoding="ascii")
     assert flash("/dev/null", "uno", file) == "bad_file"

@@ -214,7 +214,7 @@ def count_values(page: Page) -> int:
     return sum(numbers)
 
 
-def test_who_comes_hears_of_what_runs_and_of_nothing_before() -> None:
+def test_whoever_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     runs = GroupRuns(lambda: 0.0)
     begin = {"event": "STARTED", "program": "a", "is_program": True}
     value = {"event": "SHOW", "value": "5"}

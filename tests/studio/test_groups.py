@@ -151,7 +151,7 @@ def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -
     assert members[0].asks("group", **members[0].request()) == {"left": True}
 
 
-def test_what_is_no_program_begins_no_group(school: School) -> None:
+def test_anything_but_a_program_begins_no_group(school: School) -> None:
     token = school.joins("Ana")
 
     def begin_group(name: str, text: str) -> Json:
@@ -528,7 +528,7 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
     assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
 
 
-def test_who_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
+def test_whoever_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     sends_before = ana.sends()
@@ -574,7 +574,7 @@ def test_a_group_has_one_place_and_one_turn(school: School) -> None:
     assert places == {0, -1}
 
 
-def test_who_joins_a_group_brings_the_earlier_place(school: School) -> None:
+def test_whoever_joins_a_group_brings_the_earlier_place(school: School) -> None:
     teo = school.joins("Teo")
     school.checks_in(teo, True)
     school.connects(teo)

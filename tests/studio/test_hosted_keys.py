@@ -139,7 +139,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, two: list[PtyRobot]) -> N
     assert power_of(two[0]) == 0
 
 
-def test_a_teachers_stop_is_no_key_of_a_pupils(lesson: Class, two: list[PtyRobot]) -> None:
+def test_a_teachers_stop_is_not_a_key_of_a_pupils(lesson: Class, two: list[PtyRobot]) -> None:
     """Earlier keys are void, and held keys start no program."""
     ana = lesson.pupil("Ana")
     assert ana.asks("connect") == {}

@@ -350,7 +350,7 @@ def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
     assert over["over"] == "port_gone" and "cable" in over["said"]
 
 
-def test_what_is_no_request_is_refused(hosting: Hosting) -> None:
+def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
     wrong: list[dict[str, Any]] = [
         {},
         {"do": "fly"},

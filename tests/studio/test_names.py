@@ -17,7 +17,7 @@ from tiniscript.studio.names import are_alike, free_name, plain_name
      ("Ola", "0la"), ("Ana", "A\ufe00na"), ("Ana", "An\u034fa"), ("Ana (2)", "Ana (２)"),
      ("O’Neil", "O'Neil"), ("Ana-Luz", "Ana‑Luz"), ("Maße", "MASSE")],
 )  # fmt: skip
-def test_what_looks_alike_is_one_name(one: str, other: str) -> None:
+def test_names_that_look_alike_are_one_name(one: str, other: str) -> None:
     assert are_alike(one, other) and are_alike(other, one)
 
 
@@ -34,7 +34,7 @@ def test_others_are_others(one: str, other: str) -> None:
     "blank", ["\u3164", "\u115f", "\u1160", "\uffa0", "\u2800", "\u00a0", "\u200b", "\u2066",
               "\u0301", "\ufe0f", "\U000e0020", "\U0001d159"]
 )  # fmt: skip
-def test_what_shows_nothing_is_no_name_and_hides_in_none(blank: str) -> None:
+def test_invisible_characters_are_not_a_name_nor_part_of_one(blank: str) -> None:
     assert plain_name(blank * 3) == plain_name(f" {blank} {blank}") == ""
     assert plain_name(f"Ana{blank}") != ""
     shown_text = plain_name(f"Ana{blank}").rstrip("?")  # a control character is replaced

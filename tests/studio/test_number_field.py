@@ -33,7 +33,7 @@ def test_a_comma_and_a_point_are_decimal_signs_and_groups_of_thousands_may_have_
         assert value == number and float(text) == number, number_text
 
 
-def test_what_is_no_number_changes_nothing(page_data: Path) -> None:
+def test_anything_but_a_number_changes_nothing(page_data: Path) -> None:
     typed = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
     input_lines = "".join(f"{json.dumps(text)}\n" for text in typed)
     for text, row in zip(typed, in_node(SCRIPT, str(page_data), given=input_lines), strict=True):

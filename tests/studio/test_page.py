@@ -250,7 +250,7 @@ def test_files_are_opened_and_saved(page: Page, tmp_path: Path) -> None:
     assert page.locator(".cm-content").inner_text() == text_before
 
 
-def test_a_file_that_is_no_program_leaves_the_program(page: Page, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_program_leaves_the_program(page: Page, tmp_path: Path) -> None:
     write(page, "SI|F(4, 80)")
     image_before = image(page)
     for name, data in (("nul", b"\x7fELF\0\0\0"), ("bytes", b"\xff\xfe\xfa"),

@@ -900,7 +900,7 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     assert fault.count() == 0 and page.locator(f"{PROGRAM} .blocklyIconGroup").count() == 0
 
 
-def test_who_changes_a_block_changes_its_line_alone(page: Page) -> None:
+def test_whoever_changes_a_block_changes_its_line_alone(page: Page) -> None:
     head = "SI|F(1.50, (80));  // first\n\n"
     end = "IF((X) > 2);\n  S;\nELSE;  // else\n  W(2.0);\nENDIF;  // end\n"
     start(page, f"{head}B(1.50, 80);\n{end}")

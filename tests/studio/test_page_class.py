@@ -246,7 +246,7 @@ def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
 
 
 @pytest.mark.parametrize("size", [(1366, 768), (390, 844)], ids=str)
-def test_who_opens_the_address_of_a_class_joins_it_at_once(
+def test_whoever_opens_the_address_of_a_class_joins_it_at_once(
     pages: Pages, shared_class: Class, size: tuple[int, int]
 ) -> None:
     """Code and name come before everything else; the focus is in the code."""
@@ -654,7 +654,7 @@ def opened_row(teacher: Page, name: str) -> Locator:
 
 
 @drawn
-def test_who_closes_the_page_and_comes_back_is_the_same_pupil(
+def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
     page = join_class(pages, shared_class, "Noa")

@@ -191,7 +191,7 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
 
 
 @drawn
-def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
+def test_a_breakpoint_in_every_line_is_not_a_hurdle(page: Page) -> None:
     """In a program of the largest size, and after its end; the first ones work."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
     pressed = page.locator(".cm-content").evaluate(

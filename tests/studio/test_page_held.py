@@ -277,7 +277,7 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     wait_until_checked(page)
 
 
-def test_who_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: Pages) -> None:
+def test_whoever_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
     held_robot = Held(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)

@@ -437,7 +437,7 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
 
 
 @drawn
-def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
+def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
     """Programs of lessons are in the list; the person's own program returns."""
     own, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
     write(page, own)
@@ -462,7 +462,7 @@ def test_who_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page
 
 
 @drawn
-def test_who_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
+def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
     own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")

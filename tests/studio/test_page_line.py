@@ -215,7 +215,7 @@ def test_tabs_lose_no_key_of_each_other_and_store_one_before_a_robot_has_it(
 @pytest.mark.parametrize(
     "data", [b"", b"{", b"[]", b"\xff", b'{"tiniscript_keys": 1}', b"[" * 5000]
 )
-def test_what_is_no_file_of_keys_changes_nothing(data: bytes) -> None:
+def test_anything_but_a_file_of_keys_changes_nothing(data: bytes) -> None:
     kept_text = keys.encode_keys([key(1)]).decode()
     assert ask(data, do="import_keys", kept=kept_text) == {"count": None}
 

@@ -187,7 +187,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
 
 
 @drawn
-def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
+def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
         start_drive(page, robot)
@@ -205,7 +205,7 @@ def test_who_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
 
 
 @drawn
-def test_who_presses_five_times_stops_once_more_and_is_told_once(
+def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
     page: Page, robot: PtyRobot
 ) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
@@ -270,7 +270,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
 
 
 @drawn
-def test_who_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
+def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)

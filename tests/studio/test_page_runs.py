@@ -187,7 +187,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     ],
     ids=["letter", "cut", "older", "newer", "huge"],
 )
-def test_a_file_that_is_no_run_says_why_and_nothing_is_lost(
+def test_a_file_that_is_not_a_run_says_why_and_nothing_is_lost(
     page: Page, tmp_path: Path, data: bytes, message: str
 ) -> None:
     run_to_end(page, "SI|SHOW(77)", "SHOW 77")

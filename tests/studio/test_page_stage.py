@@ -329,7 +329,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
     page.click("#view_text")
 
 
-def test_who_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) -> None:
+def test_whoever_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) -> None:
     """This lasts beyond the end of the run; the next run scrolls into view again."""
     page.select_option("#world", "free")
     write(page, "SI|LOOP(FOREVER)\n" + "F(0.1, 60)\n" * 30 + "END_LOOP")

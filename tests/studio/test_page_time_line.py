@@ -167,7 +167,7 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
 
 @drawn
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_who_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
+def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
     """At each moment of a run: no code and no line; users of text are told about text."""
     loop = "LOOP(3)\nIF(DISTANCE > 3)\nF(0.4, 60) UNTIL(DISTANCE < 2)\nENDIF\nW(0.1)\nEND_LOOP"
     start_run(

@@ -188,7 +188,7 @@ def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
 
 
 @drawn
-def test_who_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page]) -> None:
+def test_whoever_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     go_to_line(luz, "F(1, 80)")
@@ -397,7 +397,7 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
 
 
 @drawn
-def test_who_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
+def test_whoever_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     luz.click("#side_class")  # the page was reloaded

@@ -102,7 +102,7 @@ def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -
     assert recording_of((282, "SHOW 1"), text="SHOW(1)")[0] == "time"
 
 
-def test_who_goes_on_alone_is_told() -> None:
+def test_whoever_goes_on_alone_is_told() -> None:
     assert recording_of(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
     more = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
     assert more[:2] == ("value", 1)  # DONE in place of the second one

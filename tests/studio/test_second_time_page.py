@@ -99,7 +99,7 @@ ROW = 8  # seeds
 
 @pytest.mark.sampled("first", keep=1)
 @pytest.mark.parametrize("first", range(0, 10 * ROW, ROW))
-def test_who_begins_anew_sees_what_a_tab_that_is_loaded_again_shows(
+def test_whoever_begins_anew_sees_what_a_tab_that_is_loaded_again_shows(
     page_data: Path, first: int
 ) -> None:
     """Whatever was pressed before, and whatever is pressed then; what the page keeps, both keep.

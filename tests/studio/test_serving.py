@@ -110,7 +110,7 @@ def test_nothing_can_be_sent_to_it(server: serving.Server, own: str) -> None:
     assert server.server_address[0] == "127.0.0.1"
 
 
-def test_two_names_of_a_host_are_none(server: serving.Server, own: str) -> None:
+def test_two_host_headers_are_refused(server: serving.Server, own: str) -> None:
     with socket.create_connection(
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
     ) as client:

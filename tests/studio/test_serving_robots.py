@@ -87,7 +87,7 @@ def test_nobody_else_is(
      b'{"do": "ports"}' + b" " * serving.REQUEST_BYTES],
     ids=lambda body: repr(body[:12]),
 )  # fmt: skip
-def test_what_is_no_request_is_refused(server: serving.Server, own: str, body: bytes) -> None:
+def test_anything_but_a_request_is_refused(server: serving.Server, own: str, body: bytes) -> None:
     assert post(own, server.entrances.token, body)[0] == 400
     assert post(own, server.entrances.token, PORTS)[0] == 200
 

@@ -111,7 +111,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_file_that_is_no_world_says_why(name: str) -> None:
+def test_a_file_that_is_not_a_world_says_why(name: str) -> None:
     data, message = HOSTILE[name]
     for language in ("en", "es"):
         answer = open_world(data, language=language)

@@ -97,7 +97,7 @@ def test_a_line_of_comment_has_a_checksum_too() -> None:
         ("S;~00000000~00000000x", "~00000000"),
     ],
 )
-def test_a_sign_that_is_no_checksum_is_a_mistake(text: str, place: str) -> None:
+def test_a_sign_that_is_not_a_checksum_is_a_mistake(text: str, place: str) -> None:
     assert ("TS059", place) in messages(text)
 
 

@@ -135,7 +135,7 @@ def test_tokens_and_comments_of_any_text_follow_one_another() -> None:
         assert at == len(text)
 
 
-def test_what_is_no_space_is_a_token_as_it_is_written() -> None:
+def test_anything_but_a_space_is_a_token_as_written() -> None:
     for text in texts():
         scanned = scan(text)
         for token in (*scanned.tokens, *scanned.comments):

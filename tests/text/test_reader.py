@@ -94,7 +94,7 @@ def test_a_line_with_its_checksum_runs() -> None:
     assert answer_to("\ufeff".encode() + add_checksum(b"S")) == answer_to("S")
 
 
-def test_each_line_of_a_program_may_have_one() -> None:
+def test_each_line_of_a_program_may_have_a_checksum() -> None:
     lines = (
         b"\r\n".join(map(add_checksum, (b"LOOP(2)", b"F(1,", b"80)", b"", b"END_LOOP"))) + b"\r\n"
     )
@@ -119,7 +119,7 @@ def test_a_checksum_is_that_of_its_own_line(bytes_before: bytes) -> None:
 
 
 @pytest.mark.parametrize("line", [b"F(2, 80)~", b"S~1234567", b"S~1234567G", b"~S", b"S~ 12345678"])
-def test_what_is_no_checksum(line: bytes) -> None:
+def test_an_invalid_checksum_is_refused(line: bytes) -> None:
     assert answer_to(line).problem == "CHECKSUM"
 
 

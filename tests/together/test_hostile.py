@@ -93,7 +93,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
 
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)
-def test_what_is_no_change_is_refused(value: Any) -> None:
+def test_an_invalid_change_is_refused(value: Any) -> None:
     for data in (value, {"uid": value, "ops": []}, {"uid": "m:1", "ops": value},
                  {"uid": "m:1", "ops": [value]}, {"uid": "m:1", "ops": [], "if": [value]},
                  {"uid": "m:1", "ops": [], "since": "1"}):  # fmt: skip

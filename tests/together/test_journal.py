@@ -171,7 +171,7 @@ def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
     "data",
     [b"", b"{}\n", b"[]\n", b"no\n", b"[" * 100_000 + b"\n", b'{"n":1,"epoch":"e","counts":{}}\n'],
 )
-def test_what_is_no_journal_is_none(tmp_path: Path, data: bytes) -> None:
+def test_an_invalid_journal_is_ignored(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "journal"
     path.write_bytes(data)
     assert Journal(path).resume("e2") is None

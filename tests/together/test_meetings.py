@@ -205,7 +205,7 @@ def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(
     assert "i.3" in two.program.tree  # the same instruction
 
 
-def test_a_half_typed_value_is_no_change_though_it_parses(two: Two) -> None:
+def test_a_half_typed_value_is_not_a_change_though_it_parses(two: Two) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
         old = next(row for row in two.ana.lines if "L(1" in row)
         two.types(two.ana, old, shown, is_hot=True)

@@ -78,7 +78,7 @@ def rivals_of(driving: Driving) -> list[Pose]:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
-def test_who_looks_changes_nothing(seed: int) -> None:
+def test_whoever_looks_changes_nothing(seed: int) -> None:
     draw = random.Random(seed)
     world, moves, body = (
         draw_crowded_world(draw),

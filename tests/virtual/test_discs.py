@@ -133,7 +133,7 @@ def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
 
 @pytest.mark.parametrize("after_ms", [0, 5, 60, 700, 2400, 2500, 2560, 2620, 2700])
 @pytest.mark.parametrize("how", ["button", "client"])
-def test_a_stop_in_any_phase_is_one(after_ms: int, how: str) -> None:
+def test_a_stop_in_any_phase_stops(after_ms: int, how: str) -> None:
     """While it drives, slows down, rolls, or goes back: no motor is driven again."""
     robot, talk = started_robot("F(60 CM, 60); R(90 DEG, 60)")
     talk.wait(after_ms)

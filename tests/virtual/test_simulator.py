@@ -57,7 +57,7 @@ def test_clients_come_and_go(simulator: Simulator) -> None:
     assert simulator.transports._server.getsockname()[0] == "127.0.0.1"
 
 
-def test_many_at_once_are_all_told_but_one(simulator: Simulator) -> None:
+def test_of_many_clients_at_once_all_but_one_are_told(simulator: Simulator) -> None:
     crowd = [visit(simulator) for _ in range(6)]
     for client in crowd:
         client.sendall(PING)

@@ -82,7 +82,7 @@ def test_a_world_is_read() -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_the_world_of_the_documents_is_one(language: str) -> None:
+def test_the_world_of_the_documents_is_valid(language: str) -> None:
     text = (ROOT / "docs" / language / "worlds.md").read_text(encoding="utf-8")
     _, fence, _ = re.split(r"```toml\n|```\n", text)
     world = read(fence, "mine")

@@ -70,7 +70,7 @@ def trace_with(text: str, robot: TracedRobot, senses: Senses, budget: int) -> li
 
 
 @pytest.mark.parametrize("budget", [1, 2, 7])
-def test_where_a_call_returns_is_no_part_of_the_meaning(budget: int) -> None:
+def test_the_return_address_does_not_change_the_meaning(budget: int) -> None:
     for seed in range(60):
         text, readings = task_program(random.Random(seed))
         senses = Senses(readings, MAX_MS)
