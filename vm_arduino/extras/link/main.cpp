@@ -101,7 +101,7 @@ void answer_robot(RequestReader* request, Writer* answer) {
       break;
     case 'r':
       port_release();
-      link_half.drop();
+      link_half.cancel_and_detach();
       port_start(false);
       break;
     case 'a':

@@ -168,7 +168,7 @@ void firmware_on_down() {
 void firmware_on_released() {
   end_press();
   if (!may_start || is_long_press() || !has_booted()) return;
-  link.drop();
+  link.cancel_and_detach();
   is_start_due = holds_program();
 }
 

@@ -131,9 +131,9 @@ bool Link::next_tx_byte(uint8_t* byte) {
 tini_noinline void Link::stop(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
-  const bool has_stale = cause != Cause::kMessage && receiver_->has_frame();
+  const bool has_stale_frame = cause != Cause::kMessage && receiver_->has_frame();
   note_stop();
-  if (!was_stopped || has_stale) {
+  if (!was_stopped || has_stale_frame) {
     stopped(cause);
   } else {
     confirm(cause);

@@ -81,7 +81,7 @@ class Link {
 
   // The button starts the program that the robot holds: cancels a program in transfer, which must
   // not overwrite it. A run started by the button has no dead-man timer.
-  void drop() {
+  void cancel_and_detach() {
     image_ = nullptr;
     is_attached_ = false;
     console_.drop();

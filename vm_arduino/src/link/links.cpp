@@ -111,8 +111,8 @@ void Links::stopped(Cause cause) {
   for (Link& link : links_) link.stopped(cause);
 }
 
-void Links::drop() {
-  for (Link& link : links_) link.drop();
+void Links::cancel_and_detach() {
+  for (Link& link : links_) link.cancel_and_detach();
   driver_ = kNobody;
   is_held_back_ = false;
 }

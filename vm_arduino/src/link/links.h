@@ -32,7 +32,7 @@ class Links {
   void stopped(Cause cause);
   void halted();
   bool may_halt() const;
-  void drop();
+  void cancel_and_detach();
   bool is_attached() const;
   bool tells_readings() const;
   void expire();

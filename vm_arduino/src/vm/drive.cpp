@@ -15,18 +15,18 @@ namespace {
 // measures one at a time.
 TaskRecord* on_way;
 
-void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHasSet); }
+void forget_set(TaskRecord* task) { task->state &= static_cast<uint8_t>(~kHoldsPowers); }
 
 // Its M is over; a WHEN goes on wanting the motors.
 tini_noinline void want(TaskRecord* task) {
-  uint8_t state = static_cast<uint8_t>(task->state & ~kHasSet);
+  uint8_t state = static_cast<uint8_t>(task->state & ~kHoldsPowers);
   if (task->start != 0) state |= kKeeps;
   task->state = state;
 }
 
 // Its move is over, and so is its M.
 void end_move_of(TaskRecord* task) {
-  task->state &= static_cast<uint8_t>(~(kHasSet | kIsMoving | kDrives | kToItsEnd));
+  task->state &= static_cast<uint8_t>(~(kHoldsPowers | kIsMoving | kDrives | kToItsEnd));
 }
 
 }  // namespace
@@ -209,7 +209,7 @@ void Drive::motors(Powers powers) {
     set_motors(powers);
   }
   task_.me->set = powers;
-  task_.me->state |= kHasSet;
+  task_.me->state |= kHoldsPowers;
 }
 
 void Drive::stop_motors() {

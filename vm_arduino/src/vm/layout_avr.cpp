@@ -58,7 +58,7 @@ void Machine::check_layout() {
   is_bit(kDrives, tini_drives_bit);
   is_bit(kToItsEnd, tini_to_its_end_bit);
   is_bit(kHasBegun, tini_has_begun_bit);
-  is_bit(kHasSet, tini_has_set_bit);
+  is_bit(kHoldsPowers, tini_holds_powers_bit);
   is_bit(kKeeps, tini_keeps_bit);
   is_bit(kHasWaited, tini_has_waited_bit);
   is_bit(kHasHadTurn, tini_has_had_turn_bit);

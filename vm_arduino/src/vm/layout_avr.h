@@ -59,7 +59,7 @@
 #define tini_drives_bit 2
 #define tini_to_its_end_bit 3
 #define tini_has_begun_bit 4
-#define tini_has_set_bit 5
+#define tini_holds_powers_bit 5
 #define tini_keeps_bit 6
 #define tini_has_waited_bit 7
 #define tini_wants_motors 0x61

@@ -73,12 +73,12 @@ struct TaskRecord {
 constexpr uint8_t kIsMoving = 1;  // its move drives or is blocked
 constexpr uint8_t kHasTime = 2;  // its clock says when it is due: it is not blocked, and has not ended
 constexpr uint8_t kDrives = 4;
-constexpr uint8_t kToItsEnd = 8;     // the clock is the end of the move
-constexpr uint8_t kHasBegun = 16;    // it is neither blocked nor in the check before its move
-constexpr uint8_t kHasSet = 32;      // its M is in force
-constexpr uint8_t kKeeps = 64;       // a WHEN has wanted the motors, and has not found FALSE since
-constexpr uint8_t kHasWaited = 128;  // since it last went back to the start of a loop
-constexpr uint8_t kWantsMotors = kIsMoving | kHasSet | kKeeps;
+constexpr uint8_t kToItsEnd = 8;      // the clock is the end of the move
+constexpr uint8_t kHasBegun = 16;     // it is neither blocked nor in the check before its move
+constexpr uint8_t kHoldsPowers = 32;  // those of its M, which is in force
+constexpr uint8_t kKeeps = 64;        // a WHEN has wanted the motors, and has not found FALSE since
+constexpr uint8_t kHasWaited = 128;   // since it last went back to the start of a loop
+constexpr uint8_t kWantsMotors = kIsMoving | kHoldsPowers | kKeeps;
 constexpr uint8_t kAtFirst = kHasTime | kHasBegun;
 
 // Bits of `others`.

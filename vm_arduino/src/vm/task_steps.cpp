@@ -45,7 +45,7 @@ bool Scheduler::sends() {
 bool Scheduler::look(bool holds) {
   if (holds) return true;
   TaskRecord* const me = task_.me;
-  me->state &= static_cast<uint8_t>(~(kKeeps | kHasSet));
+  me->state &= static_cast<uint8_t>(~(kKeeps | kHoldsPowers));
   return look_again();
 }
 

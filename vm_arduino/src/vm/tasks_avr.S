@@ -275,9 +275,9 @@ end_turn:
 3:  adiw r26, tini_task_set_at
     ld r18, X+
     ld r19, X
-    sbrs r24, tini_has_set_bit
+    sbrs r24, tini_holds_powers_bit
     std Z+tini_task_set_at, r1
-    sbrs r24, tini_has_set_bit
+    sbrs r24, tini_holds_powers_bit
     std Z+tini_task_set_at+1, r1
     ldd r22, Z+tini_task_set_at
     ldd r23, Z+tini_task_set_at+1
@@ -578,7 +578,7 @@ is_below:
 want:
     movw r30, me
     ld r24, Z
-    andi r24, ~(1 << tini_has_set_bit) & 0xff
+    andi r24, ~(1 << tini_holds_powers_bit) & 0xff
     ldd r25, Z+tini_task_start_at
     ldd r0, Z+tini_task_start_at+1
     or r0, r25
@@ -639,7 +639,7 @@ leave_move:
 forget_move:
     ld r24, Z
     mov r25, r24
-    andi r25, ~(1 << tini_has_set_bit | 1 << tini_is_moving_bit | 1 << tini_drives_bit | 1 << tini_to_its_end_bit) & 0xff
+    andi r25, ~(1 << tini_holds_powers_bit | 1 << tini_is_moving_bit | 1 << tini_drives_bit | 1 << tini_to_its_end_bit) & 0xff
     st Z, r25
     ret
 
@@ -688,7 +688,7 @@ _ZN10tiniscript5Drive6motorsEj:
     std Z+tini_task_set_at, r22
     std Z+tini_task_set_at+1, r23
 2:  ld r24, Z
-    ori r24, 1 << tini_has_set_bit
+    ori r24, 1 << tini_holds_powers_bit
     st Z, r24
     ret
 
@@ -704,7 +704,7 @@ _ZN10tiniscript5Drive11stop_motorsEv:
     ldd r30, Y+tini_holder_at
     ldd r31, Y+tini_holder_at+1
     ld r24, Z
-    andi r24, ~(1 << tini_has_set_bit) & 0xff
+    andi r24, ~(1 << tini_holds_powers_bit) & 0xff
     st Z, r24
     sbrs r24, tini_drives_bit
 1:  ret

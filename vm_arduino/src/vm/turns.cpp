@@ -117,7 +117,7 @@ void Scheduler::pass_on() {
   }
   const Powers before = task_.holder->set;
   task_.holder = highest;
-  if (!highest->is(kHasSet)) highest->set = kMotorsOff;
+  if (!highest->is(kHoldsPowers)) highest->set = kMotorsOff;
   if (highest->set != before) set_motors(highest->set);
 }
 
