@@ -273,7 +273,7 @@ def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
         met.add(expected)
         assert expected == (refusal(image) if expected else "")
         if not expected:
-            parsed, read = second_reader.IMAGE.parse(image), unpack(image)
-            assert (parsed.later, parsed.code) == (read.later, read.code)
-            assert (parsed.devices, parsed.checksum) == (read.devices, read.checksum)
+            parsed, unpacked = second_reader.IMAGE.parse(image), unpack(image)
+            assert (parsed.later, parsed.code) == (unpacked.later, unpacked.code)
+            assert (parsed.devices, parsed.checksum) == (unpacked.devices, unpacked.checksum)
     assert met == {*REFUSALS, ""} - {"OTHER_KIT"}

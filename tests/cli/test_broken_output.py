@@ -141,19 +141,19 @@ def test_only_robots_that_a_command_drives_are_stopped(
     monkeypatch: pytest.MonkeyPatch, verb: str, is_detached: bool, is_stopped: bool
 ) -> None:
     """`tsc doctor --all | head` leaves running robots alone."""
-    stopped: list[str] = []
+    stopped_ports: list[str] = []
 
     def break_pipe(self: fleet.Fleet, table: object) -> None:
         raise BrokenPipeError
 
     monkeypatch.setattr(fleet.Fleet, "start_work", lambda self, work: None)
     monkeypatch.setattr(fleet.Fleet, "print_until_done", break_pipe)
-    monkeypatch.setattr(fleet.Fleet, "interrupt_robots", lambda self: stopped.append(verb))
+    monkeypatch.setattr(fleet.Fleet, "interrupt_robots", lambda self: stopped_ports.append(verb))
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
     with pytest.raises(BrokenPipeError):
         fleet.run_together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
-    assert bool(stopped) == is_stopped
+    assert bool(stopped_ports) == is_stopped
 
 
 def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
@@ -196,7 +196,7 @@ def test_a_port_that_vanishes_is_not_reported_as_a_bug(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:
     """The cable is pulled before the robot has confirmed a save."""
-    real = connect.Connection.begin_request
+    real_call = connect.Connection.begin_request
     requests = []
 
     def ask_and_pull(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
@@ -204,7 +204,7 @@ def test_a_port_that_vanishes_is_not_reported_as_a_bug(
             requests.append(make)
         if len(requests) == which:
             pty_robot.pull()
-        return real(self, make, limit_ms)
+        return real_call(self, make, limit_ms)
 
     monkeypatch.setattr(connect.Connection, "begin_request", ask_and_pull)
     result = run_in_process(*words, "--port", pty_robot.port)

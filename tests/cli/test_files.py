@@ -95,14 +95,14 @@ def test_a_private_file_is_never_open_to_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     modes = []
-    real = Path.chmod
+    real_call = Path.chmod
 
     def chmod(self: Path, mode: int) -> None:
         modes.append(mode_of(self))
-        real(self, mode)
+        real_call(self, mode)
 
     (tmp_path / "x").write_bytes(b"1")
-    real(tmp_path / "x", 0o640)
+    real_call(tmp_path / "x", 0o640)
     monkeypatch.setattr(Path, "chmod", chmod)
     files.replace(tmp_path / "x", b"2")
     assert modes == [0o600]
@@ -126,11 +126,11 @@ def test_the_name_of_a_new_file_is_another_each_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     names = []
-    real = Path.replace
+    real_call = Path.replace
 
     def replace(self: Path, target: Path) -> Path:
         names.append(self.name)
-        return real(self, target)
+        return real_call(self, target)
 
     monkeypatch.setattr(Path, "replace", replace)
     for _ in range(20):
@@ -276,7 +276,7 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
     """The owner left between our opening and our locking its file; another one came."""
     first = registry.lock_port("socket://x:1")
     assert first is not None
-    real = registry._lock
+    real_call = registry._lock
     others: list[IO[bytes] | None] = []
 
     def lock(file: registry._Lock) -> bool:
@@ -284,7 +284,7 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
             others.append(None)
             first.close()
             others.append(registry.lock_port("socket://x:1"))
-        return real(file)
+        return real_call(file)
 
     monkeypatch.setattr(registry, "_lock", lock)
     assert registry.lock_port("socket://x:1") is None

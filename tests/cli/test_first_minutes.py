@@ -64,14 +64,14 @@ LOOKS = 300  # most events to look at while a command may need time to save
 @pytest.fixture
 def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that looks at events long after its time is over fails: it would never end."""
-    whole, looks = Connection.event, 0
+    whole, look_count = Connection.event, 0
 
     def count_and_wait(
         connection: Connection, limit_s: float = POLL_INTERVAL_S
     ) -> tuple[int, Event] | None:
-        nonlocal looks
-        looks += connection.is_time_over
-        assert looks < LOOKS, "its time is over, and it goes on"
+        nonlocal look_count
+        look_count += connection.is_time_over
+        assert look_count < LOOKS, "its time is over, and it goes on"
         return whole(connection, limit_s)
 
     monkeypatch.setattr(Connection, "event", count_and_wait)
@@ -434,16 +434,16 @@ def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("x" * 5000).code == 2
 
 
-@each_row("real, expected", [
+@each_row("real_call, expected", [
     ("prog.ts.txt", "prog.ts"), ("prog.ts", "prog"), ("prog.ts.txt", "prog"), ("prog.tini", "prog"),
     ("prog.tini.txt", "prog.tini"),
 ])  # fmt: skip
 def test_a_file_is_found_by_the_name_that_a_folder_shows(
-    tsc: Tsc, tmp_path: Path, real: str, expected: str
+    tsc: Tsc, tmp_path: Path, real_call: str, expected: str
 ) -> None:
-    folder = tmp_path / f"{real} as {expected}"
+    folder = tmp_path / f"{real_call} as {expected}"
     folder.mkdir()
-    path = folder / real
+    path = folder / real_call
     path.write_text("SI|F(1, 80)")
     result = tsc("check", folder / expected).gives(0)
     assert result.out == f"{path}: no mistakes.\n"

@@ -162,7 +162,7 @@ def trace_until_line(
 
 def lines_of(kept_memory: Kept, number: int) -> int:
     """Return the number of lines of a first execution."""
-    read, write = os.pipe()
+    read_end, write = os.pipe()
     count = [0]
 
     def count_lines() -> None:
@@ -178,8 +178,8 @@ def lines_of(kept_memory: Kept, number: int) -> int:
         os.write(write, count[0].to_bytes(4, "little"))
 
     assert wait_for_child(fork_child(count_lines)) == 0
-    line_count = int.from_bytes(os.read(read, 4), "little")
-    os.close(read)
+    line_count = int.from_bytes(os.read(read_end, 4), "little")
+    os.close(read_end)
     os.close(write)
     return line_count
 

@@ -240,8 +240,8 @@ def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, which: int, s
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
     key_ids = {(key.id, key.which) for key in key_file.all()}
-    gone = {(key.id, key.which) for key in ring} - key_ids
-    assert gone == ({(OWNER_KEY.id, which)} if status == OK else set())
+    given_up_keys = {(key.id, key.which) for key in ring} - key_ids
+    assert given_up_keys == ({(OWNER_KEY.id, which)} if status == OK else set())
 
 
 ROBOT_ADDRESS = "tcp://ana"

@@ -67,9 +67,9 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         events = [json.loads(line) for line in result.out.splitlines()]
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOT_COUNT - 3
-        shown = [row["port"] for row in events if row["event"] == "SHOW"]
+        showing_ports = [row["port"] for row in events if row["event"] == "SHOW"]
         noisy = {pupils[number].port for number in NOISY_ROBOTS}  # the damaged event may be theirs
-        assert set(present_rows) - bad - noisy <= set(shown) <= set(present_rows) - bad
+        assert set(present_rows) - bad - noisy <= set(showing_ports) <= set(present_rows) - bad
         # the silent one is over last
         assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
 

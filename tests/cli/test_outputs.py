@@ -218,9 +218,9 @@ def test_a_file_that_may_not_be_written(
 ) -> None:
     output = tmp_path / "x.bin"
     output.write_bytes(b"mine")
-    real = os.access
+    real_call = os.access
     monkeypatch.setattr(  # root may write everything, so no file would do
-        os, "access", lambda path, mode: Path(path) != output and real(path, mode)
+        os, "access", lambda path, mode: Path(path) != output and real_call(path, mode)
     )
     assert tsc("compile", "-e", PROGRAM, "-o", output).code == 2
     assert output.read_bytes() == b"mine"

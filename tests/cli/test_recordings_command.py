@@ -122,8 +122,8 @@ def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
     )
     assert result.gives(0, "").err == ""
     recording = decode(file.read_bytes())
-    read = {row.event.split()[1] for row in recording.rows if row.is_reading}
-    assert read == {"DISTANCE", "LIGHT_L", "LIGHT_R"}
+    read_sensors = {row.event.split()[1] for row in recording.rows if row.is_reading}
+    assert read_sensors == {"DISTANCE", "LIGHT_L", "LIGHT_R"}
     values = sum(row.event.startswith("SHOW") for row in recording.rows)
     for world in ("obstacles", "line"):
         result = run_in_process("run", file, "--world", world)

@@ -96,10 +96,10 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
     monkeypatch.setattr("tiniscript.library.client.REQUEST_TIMEOUT_MS", 500)
-    real = connect.Connection.meet
+    real_call = connect.Connection.meet
 
     def meet(self: connect.Connection) -> DeviceInfo:
-        device_info = real(self)
+        device_info = real_call(self)
         monkeypatch.setattr("tiniscript.link.session.reply_of", lambda *_: None)
         monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
         return device_info
@@ -205,12 +205,12 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    real = Client.wait
+    real_call = Client.wait
     waits: list[str] = []
 
     def wait(self: connect.Connection, *arguments: Any) -> Any:
         nonlocal now_s
-        reply = real(self, *arguments)
+        reply = real_call(self, *arguments)
         waits.append("wait")
         now_s += 1.5
         if len(arguments) > 1 and arguments[1] is not None:

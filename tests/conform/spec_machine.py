@@ -32,21 +32,21 @@ class Spec:
         sensors, actuators = rows_by_word.get("sensor", []), rows_by_word.get("actuator", [])
         kit = Kit(tuple(map(_device, sensors)), tuple(map(_device, actuators)))
         (data,) = (bytes.fromhex("".join(rest)) for rest in rows_by_word["image"])
-        refused = self.image.refusal(data)
-        needs = data[14] if not refused else 0
+        refusal = self.image.refusal(data)
+        needs = data[14] if not refusal else 0
         if needs and not self.refuses_only:
-            refused = "UNKNOWN_NEEDS"
-        code = data[data[5] :] if not refused else b""
+            refusal = "UNKNOWN_NEEDS"
+        code = data[data[5] :] if not refusal else b""
         rule, at = verifier.verdict(code, len(sensors), len(actuators), needs, self.verifier)
         if rule:
             names = {number: name for name, number in rule_numbers().items()}
-            refused = f"{names[rule]} {at}"
+            refusal = f"{names[rule]} {at}"
         hashes = {"sensor": list(map(_hash, sensors, ["sensor"] * 32)),
                   "actuator": list(map(_hash, actuators, ["actuator"] * 32))}  # fmt: skip
-        if not refused and _devices(code, hashes) != int.from_bytes(data[6:8], "little"):
-            refused = "OTHER_KIT"
-        if refused:
-            return [f"REFUSED {refused}"]
+        if not refusal and _devices(code, hashes) != int.from_bytes(data[6:8], "little"):
+            refusal = "OTHER_KIT"
+        if refusal:
+            return [f"REFUSED {refusal}"]
         lists = {
             kit.sensors[int(k)].name: [*map(int, row)]
             for k, *row in rows_by_word.get("readings", [])

@@ -250,8 +250,8 @@ def test_names_are_unique_and_each_refusal_is_there() -> None:
 
     cases = machine_cases()
     assert len({case.name for case in cases}) == len(cases)
-    refused = {case.answer[-1].split()[1] for case in cases if "REFUSED" in case.answer[-1]}
-    assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH"}  # in an image this is BAD_HEADER
+    refused_names = {case.answer[-1].split()[1] for case in cases if "REFUSED" in case.answer[-1]}
+    assert refused_names == {*REFUSALS, *RULES} - {"CODE_LENGTH"}  # in an image this is BAD_HEADER
 
 
 # -- machines that are no machines ------------------------------------------------------------
@@ -291,11 +291,11 @@ def test_a_slow_reader_takes_nothing_of_the_next_process(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A number of a file that is closed is the next pipe's."""
-    read = os.read
+    real_read = os.read
 
     def read_slowly(number: int, count: int) -> bytes:
         time.sleep(0.1)
-        return read(number, count)
+        return real_read(number, count)
 
     monkeypatch.setattr(os, "read", read_slowly)
     process = MachineProcess(machine(tmp_path, HOSTILE["more"][0]), 100)

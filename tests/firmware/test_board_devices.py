@@ -84,8 +84,8 @@ def test_a_voltage_is_a_reading(
     board = start_board(robots.load(name), power_program(reading))
     board.analog(channel, millivolts)
     board.run_for(START + 10)
-    shown = int(board.motors(START + 9)[0].removeprefix("pwm "))
-    assert abs(shown - power * 2.55) < 3
+    pwm_value = int(board.motors(START + 9)[0].removeprefix("pwm "))
+    assert abs(pwm_value - power * 2.55) < 3
 
 
 def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> bool:

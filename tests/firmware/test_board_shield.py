@@ -183,8 +183,8 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     board.run_for(430)
     states = motor_states(board)
     assert all(state.cycle >= (START - 1) * MS for state in states if state.powers)
-    stopped = START + 50.123 + 0.02 if chip == "uno" else 402
-    assert all(state.cycle < stopped * MS for state in states if state.powers)
+    stop_ms = START + 50.123 + 0.02 if chip == "uno" else 402
+    assert all(state.cycle < stop_ms * MS for state in states if state.powers)
     enable = board.edges(WIRES["enable"])
     assert enable[0] < 100, "its outputs are off before a program drives"
 

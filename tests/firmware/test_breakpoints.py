@@ -348,7 +348,7 @@ def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -
 
 
 def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
-    gone = []
+    distances = []
     for is_halted in (False, True):
         robot = switched_on()
         robot.discs(cm=100_000, degrees=20_000)
@@ -365,8 +365,8 @@ def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
             it.go()
         assert it.halt() is None and it.events[-1].name == "DONE"
         it.talk(1000)
-        gone.append(robot.wheel_edges()[0])
-    assert abs(gone[1] - gone[0]) < 1.5, "edges"
+        distances.append(robot.wheel_edges()[0])
+    assert abs(distances[1] - distances[0]) < 1.5, "edges"
 
 
 def test_a_check_that_is_repeated_halts_once() -> None:

@@ -139,8 +139,8 @@ def is_within(some: list[Setting], more: list[Setting]) -> bool:
 def compare(image: Image, uno: Uno) -> bool:
     """Compare a program; return whether it has ended."""
     wanted_observation, run = run_in_tsc(image), step_on_chip(image, uno)
-    shown = min(len(wanted_observation.shows), len(run.shows))
-    assert run.shows[:shown] == wanted_observation.shows[:shown]
+    show_count = min(len(wanted_observation.shows), len(run.shows))
+    assert run.shows[:show_count] == wanted_observation.shows[:show_count]
     assert is_within(list_long_settings(run, SEEN_MS), list_long_settings(wanted_observation, 0))
     assert run.is_over or wanted_observation.end_ms > OWN_MS or run.halts == MOST_HALTS
     if run.is_over:

@@ -102,5 +102,5 @@ def test_an_uno_that_runs_is_stopped_by_the_first_edge(uno: Uno) -> None:
     uno.drive("button", False, at=at)
     uno.run_ms(3)
     assert states(uno) == OFF
-    off = max(uno.pins[name].cycle for name in OFF)
-    assert off - at < CYCLES_PER_MS
+    off_cycle = max(uno.pins[name].cycle for name in OFF)
+    assert off_cycle - at < CYCLES_PER_MS

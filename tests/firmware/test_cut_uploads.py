@@ -271,8 +271,8 @@ def test_an_upload_that_something_has_come_between_is_over(
     if what == "an upload":
         # a shorter payload
         rest = rest[1:] if cut == CUT_BEFORE_LAST_PIECE else [("COMMIT", bytes(4))]
-    refused = [line.asks(*frame) for frame in rest]
-    assert OK not in refused, (refused, rest)
+    statuses = [line.asks(*frame) for frame in rest]
+    assert OK not in statuses, (statuses, rest)
     assert {twin.asks("PING") for _ in rest} == {OK}
     for one_line in (line, twin):
         one_line.robot.wait(300)

@@ -200,8 +200,10 @@ def test_whoever_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     talk(robot, ends[1:], 5)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     assert upload_text(robot, ends[1:], other) == "OK"
-    looks, end = session(3, robot), make(robot)
-    assert wait_for_outcome(robot, [(end, looks), *ends[1:]], looks.ping()) == "OK"
+    looking_session, end = session(3, robot), make(robot)
+    assert (
+        wait_for_outcome(robot, [(end, looking_session), *ends[1:]], looking_session.ping()) == "OK"
+    )
     end.leave()
     talk(robot, ends[1:], 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "nothing of others"

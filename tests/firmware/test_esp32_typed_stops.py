@@ -246,7 +246,7 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
     for k, (name, prefix) in enumerate(ALL_PREFIXES.items()):
         spellings = spellings_after(name)
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
-            stopped = []
+            stops = []
             for leaves in (False, True):
                 ends, end = start_drive(robot, driver), make(robot)
                 driver.events()
@@ -255,11 +255,11 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
                     end.leave()
                 talk(robot, ends, LATE_MS)
                 events = [event.name for event in driver.events()]
-                stopped.append(has_stopped(robot) and "STOPPED" in events)
+                stops.append(has_stopped(robot) and "STOPPED" in events)
                 end.leave()
                 talk(robot, ends, LATE_MS)
-            assert stopped[1] or not stopped[0], f"{name} {spelling!r}"
-            count += stopped[0]
+            assert stops[1] or not stops[0], f"{name} {spelling!r}"
+            count += stops[0]
     assert count > len(ALL_PREFIXES)
 
 

@@ -323,10 +323,10 @@ def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
 def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
     robot, owner = join_network(Keys())
     waiting, looking = Network(robot), remote(robot, None)
-    looks: Ends = [(Network(robot), looking)]
-    assert wait_for_outcome(robot, looks, looking.ping()) == "OK"
+    looking_ends: Ends = [(Network(robot), looking)]
+    assert wait_for_outcome(robot, looking_ends, looking.ping()) == "OK"
     third = remote(robot, None, 14)
-    comes: Ends = [(Network(robot), third), *looks]
+    comes: Ends = [(Network(robot), third), *looking_ends]
     assert wait_for_outcome(robot, comes, third.ping()) == "OK"
     waiting.take()
     assert waiting.has_ended, "who has said nothing goes first"

@@ -79,8 +79,8 @@ class Client:
         """Return the reply to a request, from its status on."""
         self.seq = (self.seq + 1) % 256
         self.replies.clear()
-        sent = self.epoch if epoch is None else epoch
-        self.put(self.zero() + encode_frame(Frame(number, self.seq, sent, payload)))
+        sent_epoch = self.epoch if epoch is None else epoch
+        self.put(self.zero() + encode_frame(Frame(number, self.seq, sent_epoch, payload)))
         [reply] = [frame for frame in self.replies if frame.seq == self.seq]
         assert reply.number == number and reply.is_reply
         assert reply.payload[0] == STATUS_OK or len(reply.payload) == 3, reply

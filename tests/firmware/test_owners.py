@@ -299,16 +299,16 @@ def test_a_press_for_who_has_gone_confirms_nobody_else(
 
 
 def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
-    table, mine, other = Owned(), Keys(), Keys(70)
-    table.claim_session(mine)
-    session = table.session(mine, nonce=2)
+    table, teacher_session, other = Owned(), Keys(), Keys(70)
+    table.claim_session(teacher_session)
+    session = table.session(teacher_session, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
     assert session.robot
-    mine.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
+    teacher_session.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
     table.claim_session(other)
     for nonce in range(10, 30):  # more often than it may be tried
-        assert owner_of(table, table.session(mine, nonce=nonce)) == OWNED_BY_OTHER
-        assert [key.is_stale for key in mine.stored_keys] == [True]
+        assert owner_of(table, table.session(teacher_session, nonce=nonce)) == OWNED_BY_OTHER
+        assert [key.is_stale for key in teacher_session.stored_keys] == [True]
     assert owner_of(table, table.session(other, nonce=40)) == OWNED_BY_YOU
 
 
@@ -337,8 +337,8 @@ def test_a_teachers_key_drives_and_gives_a_robot_back() -> None:
     assert table.tries(session) == "OK"
     session.stop(table.robot.now_ms)
     table.pass_time(session, 100)
-    mine = table.session(pupil, nonce=5)
-    assert table.outcome(mine, mine.disown(KEY_TEACHER)) == "NOT_OWNER"
+    teacher_session = table.session(pupil, nonce=5)
+    assert table.outcome(teacher_session, teacher_session.disown(KEY_TEACHER)) == "NOT_OWNER"
     session = table.session(teacher, nonce=6)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
     assert owner_of(table, table.session(nonce=7)) == FREE
@@ -348,27 +348,27 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
     table, pupil, teacher = Owned(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
-    mine = table.session(pupil, nonce=5)
-    assert table.outcome(mine, mine.upload(image_of("SB|F(200, 40)"))) == "OK"
+    teacher_session = table.session(pupil, nonce=5)
+    assert table.outcome(teacher_session, teacher_session.upload(image_of("SB|F(200, 40)"))) == "OK"
     session = table.session(teacher, nonce=6)
     assert table.outcome(session, session.hold_back()) == "OK"
-    mine = table.session(pupil, nonce=7)
-    assert table.outcome(mine, mine.start()) == "HELD_BACK"
-    assert table.outcome(mine, mine.clear()) == "HELD_BACK"
-    assert table.outcome(mine, mine.allow_text(True)) == "OK"
+    teacher_session = table.session(pupil, nonce=7)
+    assert table.outcome(teacher_session, teacher_session.start()) == "HELD_BACK"
+    assert table.outcome(teacher_session, teacher_session.clear()) == "HELD_BACK"
+    assert table.outcome(teacher_session, teacher_session.allow_text(True)) == "OK"
     table.pass_time(None, 5000)
     assert b"teacher" in table.robot.wait(100, b"SI|F(1, 80)\n")
     assert not [line for line in table.robot.did if "MOTORS" in line]
     session = table.session(teacher, nonce=8)
     assert table.outcome(session, session.clear()) == "OK"
-    mine = table.session(pupil, nonce=9)
-    assert table.outcome(mine, mine.start()) == "OK"
+    teacher_session = table.session(pupil, nonce=9)
+    assert table.outcome(teacher_session, teacher_session.start()) == "OK"
     session = table.session(teacher, nonce=10)
     assert table.outcome(session, session.hold_back()) == "OK"
     table.hold(None, 200)
-    mine = table.session(pupil, nonce=11)
-    table.pass_time(mine, 10)
-    assert state_of(table, mine) == STATE_RUNNING
+    teacher_session = table.session(pupil, nonce=11)
+    table.pass_time(teacher_session, 10)
+    assert state_of(table, teacher_session) == STATE_RUNNING
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -377,8 +377,13 @@ def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: in
     rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
-    mine = table.session(pupil, nonce=5)
-    assert table.outcome(mine, mine.upload(image_of("SB|F(200, 40)"), runs=False)) == "OK"
+    teacher_session = table.session(pupil, nonce=5)
+    assert (
+        table.outcome(
+            teacher_session, teacher_session.upload(image_of("SB|F(200, 40)"), runs=False)
+        )
+        == "OK"
+    )
     is_held_back = False
     for nonce in range(10, 26):
         act = rng.choice(("holds back", "releases", "stops", "starts", "starts", "presses"))

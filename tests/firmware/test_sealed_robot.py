@@ -239,8 +239,8 @@ def test_a_teachers_stop_needs_the_teachers_seal() -> None:
     assert table.tries(session) == "OK"
     table.answer(Frame(BY_NAME["STOP"].number, 77, session._epoch))
     assert state_of(table, session) == STATE_STOPPED
-    mine = table.session(pupil, nonce=7)
-    assert table.tries(mine) == "OK"
+    teacher_session = table.session(pupil, nonce=7)
+    assert table.tries(teacher_session) == "OK"
 
 
 def test_a_counter_at_its_end_begins_another_seal() -> None:

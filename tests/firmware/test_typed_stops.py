@@ -110,11 +110,11 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
         if uno.received_bytes[k].value not in b"\r\n\0"
     )
     line_end = uno.received_bytes[end + 1]  # the CR of a CR LF
-    off = max(uno.pins[name].cycle for name in ("left", "right"))
+    off_cycle = max(uno.pins[name].cycle for name in ("left", "right"))
     what = f"{prefix!r} {spelling!r}"
     assert states(uno) == OFF, what
-    late_ms = (off - line_end.cycle) / CYCLES_PER_MS
-    behind_ms = (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
+    late_ms = (off_cycle - line_end.cycle) / CYCLES_PER_MS
+    behind_ms = (off_cycle - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
     is_held = behind_ms < SHORTEST_STOP_MS + (BUSY_TURN_MS if is_busy else TURN_MS)
     if not is_busy:
         is_held = is_held and behind_ms > SHORTEST_STOP_MS - TURN_MS
@@ -158,8 +158,8 @@ def stop_time_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.send(data)
     uno.run_ms(len(data) * byte_ms + 10)
     assert states(uno) == OFF, data
-    off = max(uno.pins[name].cycle for name in ("left", "right"))
-    return (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
+    off_cycle = max(uno.pins[name].cycle for name in ("left", "right"))
+    return (off_cycle - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 @pytest.mark.parametrize(
@@ -176,10 +176,10 @@ def test_whoever_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: byte
 def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, int]) -> None:
     uno, _ = driving_at
     with uno.try_out():
-        for sent in range(1, 9):
+        for sent_count in range(1, 9):
             uno.send(b"S")
             uno.run_ms(400)
-            assert (states(uno) == OFF) == (sent >= 3), sent
+            assert (states(uno) == OFF) == (sent_count >= 3), sent_count
         check_latched(uno)
 
 
@@ -229,8 +229,8 @@ def stop_time_after_silence_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     uno.send(data)
     uno.run_ms(len(data) * byte_ms + SHORTEST_STOP_MS + 2 * BUSY_TURN_MS)
     assert states(uno) == OFF, data
-    off = max(uno.pins[name].cycle for name in ("left", "right"))
-    return (off - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
+    off_cycle = max(uno.pins[name].cycle for name in ("left", "right"))
+    return (off_cycle - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
 
 
 # -- when lines count again -----------------------------------------------------------------------

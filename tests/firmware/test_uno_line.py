@@ -90,8 +90,8 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) 
     uno.hold(False, 2 * BAUD)
     uno.run_ms(20)
     assert states(uno) == OFF
-    off = max(uno.pins[name].cycle for name in MOTORS)
-    assert off - start_cycle < 10 * CYCLES_PER_MS
+    off_cycle = max(uno.pins[name].cycle for name in MOTORS)
+    assert off_cycle - start_cycle < 10 * CYCLES_PER_MS
     # The chip has reported it once, and so does the robot.
     uno.run_ms(980)
     assert [byte.cycle > start_cycle for byte in uno.received_bytes].count(True) == 1

@@ -177,8 +177,8 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     disconnect_for(uno, 51)
     wired_uno.run(100)
     assert states(uno) == OFF
-    off = max(uno.pins[name].cycle for name in MOTORS)
-    assert 49.5 * CYCLES_PER_MS <= off - left_cycle < 53 * CYCLES_PER_MS
+    off_cycle = max(uno.pins[name].cycle for name in MOTORS)
+    assert 49.5 * CYCLES_PER_MS <= off_cycle - left_cycle < 53 * CYCLES_PER_MS
     wired_uno.run(300)
     stops = [event.cause for event in wired_uno.session.events() if event.name == "STOPPED"]
     assert stops == [CABLE]

@@ -138,15 +138,15 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
         uno.sonar("trigger", "echo", distance_cm)
         wired_uno = computer(uno)
         send(wired_uno, LOOKS, is_detached=True)
-        start_cycle, shown = uno.cycle, []
+        start_cycle, shown_values = uno.cycle, []
         for turn in range(20):
             assert wired_uno.until(wired_uno.session.name(b"TINI%d" % turn)) == OK
             wired_uno.session.name(b"TINIBOT")
             wired_uno.run(30)
             uno.send(b"\x55", stop_bits_fail=True)
             wired_uno.run(20)
-            shown += [event.value for event in wired_uno.session.events()
-                      if event.name == "SHOW"]  # fmt: skip
+            shown_values += [event.value for event in wired_uno.session.events()
+                             if event.name == "SHOW"]  # fmt: skip
         assert wired_uno.session.is_running
         writes = [
             event for event in uno.events if event.kind == "eeprom" and event.cycle > start_cycle
@@ -157,11 +157,11 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
             if pin_change.state == "low"
         ]
     assert len(writes) > 300
-    assert len(shown) > 30
-    distances = [value for value in shown if value not in (200_000, 800_000)]
+    assert len(shown_values) > 30
+    distances = [value for value in shown_values if value not in (200_000, 800_000)]
     assert len(distances) > 10
     # an edge waits for up to two other interrupts: 20 us, and for a step of the robot's clock
     wrong = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
     assert not wrong
-    assert {200_000, 800_000} < set(shown)
+    assert {200_000, 800_000} < set(shown_values)
     assert min(b - a for a, b in pairwise(outputs) if a > start_cycle) >= 30 * CYCLES_PER_MS

@@ -100,8 +100,12 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
         uno.pause()
         outputs = [change for change in uno.pins.history("left") if change.state == "pwm"]
         assert len(outputs) == 1
-        off = [change for change in uno.pins.history("left") if change.cycle > outputs[0].cycle]
-        assert off[0].cycle - outputs[0].cycle == pytest.approx(300 * CYCLES_PER_MS, rel=0.02)
+        off_changes = [
+            change for change in uno.pins.history("left") if change.cycle > outputs[0].cycle
+        ]
+        assert off_changes[0].cycle - outputs[0].cycle == pytest.approx(
+            300 * CYCLES_PER_MS, rel=0.02
+        )
         assert states(uno) == OFF
 
 

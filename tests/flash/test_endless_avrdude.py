@@ -72,11 +72,11 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A number of a file that is closed is the next one's: that is the port."""
-    read = os.read
+    real_read = os.read
 
     def read_slowly(number: int, count: int) -> bytes:
         sleep_s(0.1)
-        return read(number, count)
+        return real_read(number, count)
 
     monkeypatch.setattr(os, "read", read_slowly)
     body = "import time\nprint('attempt 1 of 10, attempt 2 of 10', flush=True)\ntime.sleep(600)\n"

@@ -57,9 +57,9 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
     """Texts of these files with pieces left out, put in or doubled, and texts of anything."""
 
     def change(text: str, edits: list[tuple[float, int, str]]) -> str:
-        for where, gone, piece in edits:
+        for where, removed_count, piece in edits:
             at = int(where * len(text))
-            text = text[:at] + piece + text[at + gone :]
+            text = text[:at] + piece + text[at + removed_count :]
         return text
 
     edit = st.tuples(

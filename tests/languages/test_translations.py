@@ -430,9 +430,9 @@ def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
     rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
-    read, _, wrong = catalogue_source.parse_rows(rows + plural)
+    parsed_rows, _, wrong = catalogue_source.parse_rows(rows + plural)
     assert wrong == []
-    assert {row.key: row.value for row in read} == {
+    assert {row.key: row.value for row in parsed_rows} == {
         key: texts, f"{key}.": texts[0] or "x", f"{key}..": {"one": texts[0], "few": texts[1]},
     }  # fmt: skip
 

@@ -91,9 +91,9 @@ def test_a_port_that_stays_busy_is_said_to_be(
     assert busy.value.reason == "port_busy"
     assert BUSY_TIMEOUT_S < place.now_s - began_s < BUSY_TIMEOUT_S + 2 * RETRY_INTERVAL_S
     place.reason, place.tries = "port_gone", 0
-    with pytest.raises(RobotError) as gone:
+    with pytest.raises(RobotError) as error_info:
         opening.connection_to(port, "upload", 9600, 1)
-    assert (gone.value.reason, place.tries) == ("port_gone", 1), "nothing else is waited for"
+    assert (error_info.value.reason, place.tries) == ("port_gone", 1), "nothing else is waited for"
 
 
 class Device:

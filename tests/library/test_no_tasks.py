@@ -69,10 +69,10 @@ def test_the_library_sends_no_tasks() -> None:
         for send in (robot.upload, robot.live):
             for form in (program, TEXT, program.image):
                 if send == robot.upload or isinstance(form, str):
-                    with pytest.raises(tiniscript.RobotError) as refused:
+                    with pytest.raises(tiniscript.RobotError) as error_info:
                         send(cast("str", form))
-                    assert refused.value.reason == "UNKNOWN_NEEDS"
-                    assert "tsc run" in str(refused.value)
+                    assert error_info.value.reason == "UNKNOWN_NEEDS"
+                    assert "tsc run" in str(error_info.value)
         robot.upload("SHOW(2)")  # the others had no effect
         assert [event.values for event in robot.events() if event.name == "SHOW"] == [{"value": 2}]
 
@@ -85,12 +85,12 @@ def test_the_others_run_them(sent: str, robot_name: str) -> None:
     with tiniscript.virtual_robot(robot_name, hurry=math.inf) as robot:
         receipt = getattr(robot, sent)(text)
         assert receipt.checksum == tiniscript.compile(text, robot_name).checksum
-        shown = []
+        shown_values = []
         for event in robot.events(timeout=60):
-            shown += [event.values["value"]] if event.name == "SHOW" else []
-            if shown == [7, 8]:
+            shown_values += [event.values["value"]] if event.name == "SHOW" else []
+            if shown_values == [7, 8]:
                 robot.stop()
-        assert (shown, robot.wait().name) == ([7, 8], "STOPPED")
+        assert (shown_values, robot.wait().name) == ([7, 8], "STOPPED")
         getattr(robot, sent)("W(0.1);SHOW(1 / (TIME - TIME));WHEN(TRUE);S;END_WHEN")
         fault = robot.wait().fault
         assert fault is not None and (fault.name, fault.column) == ("DIVIDE_BY_ZERO", 8)

@@ -45,9 +45,9 @@ def test_which_code_reads_a_remote_control(name: str) -> None:
 
 def test_the_refusal_says_what_to_do() -> None:
     image = unpack(pack("SI", 0, bytes((READ, OWN))))
-    refused = refusal(image, ROBOT, device_info(PLACES))
-    assert refused is not None and refused.status == STATUSES["NO_REMOTE"]
+    refusal_found = refusal(image, ROBOT, device_info(PLACES))
+    assert refusal_found is not None and refusal_found.status == STATUSES["NO_REMOTE"]
     assert refusal(image, ROBOT, device_info(PLACES | REMOTE)) is None
     for language in ("en", "es", "pt"):
-        sentence, advice = status_text(refused.status, 0, language)
+        sentence, advice = status_text(refusal_found.status, 0, language)
         assert "KEY_UP" in sentence and "tsc firmware" in advice and "Nano" in advice

@@ -138,12 +138,12 @@ def test_its_world_and_its_readings_can_be_chosen() -> None:
     with tiniscript.virtual_robot(world="light", sensors=sensors, hurry=50) as robot:
         robot.upload(OBSTACLE, save=False)
         robot.live("SHOW(DISTANCE);SHOW(DISTANCE)")
-        shown = [
+        shown_values = [
             robot_event.values["value"]
             for robot_event in robot.events()
             if robot_event.name == "SHOW"
         ]
-        assert shown[-1] == 5
+        assert shown_values[-1] == 5
 
 
 @pytest.mark.parametrize(
@@ -345,13 +345,13 @@ def test_only_its_own_word_confirms_a_stop() -> None:
 
 def test_what_ended_before_a_run_is_not_its_end() -> None:
     follower = Follower(5)
-    stopped = event("STOPPED")
+    stopped_event = event("STOPPED")
     started = [StartedEvent(run, 1) for run in (5, 6)]
-    assert not follower.follow(stopped, "P")
+    assert not follower.follow(stopped_event, "P")
     assert follower.end(DoneEvent(4)) is None
     assert follower.follow(started[0], "P")
-    assert follower.follow(stopped, "P")
-    assert follower.end(stopped) == End("STOPPED")
+    assert follower.follow(stopped_event, "P")
+    assert follower.end(stopped_event) == End("STOPPED")
     assert follower.end(DoneEvent(5)) == End("DONE")
     for last, reason in (
         (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
@@ -401,9 +401,9 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
             programs.append(robot.upload(f"SI|F(0.05, {power})"))
             robot.wait()
             if power == 30:
-                with pytest.raises(tiniscript.RobotError, match="tsc upload") as refused:
+                with pytest.raises(tiniscript.RobotError, match="tsc upload") as error_info:
                     robot.undo()
-                assert refused.value.reason == "NO_PREVIOUS"
+                assert error_info.value.reason == "NO_PREVIOUS"
         receipt = robot.undo()
         assert (receipt.checksum, receipt.is_running) == (programs[0].checksum, False)
         with raises_error(tiniscript.UsageError, "nothing_started"):

@@ -159,10 +159,10 @@ def test_a_variable_is_a_yes_no_where_its_show_is() -> None:
         text = programs.program(random.Random(seed), oracle_kit)
         compilation = compile_text(text, kit)
         for name, is_yes_no in zip(compilation.variables, compilation.yes_no_flags, strict=True):
-            shown = compile_text(f"{text}\nSHOW({name})", kit)
-            if shown.is_right:  # otherwise it is a value of a DEF
-                assert shown.program
-                last = shown.program.body[-1]
+            show_program = compile_text(f"{text}\nSHOW({name})", kit)
+            if show_program.is_right:  # otherwise it is a value of a DEF
+                assert show_program.program
+                last = show_program.program.body[-1]
                 assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)
                 kinds.add(is_yes_no)
     assert kinds == {True, False}

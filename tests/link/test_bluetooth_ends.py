@@ -241,18 +241,18 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
 def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     from tiniscript.link.transports import bluetooth_search
 
-    did: list[str] = []
+    calls: list[str] = []
 
     async def search() -> None:
         answer = asyncio.Event()
 
         async def start() -> None:
-            did.append("start")
+            calls.append("start")
             await answer.wait()
-            did.append("started")
+            calls.append("started")
 
         async def stop() -> None:
-            did.append("stop")
+            calls.append("stop")
 
         async def fail() -> None:
             raise OSError("the adapter is gone")
@@ -260,7 +260,7 @@ def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.Monkey
         scanner = SimpleNamespace(start=start, stop=stop)
         monkeypatch.setattr(bluetooth_search, "BleakScanner", lambda _: scanner)
         task = asyncio.create_task(bluetooth_search._Scan().__aenter__())
-        while not did:
+        while not calls:
             await asyncio.sleep(0)
         task.cancel()
         await asyncio.sleep(0)
@@ -274,4 +274,4 @@ def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.Monkey
                     pass
 
     asyncio.run(search())
-    assert did == ["start", "started", "stop"] * 3
+    assert calls == ["start", "started", "stop"] * 3

@@ -36,9 +36,9 @@ class Line(NamedTuple):
     is_damaged: list[bool]
 
 
-def judge(sent: Line, accepted: list[Frame]) -> None:
+def judge(sent_line: Line, accepted: list[Frame]) -> None:
     """Assert that no wrong frame was accepted, and that damage costs at most one more frame."""
-    numbers = {frame: number for number, frame in enumerate(sent.frames)}
+    numbers = {frame: number for number, frame in enumerate(sent_line.frames)}
     judgements = []
     for frame in accepted:
         assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
@@ -47,8 +47,8 @@ def judge(sent: Line, accepted: list[Frame]) -> None:
         "a frame came twice, or before one that was sent earlier"
     )
     arrived = set(judgements)
-    for number, is_damaged in enumerate(sent.is_damaged):
-        if not is_damaged and (number == 0 or not sent.is_damaged[number - 1]):
+    for number, is_damaged in enumerate(sent_line.is_damaged):
+        if not is_damaged and (number == 0 or not sent_line.is_damaged[number - 1]):
             assert number in arrived, (
                 f"frame {number} is lost without damage to it or the one before"
             )
@@ -77,18 +77,18 @@ def whole_frames(rows: list[str]) -> list[Frame]:
 
 def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     """Assert that Python encodes, receives and decodes a line as the C++ does."""
-    sent = Line(line.data, [frame_of(frame) for frame in line.frames], line.is_damaged)
+    sent_line = Line(line.data, [frame_of(frame) for frame in line.frames], line.is_damaged)
     at = 0
-    for frame, is_damaged in zip(sent.frames, sent.is_damaged, strict=True):
+    for frame, is_damaged in zip(sent_line.frames, sent_line.is_damaged, strict=True):
         if not is_damaged:
             wire = encode_frame(frame)
-            start = sent.data.find(wire, at)
+            start = sent_line.data.find(wire, at)
             assert start >= 0, f"the C++ encodes it in another way: {frame}"
             at = start + len(wire)
-    stream = [(0, byte) for byte in sent.data]
+    stream = [(0, byte) for byte in sent_line.data]
     rows = packets_of(stream, is_large=is_large)
     assert cpp_link(is_large).packets(stream) == rows
-    judge(sent, whole_frames(rows))
+    judge(sent_line, whole_frames(rows))
     assert [frame_of(packet) for packet in line.accepted] == whole_frames(rows)
 
 

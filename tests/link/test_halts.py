@@ -76,11 +76,11 @@ def test_a_run_of_another_goes_on() -> None:
 def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
     session, robot = open_session()
     long = image("F(1, 80);" * 40)
-    gone = session.upload(long)
+    withdrawn_request = session.upload(long)
     other = live(session)
     robot.talk(session, after_ms)
-    session.withdraw(gone)
-    assert gone.outcome is not None and gone.outcome.status == CANCELLED
+    session.withdraw(withdrawn_request)
+    assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
     assert robot.until(session, other) == OK
     robot.talk(session, 1000)
     assert not is_moving(robot) and "MOTORS 80 80" not in "".join(robot.did)
@@ -88,9 +88,9 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
 
 def test_one_that_waits_is_withdrawn() -> None:
     session, robot = open_session()
-    first, gone, last = live(session), session.upload(DRIVE_IMAGE), live(session)
-    session.withdraw(gone)
-    assert gone.outcome is not None and gone.outcome.status == CANCELLED
+    first, withdrawn_request, last = live(session), session.upload(DRIVE_IMAGE), live(session)
+    session.withdraw(withdrawn_request)
+    assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
     assert robot.until(session, last) == OK and first.outcome
     assert not is_moving(robot)
 
@@ -101,15 +101,15 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
     session, robot = open_session()
     if answers == "BUSY":
         assert robot.until(session, session.upload(image("SB|SHOW(1)"))) == OK
-    gone = session.upload(DRIVE_IMAGE, saves=False)
+    withdrawn_request = session.upload(DRIVE_IMAGE, saves=False)
     first_frames = session.poll(robot.now_ms)
     assert first_frames
-    session.withdraw(gone)
-    assert gone.outcome is None
+    session.withdraw(withdrawn_request)
+    assert withdrawn_request.outcome is None
     session.receive(robot.wait(40, first_frames), robot.now_ms)
     robot.talk(session, 300)
-    assert gone.outcome is not None
-    assert (gone.outcome.status == OK) == (answers == OK) == is_moving(robot)
+    assert withdrawn_request.outcome is not None
+    assert (withdrawn_request.outcome.status == OK) == (answers == OK) == is_moving(robot)
     status = session.status()
     assert robot.until(session, status) == OK
 

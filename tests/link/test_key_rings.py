@@ -158,8 +158,10 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
         assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
         for which, right in robot.keys.items():
-            shown = authority.show_keys(ring, robot.info, NONCE, lambda: 0, which, is_needed=False)
-            reply = robot.does(shown)
+            key_proof = authority.show_keys(
+                ring, robot.info, NONCE, lambda: 0, which, is_needed=False
+            )
+            reply = robot.does(key_proof)
             assert reply is not None and reply.status == OK
             [own] = [key for key in ring.keys_of_robot(1) if key.key == right]
             sealing_keys |= {right} if robot.has_seals else set()

@@ -72,17 +72,17 @@ def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
         if runs:
             robot.happens("r")
         assert not robot.step(10, live(code)[:-1]).did
-        did = robot.step(20, b"\0").did
-        assert (did[0] == "END") == runs
-        assert did[-1].startswith("START live")
+        actions = robot.step(20, b"\0").did
+        assert (actions[0] == "END") == runs
+        assert actions[-1].startswith("START live")
 
 
 @pytest.mark.parametrize("text", [*TEXTS, "SI|TASK;SHOW(1);END_TASK"])
 def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
     """Without tasks it is an image of 2.0, even in a session of 2.1."""
     image = compile_text(text, KIT).image
-    sent = open_session().step(10, live(unpack(image).code)).sent
-    replies = [frame for frame in map(decode_frame, sent.split(b"\0")) if frame is not None]
+    sent_bytes = open_session().step(10, live(unpack(image).code)).sent
+    replies = [frame for frame in map(decode_frame, sent_bytes.split(b"\0")) if frame is not None]
     checksum = unpack(image).checksum.to_bytes(4, "little")
     assert [checksum in reply.payload for reply in replies] == [True]
 
@@ -119,8 +119,8 @@ def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, interruption
 def test_a_stop_ends_the_frame_and_then_the_run() -> None:
     robot = open_session()
     assert not robot.step(10, live(CODES[0])[:-1]).did
-    did = robot.step(10, bytes(8)).did
-    assert did.index(STARTED) < did.index("PINS OFF") < did.index("STOP")
+    actions = robot.step(10, bytes(8)).did
+    assert actions.index(STARTED) < actions.index("PINS OFF") < actions.index("STOP")
     assert not robot.step(20, bytes(1)).did
 
 

@@ -89,8 +89,8 @@ def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
     is_there = due_ms <= robot.now_ms
     if is_there:
         line.under_way.popleft()
-    sent = robot.wait(10 if line.late_ms else 1, data if is_there else b"")
-    session.receive(line.takes(sent, robot.now_ms, True), robot.now_ms)
+    sent_bytes = robot.wait(10 if line.late_ms else 1, data if is_there else b"")
+    session.receive(line.takes(sent_bytes, robot.now_ms, True), robot.now_ms)
 
 
 def finish_request(

@@ -63,8 +63,8 @@ def test_every_event_comes_through_a_shared_port() -> None:
     for event in events:
         values = protocol.to_json_values(event_fields(event))
         message = {"event": event.name, "ms": 5, "values": values}
-        [read] = reader.read_messages(protocol.encode_message(message))
-        assert protocol.read_event(read) == (5, event)
+        [read_message] = reader.read_messages(protocol.encode_message(message))
+        assert protocol.read_event(read_message) == (5, event)
 
 
 @pytest.mark.parametrize(

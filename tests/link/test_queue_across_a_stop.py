@@ -48,13 +48,13 @@ def check(seed: int) -> str:
             f"seed {seed}"
         )
         wire.turns(wire.late_ms + 3)  # until it is there
-        sent = b""
+        sent_bytes = b""
     else:
-        sent = STOPS[how](robot, session)
+        sent_bytes = STOPS[how](robot, session)
     robot.codes()
     robot.did.clear()
     wire.loses = rng.choice((NOTHING, Losses(0, 0.3)))
-    wire.turn(b"" if rng.random() < 0.5 else sent)  # the event, if the session heard it
+    wire.turn(b"" if rng.random() < 0.5 else sent_bytes)  # the event, if the session heard it
     wire.turns(rng.choice((1, 5, 200)))
     wire.loses = NOTHING
     wire.turns(wire.late_ms)

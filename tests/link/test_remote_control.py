@@ -81,9 +81,9 @@ class Hand:
                 frame = decode_frame(packet)
                 if frame is not None and frame.number == KEYS.number:
                     self._note(frame)
-            sent = robot.step(b"" if data and self.loses() else data)
-            if sent and not self.loses():
-                session.receive(sent, robot.now_ms)
+            sent_bytes = robot.step(b"" if data and self.loses() else data)
+            if sent_bytes and not self.loses():
+                session.receive(sent_bytes, robot.now_ms)
         over = [request.outcome.status for request in self._requests if request.outcome is not None]
         self.outcomes += over
         self._requests = [
@@ -188,21 +188,21 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     """Held keys are mostly read, and released keys are never read more than 0.5 s later."""
     rng = random.Random(seed)
     one = hand()
-    read = looks = 0
+    read_count = look_count = 0
     for _ in range(40):
         one.loses = lambda: rng.random() < 0.3
         one.holds(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
         one.talk(300)
         for _ in range(20):
             one.talk(50)
-            looks += 1
-            read += one.robot.remote() == remote_readings(one.held)
+            look_count += 1
+            read_count += one.robot.remote() == remote_readings(one.held)
         one.holds(NOTHING_PRESSED)
         one.talk(HOLD_MS)
         for _ in range(10):
             assert one.robot.remote() == RELEASED
             one.talk(20)
-    assert read > 0.9 * looks, (read, looks)
+    assert read_count > 0.9 * look_count, (read_count, look_count)
     assert one.session.is_open
 
 
@@ -342,10 +342,10 @@ def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
     one.held = NOTHING_PRESSED
     one.talk(300)
     assert one.robot.is_latched
-    did = len(one.robot.did)
+    action_count = len(one.robot.did)
     one.holds(KEY_UP)
     one.talk(2000)
-    assert one.robot.is_latched and len(one.robot.did) == did
+    assert one.robot.is_latched and len(one.robot.did) == action_count
     status = one.session.status()
     assert one.robot.until(one.session, status) == OK
     assert status.outcome and status.outcome.values.state == STATE_STOPPED
@@ -466,8 +466,8 @@ def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
     table.claim_session(keys)
     stranger = Session(9, 9600, KIT.fingerprint)
     assert table.robot.until(stranger, stranger.hello()) == OK
-    refused = stranger.press(*KEY_UP)
-    assert table.robot.until(stranger, refused) == STATUSES["NOT_OWNER"]
+    refused_request = stranger.press(*KEY_UP)
+    assert table.robot.until(stranger, refused_request) == STATUSES["NOT_OWNER"]
     assert table.robot.remote() == RELEASED
     owner = table.session(keys, nonce=4)
     assert table.robot.until(owner, owner.hello()) == OK
@@ -502,9 +502,9 @@ class Wire:
     def keys(self, held_state: RemoteState, epoch: int | None = None) -> bytes:
         return self.frame("KEYS", encode_payload(KEYS.request, held_state._asdict()), epoch)
 
-    def answer(self, sent: bytes) -> str:
+    def answer(self, sent_bytes: bytes) -> str:
         """Return the status of the last answer."""
-        frames = [decode_frame(packet) for packet in self.robot.wait(60, sent).split(b"\0")]
+        frames = [decode_frame(packet) for packet in self.robot.wait(60, sent_bytes).split(b"\0")]
         replies = [frame for frame in frames if frame is not None and frame.is_reply]
         return STATUS_NAMES[replies[-1].payload[0]]
 
@@ -592,25 +592,25 @@ def test_keys_between_the_pieces_of_a_program() -> None:
 
 def test_keys_drop_no_open_block_of_text() -> None:
     """Another request does: it may need the memory."""
-    for sent, is_there in ((None, True), ("KEYS", True), ("NAME", False)):
+    for sent_bytes, is_there in ((None, True), ("KEYS", True), ("NAME", False)):
         wire = Wire()
         wire.robot.wait(1500)  # from here on the robot reads text again
         wire.robot.wait(50, b"SI|LOOP(1)\r\nF(0.1, 50)\r\n")
-        if sent is not None:
-            payload = b"\1\0\0" if sent == "KEYS" else b"Ana"
-            assert wire.answer(wire.frame(sent, payload)) in ("OK", "SAVING")
+        if sent_bytes is not None:
+            payload = b"\1\0\0" if sent_bytes == "KEYS" else b"Ana"
+            assert wire.answer(wire.frame(sent_bytes, payload)) in ("OK", "SAVING")
         wire.robot.wait(1500)
         wire.robot.wait(50, b"END_LOOP\r\n")
         wire.robot.wait(300)
-        assert any("MOTORS 50 50" in line for line in wire.robot.did) == is_there, sent
+        assert any("MOTORS 50 50" in line for line in wire.robot.did) == is_there, sent_bytes
 
 
 def test_the_reply_says_where_the_program_is() -> None:
     wire = Wire()
     program = image("SI|W(5)")
     wire.robot.wait(60, wire.frame("PROGRAM", b"\x10" + program.code))
-    sent = wire.robot.wait(60, wire.keys(KEY_UP))
-    frames = [decode_frame(packet) for packet in sent.split(b"\0")]
+    sent_bytes = wire.robot.wait(60, wire.keys(KEY_UP))
+    frames = [decode_frame(packet) for packet in sent_bytes.split(b"\0")]
     reply = next(frame for frame in frames if frame is not None and frame.number == KEYS.number)
     assert reply.payload[:2] == bytes((0, STATE_RUNNING))
     assert int.from_bytes(reply.payload[5:9], "little") == program.checksum

@@ -66,9 +66,9 @@ def test_a_long_silence_is_not_a_short_one() -> None:
     """Times are 16 bits: after a minute, a robot still knows about the silence."""
     cpp = robot_with_session()
     for now_ms in range(0, 200_000, 500):
-        sent = cpp.step(now_ms).sent
+        sent_bytes = cpp.step(now_ms).sent
         is_taken = cpp.happens("s", 1) or (cpp.step(now_ms).sent == b"\0" and cpp.happens("s", 1))
-        assert is_taken and (not sent or now_ms < LISTEN_MS + 1000), now_ms
+        assert is_taken and (not sent_bytes or now_ms < LISTEN_MS + 1000), now_ms
 
 
 def test_what_is_counted_does_not_wrap() -> None:
@@ -80,8 +80,8 @@ def test_what_is_counted_does_not_wrap() -> None:
 
 def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
     cpp = robot_with_session()
-    sent = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
-    frames = [decode_frame(part) for part in sent.split(b"\0") if part]
+    sent_bytes = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
+    frames = [decode_frame(part) for part in sent_bytes.split(b"\0") if part]
     assert {frame.epoch for frame in frames if frame} == {11}
     assert {frame.number for frame in frames if frame} == {BY_NAME["STOPPED"].number}
     assert 1000 < len(frames) <= 70_000 // AGAIN_MS + 1, len(frames)
@@ -108,9 +108,9 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
     for now_ms in range(0, 60_000, 10):
         came = b"".join(data for at, data in under_way if at == now_ms)
         under_way = [pair for pair in under_way if pair[0] > now_ms]
-        sent = cpp.step(now_ms, came).sent.replace(b"\0", b"")
-        answers += [now_ms] * sent.count(b"\n")
-        echo = before + sent if sent else b""
+        sent_bytes = cpp.step(now_ms, came).sent.replace(b"\0", b"")
+        answers += [now_ms] * sent_bytes.count(b"\n")
+        echo = before + sent_bytes if sent_bytes else b""
         for k in range(-(-len(echo) // piece_bytes)):
             piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
             under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
@@ -133,8 +133,8 @@ def test_a_slow_line_back_costs_no_answer() -> None:
     """Requests that arrive before the last answer could be sent wait."""
     cpp = robot_with_session()
     data = b"".join(encode_frame(Frame(2, seq, 10)) for seq in (2, 3, 4))
-    sent = cpp.step(10, data, is_slow=True).sent
-    frames = [decode_frame(part) for part in sent.split(b"\0") if part]
+    sent_bytes = cpp.step(10, data, is_slow=True).sent
+    frames = [decode_frame(part) for part in sent_bytes.split(b"\0") if part]
     assert [frame.seq for frame in frames if frame] == [2, 3, 4]
 
 

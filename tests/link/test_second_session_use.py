@@ -161,10 +161,10 @@ def check(seed: int) -> str:
     session = computer(77)
     session.tells_starts = True
     assert other.robot.until(session, session.hello()) == OK
-    did = second_use(random.Random(seed), used.session, used.robot)
+    actual = second_use(random.Random(seed), used.session, used.robot)
     want = second_use(random.Random(seed), session, other.robot)
-    assert did.what == want.what, f"seed {seed}\n{did.what}\nnot\n{want.what}"
-    late = [a - b for a, b in zip(did.took_ms, want.took_ms, strict=True)]
+    assert actual.what == want.what, f"seed {seed}\n{actual.what}\nnot\n{want.what}"
+    late = [a - b for a, b in zip(actual.took_ms, want.took_ms, strict=True)]
     assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"
     return "it runs" if "DoneEvent" in str(want) else "it stands"
 

@@ -66,15 +66,15 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     session.is_attached = False
     request = session.live(FORWARD)
     session.poll(0)
-    sent = list_packets(session, EXCHANGE_TIMEOUT_MS)
-    times = [at for at, _ in sent]
+    packets = list_packets(session, EXCHANGE_TIMEOUT_MS)
+    times = [at for at, _ in packets]
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first) <= 2
     gaps = [later - earlier for earlier, later in pairwise(times)]
     doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
     assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
-    assert len({data for _, data in sent}) == 1 and sent[0][1][:1] == b"\0"
-    assert 20 <= len(sent) + 1 <= TRIES
+    assert len({data for _, data in packets}) == 1 and packets[0][1][:1] == b"\0"
+    assert 20 <= len(packets) + 1 <= TRIES
     list_packets(session, 2 * EXCHANGE_TIMEOUT_MS)
     assert request.outcome and request.outcome.status == LOST
     assert session.next_wake_ms() is None
@@ -345,10 +345,12 @@ def test_messages_of_a_newer_robot_do_no_harm() -> None:
         session.receive(b"\0" + encode_frame(frame), 5)
     request = session.ping()
     data = session.poll(6)
-    sent = decode_frame(data.strip(b"\0"))
-    assert sent
-    session.receive(encode_frame(Frame(2, sent.seq, 10, b"", is_reply=True)), 7)
-    session.receive(encode_frame(Frame(2, sent.seq, 10, b"\0\1\1" + bytes(7), is_reply=True)), 7)
+    sent_frame = decode_frame(data.strip(b"\0"))
+    assert sent_frame
+    session.receive(encode_frame(Frame(2, sent_frame.seq, 10, b"", is_reply=True)), 7)
+    session.receive(
+        encode_frame(Frame(2, sent_frame.seq, 10, b"\0\1\1" + bytes(7), is_reply=True)), 7
+    )
     assert request.outcome is None and session.damaged == 3
     session.receive(answer(data, {"state": 0, "run": 0}), 8)
     assert request.outcome
@@ -418,8 +420,8 @@ def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> N
         names, request = upload_image(image, kit)
         assert names == expected
         assert request.outcome and request.outcome.status == 0
-    for refused in (STATUSES["WRONG_KIT"], RULES["NO_SUCH_DEVICE"][0]):
-        _, request = upload_image(used, KIT ^ 1, refused)
+    for refused_status in (STATUSES["WRONG_KIT"], RULES["NO_SUCH_DEVICE"][0]):
+        _, request = upload_image(used, KIT ^ 1, refused_status)
         assert request.outcome and request.outcome.status == STATUSES["WRONG_KIT"]
 
 
@@ -626,9 +628,9 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
     now_ms = 10
     for payload in replies:
         now_ms += 1000
-        sent = decode_frame(session.poll(now_ms).strip(b"\0"))
-        assert sent and sent.number == 2 and sent.payload == b"\1"
-        reply = Frame(2, sent.seq, 10, b"\0" + payload, is_reply=True)
+        sent_frame = decode_frame(session.poll(now_ms).strip(b"\0"))
+        assert sent_frame and sent_frame.number == 2 and sent_frame.payload == b"\1"
+        reply = Frame(2, sent_frame.seq, 10, b"\0" + payload, is_reply=True)
         session.receive(b"\0" + encode_frame(reply), now_ms + 1)
     return [
         (place_event.run, place_event.at)

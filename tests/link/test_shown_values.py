@@ -47,11 +47,11 @@ def answer_to_ping(
     session: Session, run: int, program: int, now_ms: int, state: int = STATE_RUNNING
 ) -> bytes:
     """Return the robot's answer to PING, which the session sends now and asks for its place."""
-    sent = session.poll(now_ms)
-    frame = decode_frame(sent.strip(b"\0"))
+    sent_bytes = session.poll(now_ms)
+    frame = decode_frame(sent_bytes.strip(b"\0"))
     assert frame and (frame.number, frame.payload) == (BY_NAME["PING"].number, PLACE_QUESTION)
     place = struct.pack("<HI", 9, program) if state == STATE_RUNNING else b""
-    return answer(sent, {"state": state, "run": run, "place": place})
+    return answer(sent_bytes, {"state": state, "run": run, "place": place})
 
 
 def test_a_value_of_our_run_is_of_our_program() -> None:

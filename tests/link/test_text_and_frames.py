@@ -129,12 +129,12 @@ def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> 
     robot = AnsweringRobot(InOrderReceiver(lost), baud=draw.choice((9600, 115_200)))
     session = robot.session
     session._sender = sender
-    sent: list[bytes] = []
+    sent_chunks: list[bytes] = []
     poll = session.poll
 
     def poll_and_record(now_ms: int) -> bytes:
         data = poll(now_ms)
-        sent.append(data)
+        sent_chunks.append(data)
         return data
 
     session.poll = poll_and_record  # type: ignore[method-assign]
@@ -148,9 +148,9 @@ def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> 
     session.is_attached = False
     request = session.hello()
     robot.run(request, robot.now_ms + 3000)
-    assert any(data == bytes(STOP_BYTES) for data in sent)
+    assert any(data == bytes(STOP_BYTES) for data in sent_chunks)
     before = b""
-    for data in sent:
+    for data in sent_chunks:
         zeros = len(data) - len(data.lstrip(b"\0"))
         assert zeros <= 1 or data == bytes(STOP_BYTES), data.hex()
         assert b"\0\0" not in data.strip(b"\0"), data.hex()

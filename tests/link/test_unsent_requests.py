@@ -119,8 +119,8 @@ def test_a_stop_that_is_told_before_the_first_step_with_an_effect_voids_it() -> 
     session, robot = running()
     request = session._queue_exchange(two_steps())
     assert session.poll(robot.now_ms)  # no client hears it
-    stopped = robot.step(flags=1) + robot.wait(100)
-    session.receive(stopped, robot.now_ms)
+    stop_bytes = robot.step(flags=1) + robot.wait(100)
+    session.receive(stop_bytes, robot.now_ms)
     assert [event.name for event in session.events()] == ["STOPPED"]
     assert request.outcome is None
     robot.did.clear()

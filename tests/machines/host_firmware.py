@@ -78,8 +78,8 @@ class HostFirmware(Process):
         head = pack("<IBHI", self._clock(self.now_ms), flags, ticks, len(data))
         answer = self.ask(b"S", head + data)
         sent_bytes, rest = first_text(answer)
-        did, rest = first_text(rest)
-        self._note([f"{self.now_ms} {line}" for line in did.decode().splitlines()])
+        action_text, rest = first_text(rest)
+        self._note([f"{self.now_ms} {line}" for line in action_text.decode().splitlines()])
         self.is_lit, self.is_latched = bool(rest[0]), bool(rest[1])
         return sent_bytes
 
@@ -103,8 +103,8 @@ class HostFirmware(Process):
     def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
         head = pack("<IIHBI", self._clock(self.now_ms + 1), milliseconds, TICKS, how, len(data))
         sent_bytes, rest = first_text(self.ask(b"W", head + data))
-        did, rest = first_text(rest)
-        rows = (line.split(" ", 1) for line in did.decode().splitlines())
+        action_text, rest = first_text(rest)
+        rows = (line.split(" ", 1) for line in action_text.decode().splitlines())
         self._note([f"{(int(ms) - self.clock_ms) % 2**32} {what}" for ms, what in rows])
         self.is_lit = bool(rest[0])
         latch_states = [bool(flag) for flag in first_text(rest[1:])[0]]

@@ -69,8 +69,8 @@ class CppLink:
         how = 2 if is_slow else is_late
         answer = self.ask(b"S", pack("<IBI", now_ms, how, len(data)) + data)
         sent_bytes, rest = first_text(answer)
-        did, _ = first_text(rest)
-        return Step(sent_bytes, did.decode().splitlines())
+        action_text, _ = first_text(rest)
+        return Step(sent_bytes, action_text.decode().splitlines())
 
     def happens(self, letter: str, value: int = 0) -> bool:
         """Something happens to the robot: done, fault, show, button, run by the button, wait."""

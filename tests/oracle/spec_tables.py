@@ -66,8 +66,10 @@ class Instruction(NamedTuple):
 
     def values(self, code: bytes, at: int) -> list[int]:
         """Return the values except distances of jumps: implied, or read."""
-        read = [value for operand, value in self.read(code, at) if not operand.is_distance]
-        return [value for _, value in self.implied] + read
+        operand_values = [
+            value for operand, value in self.read(code, at) if not operand.is_distance
+        ]
+        return [value for _, value in self.implied] + operand_values
 
     def target(self, code: bytes, at: int) -> int:
         """Return the target of a jump, or the next offset."""

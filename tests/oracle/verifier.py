@@ -23,11 +23,11 @@ class Broken(Exception):
 
 def _row_of(instruction: Instruction) -> SimpleNamespace:
     def operands(code: bytes, at: int) -> list[tuple[str, int, int, int]]:
-        read = [
+        operand_rows = [
             (operand.kind, operand.low, operand.high, value)
             for operand, value in instruction.read(code, at)
         ]
-        return read + [(kind, value, value, value) for kind, value in instruction.implied]
+        return operand_rows + [(kind, value, value, value) for kind, value in instruction.implied]
 
     parts = {
         "takes": instruction.takes,

@@ -27,9 +27,9 @@ needs_chip = pytest.mark.skipif(
 
 @pytest.mark.parametrize("work", WORKLOADS, ids=lambda work: work.name)
 def test_a_wrong_value_is_an_error(work: Workload) -> None:
-    shown = expected_values(work)
-    check("some machine", work, shown)
-    for other in ((*shown[:-1], shown[-1] + 1), shown[:-1]):
+    expected = expected_values(work)
+    check("some machine", work, expected)
+    for other in ((*expected[:-1], expected[-1] + 1), expected[:-1]):
         with pytest.raises(WrongResult, match=f"some machine, work {work.name}"):
             check("some machine", work, other)
 

@@ -118,8 +118,10 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
         )  # fmt: skip
         assert ran.returncode == 0, ran.stderr
         assert "2000 MOTORS 0 0" in ran.stdout
-        shown = subprocess.run([tsc, "check", "-e", "F(2 80)"], env=variables, capture_output=True)
-        assert shown.returncode == 1
+        completed_check = subprocess.run(
+            [tsc, "check", "-e", "F(2 80)"], env=variables, capture_output=True
+        )
+        assert completed_check.returncode == 1
         make_older(home)
 
 

@@ -376,13 +376,13 @@ def test_a_file_that_is_open_elsewhere_is_replaced_a_moment_later(
     path = tmp_path / "keys.json"
     path.write_bytes(b"old")
     now_s, tries = [0.0], [0]
-    real = Path.replace
+    real_replace = Path.replace
 
     def replace(self: Path, target: Path) -> Path:
         tries[0] += 1
         if now_s[0] < opened_s:
             raise PermissionError(13, "in use")
-        return real(self, target)
+        return real_replace(self, target)
 
     monkeypatch.setattr(Path, "replace", replace)
 

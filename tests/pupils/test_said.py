@@ -70,17 +70,17 @@ def test_the_set_up_of_a_port_is_not_a_start() -> None:
 
 
 def test_the_body_of_a_def_is_read_once_for_all_its_calls(monkeypatch: pytest.MonkeyPatch) -> None:
-    read: list[str] = []
+    read_texts: list[str] = []
 
     def record_scan(text: str) -> Scan:
-        read.append(text)
+        read_texts.append(text)
         return scan(text)
 
     monkeypatch.setattr(unknown_words, "scan", record_scan)
     diagnostics = check("DEF V;F(X CM, 60);END_DEF\n" + "V(20)\n" * 50)
     assert [diagnostic.values["head"] for diagnostic in diagnostics[1:]] == ["DEF V(X)"] * 50
-    assert set(read) == {";F(X CM, 60);"}
-    assert len(read) <= 5  # scans of the program and its offers, not of each call
+    assert set(read_texts) == {";F(X CM, 60);"}
+    assert len(read_texts) <= 5  # scans of the program and its offers, not of each call
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

@@ -52,11 +52,11 @@ def test_a_place_after_edits_was_elsewhere(span: tuple[int, int], before: object
 
 
 def test_a_question_that_nobody_reads_is_shown_as_it_is_written() -> None:
-    shown = {
+    values_by_code = {
         diagnostic.code.number: diagnostic.values
         for diagnostic in check("IF(esta listo) F(2, 80) ENDIF")
     }
-    assert shown["TS014"]["fix"] == "IF(esta listo);F(2, 80);ENDIF"
+    assert values_by_code["TS014"]["fix"] == "IF(esta listo);F(2, 80);ENDIF"
 
 
 def codes_and_places(text: str) -> list[tuple[str, str]]:

@@ -134,13 +134,13 @@ REFUSED = [
 
 @each_row("code, name, old, new, path", REFUSED)
 def test_refusals(code: str, name: str, old: str, new: str, path: str | None) -> None:
-    refused = refusal(edit_profile(name, old, new))
+    refusals = refusal(edit_profile(name, old, new))
     if path is None:
-        assert codes(refused) == [code]
+        assert codes(refusals) == [code]
     else:
-        assert (code, path) in [(reason, values["path"]) for reason, values in refused.reasons]
+        assert (code, path) in [(reason, values["path"]) for reason, values in refusals.reasons]
     for language in LANGUAGES:
-        assert all(sentence for sentence in describe(refused, language))
+        assert all(sentence for sentence in describe(refusals, language))
 
 
 FAN = """
@@ -175,9 +175,9 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     if timer is None:
         assert read(text, "test").board.actuators[0].pins == {"pin": pin}
         return
-    refused = refusal(text)
-    assert codes(refused) == ["timer_twice"]
-    sentence = describe(refused, "en")[0]
+    refusals = refusal(text)
+    assert codes(refusals) == ["timer_twice"]
+    sentence = describe(refusals, "en")[0]
     assert sentence.startswith(f"board.actuators.FAN.pin is pin {pin}: its PWM needs timer {timer}")
     assert f"which {first} uses." in sentence
 
@@ -211,10 +211,10 @@ def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
     if not code:
         assert read(text, "test").board.chip.startswith("esp32")
         return
-    refused = refusal(text)
-    assert codes(refused) == [code]
+    refusals = refusal(text)
+    assert codes(refusals) == [code]
     if name == "tinibot32" and code in ("pin_at_boot", "pin_of_reset"):
-        sentence = describe(refused, "en")[0]
+        sentence = describe(refusals, "en")[0]
         assert sentence.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
 
 
@@ -223,9 +223,9 @@ def test_pwm_of_an_esp32_c3() -> None:
     pins has none."""
     text_before, mark, text_after = TEXTS["tinibotc3"].partition("[board.sensors.LIGHT_R]")
     text = text_before + FAN.format(pin=9) + mark + text_after
-    refused = refusal(text)
-    assert codes(refused) == ["timers_used_up"]
-    assert describe(refused, "en")[0].startswith("board.actuators.FAN.pin is pin 9: its PWM needs")
+    refusals = refusal(text)
+    assert codes(refusals) == ["timers_used_up"]
+    assert describe(refusals, "en")[0].startswith("board.actuators.FAN.pin is pin 9: its PWM needs")
     for old, new in (("two_wire", "l298n"), ("left_forward = 3", "left_pwm = 3\nleft_forward = 6"),
                      ("right_forward = 5", "right_pwm = 5\nright_forward = 2")):  # fmt: skip
         text = text.replace(old, new)
@@ -266,26 +266,26 @@ def test_a_missing_table_is_one_complaint() -> None:
 
 
 def test_a_lamp_cannot_be_held() -> None:
-    refused = refusal(edit_profile("grabber", "pin = 30", 'pin = 30\nat_stop = "hold"'))
-    assert codes(refused) == ["at_stop_of_no_servo"]
-    assert describe(refused, "en")[0].endswith(
+    refusals = refusal(edit_profile("grabber", "pin = 30", 'pin = 30\nat_stop = "hold"'))
+    assert codes(refusals) == ["at_stop_of_no_servo"]
+    assert describe(refusals, "en")[0].endswith(
         "Remove the line; only a servo can keep its position."
     )
-    assert "Quita esa línea" in describe(refused, "es")[0]
+    assert "Quita esa línea" in describe(refusals, "es")[0]
 
 
 def test_a_refusal_says_what_to_do() -> None:
-    refused = refusal(edit_profile("tinibot", "left_pwm = 5", "left_pwm = 4"))
-    assert describe(refused, "en") == [
+    refusals = refusal(edit_profile("tinibot", "left_pwm = 5", "left_pwm = 4"))
+    assert describe(refusals, "en") == [
         "board.motors.left_pwm is pin 4, which cannot be a PWM output on the board uno."
         " These can: 3, 5, 6, 9, 10, 11."
     ]
-    refused = refusal(edit_profile("tinibot", "[0, 400]", "400"))
-    assert describe(refused, "es") == [
+    refusals = refusal(edit_profile("tinibot", "[0, 400]", "400"))
+    assert describe(refusals, "es") == [
         "kit.sensors[3].range es un número. Escribe ahí dos números, [menor, mayor]."
     ]
-    refused = refusal(edit_profile("tinibot", "baud =", "buad ="))
-    assert "Did you mean baud?" in describe(refused, "en")[0]
+    refusals = refusal(edit_profile("tinibot", "baud =", "buad ="))
+    assert "Did you mean baud?" in describe(refusals, "en")[0]
 
 
 @pytest.mark.parametrize(

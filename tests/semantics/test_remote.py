@@ -246,7 +246,7 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
     reader = TextReader(TINIBOT, flags=flags)
     texts = [*SHADOWING_PROGRAMS.values(), *(text for text, _ in REFUSED_PROGRAMS.values()),
              "SHOW({n})", "{n}", "W(1) UNTIL({q})", "{n} = 0;SHOW({n} + 1);{n} = 3"]  # fmt: skip
-    read = 0
+    read_count = 0
     for text in (fill_in_name(text, name) for text in texts for name in NAMES):
         if flags and ("DEF" in text or "TASK" in text):
             continue
@@ -256,8 +256,8 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
         if compilation.is_right:
             assert compilation.program is not None
             assert answer.code == plain_code(compilation.program).code, text
-            read += 1
-    assert read > (20 if flags else 50)
+            read_count += 1
+    assert read_count > (20 if flags else 50)
 
 
 @pytest.mark.parametrize(

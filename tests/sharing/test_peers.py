@@ -273,13 +273,13 @@ def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_t
     """A server writes its own between our look and our hands; a third one may come meanwhile."""
     path = tmp_path / "port.json"
     path.write_text("of the next server")
-    looks: list[object] = []
+    removed_files: list[object] = []
 
     def is_meant(removed: object) -> bool:
-        looks.append(removed)
-        if has_third and len(looks) == 2:
+        removed_files.append(removed)
+        if has_third and len(removed_files) == 2:
             path.write_text("of a third one")
-        return len(looks) == 1
+        return len(removed_files) == 1
 
     registry._remove(path, is_meant)
     assert path.read_text() == ("of a third one" if has_third else "of the next server")
@@ -320,12 +320,12 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
         for number in (1, 2)
     )
     registry.write(now)
-    real = registry._read
+    real_read = registry._read
     paths = []
 
     def read(path: Path) -> Registration | None:
         paths.append(path)
-        return registration_before if len(paths) == 1 else real(path)
+        return registration_before if len(paths) == 1 else real_read(path)
 
     with monkeypatch.context() as patch:
         patch.setattr(registry, "_read", read)

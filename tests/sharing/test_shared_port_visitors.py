@@ -113,10 +113,11 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
             messages += reader.read_messages(data)
         messages = messages[: [message.get("event") for message in messages].index("DONE")]
         missed = [message for message in messages if message.get("event") == "MISSED"]
-        shown = sum(message.get("event") == "SHOW" for message in messages)
+        show_count = sum(message.get("event") == "SHOW" for message in messages)
         assert missed
         assert (
-            sum(int(protocol.read_values(message)["count"]) for message in missed) + shown == count
+            sum(int(protocol.read_values(message)["count"]) for message in missed) + show_count
+            == count
         )
 
 

@@ -458,8 +458,8 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     assert "F(1, 95)" in members[1].text
     assert school.teaches("class_text", group=group["key"])["history"] == ["Teacher: → F(1, 95)"]
     assert school.teaches("class")["groups"][0]["pupils"] == group["pupils"]
-    [shown] = school.checks_in(school.joins("Late"))["groups"]
-    assert shown["members"] == [member.name for member in members]
+    [shown_group] = school.checks_in(school.joins("Late"))["groups"]
+    assert shown_group["members"] == [member.name for member in members]
     teacher.asks("group_leave")
     assert len(members[0].sends()["others"]) == groups.MOST_MEMBERS - 1
     assert teacher.asks("group", **teacher.request()) == {"left": True}
@@ -667,8 +667,8 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
                     **request,
                     "saw_stops": turn.stop_number - 1,
                 }  # the button was pressed before a STOP
-                refused = {"failure": "stopped_elsewhere"}
-                assert school.made.answer(member.token, PUPIL_ADDRESS, early) == refused
+                refusal = {"failure": "stopped_elsewhere"}
+                assert school.made.answer(member.token, PUPIL_ADDRESS, early) == refusal
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
                 assert robot.leave_reason == "group_other"  # leaving stops its run

@@ -172,8 +172,8 @@ def test_a_page_that_falls_silent_holds_nothing(hand: Hand, two: list[PtyRobot])
     """This holds even if the run is not its own, so that it continues."""
     robot = two[0]
     image = compile(STICK_PROGRAM.replace("SI|", "SB|")).image.hex()
-    sent = hand.says(do="upload", image=image, robot="tinibot", runs=False)
-    assert hand.answer_to(sent)["ok"]
+    request_id = hand.says(do="upload", image=image, robot="tinibot", runs=False)
+    assert hand.answer_to(request_id)["ok"]
     robot.push()
 
     def has_power_60() -> bool:

@@ -102,8 +102,8 @@ def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -
     text = "SHOW(2.5);\nSHOW(1 < 2);\nF(0.1, 80)"
     receipt = page.upload(text)
     assert receipt["ok"] and receipt["program"] == f"{compile(text).checksum:08x}"
-    shown = [page.until(lambda item: item.get("event") == "SHOW")["value"] for _ in range(2)]
-    assert shown == ["2.5", "TRUE"]
+    shown_values = [page.until(lambda item: item.get("event") == "SHOW")["value"] for _ in range(2)]
+    assert shown_values == ["2.5", "TRUE"]
     page.until(lambda item: item.get("event") == "DONE")
     assert "MOTORS 80 80" in robot.actions
 
@@ -272,8 +272,8 @@ def test_a_port_has_one_page(
     assert hosting.answer({"do": "stops"}) == {"robots": [stop_report]}
     image = compile(FOREVER).image.hex()
     # The upload was under way.
-    refused = page.ask("upload", image=image, robot="tinibot", runs=True)
-    assert refused["failure"] == "stopped_elsewhere" and not robot.moves
+    response = page.ask("upload", image=image, robot="tinibot", runs=True)
+    assert response["failure"] == "stopped_elsewhere" and not robot.moves
     result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
     assert result.code != 0 and not robot.moves, result.out
     page.beat(do="leave")
@@ -325,8 +325,8 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
 
 
 def test_a_refusal_has_its_sentence(page: Page) -> None:
-    refused = page.upload("SHOW(LINE_L)", robot="liner")
-    assert refused["failure"] == "WRONG_KIT" and "kit" in refused["said"]
+    response = page.upload("SHOW(LINE_L)", robot="liner")
+    assert response["failure"] == "WRONG_KIT" and "kit" in response["said"]
     assert page.ask("start")["failure"] == "NO_PROGRAM"
     assert page.ask("identify")["ok"] and page.ask("name", name="Niña")["ok"]
     trim = {"is_exchanged": True, "is_left_reversed": False, "is_right_reversed": True,

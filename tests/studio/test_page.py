@@ -60,8 +60,8 @@ def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> N
     for program, answer in zip(sample, answers, strict=True):
         compiled_text = image_of(program)
         needs = unpack(bytes.fromhex(compiled_text)).needs if compiled_text else 0
-        refused = lacks(needs, robots.load(program.robot))  # the page reports this
-        assert answer["image"] == ("" if refused else compiled_text), program.name
+        unsupported = lacks(needs, robots.load(program.robot))  # the page reports this
+        assert answer["image"] == ("" if unsupported else compiled_text), program.name
 
 
 @pytest.mark.sampled("first", "part")

@@ -120,8 +120,8 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     stranger = Page(memory=memory)
     assert stranger.ask("hello")["robot"]["owner"] == "other"
     assert stranger.upload(FOREVER)["failure"] == "NOT_OWNER"
-    refused = stranger.ask("keys", keys=1, x=0, y=0)
-    assert refused["failure"] == "NOT_OWNER" and refused["said"]
+    response = stranger.ask("keys", keys=1, x=0, y=0)
+    assert response["failure"] == "NOT_OWNER" and response["said"]
     assert not stranger.robot.is_running
 
     owner = Page(PageKeys(kept_bytes), memory)
@@ -286,9 +286,9 @@ def test_keys_after_a_stop_start_nothing_and_are_read_by_the_next_program(page: 
 
 def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
     image = compile("SI|" + "SHOW(1);" * 60).image.hex()
-    sent = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
+    upload_request = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
     page.advance(1, *({"do": "keys", "id": 100 + k, "keys": 0, "x": 0, "y": k} for k in range(60)))
-    page.advance(1, {"id": 99, **sent})
+    page.advance(1, {"id": 99, **upload_request})
     for k in range(40):
         page.advance(20, {"do": "keys", "id": 200 + k, "keys": 1, "x": 0, "y": k})
     page.advance(2000)
@@ -318,7 +318,7 @@ def test_a_robot_without_a_remote_control_is_told_nothing(page: Page) -> None:
     assert robot is not None
     values = robot.values._replace(features=robot.values.features & ~REMOTE)
     page.page.line.session._handshake.robot = robot._replace(values=values)
-    refused = hold_keys(page, y=60)
-    assert refused["failure"] == "NO_REMOTE" and "no remote control" in refused["said"]
+    response = hold_keys(page, y=60)
+    assert response["failure"] == "NO_REMOTE" and "no remote control" in response["said"]
     assert page.upload(STICK)["failure"] == "NO_REMOTE"
     assert round(page.robot.driving.left) == 0

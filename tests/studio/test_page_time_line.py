@@ -54,7 +54,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     wait_for_phase(page, "ended")
     page.focus("#time_at")
     end_s, pose = seconds(page), page.locator("#where").text_content()
-    times, shown = [end_s], []
+    times, shown_values = [end_s], []
     while times[-1] > 0:
         page.keyboard.press("ArrowLeft")
         assert status_text(page).startswith(
@@ -64,8 +64,8 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
         if seconds(page) == times[-1]:
             break
         times.append(seconds(page))
-        shown.append(value(page, "X"))
-    assert shown[0] == "3" and shown[-1] in ("0", "1")
+        shown_values.append(value(page, "X"))
+    assert shown_values[0] == "3" and shown_values[-1] in ("0", "1")
     for at_s in times[-2::-1]:
         page.keyboard.press("ArrowRight")
         assert seconds(page) == at_s
@@ -150,16 +150,16 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     assert "Line 3" not in status_text(page)
     page.click("#why")
     page.focus("#time_at")
-    read = set()
+    read_names = set()
     asked_text = r"Line 3 asks DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
     for _ in range(5):
         if match := re.search(asked_text, status_text(page)):
             assert status_text(page).endswith("The task on line 1 was driving the motors."), (
                 status_text(page)
             )
-            read.add(match[1])
+            read_names.add(match[1])
         page.keyboard.press("ArrowRight")
-    assert len(read) > 1
+    assert len(read_names) > 1
     page.keyboard.press("Home")
     page.click("#why")
     assert "Line 3" not in status_text(page) and "motors" not in status_text(page)

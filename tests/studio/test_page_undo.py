@@ -97,15 +97,15 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
     dice = random.Random(seed)
     page.select_option("#robot", "tinibot32")
     start(page, dice.choice(PROGRAMS), "usual")
-    past = [state_of(page)]
+    past_states = [state_of(page)]
     for act in (_move_block, *dice.choices(ACTS, k=5)):
         act(page, dice)
-        if (now := state_of(page)) != past[-1]:
-            past.append(now)
-    for wanted_state in past[-2::-1]:
+        if (now := state_of(page)) != past_states[-1]:
+            past_states.append(now)
+    for wanted_state in past_states[-2::-1]:
         page.click("#undo")
         wait_for_state(page, wanted_state)
-    for wanted_state in past[1:]:
+    for wanted_state in past_states[1:]:
         page.click("#redo")
         wait_for_state(page, wanted_state)
 

@@ -189,12 +189,12 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: byt
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
     ) as client:
         client.sendall(b"GET / HTTP/1.1\r\n")
-        sent, heard_bytes = 0, b""
-        while not heard_bytes and sent < 20 * serving.HEAD_BYTES:
+        sent_count, heard_bytes = 0, b""
+        while not heard_bytes and sent_count < 20 * serving.HEAD_BYTES:
             try:
                 client.sendall(line)
-                sent += len(line)
-                client.settimeout(0.01 if sent < serving.HEAD_BYTES else HANG_LIMIT_S)
+                sent_count += len(line)
+                client.settimeout(0.01 if sent_count < serving.HEAD_BYTES else HANG_LIMIT_S)
                 heard_bytes = client.recv(100)
             except TimeoutError:
                 continue
@@ -202,7 +202,7 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: byt
                 break
         # Empty if the connection was reset.
         assert heard_bytes[:12] in (b"HTTP/1.1 431", b""), heard_bytes
-        assert sent <= serving.HEAD_BYTES + len(line)
+        assert sent_count <= serving.HEAD_BYTES + len(line)
     assert post(own, server.entrances.token, PORTS)[0] == 200
 
 

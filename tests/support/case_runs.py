@@ -23,9 +23,11 @@ def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
             options[name] = values
         else:
             words = {"TRUE": 1, "FALSE": 0}
-            read = [words.get(text.strip(), decimal(text.strip())) for text in values.split(",")]
-            readings[name] = [value for value in read if value is not None]
-            assert len(readings[name]) == len(read), f"{case.id}: {row}"
+            read_values = [
+                words.get(text.strip(), decimal(text.strip())) for text in values.split(",")
+            ]
+            readings[name] = [value for value in read_values if value is not None]
+            assert len(readings[name]) == len(read_values), f"{case.id}: {row}"
     max_ms = decimal(options["max-time"])
     assert max_ms is not None
     return robots.load(options["robot"]), Senses(readings, max_ms, seed=int(options["seed"]))

@@ -196,8 +196,8 @@ def wire_rows(now_ms: int, mark: str, data: bytes) -> list[str]:
     """Return the rows of some bytes: one for each packet."""
     rows = []
     for packet in re.findall(rb"\0+|[^\0]+\0?", data):
-        shown = packet.hex(" ")
-        rows.append(f"{now_ms:6} {mark} {shown}    {meaning(packet)}".rstrip())
+        packet_text = packet.hex(" ")
+        rows.append(f"{now_ms:6} {mark} {packet_text}    {meaning(packet)}".rstrip())
     return rows
 
 

@@ -144,8 +144,8 @@ class PtyRobot(PtyPort):
         It goes on like the time of the wall, and no further than this computer has come.
         """
         self.until(lambda: not self.moves, "it stands")
-        off = [line for line in self.timed_actions if line.split(" ", 1)[1] == "MOTORS 0 0"]
-        return int(off[-1].split()[0]) - began_ms
+        off_actions = [line for line in self.timed_actions if line.split(" ", 1)[1] == "MOTORS 0 0"]
+        return int(off_actions[-1].split()[0]) - began_ms
 
     def _make_robot(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
         """Return a robot that starts with its stored memory."""

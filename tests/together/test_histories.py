@@ -111,9 +111,9 @@ def test_all_pages_end_with_the_same_program(seed: int) -> None:
 
 @pytest.mark.long
 def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
-    change_count, refused = _counts([lesson(seed, 3) for seed in range(3)])
+    change_count, refused_count = _counts([lesson(seed, 3) for seed in range(3)])
     assert change_count > 300
-    assert refused <= MOST_REFUSED * change_count, f"{refused} of {change_count}"
+    assert refused_count <= MOST_REFUSED * change_count, f"{refused_count} of {change_count}"
 
 
 def _counts(worlds: list[World]) -> tuple[int, int]:
@@ -124,12 +124,12 @@ def _counts(worlds: list[World]) -> tuple[int, int]:
 
 
 def _print_counts(worlds: list[World]) -> None:
-    change_count, refused = _counts(worlds)
+    change_count, refused_count = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
     why = sum((world.why for world in worlds), Counter[str]())
     happened = sum((world.counts for world in worlds), Counter[str]())
-    percent = 100 * refused / change_count
-    print(f"{change_count} changes, refused {refused} ({percent:.2f} %) {dict(why)}, "
+    percent = 100 * refused_count / change_count
+    print(f"{change_count} changes, refused {refused_count} ({percent:.2f} %) {dict(why)}, "
           f"values replaced that their page had not seen: {unseen}")  # fmt: skip
     print(dict(happened))
 

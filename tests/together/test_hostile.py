@@ -73,11 +73,13 @@ def test_no_change_spoils_the_program(seed: int) -> None:
     for k in range(1, MESSAGE_COUNT + 1):
         operation = an_operation(chance)
         uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
-        sent = json.loads(json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))}))
+        sent_data = json.loads(
+            json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))})
+        )
         try:
-            change = change_of(sent)
-        except Refused as refused:
-            came[refused.reason] += 1
+            change = change_of(sent_data)
+        except Refused as refusal:
+            came[refusal.reason] += 1
             continue
         program.submit([change])
         came[str(rows[-1].get("refused", "taken"))] += 1

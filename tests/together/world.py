@@ -121,25 +121,25 @@ class World:
             return
         self.at(RETRY_S, self._ask_again, name, turn)
         if self.chance.random() >= self._lost:
-            sent = self._send_and_parse(
+            sent_data = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
             since = -1 if page.is_astray else page.number
-            self.at(self._delay(self.chance), self._reach, name, turn, sent, since, page.epoch)
+            self.at(self._delay(self.chance), self._reach, name, turn, sent_data, since, page.epoch)
 
     def _ask_again(self, name: str, turn: int) -> None:
         if turn == self.turn[name]:
             self.turn[name] += 1
             self.ask(name, self.turn[name])
 
-    def _reach(self, name: str, turn: int, sent: Json, since: int, epoch: str) -> None:
-        self.submit(sent["sent"])
+    def _reach(self, name: str, turn: int, sent_data: Json, since: int, epoch: str) -> None:
+        self.submit(sent_data["sent"])
         news = self._send_and_parse(self.program.news(name, since, epoch))
         if self.chance.random() >= self._lost and self.now_s >= self.off_until_s[name]:
             self.at(self._delay(self.chance), self._arrive, name, turn, news)
 
-    def submit(self, sent: Sequence[Json]) -> None:
-        for row in sent:
+    def submit(self, sent_data: Sequence[Json]) -> None:
+        for row in sent_data:
             change, program = change_of(row), self.program
             page, _ = page_and_count(change.uid)
             decided, before = program.last_count_by_page.get(page, 0), program.tree

@@ -86,11 +86,11 @@ def test_whoever_looks_changes_nothing(seed: int) -> None:
         robots.load(draw.choice(robots.names())).body,
     )
     ends = []
-    for looks in (0, 3, 40):
-        driving, watch = driving_in(body, world), random.Random(seed + looks)
+    for look_count in (0, 3, 40):
+        driving, watch = driving_in(body, world), random.Random(seed + look_count)
         for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
             driving.set_motors(ms, left, right)
-            for at in sorted(watch.sample(range(ms, until), min(looks, until - ms))):
+            for at in sorted(watch.sample(range(ms, until), min(look_count, until - ms))):
                 driving.pose_at(at) if watch.random() < 0.5 else driving.advance_to(at)
         ends.append(
             (driving.advance_to(9000), rivals_of(driving), driving.bumps, driving.has_fallen)
@@ -233,12 +233,12 @@ def test_a_distance_sensor_sees_where_a_rival_is() -> None:
         along = math.radians(pose.heading)
         eye = (pose.x_cm + 5 * math.cos(along), pose.y_cm + 5 * math.sin(along))
         far = math.dist(eye, (x, y)) - 5.5
-        off = math.atan2(y - eye[1], x - eye[0]) - along
-        off = abs((off + math.pi) % (2 * math.pi) - math.pi)
-        if off < math.radians(15) and far > 3:
+        angle_off = math.atan2(y - eye[1], x - eye[0]) - along
+        angle_off = abs((angle_off + math.pi) % (2 * math.pi) - math.pi)
+        if angle_off < math.radians(15) and far > 3:
             count += 1
             assert reading == pytest.approx(far, abs=0.3)
-        elif off > math.radians(60) and far > 10:
+        elif angle_off > math.radians(60) and far > 10:
             assert reading == 400
     assert count > 8
 

@@ -163,12 +163,12 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
 def test_looking_changes_nothing() -> None:
     """A picture of it may be drawn whenever one likes."""
     ends = []
-    for looks in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
+    for look_times_ms in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
         drive = make_driving(
             floor("[[boxes]]\nx_cm=150\ny_cm=95\nlength_cm=20\nwidth_cm=20\nheading=20")
         )
         drive.set_motors(0, 90, 80)
-        for now_ms in looks:
+        for now_ms in look_times_ms:
             drive.pose_at(now_ms)
         ends.append(drive.advance_to(8000))
     assert ends[0] == ends[1] == ends[2]

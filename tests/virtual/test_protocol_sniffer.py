@@ -238,14 +238,14 @@ def test_too_many_open_files_of_this_process_are_no_end(
     idle = crowd(simulator, 5)
     until(simulator, lambda: len(simulator.transports._callers) == 5)
     server = simulator.transports._server
-    looks = 0
+    look_count = 0
 
     class Full:
         """A server whose process has no room for one more file."""
 
         def accept(self) -> tuple[socket.socket, object]:
-            nonlocal looks
-            looks += 1
+            nonlocal look_count
+            look_count += 1
             raise OSError(24, "Too many open files")
 
         def fileno(self) -> int:
@@ -254,7 +254,7 @@ def test_too_many_open_files_of_this_process_are_no_end(
     simulator.transports._server = Full()  # type: ignore[assignment]
     with visit(simulator) as client:
         client.sendall(PING)
-        until(simulator, lambda: looks > 1)
+        until(simulator, lambda: look_count > 1)
         assert len(simulator.transports._callers) < 5
         simulator.transports._server = server
         until(simulator, lambda: simulator.transports.is_connected)

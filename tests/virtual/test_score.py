@@ -94,9 +94,9 @@ def test_each_task_has_three_stars(name: str) -> None:
         while (far := math.dist((x_cm, y_cm), robot.pose[:2])) > 2:
             assert robot.now_ms < 1000 * world.seconds, robot.pose
             x, y, heading = robot.pose
-            off = math.degrees(math.atan2(y_cm - y, x_cm - x)) - heading
-            off = (off + 180) % 360 - 180
-            ahead = abs(off) < max(4, 60 / far)
-            motors(*((66, 66) if ahead else (-40, 40) if off > 0 else (40, -40)))
+            angle_off = math.degrees(math.atan2(y_cm - y, x_cm - x)) - heading
+            angle_off = (angle_off + 180) % 360 - 180
+            ahead = abs(angle_off) < max(4, 60 / far)
+            motors(*((66, 66) if ahead else (-40, 40) if angle_off > 0 else (40, -40)))
         motors(0, 0)
     assert score.state() == {**(score.state() or {}), "stars": 3, "taken": len(world.flags)}

@@ -109,13 +109,13 @@ def test_the_line_example_stays_on_its_line() -> None:
     robot = robot_in(worlds.load("line"), "liner")
     text = (ROOT / "examples" / "line.ts").read_text(encoding="utf-8")
     Talk(robot).upload(text, is_detached=True)
-    off = 0
+    ms_off_line = 0
     places = []
     for _ in range(300):
         robot.step(robot.now_ms + 100)
         places.append(robot.pose)
-        off += not any(robot.sensing.peek(number, robot.pose) for number in (0, 1))
-    assert off < 30
+        ms_off_line += not any(robot.sensing.peek(number, robot.pose) for number in (0, 1))
+    assert ms_off_line < 30
     assert robot.driving.driven_cm > 400
     assert max(place.x_cm for place in places) > 150  # all around
     assert min(pose.x_cm for pose in places) < 45

@@ -335,7 +335,7 @@ def test_both_machines_say_which_show_a_value_is_of() -> None:
                 now_ms += 1
             traces.append((robot.calls, robot.shown))
         assert traces[0] == traces[1], image.hex()
-        shown = traces[0][1]
-        assert all(code[at] in SHOWS for at, _ in shown), image.hex()
-        waited += sum(not is_taken for _, is_taken in shown)
+        show_rows = traces[0][1]
+        assert all(code[at] in SHOWS for at, _ in show_rows), image.hex()
+        waited += sum(not is_taken for _, is_taken in show_rows)
     assert waited > 100
