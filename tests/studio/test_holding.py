@@ -149,7 +149,9 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -
         else:
             simulation.go_on()
             simulation.advance(duration_ms)
-        arrival_indexes = [k for k, (_, offset) in enumerate(arrivals) if is_step or offset in breakpoints]
+        arrival_indexes = [
+            k for k, (_, offset) in enumerate(arrivals) if is_step or offset in breakpoints
+        ]
         if arrival_indexes and arrivals[arrival_indexes[0]][0] <= now_ms + duration_ms:
             arrivals = arrivals[arrival_indexes[0] :]
             assert (simulation.robot.now_ms, simulation.held_at) == arrivals[0]

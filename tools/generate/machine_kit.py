@@ -294,7 +294,8 @@ def late_runs() -> Iterator[Run]:
          first_pace),
         ("the others do not wait",
          "WHEN(DISTANCE < 10);SHOW(1);END_WHEN;TASK;SHOW(2);W(0.005);SHOW(3);END_TASK", echo_pace),
-        ("a look is over when the motors are taken", looking_text, Pace(1, ECHO_SENSORS, 1000, 100, 150)),
+        ("a look is over when the motors are taken", looking_text,
+         Pace(1, ECHO_SENSORS, 1000, 100, 150)),
         ("a first look is, too", beginning_text, Pace(1, ECHO_SENSORS, 1000, 125, 150)),
         ("the UNTIL of a wait is looked at whoever has the motors",
          "TASK;W(0.01);B(0.1, 50);END_TASK;TASK;W(FOREVER) UNTIL(DISTANCE < 10);SHOW(TIME);"
