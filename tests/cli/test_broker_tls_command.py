@@ -61,7 +61,10 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     later = on(school.robot, "set", "wifi").out
     assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
     _, *next_command = shlex.split(err.partition("To see the whole class:  ")[2])
-    assert "no program; nothing is running; yours" in run_in_process(*next_command, data=b"a secret\n").out
+    assert (
+        "no program; nothing is running; yours"
+        in run_in_process(*next_command, data=b"a secret\n").out
+    )
 
 
 def test_an_invalid_certificate_is_reported_before_the_robot_is_asked(tmp_path: Path) -> None:

@@ -233,7 +233,9 @@ def test_a_device_that_is_not_a_robot_is_reported(
 ) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
     bluez.add(Peripheral("lamp", OTHER, LAMP_SERVICE))
-    run_in_process("doctor", "--identify", "--port", "ble://lamp").gives(3, "does not offer a robot's")
+    run_in_process("doctor", "--identify", "--port", "ble://lamp").gives(
+        3, "does not offer a robot's"
+    )
     bluez.add(Echo("echo", ADDRESS))
     run_in_process("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
 

@@ -175,7 +175,7 @@ def test_who_polls_when_a_session_wants_it_does_so_seldom_and_misses_nothing(see
     for _ in range(60):
         match rng.choice(("ask", "ask", "press", "stop", "die", "live", "wait")):
             case "ask":
-                rng.choice([*ASKED.values()])(session)
+                rng.choice([*REQUEST_MAKERS.values()])(session)
             case "press":
                 session.press(rng.randrange(4))
             case "stop":
@@ -191,7 +191,7 @@ def test_who_polls_when_a_session_wants_it_does_so_seldom_and_misses_nothing(see
     line = BadLine(rng)
     line.is_bursty, line.likely, line.late_ms = False, 0, 0
     session.stop(robot.now_ms)
-    assert until(session, robot, line, session.hello(), EACH_MS) == OK
+    assert finish_request(session, robot, line, session.hello(), REQUEST_LIMIT_MS) == OK
 
 
 def lost_after_ms(session: Session, robot: HostFirmware) -> int:

@@ -277,7 +277,7 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
 def test_requests_that_never_rest_leave_keys_their_turn() -> None:
     one = hand()
     waiting = [one.session.status() for _ in range(3)]
-    for held in (UP, A, NOTHING_PRESSED, LEFT):
+    for held in (KEY_UP, KEY_A, NOTHING_PRESSED, KEY_LEFT):
         one.holds(held)
         for _ in range(300):
             waiting = [request for request in waiting if request.outcome is None]
@@ -307,9 +307,9 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
             session.press(rng.randint(0, 63), rng.randint(-100, 100))
         robot.talk(session, rng.choice((1, 3, 10, 30, 100, 300)))
     for _ in range(20):
-        session.press(*UP)
+        session.press(*KEY_UP)
         robot.talk(session, 100)
-    assert robot.remote() == remote_readings(UP)
+    assert robot.remote() == remote_readings(KEY_UP)
     assert {request.outcome.status if request.outcome else None for request in requests} == {OK}
     assert [(key.is_stale, key.is_pending) for key in keys.stored_keys] == [(False, False)]
 

@@ -335,7 +335,7 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
                 owner = ""
             else:
                 verb = verbs.pop(client)
-                ENDS[how](rng, client)
+                END_ACTIONS[how](rng, client)
                 told += [("LEFT", verb)] * (how == "leaves" and verb != protocol.LOOKING_VERB)
                 owner = "" if owner is client else owner
             at.steps(1600 if how == "is silent" else 300)
