@@ -93,8 +93,8 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
     ) as uno:
         uno.go()
         assert "bytes of flash verified" in avrdude(uno, of, sketch)
-        pong = process("doctor", "--identify", "--port", uno.pty).gives(0)
-        assert pong.out.startswith(f"tinibot on {uno.pty}")
+        identified = process("doctor", "--identify", "--port", uno.pty).gives(0)
+        assert identified.out.startswith(f"tinibot on {uno.pty}")
         assert states(uno) == OFF
         process("upload", program, "--port", uno.pty).gives(0)
         uno.pause()

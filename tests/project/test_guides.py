@@ -157,7 +157,7 @@ def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path)
 
 
 @each_guide
-def test_all_guides_type_the_same(language: str, guide: Path) -> None:
+def test_all_guides_have_the_same_commands_and_headings(language: str, guide: Path) -> None:
     english, own = steps(GUIDE_BY_LANGUAGE["en"]), steps(guide)
     for step, other in zip(english, own, strict=True):
         assert step.words[:1] == other.words[:1]

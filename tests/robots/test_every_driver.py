@@ -186,10 +186,10 @@ def with_parts(chip: str, parts: Sequence[str]) -> Robot:
         if part in parts
     ]
     kit_robot = robot_with("l298n", devices, chip, is_whole=False)
-    boards_with_some = (with_discs(chip, DISCS[0]).board, robots.load("tinibot").board)
+    donor_boards = (with_discs(chip, DISCS[0]).board, robots.load("tinibot").board)
     chosen: dict[str, Any] = dict.fromkeys(OPTIONAL)
     for name in set(OPTIONAL) & set(parts):
-        chosen[name] = next(filter(None, (getattr(board, name) for board in boards_with_some)))
+        chosen[name] = next(filter(None, (getattr(board, name) for board in donor_boards)))
     return kit_robot._replace(board=kit_robot.board._replace(**chosen))
 
 

@@ -85,9 +85,9 @@ def test_a_new_board_becomes_a_robot(
         if board == "uno":
             assert flash(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
         assert flash(uno.pty, board, tmp_path / "firmware.hex") == "done"
-        pong = process("doctor", "--identify", "--port", uno.pty)
-        assert pong.code == 0, pong.err
-        assert pong.out.startswith(f"tinibot on {uno.pty}")
+        identified = process("doctor", "--identify", "--port", uno.pty)
+        assert identified.code == 0, identified.err
+        assert identified.out.startswith(f"tinibot on {uno.pty}")
 
 
 def test_a_board_with_a_sketch_and_no_bootloader_stays_as_it_is(

@@ -323,7 +323,7 @@ def test_another_program_is_the_group_s_only_if_somebody_wants_that(
         wait_for_lines(page, *ROWS)
 
 
-def test_work_that_is_given_back_is_in_my_programs_for_who_does_not_want_it_in_the_group(
+def test_returned_work_goes_to_my_programs_if_the_pupil_keeps_it_out_of_the_group(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     _, luz = two

@@ -159,7 +159,7 @@ def test_without_its_computer_a_program_ends_after_a_second_unless_it_is_detache
     assert robot.take_events()[-1].text == "STOP"
 
 
-def test_a_program_that_another_one_ends_ends_before_it() -> None:
+def test_a_program_that_another_one_replaces_stops_before_it_starts() -> None:
     robot = robot_in()
     talk = Talk(robot)
     talk.upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP", is_detached=True)

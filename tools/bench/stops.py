@@ -117,9 +117,9 @@ class BusyRobot:
         cycles = round(
             (len(text) + STOP_ZEROS - 1) * BITS_PER_BYTE * bit_cycles + SAMPLE_BITS * bit_cycles
         )
-        begin = chip.cycle + CYCLES_PER_MS
-        begin += (place.cycle - begin - cycles) % CLOCK_PERIOD
-        last_byte_cycle = begin + cycles
+        begin_cycle = chip.cycle + CYCLES_PER_MS
+        begin_cycle += (place.cycle - begin_cycle - cycles) % CLOCK_PERIOD
+        last_byte_cycle = begin_cycle + cycles
         if place.echo_offset is not None:
             pulse_cycles = SHORT_ECHO if place.is_rise else LONG_ECHO
             chip.drive(
@@ -133,7 +133,7 @@ class BusyRobot:
             for name in self._discs:
                 chip.drive(name, self._level, at=last_byte_cycle + place.edge_offset)
         event_count = len(chip.events)
-        chip.send(text + STOP, begin)
+        chip.send(text + STOP, begin_cycle)
         chip.run_to(last_byte_cycle + round(BITS_PER_BYTE * BITS_PER_BYTE * bit_cycles))
         new_events = chip.events[event_count:]
         zero_cycles = [
@@ -143,7 +143,7 @@ class BusyRobot:
             event.cycle
             for event in new_events
             if event.kind == "pin"
-            and event.cycle > begin
+            and event.cycle > begin_cycle
             and event["is"] == "low"
             and event["pin"] in self._motors
         ]

@@ -233,10 +233,10 @@ class _Explainer:
         start, end = span
         if start < end:
             line_start = self.program.rfind("\n", 0, start) + 1
-            word_start = _WORD_AT_END.search(self.program, line_start, start + 1)
-            word_end = _WORD.match(self.program, end - 1)
-            start -= len(word_start[0]) - 1 if word_start else 0
-            end += len(word_end[0]) - 1 if word_end else 0
+            head_match = _WORD_AT_END.search(self.program, line_start, start + 1)
+            tail_match = _WORD.match(self.program, end - 1)
+            start -= len(head_match[0]) - 1 if head_match else 0
+            end += len(tail_match[0]) - 1 if tail_match else 0
         return Span(start, end)
 
     def joined_changes(self, first_change: int, last_line: tuple[int, int]) -> str:

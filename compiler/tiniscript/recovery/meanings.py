@@ -577,7 +577,7 @@ class Names:
         text = token.text
         if token.kind is NUMBER:
             fitting_classes = (name for name, check in _CHECK_OF_UNIT.items() if check(float(text)))
-            return [text, "@num", *ANY_LABELS, *fitting_classes]
+            return [text, "@num", *WILDCARD_LABELS, *fitting_classes]
         if token.kind is not WORD:
             fitting_classes = (
                 name for name, excluded_names in _EXCLUSIONS.items() if text not in excluded_names
@@ -603,7 +603,7 @@ class Names:
         classes += concepts
         classes += [
             label
-            for label in ANY_LABELS
+            for label in WILDCARD_LABELS
             if not lexicon_meaning(text, "do") or label not in _LABELS_WITHOUT_DO
         ]
         if (
@@ -671,7 +671,7 @@ _EXCLUSIONS: dict[str, tuple[str, ...]] = {
     "@cond": (";", ":", "{", "}", "?"), "@nobrace": ("{", "}", "(", ")", "<", ">"),
     "@noparen": (";", "{", "}", "(", ")"),
 }  # fmt: skip
-ANY_LABELS = tuple(_EXCLUSIONS)
+WILDCARD_LABELS = tuple(_EXCLUSIONS)
 SEPARATOR_LABELS = "|".join(
     ("s;", *(name for name, excluded in _EXCLUSIONS.items() if ";" not in excluded))
 )

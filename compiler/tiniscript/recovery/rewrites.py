@@ -17,9 +17,9 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import CODES, Code
 from tiniscript.recovery import rows
 from tiniscript.recovery.meanings import (
-    ANY_LABELS,
     NEAR_COST,
     SEPARATOR_LABELS,
+    WILDCARD_LABELS,
     WORD_OF_END,
     Lexeme,
     Names,
@@ -154,7 +154,7 @@ def compile_pattern(pattern: str, pieces: Mapping[str, str]) -> Pattern:
     """Return a row's pattern, in which `pieces` stand for its `<parts>`."""
     atoms = [_atom(word) for word in _expand_parts(pattern, pieces).split()]
     needed_labels = tuple(
-        labels for _, labels in atoms if labels and not labels & {*ANY_LABELS, "s|"}
+        labels for _, labels in atoms if labels and not labels & {*WILDCARD_LABELS, "s|"}
     )
     return Pattern(re.compile("".join(text for text, _ in atoms)), needed_labels)
 

@@ -103,15 +103,15 @@ int32_t position(const Wheel& wheel) {
 }
 
 // How far a wheel that speeds up to 1 has come: t minus the loss meanwhile.
-uint16_t gone(uint16_t time_ms) {
+uint16_t distance_after(uint16_t time_ms) {
   return static_cast<uint16_t>(uint32_t{time_ms} * time_ms / (time_ms + 2 * guide.roll_ms));
 }
 
 // A disc stands anywhere between two edges. The length of the first one follows from its time,
 // compared with that of the third: wheels speed up as they roll on.
 void find_first(Wheel* wheel) {
-  const uint16_t first = gone(static_cast<uint16_t>(wheel->before_ms - guide.begun_ms));
-  const uint16_t more = static_cast<uint16_t>(gone(elapsed_ms(guide.begun_ms)) - first);
+  const uint16_t first = distance_after(static_cast<uint16_t>(wheel->before_ms - guide.begun_ms));
+  const uint16_t more = static_cast<uint16_t>(distance_after(elapsed_ms(guide.begun_ms)) - first);
   const uint32_t found = more == 0 ? kEdge : uint32_t{first} * (2 * kEdge) / more;
   wheel->first = found < kEdge ? static_cast<uint8_t>(found) : kEdge;
 }

@@ -245,7 +245,7 @@ tini_noinline void Link::handle(uint8_t end) {
     }
     reply_.status = answer(static_cast<Message>(type), payload, length);
   }
-  if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && reply_.status == kIsFine)) {
+  if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && reply_.status == kOkStatus)) {
     last = reply_;
     last_epoch = epoch;
   }
@@ -393,7 +393,7 @@ uint8_t Link::hello(const uint8_t* payload) {
   isa_[0] = payload[kHelloIsaMajorAt];
   isa_[1] = payload[kHelloIsaMinorAt];
   is_other_kit_ = get16(payload + kHelloKitAt) != port_identity().kit;
-  return kIsFine;
+  return kOkStatus;
 }
 
 // Everything sent before is now stale, and so is a program in transfer.

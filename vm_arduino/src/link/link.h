@@ -26,7 +26,7 @@ namespace tiniscript {
 
 // An answer as a reply has it.
 inline constexpr uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
-constexpr uint8_t kIsFine = number_of(Answer::kOk);
+constexpr uint8_t kOkStatus = number_of(Answer::kOk);
 
 class Link {
  public:

@@ -105,7 +105,7 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
     text[kChallengeText - 1] = kChallengeLabel;
     siphash(key, text, kChallengeText, challenge_);
     rights_ |= kHasChallenge;
-    return kIsFine;
+    return kOkStatus;
   }
   if (length != kAuthenticateTagAt + kTagBytes) return number_of(Answer::kBadLength);
   if ((rights_ & kHasChallenge) == 0) return number_of(Answer::kNotOwner);
@@ -121,7 +121,7 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
     port_identity().more_features |= kMoreByTeacher;
   }
   if (kMaySeal) begin_seal(key, which);
-  return kIsFine;
+  return kOkStatus;
 }
 
 Answer Link::allow_text(const uint8_t* payload) {

@@ -35,7 +35,7 @@ tini_noinline void Link::make_ahead() {
   }
   ahead_ = end;
   is_ready_ =
-      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kIsFine;
+      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kOkStatus;
 }
 
 // Runs the image that was made ahead. False: this frame does not allow it.
@@ -49,7 +49,7 @@ bool Link::go_live() {
   // Both at once, and no detail: that is quicker than to copy it.
   reply_.number = last_.number = kLiveByte;
   reply_.seq = last_.seq = bytes[kSeqAt];
-  reply_.status = last_.status = kIsFine;
+  reply_.status = last_.status = kOkStatus;
   last_epoch_ = epoch_;
   without_checksum_ = made_;
   finish(kRun, true);
@@ -70,7 +70,7 @@ uint8_t Link::allow(uint8_t mode, const uint8_t* isa) {
     return refuse(Answer::kBadValue, 0);
   }
   if (!may_start(mode)) return refuse(Answer::kLatched, 0);
-  return kIsFine;
+  return kOkStatus;
 }
 
 // Begins an image of this length; the rest of its header is missing. A refusal leaves the image
@@ -89,7 +89,7 @@ uint8_t Link::make_room(Use use, uint16_t length) {
   image[kMagicAt + 1] = 'S';
   uint8_t* const end = image + length;
   for (uint8_t k = 0; k < kEndBytes; k++) end[k] = static_cast<uint8_t>(Op::kEnd);
-  return kIsFine;
+  return kOkStatus;
 }
 
 // Makes and verifies an image from the payload of LIVE or PROGRAM.
@@ -98,7 +98,7 @@ uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
   if (kHasBreakpoints && use == Use::kLive) mode &= static_cast<uint8_t>(~kHalts);
   if (use != Use::kStored && mode != kRun) return refuse(Answer::kBadValue, 0);
   const uint8_t refusal = allow(mode, isa_);
-  if (refusal != kIsFine) return refusal;
+  if (refusal != kOkStatus) return refusal;
   return make(use, mode & kStartBits, payload + kProgramCodeAt,
               static_cast<uint8_t>(length - kProgramCodeAt), is_other_kit_);
 }
@@ -117,7 +117,7 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
     return refuse(static_cast<Answer>(verdict.rule), verdict.offset());
   }
   const uint8_t found = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
-  if (found != kIsFine) return found;
+  if (found != kOkStatus) return found;
   uint8_t* const image = made_;
   image[kIsaMajorAt] = kIsaMajor;
   image[kIsaMinorAt] = verdict.minor();
@@ -129,13 +129,13 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   image[kCodeLengthAt + 1] = 0;
   image[kNeedsAt] = verdict.needs();
   copy_bytes(code, image + kHeaderBytes, length);
-  return kIsFine;
+  return kOkStatus;
 }
 
 // Takes a whole program in one frame.
 uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t refusal = fill(is_live ? Use::kLive : Use::kStored, payload, length);
-  if (refusal != kIsFine) return refusal;
+  if (refusal != kOkStatus) return refusal;
   without_checksum_ = made_;
   const uint8_t mode = payload[kProgramModeAt];
   finish(mode, is_live);
@@ -143,14 +143,14 @@ uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
     const uint8_t first[] = {0, 0};
     set_breakpoints(first, sizeof first);
   }
-  return kIsFine;
+  return kOkStatus;
 }
 
 uint8_t Link::begin_program(const uint8_t* payload) {
   const uint8_t mode = payload[kBeginModeAt];
   const uint8_t* const header = payload + kBeginIsaMajorAt;
   uint8_t refusal = allow(mode, header);
-  if (refusal != kIsFine) return refusal;
+  if (refusal != kOkStatus) return refusal;
   if (header[kHeaderLengthAt - kFirstAt] < kHeaderBytes ||
       header[kStartAt - kFirstAt] != (mode & kStartBits)) {
     return refuse(Answer::kBadValue, 0);
@@ -159,24 +159,24 @@ uint8_t Link::begin_program(const uint8_t* payload) {
   if (code_length > kCodeBytes) return refuse(Answer::kTooLarge, port_room());
   const uint16_t length = static_cast<uint16_t>(header[kHeaderLengthAt - kFirstAt] + code_length);
   refusal = make_room(Use::kStored, length);
-  if (refusal != kIsFine) return refusal;
+  if (refusal != kOkStatus) return refusal;
   copy_bytes(header, made_ + kFirstAt, kChecksumAt - kFirstAt);
   image_ = made_;
   mode_ = mode;
   length_ = static_cast<uint16_t>(length - kAfterChecksum);
   next_ = 0;
   port_forget();
-  return kIsFine;
+  return kOkStatus;
 }
 
 uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
   length = static_cast<uint8_t>(length - kDataBytesAt);
   if (image_ == nullptr) return refuse(Answer::kNotBegun, 0);
-  if (get16(payload + kDataOffsetAt) != next_) return kIsFine;  // the reply says where to continue
+  if (get16(payload + kDataOffsetAt) != next_) return kOkStatus;  // the reply says where to continue
   if (length > length_ - next_) return refuse(Answer::kBadLength, 0);
   copy_bytes(payload + kDataBytesAt, image_ + kAfterChecksum + next_, length);
   next_ = static_cast<uint16_t>(next_ + length);
-  return kIsFine;
+  return kOkStatus;
 }
 
 uint8_t Link::commit(const uint8_t* payload) {
@@ -193,7 +193,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   if (admission.refusal != 0) return refuse(static_cast<Answer>(admission.refusal), admission.offset);
   finish(mode_, false);
   port_take_checksum(image);
-  return kIsFine;
+  return kOkStatus;
 }
 
 // The image in memory is verified and complete except for its checksum.

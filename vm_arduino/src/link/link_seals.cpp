@@ -32,7 +32,7 @@ uint8_t Link::open_seal(uint8_t end) {
 // The request is answered: its reply is sealed as it was, and that to the right tag with the new seal.
 void Link::close_seal() {
   const bool is_tag = reply_.number == number_of(Message::kAuthenticate) &&
-                      reply_.status == kIsFine && (rights_ & kHasChallenge) == 0;
+                      reply_.status == kOkStatus && (rights_ & kHasChallenge) == 0;
   is_reply_sealed_ = is_sealed_ || is_tag;
   if (is_sealed_) {  // an unsealed frame comes after it, and repeats nothing
     last_.seq = reply_.seq;
@@ -51,7 +51,7 @@ void Link::begin_seal(const uint8_t* key, uint8_t which) {
 // While there is a seal, a stranger cannot change the robot's memory of its last request.
 bool Link::keeps_answer(uint8_t type) const {
   if (!seal_.is_set() || is_sealed_) return true;
-  return type == number_of(Message::kAuthenticate) && reply_.status == kIsFine;
+  return type == number_of(Message::kAuthenticate) && reply_.status == kOkStatus;
 }
 
 // The mark in the type of a frame to the computer. When the counter ends, authority ends, too.

@@ -31,7 +31,7 @@ struct Radio {
 
 void begin_bluetooth();
 
-const Radio kSerialPortRadio = {"tini spp", nullptr, serial_port_turn, kStackBytes};
+const Radio kSerialPortRadio = {"tini spp", nullptr, spp_turn, kStackBytes};
 const Radio kLowEnergyRadio = {"tini ble", begin_bluetooth, low_energy_turn, kStackBytes};
 const Radio kNetworkRadio = {"tini wifi", network_begin, network_turn, kStackBytes};
 const Radio kBrokerRadio = {"tini mqtt", nullptr, broker_turn, kTlsStackBytes};
@@ -63,7 +63,7 @@ bool begin(const Radio& radio) {
 // Both kinds of Bluetooth begin the same controller and the same stack, without a lock: this task
 // begins one after the other. Sending to a serial port blocks, so that has its own task, too.
 void begin_bluetooth() {
-  const bool has_port = serial_port_begin();
+  const bool has_port = spp_begin();
   low_energy_begin();
   if (has_port) begin(kSerialPortRadio);
 }

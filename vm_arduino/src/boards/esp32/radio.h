@@ -31,8 +31,8 @@ uint8_t radio_lost();
 const RadioName& radio_name();
 Pipe& radio_pipe(Transport transport);
 
-bool serial_port_begin();  // whether this chip has Bluetooth with a serial port
-void serial_port_turn();
+bool spp_begin();  // whether this chip has Bluetooth with a serial port
+void spp_turn();
 void low_energy_begin();
 void low_energy_turn();
 void network_begin();

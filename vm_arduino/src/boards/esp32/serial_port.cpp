@@ -53,14 +53,14 @@ void on_data(const uint8_t* bytes, size_t length) {
 
 }  // namespace
 
-bool serial_port_begin() {
+bool spp_begin() {
   port.register_callback(on_event);
   port.onData(on_data);
   return port.begin(radio_name().name);
 }
 
 // `write` blocks while the peer accepts no bytes, up to a second: only this task waits.
-void serial_port_turn() {
+void spp_turn() {
   uint8_t bytes[64];
   size_t length = 0;
   while (pipe().is_connected() && length < sizeof bytes && pipe().take(bytes + length)) length++;
@@ -73,8 +73,8 @@ void serial_port_turn() {
 
 namespace tiniscript {
 
-bool serial_port_begin() { return false; }
-void serial_port_turn() {}
+bool spp_begin() { return false; }
+void spp_turn() {}
 
 }  // namespace tiniscript
 
