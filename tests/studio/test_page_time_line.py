@@ -138,6 +138,24 @@ CODE = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
 @drawn
+def test_the_line_is_as_long_until_it_is_let_go(page: Page) -> None:
+    """Else what a finger drags runs away under it."""
+    start_run(page, "F(0.4, 60)")
+    wait_for_phase(page, "ended")
+    box = page.locator("#time_at").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] - 8, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    for part in (0.8, 0.5):
+        page.mouse.move(box["x"] + part * box["width"], box["y"] + box["height"] / 2)
+        page.locator("#doing", has_text="Looking back").wait_for()
+        assert page.locator("#why").is_hidden()
+        assert page.locator("#time_at").bounding_box() == box
+    page.mouse.up()
+    page.locator("#why").wait_for()
+
+
+@drawn
 def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
     """It also names the task that had the motors. No extra click is needed at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"

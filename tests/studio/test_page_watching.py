@@ -137,6 +137,8 @@ def test_an_empty_program_says_so_before_and_after_its_run(page: Page, text: str
     page.locator("#status", has_text=sentence).wait_for()
     page.click("#run")
     page.locator("#doing", has_text=sentence).wait_for()
+    write(page, "SHOW(2)")
+    page.locator("#doing", has_text="It has ended.").wait_for()  # no sentence about another text
     run(page, "SHOW(1)")
     assert "It has ended." in page.inner_text("#doing")
 

@@ -623,7 +623,7 @@ export class SimulatorPanel {
     this.#showScore(state?.score ?? null);
     this.#announcer.announce(state, phase);
     this.#showValues();
-    setHidden(this.#whyButton, !this.#timeLine.seenState);
+    if (!this.#timeLine.isDragged) setHidden(this.#whyButton, !this.#timeLine.seenState); // the line is as long until it is let go
     this.#whyButton.setAttribute('aria-pressed', String(this.#isWhyAsked));
     this.#plot.draw(state && this.#timeLine.seenState ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
     this.#timeLine.show();
@@ -711,7 +711,8 @@ export class SimulatorPanel {
     const heldRange = state.is_held && this.#shownRange();
     if (phase === 'paused' && heldRange) return this.#say('robot_held', 'robot_held_block', { line: heldRange.line }, this.#partText(heldRange));
     if (phase === 'paused') return text('robot_paused');
-    if (phase === 'ended') return text(this.#timeLine.run.program.places.length ? 'robot_ended' : 'program_empty');
+    const { origin, program } = this.#timeLine.run;
+    if (phase === 'ended') return text(program.places.length || origin.text !== pageState.programText.value ? 'robot_ended' : 'program_empty');
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
   }
 
