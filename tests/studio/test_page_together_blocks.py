@@ -161,25 +161,6 @@ def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> No
 
 
 @drawn
-def test_a_value_for_a_block_that_is_deleted_is_marked_as_of_this_page_alone(
-    two: tuple[Page, Page],
-) -> None:
-    ana, luz = two
-    own_marks = block(ana, "back").locator("> .mate_mark", has_text="only on your page")
-    field(ana, "back")
-    type_slowly(ana, "6")
-    go_to_line(luz, "B(1, 40)")
-    for key in ("Home", "Shift+End", "Delete", "ArrowDown"):
-        luz.keyboard.press(key)
-    wait_for_lines(luz, *(row for row in ROWS if not row.startswith("B(")))
-    ana.keyboard.press("Enter")
-    own_marks.wait_for()
-    assert "B(6, 40)" in text_of(ana) and "B(" not in text_of(luz)
-    ana.locator(PROGRAM_BLOCKS).press("Control+z")
-    own_marks.wait_for(state="detached")
-
-
-@drawn
 def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, Page]) -> None:
     ana, luz = two
     source_box, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
