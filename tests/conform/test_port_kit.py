@@ -108,7 +108,7 @@ FRAME_CHANGES: dict[str, tuple[Change, str]] = {
         alter_payload("SHOW", payload=lambda p: bytes([p[0] ^ 1]) + p[1:]), "programs: values"),
     "a value is a number, not TRUE": (
         alter_payload("SHOW", payload=lambda p: p[:4] + b"\0"),
-        "programs: instructions: What is not 0"),
+        "programs: instructions: Values other than 0"),
     "values get lost": (drop_message("SHOW"), "programs: values"),
     "a fault is elsewhere": (
         alter_payload("FAULT", payload=lambda p: p[:2] + b"\x07" + p[3:]),

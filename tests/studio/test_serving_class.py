@@ -161,7 +161,7 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) 
         (("--address", "127.0.0.1"), 2, "Add --class."),
         (("--port", "/dev/x"), 2, "Add --class."),
         (("--class", "--turn", "0"), 2, "--turn"),
-        (("--class", "--address", "203.0.113.5"), 3, "--address."),
+        (("--class", "--address", "203.0.113.5"), 3, "--address"),
         (("--class", "--address", "x y\x1b[2J"), 2, "192.168.1.5"),
         (("--class", "--address", "\u00fc" * 300), 2, "192.168.1.5"),
         (("--class", "--address", "0.0.0.0"), 2, "192.168.1.5"),
