@@ -272,7 +272,9 @@ def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRo
     first.signal(signal.SIGINT)
     assert first.wait_for_result().code == 2
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    second.wait_for_result().gives(3, out="The robot was stopped from a computer.")
+    result = second.wait_for_result()  # it hears of the stop, or that the port's holder has ended
+    assert result.code == 3
+    assert "was stopped from a computer" in result.out or "has ended" in result.err, result
 
 
 def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(

@@ -486,9 +486,7 @@ IS_SEEN_SCRIPT = """(path) => {
 
 @drawn
 def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
-    start(
-        page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all"
-    )
+    start(page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all")
     value, pile = block(page, "distance"), block(page, "new word")
     a, b = box_of(value), box_of(pile)
     page.mouse.move(a["x"] + 5, a["y"] + a["height"] / 2)
