@@ -637,7 +637,7 @@ class Session(Requester):
             self._sealing.seal = None
         if values is not None:
             is_other_epoch = self._handshake.is_in_doubt and not self._try_to_settle_epoch(values)
-            if message.name == "CLEAR":
+            if message.name == "CLEAR" and self._state.is_latched:  # a run goes on
                 self._state.forget_run()
             if message.name == "STOP" and self._pending and self._pending.ends_orphan:
                 self._tell_stop(StoppedEvent(_BY_MESSAGE))
