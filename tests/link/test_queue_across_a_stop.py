@@ -15,9 +15,19 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
-from tests.support.queued_requests import ACTING_REQUESTS, NOTHING, OTHERS, OWN, STOPS, Losses, Wire
+from tests.support.queued_requests import (
+    ACTING_REQUESTS,
+    NOTHING,
+    OTHERS,
+    OWN,
+    STOPS,
+    Ask,
+    Losses,
+    Wire,
+)
 from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 
 RUNS = "SI|F(60, 80)"
 
@@ -74,6 +84,20 @@ def check(seed: int) -> str:
             explanation
         )
     return f"{how} meets a queue" if len(open_ones) > 1 else "nothing waits"
+
+
+@pytest.mark.parametrize("ask", [*OTHERS[:4], Session.clear])
+def test_what_others_ask_beside_a_run_leaves_it_to_its_client(ask: Ask) -> None:
+    """A latch that is not set is released, too; and the run still ends with its client."""
+    wire = Wire(random.Random(1))
+    robot, session = wire.robot, wire.session
+    assert robot.until(session, session.upload(image_of(RUNS), saves=False)) == OK
+    run = session.run
+    assert robot.until(session, ask(session)) == OK
+    assert is_driving(robot) and session.is_running and session.run == run is not None
+    session.end_run(run, robot.now_ms)
+    wire.turns(100)
+    assert not is_driving(robot)
 
 
 @pytest.mark.sampled("part")
