@@ -84,18 +84,22 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     write(page, FOREVER)
     small = page.evaluate(AREA_SCRIPT)
     page.click("#run")
-    wait_for_phase(page, "running")
-    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3, "a third of the page")
-    wait_for(
-        page,
-        lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
-        "a robot of 70 pixels, its edge apart",
-    )
+    wait_for_large_run(page, 1366 * 768 / 3)
     page.keyboard.press("Escape")
     wait_for_phase(page, "ended")
     assert page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3  # until someone continues to write
     page.hover("#editor")
     wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small, "as before")
+
+
+def wait_for_large_run(page: Page, least_area: float = 0) -> None:
+    wait_for_phase(page, "running")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= least_area, "a large part of the page")
+    wait_for(
+        page,
+        lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
+        "a robot of 70 pixels, its edge apart",
+    )
 
 
 def see_last_step(page: Page, size: tuple[int, int]) -> float:
@@ -125,13 +129,7 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
     small = page.evaluate(AREA_SCRIPT)
     for is_ended in (False, True):
         page.click("#run")
-        wait_for_phase(page, "running")
-        wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
-        wait_for(
-            page,
-            lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
-            "a robot of 70 pixels, its edge apart",
-        )
+        wait_for_large_run(page, large)
         assert not page.locator("#lesson_page").is_visible()
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
@@ -160,13 +158,7 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
         page.click("#lesson_check")
         if not is_still:
-            wait_for_phase(page, "running")
-            wait_for(page, lambda: page.evaluate(AREA_SCRIPT) >= large, "a large part of the page")
-            wait_for(
-                page,
-                lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
-                "a robot of 70 pixels, its edge apart",
-            )
+            wait_for_large_run(page, large)
             page.click("#lesson_end")  # the button leads to the lesson's result
         page.locator("#lesson_said[data-verdict]").wait_for()
         assert page.locator("html[data-big]").count() == 0
@@ -501,11 +493,6 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
     page.click("#full")
     choose(page, "above")  # the default position
     page.click("#run")
-    wait_for_phase(page, "running")
-    wait_for(
-        page,
-        lambda: page.evaluate(ROBOT_LENGTH_SCRIPT) >= 65,
-        "a robot of 70 pixels, its edge apart",
-    )
+    wait_for_large_run(page)
     page.keyboard.press("Escape")
     turn(page, "program")

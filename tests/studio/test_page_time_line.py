@@ -9,6 +9,7 @@ import pytest
 
 from tests.support.page_robot import running, value
 from tests.support.studio import speak, wait_for, wait_for_blocks, wait_for_phase, write
+from tools.builds.page_texts import page_texts
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -205,7 +206,8 @@ def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> Non
         wait_for(page, lambda: not re.search(CODE, status_text(page)), "no code")
         told.add(status_text(page))
         page.keyboard.press("ArrowRight")
-    assert any(re.search("(was|era) [\\d.]+", each) for each in told)
+    was = str(page_texts(language)["why_value"]).format(name="[^.]+", value="[0-9]")
+    assert any(re.search(was, each) for each in told)
     assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", each) for each in told), "a small first letter"
     page.click("#why")
     page.click("#view_text")
