@@ -42,6 +42,7 @@ from tests.support.studio import (
     speak,
     wait_for,
     wait_for_blocks,
+    wait_for_note,
     wait_for_phase,
     write,
 )
@@ -117,6 +118,7 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page.keyboard.press("Enter")
     # The power cannot be larger.
     wait_for_text(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")
+    wait_for_note(page, "un número de 0 a 100: 150 pasó a ser 100")
     page.select_option("#speed", "20")
     page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
     wait_for_blocks(page)

@@ -243,7 +243,9 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     assert check_answer(page, right[0].program)[0] == "passed"
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
-    page.locator("#lesson_said:not([data-verdict])").wait_for(state="attached")
+    page.locator("#lesson_said[data-verdict=before]").wait_for()
+    page.keyboard.press("Backspace")
+    page.locator("#lesson_said[data-verdict=passed]").wait_for()
     write(page, BUSY_PROGRAM)
     page.dblclick("#lesson_check")  # the second click must not hit the button that takes its place
     page.locator("#lesson_end").wait_for()
@@ -448,6 +450,7 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
     page.locator("#lesson_steps button").last.click()
     assert not page.locator("#note").is_visible()  # the previous step announced it
     page.click("#side_virtual")
+    wait_for_note(page, "This is your program of the lesson. Your own program is in My programs.")
     write(page, of_lesson)
     page.click("#side_lessons")
     choose_lesson(page, 11)
@@ -505,6 +508,9 @@ def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
         write(page, own)
         for number in (1, 11):
             choose_lesson(page, number)
+            if number == 11 and "LINE_L" not in own and "robot:" not in own:
+                label = page.locator("#robot option:checked").inner_text()
+                wait_for_note(page, f"This lesson’s robot is {label}.")
         assert page.inner_text(".cm-content").splitlines()[-1] == own.splitlines()[-1]
 
 

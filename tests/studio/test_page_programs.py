@@ -218,7 +218,8 @@ def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
             assert answer == {"text": expected}, program.name
         else:
             refused_count += 1
-            assert answer == {"message": expected.message, "fix": expected.fix}, program.name
+            reason = {name: getattr(expected, name) for name in ("message", "fix", "code")}
+            assert answer == reason, program.name
     assert 0 < refused_count < len(sample)
 
 
@@ -412,6 +413,17 @@ def test_a_program_is_kept_once_however_it_is_written(page: Page) -> None:
         page.click("#my_programs")
         assert len(list_programs(page)) == count, text
         page.keyboard.press("Escape")
+
+
+def test_programs_that_begin_alike_have_titles_of_their_own(page: Page) -> None:
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+    page.click("#view_blocks")
+    for seconds in (1, 2, 3):
+        write(page, f"SI|F(1, 10)\nB({seconds}, 10)")
+        page.click("#my_programs")
+        assert len(set(list_programs(page))) == len(list_programs(page)) == seconds
+        page.keyboard.press("Escape")
+    page.click("#view_text")
 
 
 def test_a_program_is_deleted_and_brought_back(page: Page) -> None:

@@ -471,13 +471,17 @@ def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> N
 
 
 @pytest.mark.sampled("size")
+@pytest.mark.parametrize("is_lesson", [False, True], ids=["own program", "lesson"])
 @pytest.mark.parametrize("size", [(1024, 600), (390, 844)], ids=str)
 def test_cameras_and_the_whole_page_are_there_on_small_screens(
-    page: Page, size: tuple[int, int]
+    page: Page, size: tuple[int, int], is_lesson: bool
 ) -> None:
-    write(page, FOREVER)
-    page.set_viewport_size({"width": size[0], "height": size[1]})
-    turn(page, "robot")
+    if is_lesson:
+        see_last_step(page, size)
+    else:
+        write(page, FOREVER)
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        turn(page, "robot")
     small = page.evaluate(AREA_SCRIPT)
     for button in ("#camera", "#full"):
         box = page.locator(button).bounding_box()

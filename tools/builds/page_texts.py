@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tiniscript.base.languages import Texts, language_info, read_language_file, texts
+from tiniscript.base.languages import Texts, language_info, read_language_file, text, texts
 from tiniscript.base.words import WORDS
 from tiniscript.robots import load, names
 
@@ -54,6 +54,7 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
     }
     return {
         "": info.form_digits,
+        "new_word": text("lessons", "new_word", language),
         **search_words(language),
         **{
             key: value if isinstance(value, str)

@@ -16,7 +16,7 @@ from tiniscript.lessons.forms import TEXT, sentences_in_form
 EXAMPLES = {
     "UNTIL": "F(FOREVER, 60) UNTIL({question})", "IF": "IF({question}) ... ENDIF",
     "WHILE": "WHILE({question}) ... END_WHILE", "LOOP": "LOOP(3) ... END_LOOP",
-    "ELSE": "IF({question}) ... ELSE ... ENDIF", "DEF": "DEF STEP ... END_DEF",
+    "ELSE": "IF({question}) ... ELSE ... ENDIF", "DEF": "DEF {name} ... END_DEF",
     "WHEN": "WHEN({question}) ... END_WHEN", "TASK": "TASK ... END_TASK",
     "CM": "F(20 CM, 60)", "DEG": "R(90 DEG, 60)",
 }
@@ -37,7 +37,10 @@ def sentence(finding: Finding, language: str, form: str = TEXT) -> str:
         "place": place,
         "show": f"SHOW({sensor})",
         "example": _example(
-            finding.values.get("word", ""), finding.values.get("question", ""), form
+            finding.values.get("word", ""),
+            form,
+            question=finding.values.get("question", ""),
+            name=text("lessons", "new_word", language),
         ),
         "before": _event(finding, 1, language),
         "then": _event(finding, 2, language),
@@ -59,9 +62,9 @@ def _event(finding: Finding, number: int, language: str) -> str:
     return find_text("lessons", f"event/{parts[number]}/{number}", language) or ""
 
 
-def _example(word: str, question: str, form: str) -> str:
+def _example(word: str, form: str, **places: str) -> str:
     if word in EXAMPLES:
-        example = EXAMPLES[word].format(question=question)
+        example = EXAMPLES[word].format(**places)
         if form == TEXT:
             return example
         *parts, end_word = example.split(" ... ")  # the last part ends a block

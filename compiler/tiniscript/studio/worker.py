@@ -96,7 +96,7 @@ def _line(fields: Json, data: bytes) -> Json:
 
 def _post_answer(message: str | Message) -> Json:
     if isinstance(message, Message):
-        return {"message": message.message, "fix": message.fix}
+        return {"message": message.message, "fix": message.fix, "code": message.code}
     return {"text": message}
 
 

@@ -4,6 +4,7 @@ import * as Blockly from 'blockly/core';
 import { Piano } from './piano.js';
 import { rangeAt } from './places.js';
 import { hertzOfKey, keyName, keyOfHertz, nextKeyFrom } from './tones.js';
+import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { blockLabel } from '../page/words.js';
 
@@ -36,6 +37,7 @@ export class NumberField extends Blockly.FieldNumber {
   /** @param {string | number} value */
   constructor(value) {
     super(value);
+    this.changeNotice = '';
     this.setPrecision(0.001);
   }
 
@@ -45,7 +47,16 @@ export class NumberField extends Blockly.FieldNumber {
     const validNumber = super.doClassValidation_(THOUSANDS.test(typed) ? typed : typed.replaceAll(',', '.'));
     if (validNumber === null || !this.isBeingEdited_) return validNumber;
     const { low, high } = rangeAt(this.getSourceBlock());
-    return Math.min(high, Math.max(low, validNumber));
+    const fittingNumber = Math.min(high, Math.max(low, validNumber));
+    this.changeNotice = fittingNumber === validNumber ? '' : text('number_fits', { typed: typed.trim(), low, high, fitting: fittingNumber });
+    return fittingNumber;
+  }
+
+  /** Who typed what does not fit is told. @param {any} value */
+  onFinishEditing_(value) {
+    super.onFinishEditing_(value);
+    if (this.changeNotice) pageState.note.set(this.changeNotice);
+    this.changeNotice = '';
   }
 
   /** A phone shows keys of digits, which lack a minus on some. */

@@ -14,8 +14,9 @@ import { storeDone, storeProgram, storeStars, loadDoneLessons, loadProgram, coun
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
-import { currentLanguage, text } from '../page/texts.js';
+import { currentLanguage, labelOf, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
+import { robotOf } from '../page/words.js';
 
 /** @typedef {{name: string, title: string, block_title: string, robot: string, worlds: number, world: import('../world/parts.js').World}} Lesson */
 /** @typedef {import('../programs/work.js').Program & {lesson?: string}} Program `lesson` whose it is */
@@ -31,6 +32,7 @@ import { isSecondPress } from '../page/twice.js';
  * @property {Record<string, import('../blocks/said.js').SpokenBlock>} spoken what each code in it is as a block
  * @property {{seed: number, until_ms: number} | null} run
  */
+/** @typedef {{programText: string, verdict: keyof typeof VERDICT_KEYS, sentence: string, stars: string, said: string[], block_said: string[]}} Judgement */
 /**
  * @typedef {object} Page what the lessons need of the page
  * @property {import('../python.js').Python} python
@@ -76,9 +78,8 @@ export class Lessons {
   #pictures;
   /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').SpokenBlock>} */
   #spokenBlocks = {};
-  /** What the check has found. @type {{said: string[], block_said: string[]}} */
-  #findings = { said: [], block_said: [] };
-  #hasPassed = false;
+  /** What the newest check has said of a program. @type {Judgement | null} */
+  #judgement = null;
   #isPlaying = false;
 
   /** @param {Page} page */
@@ -118,10 +119,15 @@ export class Lessons {
     });
     pageState.robotName.subscribe(() => this.#fillStep());
     pageState.sideId.subscribe((sideId) => {
-      if (sideId !== 'side_lessons' && !this.#page.work.text.trim()) this.leave();
+      if (sideId === 'side_lessons') return;
+      const { text: programText, lesson: lessonName, own: ownProgram } = this.#page.work;
+      if (!programText.trim()) this.leave();
+      else if (lessonName && ownProgram?.text.trim()) pageState.note.set(text('lesson_stays'));
     });
     pageState.programText.subscribe(() => {
-      if (this.#isShown) this.#forgetCheck(); // what was said of the one before is not of it
+      if (!this.#endButton.hidden || !this.#judgement) {
+        if (this.#isShown) this.#forgetCheck();
+      } else this.#showJudgement();
       this.#keepProgram();
     });
     const lessonPage = element('lesson_page', HTMLElement);
@@ -144,14 +150,11 @@ export class Lessons {
   /** Ends a check and forgets what was said. */
   #forgetCheck() {
     this.#checkCount += 1;
-    this.#isPlaying = this.#hasPassed = false;
+    this.#isPlaying = false;
+    this.#judgement = null;
     this.#endButton.hidden = true;
     this.#endButton.textContent = text('lesson_end');
-    this.#showButtons();
-    this.#showFindings({ said: [], block_said: [] });
-    delete this.#verdictElement.dataset['verdict'];
-    this.#verdictElement.textContent = '';
-    element('lesson_stars', HTMLElement).textContent = '';
+    this.#showJudgement();
   }
 
   /** @param {boolean} isReady */
@@ -254,14 +257,32 @@ export class Lessons {
     element('lesson_name', HTMLElement).textContent = this.#titleOf(lesson);
     element('lesson_step', HTMLElement).replaceChildren(...shownStep.blocks.map((block) => makeBlockElement(block, reader)));
     element('lesson_hint_said', HTMLElement).replaceChildren(makeTextElement('span', shownStep.hint, reader));
-    this.#showFindings(this.#findings);
+    this.#showFindings();
   }
 
-  /** @param {{said: string[], block_said: string[]}} findings */
-  #showFindings(findings) {
-    this.#findings = findings;
+  /** Whether the newest check was of the program as it is now. */
+  get #isJudged() {
+    return this.#judgement?.programText === pageState.programText.value;
+  }
+
+  get #hasPassed() {
+    return this.#isJudged && this.#judgement?.verdict === 'passed';
+  }
+
+  /** Shows what the newest check has said. Who repairs the program reads on, and sees that it was said of the one before. */
+  #showJudgement() {
+    const judgement = this.#judgement, { dataset } = this.#verdictElement;
+    if (judgement) dataset['verdict'] = this.#isJudged ? judgement.verdict : 'before';
+    else delete dataset['verdict'];
+    this.#verdictElement.textContent = !judgement ? '' : this.#isJudged ? judgement.sentence : text('lesson_changed');
+    element('lesson_stars', HTMLElement).textContent = this.#isJudged ? judgement?.stars ?? '' : '';
+    this.#showFindings();
+    this.#showButtons();
+  }
+
+  #showFindings() {
     const lesson = this.#lessons[this.#lessonNumber - 1];
-    const sentences = this.#areBlocks ? findings.block_said : findings.said;
+    const sentences = (this.#areBlocks ? this.#judgement?.block_said : this.#judgement?.said) ?? [];
     this.#findingsElement.replaceChildren(...lesson ? sentences.map((sentence) => makeTextElement('li', sentence, this.#makeReader(lesson))) : []);
   }
 
@@ -342,7 +363,7 @@ export class Lessons {
 
   /** The lesson is over, and its check: this person's own program comes back, unless another one has been opened since. */
   leave() {
-    if (!this.#endButton.hidden) this.#forgetCheck();
+    this.#forgetCheck();
     const { own: ownProgram } = this.#page.work;
     if (!ownProgram || pageState.groupName.value) return;
     this.#page.exchange(ownProgram);
@@ -353,7 +374,10 @@ export class Lessons {
   async #showWorld(seed) {
     const { worlds, robot: robotName } = /** @type {Lesson} */ (this.#lessons[this.#lessonNumber - 1]);
     const values = { number: this.#lessonNumber, seed };
-    if (robotName !== pageState.robotName.value && !pageState.isRobotNamed.value) pageState.robotName.set(robotName);
+    if (robotName !== pageState.robotName.value && !pageState.isRobotNamed.value) {
+      pageState.robotName.set(robotName);
+      pageState.note.set(text('lesson_robot', { robot: labelOf(robotOf(robotName)?.labels ?? {}) || robotName }));
+    }
     await this.#page.simulatorPanel.showLesson(values.number, seed,
       () => text(worlds > 1 ? 'world_of_lessons' : 'world_of_lesson', values));
   }
@@ -416,23 +440,25 @@ export class Lessons {
     const areStarsStored = storeStars(lesson.name, stars); // first: one that is done has a star
     const isStored = (verdict !== 'passed' || storeDone(lesson.name)) && areStarsStored;
     this.#forgetCheck();
-    this.#hasPassed = verdict === 'passed';
-    if (this.#hasPassed) this.#listLessons();
-    this.#showButtons();
-    this.#verdictElement.dataset['verdict'] = verdict;
+    const hasPassed = verdict === 'passed';
+    if (hasPassed) this.#listLessons();
     const [singleWorldKey, severalWorldsKey] = VERDICT_KEYS[verdict];
-    const isInWorlds = worlds > 1 && (seed > 0 || verdict === 'passed');
+    const isInWorlds = worlds > 1 && (seed > 0 || hasPassed);
     const sentence = text(isInWorlds ? severalWorldsKey : singleWorldKey, { number: this.#lessonNumber, worlds, seed });
-    this.#verdictElement.textContent = this.#hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : sentence;
-    if (verdict !== 'mistakes') { // one for each world where it did its task
-      element('lesson_stars', HTMLElement).textContent = '★'.repeat(stars) + '☆'.repeat(worlds - stars);
-    }
     this.#spokenBlocks = { ...this.#spokenBlocks, ...spoken };
-    this.#showFindings({ said: sentences, block_said });
+    this.#judgement = {
+      programText: pageState.programText.value,
+      verdict,
+      sentence: hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : sentence,
+      stars: verdict === 'mistakes' ? '' : '★'.repeat(stars) + '☆'.repeat(worlds - stars), // one for each world where it did its task
+      said: sentences,
+      block_said,
+    };
+    this.#showJudgement();
     this.#hintElement.open = false;
     element('lesson_page', HTMLElement).scrollTop = 0;
     if (!isStored) pageState.note.set(text('not_kept'));
-    if (this.#hasPassed) {
+    if (hasPassed) {
       this.#page.simulatorPanel.cheer();
       celebrate();
     }

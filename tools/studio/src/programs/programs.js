@@ -32,6 +32,7 @@ import { messageWithFix } from '../writing/messages.js';
  */
 
 const PUBLIC_ADDRESS_KEY = 'tiniscript.public'; // where others find this page, as somebody has told it
+const READER_CODES = 'TS3';
 const MOST_CODE_BYTES = 900; // bytes: a camera reads no picture with more from a screen
 const MARGIN_MODULES = 4; // modules that must stay white around a code
 
@@ -169,7 +170,8 @@ export class Programs {
     const request = { do: 'line', robot: this.#page.work.robot, language: currentLanguage() };
     const answer = await this.#page.python.ask(request, new TextEncoder().encode(this.#page.work.text));
     if (answer.text !== undefined) return { text: answer.text };
-    return { refusal: messageWithFix(answer) };
+    const isTooMuch = answer.code.startsWith(READER_CODES); // for a robot that reads text: the fix is for who types commands
+    return { refusal: messageWithFix({ ...answer, ...isTooMuch && { fix: text('share_line_else') } }) };
   }
 
   /**
@@ -230,12 +232,15 @@ export class Programs {
   #showVersions() {
     const language = currentLanguage(), isOpen = sameProgramAs(this.#page.work);
     const timeFormat = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
-    const rows = loadVersions().map((version, index, versions) => {
+    const versions = loadVersions();
+    const titles = versions.map((version, index) => versionTitle(version, versions.length - index));
+    const rows = versions.map((version, index) => {
       const storedAt = new Date(version.at_ms);
       const timeText = timeFormat.format(storedAt);
       const timeElement = makeElement('time', '', timeText);
       timeElement.dateTime = storedAt.toISOString();
-      const title = versionTitle(version, versions.length - index), robotLabel = labelOf(robotOf(version.robot)?.labels ?? {}) || version.robot;
+      const ownTitle = String(titles[index]), isShared = titles.indexOf(ownTitle) !== titles.lastIndexOf(ownTitle);
+      const title = isShared ? `${ownTitle} (${versions.length - index})` : ownTitle, robotLabel = labelOf(robotOf(version.robot)?.labels ?? {}) || version.robot;
       const openButton = makeButton('', () => {
         this.replaceProgram(version);
         this.#window.close();
