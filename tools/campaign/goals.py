@@ -92,7 +92,7 @@ GOALS: tuple[Goal, ...] = (
          "run of all rows", 1, 1, "pytest tests -m sampled --whole -n 2 --dist worksteal", ("compiler", "vm_arduino", "tests")),
     Goal("pupils", "The messages about programs with mistakes, as pupils write them, have not changed; each repair helps and keeps the numbers; every program that is offered compiles.",
          "run of all programs", 1, 1, "pytest tests/pupils tests/semantics/test_offered.py --whole -n 2 --dist worksteal", (*_COMPILER, *_code("recovery", "diagnostics", "languages"), "tests/pupils")),
-    Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ_TOOLS}).",
+    Goal("fuzz-machine", f"No image harms the machine: all code that the verifier accepts runs without BAD_CODE ({FUZZ_TOOLS}).",
          "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}", (*_code("@vm"), "tests/fuzz")),
     Goal("fuzz-link", f"No bytes harm the receiver, the link or the reader of text ({FUZZ_TOOLS}).",
          "inputs", 100_000_000, 1_000_000, "tests.fuzz.harnesses link {count} --seed {seed}", (*_code("@link", "@text"), "tests/fuzz")),
