@@ -45,8 +45,8 @@ ROWS = (
 )
 OTHER_BOARDS = {  # keyed by environment
     "nano_liner": "`liner`, Nano", "mega_grabber": "`grabber`, Mega",
-    "uno_tinibot2": "`tinibot2`, Uno, with an edge of each disc just before",
-    "mega_tinibot2": "`tinibot2`, Mega, with an edge of each disc just before",
+    "uno_tinibot2": "`tinibot2`, Uno, with an edge of each disc just before the stop",
+    "mega_tinibot2": "`tinibot2`, Mega, with an edge of each disc just before the stop",
 }  # fmt: skip
 # Environments that must meet the limit but are not in the table.
 UNSHOWN_ENVIRONMENTS = ("mega", "mega_liner")

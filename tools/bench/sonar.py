@@ -38,8 +38,8 @@ TRUST_DEFINE = "#define tiniscript_trusts_samples\n"
 ROWS = (
     "wrong readings, one wrong sample in fifty",
     "3 s runs with a wrong reading",
-    "until it knows that an obstacle at 50 cm/s is near: median, most",
-    "until it knows of one that suddenly appears: median, most",
+    "until it detects that an obstacle at 50 cm/s is near: median, most",
+    "until it detects one that suddenly appears: median, most",
 )
 
 

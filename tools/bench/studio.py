@@ -55,7 +55,7 @@ ROWS = {
     "work": "the same, judged by the work of the page's main thread for each frame, times four: "
     f"over {LATE_FRAME_MS} ms",
     "letter": f"processor time to compile {PROGRAM_LINES} lines after a letter is typed",
-    "button": "processor time to try out what a button does, after a pause",
+    "button": "processor time to try out the effect of a repair button, after a pause in typing",
     "rated": "Lighthouse, desktop: performance, accessibility, best practices (median of five)",
     "files": "all files, gzipped",
 }

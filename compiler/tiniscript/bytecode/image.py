@@ -44,8 +44,8 @@ STARTS = ("SI", "SB", "PING")
 # fmt: off
 FIELDS = (
     Field("magic",         "2s", 2, "The letters `TS`."),
-    Field("isa_major",     "B",  1, "Instruction set: a machine runs its own major version only,"),
-    Field("isa_minor",     "B",  1, "and its own minor version or an earlier one."),
+    Field("isa_major",     "B",  1, "Instruction set, major version: a machine runs only its own."),
+    Field("isa_minor",     "B",  1, "Minor version: a machine runs its own and earlier ones."),
     Field("start",         "B",  1, "How the program starts: 0 `SI`, 1 `SB`, 2 `PING`."),
     Field("header_length", "B",  1, "Bytes before the code, 15 to 255."),
     Field("devices",       "H",  2, "A [hash](#devices) of the code's devices; 0 for none."),

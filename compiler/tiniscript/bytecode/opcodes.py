@@ -225,7 +225,7 @@ OPS = (
     _op(0x35, "DEC_VAR",         "v:variable",          "--",              "plain", "Subtract 1 from `v`."),
     # the robot
     _op(0x38, "READ",            "s:sensor",            "--",              "read",  "Take a reading of sensor `s` and keep it."),
-    _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to whoever is listening."),
+    _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to all listeners."),
     _op(0x3A, "SHOW_YES_NO",     "",                    "yes --",          "plain", "Send TRUE or FALSE."),
     _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a` to the value, rounded and limited to its range."),
     *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {direction_word} for `time`, then turn the motors off.")
@@ -243,8 +243,8 @@ OPS = (
     _op(0x54, "UNTIL",           "",                    "stop --",         "until", "End the move if `stop`; else continue it and check again after 20 ms."),
     _op(0x56, "BEEP8",           "time:time8 hertz:u16", "--",             "plain", "Sound the buzzer and wait until the sound is over."),
     _op(0x58, "STOP",            "",                    "--",              "plain", "Turn the motors off."),
-    _op(0x59, "MOTORS",          "",                    "left right --",   "plain", "Set both motors and go on at once."),
-    _op(0x5A, "MOTORS8",         "left:percent right:percent", "--",       "plain", "Set both motors and go on at once."),
+    _op(0x59, "MOTORS",          "",                    "left right --",   "plain", "Set both motors and continue at once."),
+    _op(0x5A, "MOTORS8",         "left:percent right:percent", "--",       "plain", "Set both motors and continue at once."),
     _op(0x5B, "BEEP",            "",                    "time hertz --",   "plain", "Sound the buzzer and wait until the sound is over."),
     # control
     _op(0x60, "IF",              "to:fwd8",             "yes --",          "if",    "Go to `to` if the value is FALSE."),
@@ -274,7 +274,7 @@ OPS = (
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, with a longer jump."),
     # tasks
     *(op._replace(needs=NEEDS_TASKS, since=1) for op in (
-        _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Go on if `yes`; else look again after 20 ms."),
+        _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Continue if `yes`; otherwise look again after 20 ms."),
         _op(0x76, "END_TASK",    "",                    "--",              "end_task", "The task is finished."),
         _op(0x77, "END_WHEN",    "",                    "--",              "end_when", "Look again after 20 ms."),
         _op(0x7D, "TASK",        "to:fwd16",            "--",              "task",  "A task begins here; go to `to`, its end."),
@@ -294,8 +294,8 @@ OPS = (
     *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {} to the value, rounded and limited to its range."),
     *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED_NUMBERS)),
     # Comparisons with a constant.
-    *_comparison_ops(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
-    *_comparison_ops(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "As UNTIL: `stop` is `a {} n`."),
+    *_comparison_ops(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "Like UNTIL, with `a {} n` as `stop`."),
+    *_comparison_ops(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "Like UNTIL, with `a {} n` as `stop`."),
     *_comparison_ops(0xD8, "IF8",      "n:u8 to:fwd8",       "a --", "if",    "Go to `to` unless `a {} n`."),
     *_comparison_ops(0xE0, "IF16",     "n:i16 to:fwd8",      "a --", "if",    "Go to `to` unless `a {} n`."),
     *_comparison_ops(0xE8, "IF_VAR8",  "v:variable n:u8 to:fwd8",  "--", "if", "Go to `to` unless variable `v` {} `n`."),
