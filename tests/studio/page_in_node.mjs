@@ -204,7 +204,7 @@ class Part extends Heard {
   /** Of a selector each of tag, #id, .class and [name=value], one of several that commas part. */
   matches(selector) {
     return selector.split(',').some((each) => {
-      const found = /^([\w-]+)?(?:#([\w-]+))?(?:\.([\w-]+))?(?:\[([\w-]+)(?:=([^\]]*))?\])?$/.exec(each.trim());
+      const found = /^([\w-]+)?(?:#([\w-]+))?(?:\.([\w-]+))?(?:\[([\w-]+)(?:="?([^\]"]*)"?)?\])?$/.exec(each.trim());
       if (!found) return false;
       const [, tag, id, className, name, value] = found;
       const had = name && (typeof this[name] === 'boolean' ? (this[name] ? '' : null) : this.getAttribute(name));

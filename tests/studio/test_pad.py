@@ -19,6 +19,8 @@ __all__ = ["page_data"]
 
 WAYS_SCRIPT = Path(__file__).with_name("keys_in_node.mjs")
 SCRIPT = Path(__file__).with_name("pad_in_node.mjs")
+HISTORIES_SCRIPT = Path(__file__).with_name("pad_histories_in_node.mjs")
+HISTORIES = 40
 ALL_READINGS = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B", "PAD_X", "PAD_Y"]
 WHOLE: Any = ["offer", "driving", {"reads": ALL_READINGS}]
 UP, A = 1, 16
@@ -88,6 +90,16 @@ def test_a_button_that_has_the_focus_is_held_by_the_space_bar(page_data: Path) -
         [0, A, 0, 0],
         [0, *NOTHING],
     ]
+
+
+def test_whatever_hands_do_what_is_held_and_nothing_else_is_told_to_the_driven_robot(
+    page_data: Path,
+) -> None:
+    """Fingers, keys and gamepads, while robots come, go and are replaced, and after each STOP."""
+    lines = in_node(HISTORIES_SCRIPT, str(page_data), "0", str(HISTORIES))
+    done = {act for line in lines for act in json.loads(line)}
+    assert len(lines) == HISTORIES
+    assert done >= {"held", "gamepads", "stop", "Escape", "blur", "pagehide", "freeze", "hidden"}
 
 
 LET_GO = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],

@@ -130,12 +130,10 @@ export class Pad {
 
   /** A part is held by fingers; of one that `isSingleFinger`, by the first. @param {HTMLElement} part @param {(event: PointerEvent) => HeldControls} heldAt @param {boolean} [isSingleFinger] */
   #listenToFingers(part, heldAt, isSingleFinger) {
-    let fingerId = -1;
+    const onMove = (/** @type {PointerEvent} */ move) => this.#hold(move.pointerId, heldAt(move));
     part.addEventListener('pointerdown', (event) => {
-      if (event.button || (isSingleFinger && this.#fingerMoves.has(fingerId))) return;
-      fingerId = event.pointerId;
+      if (event.button || (isSingleFinger && [...this.#fingerMoves.values()].includes(onMove))) return;
       part.setPointerCapture(event.pointerId);
-      const onMove = (/** @type {PointerEvent} */ move) => this.#hold(move.pointerId, heldAt(move));
       this.#fingerMoves.set(event.pointerId, onMove);
       onMove(event);
     });
