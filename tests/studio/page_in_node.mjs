@@ -184,6 +184,7 @@ class Part extends Heard {
     if (name.startsWith('data-')) delete this.dataset[keyOf(name)];
   }
   getAttribute(name) { return (name.startsWith('data-') ? this.dataset[keyOf(name)] : this.attributes[name]) ?? null; }
+  hasAttribute(name) { return this.getAttribute(name) !== null; }
   click() { this.dispatchEvent(new Event('click')); }
   focus() { document.activeElement = this; }
   select() {}

@@ -49,7 +49,7 @@ export class RunsWindow {
   /** @param {File} file of a run: it is played, or why it cannot be is told */
   async open(file) {
     try {
-      await this.openData(await bytesOf(file));
+      await this.openData(await bytesOf(file), file.name);
     } catch {
       this.#showRefusal(file.name, text('unreadable'));
     }

@@ -1,0 +1,704 @@
+// node small_parts_in_node.mjs SOURCES MADE FIRST SEEDS: each small part of the page through random histories of what somebody
+// does, on a clock of the script; after each step a plain model says what has to be seen and told. Prints for each part
+// what its histories have done.
+
+import { readFileSync } from 'node:fs';
+import { chanceOf, freshPage, later, learns, made, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
+
+const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
+const [first, seeds] = words.map(Number);
+Date.now = () => 1_700_000_000_000 + now();
+const unhandled = [];
+for (const kind of ['unhandledRejection', 'uncaughtException']) process.on(kind, (why) => unhandled.push(String(why)));
+
+let resizes = [];
+globalThis.ResizeObserver = class {
+  constructor(does) { resizes.push(does); }
+  observe() {}
+};
+globalThis.getComputedStyle = () => ({ getPropertyValue: (name) => name });
+globalThis.alert = () => {};
+
+class Fails extends Error {}
+const is = (found, wanted, what) => {
+  if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Fails(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`);
+};
+const saidOf = (part) => (typeof part === 'string' ? part : [part.textContent, ...part.children.map(saidOf)].join(''));
+const press = (part) => part.dispatchEvent(new Event('click', { bubbles: true, cancelable: true }));
+const changes = (part, values, kind = 'change') => {
+  Object.assign(part, values);
+  part.dispatchEvent(new Event(kind, { bubbles: true }));
+};
+const LANGUAGES = ['en', 'es', 'pt'];
+const TEXTS = JSON.parse(readFileSync(`${made}/texts.json`, 'utf-8'));
+
+/** Another language, whose sentences end with its name. */
+async function speaks(page, language) {
+  const ends = (text) => (typeof text === 'string' ? `${text} ${language}` : Array.isArray(text) && typeof text[0] === 'string' ? text.map(ends) : text);
+  playsFetch(async () => ({ ok: true, json: async () => Object.fromEntries(Object.entries(TEXTS).map(([key, text]) => [key, key ? ends(text) : text])) }));
+  const { setLanguage } = await page.load('page/texts.js');
+  await setLanguage(language);
+}
+
+/** Each begins a page and gives its acts, what the acts are followed by, and which there are. */
+const PARTS = {
+  // Which screen is seen, and what the start shows: pictures that begin, earlier programs, stars.
+  async start(chance) {
+    playsNavigator({});
+    const page = freshPage({}, HTML);
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { text } = await page.load('page/texts.js');
+    const screens = await page.load('start/screens.js');
+    const { Start } = await page.load('start/start.js');
+    const { BEGINNINGS } = await page.load('start/beginnings.js');
+    const versions = await page.load('programs/versions.js');
+    const progress = await page.load('lesson/progress.js');
+    const hasStart = chance() < 0.8, isProgram = chance() < 0.2;
+    location.hash = chance.of(['', '', '#editor', '#p=given']);
+    let entries = 0;
+    const pushes = history.pushState;
+    history.pushState = (...given) => {
+      entries += 1;
+      pushes(...given);
+    };
+    let screen = isProgram || !hasStart || location.hash === '#editor' ? 'program' : 'start';
+    screens.openFirstScreen(isProgram, hasStart);
+    let told = [], beginning = null, isRefused = false;
+    const tells = (...what) => { told.push(what); };
+    new Start({
+      putProgram: ({ text, robot, name }) => tells('put', text, robot, name),
+      async runInWorld(world) {
+        tells('run', world);
+        await beginning.run;
+      },
+      seeProgram: () => tells('see'), showSide: (id) => tells('side', id), leaveProgram: () => tells('leave'),
+    });
+    is(told.splice(0), screen === 'program' ? [['see']] : [], 'told at first');
+    const goes = (to) => {
+      if (screen === to) return [];
+      screen = to;
+      focus = to === 'start' ? 'start' : 'home';
+      return to === 'start' ? [['leave']] : beginning ? [] : [['see']];
+    };
+    let focus = '', wanted = [], pushed = 0;
+    const shows = (to) => {
+      if (screen !== to) pushed += 1;
+      return goes(to);
+    };
+    const acts = {
+      home() {
+        press(page.byId('home'));
+        wanted = shows('start');
+      },
+      way() {
+        const [way, side, place] = chance.of([['write', 'side_virtual', 'writing'], ['lessons', 'side_lessons', 'lesson_page'], ['robot', 'side_real', 'side_real']]);
+        press(page.byId(`start_${way}`));
+        wanted = [...shows('program'), ['side', side]];
+        focus = place;
+      },
+      begins() {
+        if (beginning) return;
+        const name = chance.of(Object.keys(BEGINNINGS)), { text: program, robot, world } = BEGINNINGS[name];
+        let ends;
+        beginning = { run: new Promise((good, bad) => { ends = { good, bad }; }), ends: () => ends };
+        press(document.querySelectorAll(`[data-begin=${name}]`)[0]);
+        wanted = [['put', program, robot, `${text(`begin_${name}`).toLowerCase()}.ts`], ['side', 'side_virtual'], ['run', world]];
+        focus = 'stop';
+      },
+      runSeen() { // the run shows itself
+        screens.showScreen('program');
+        wanted = shows('program');
+      },
+      async ends() {
+        if (!beginning) return;
+        const { good, bad } = beginning.ends();
+        isRefused = chance() < 0.3;
+        if (isRefused) bad(new Error('refused'));
+        else good();
+        beginning = null;
+        await settles();
+        unhandled.splice(0);
+        wanted = [['see']];
+      },
+      instead() {
+        screens.showProgramInstead();
+        wanted = goes('program');
+        is(location.hash, '#editor', 'the address');
+      },
+      back() {
+        location.hash = chance.of(['', '#editor', '#p=given']);
+        const isScreen = location.hash !== '#p=given';
+        dispatchEvent(new Event('popstate'));
+        wanted = hasStart && isScreen ? goes(location.hash ? 'program' : 'start') : [];
+      },
+      keeps() {
+        for (let k = chance.of([1, 8]); k > 0; k -= 1) versions.storeVersion({ text: `F(${chance.below(20)});\nB(1)`, robot: 'tinibot', name: chance.of(['', 'one.ts']) });
+        pageState.view.set(pageState.view.value);
+      },
+      stars() {
+        if (chance() < 0.5) progress.storeDone(chance.of(['one', 'two']));
+        else progress.storeStars(chance.of(['one', 'three']), 1 + chance.below(3));
+        pageState.language.set(pageState.language.value);
+      },
+      forgets() {
+        window.localStorage.removeItem(chance.of(['tiniscript.versions', 'tiniscript.stars', 'tiniscript.lessons']));
+        pageState.view.set(pageState.view.value);
+      },
+      speaks: () => speaks(page, chance.of(LANGUAGES)),
+      views: () => pageState.view.set(chance.of(['blocks', 'text'])),
+      opens() {
+        const rows = page.byId('start_programs').children;
+        if (screen !== 'start' || !rows.length) return;
+        const index = chance.below(rows.length), { text: program, robot, name } = versions.loadVersions()[index];
+        press(rows[index].querySelector('button'));
+        wanted = [['put', program, robot, name]];
+      },
+    };
+    const checks = () => {
+      is(told, wanted, 'told');
+      is([pageState.screen.value, document.documentElement.dataset.screen, entries], [screen, screen, pushed], 'the screen');
+      if (focus) is(document.activeElement?.id, focus, 'what has the focus');
+      [told, wanted] = [[], []];
+      if (screen !== 'start') return;
+      const earlier = versions.loadVersions();
+      const times = new Intl.DateTimeFormat(pageState.language.value, { dateStyle: 'short', timeStyle: 'short' });
+      is(page.byId('start_programs').children.map((row) => [saidOf(row.querySelector('strong')), saidOf(row.querySelector('time'))]),
+        earlier.map((version, k) => [versions.versionTitle(version, earlier.length - k), times.format(new Date(version.at_ms))]).slice(0, 6), 'the programs');
+      is(page.byId('start_programs_title').hidden, !earlier.length, 'no title');
+      const stars = progress.countAllStars(), badge = page.byId('start_badge'), done = progress.loadDoneLessons().size;
+      is([badge.hidden, ...badge.children.map(saidOf)], [!stars, `${done ? `✓ ${done}  ` : ''}★ ${stars}`, text('lesson_progress', { done, stars })], 'the stars');
+    };
+    return { acts, checks };
+  },
+
+  // The window with a robot's name and colour.
+  async own(chance) {
+    playsNavigator({});
+    const page = freshPage({}, HTML);
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { text } = await page.load('page/texts.js');
+    const { showOwnRobot, ownRobotOf, COLOURS } = await page.load('page/own_robot.js');
+    const { OwnWindow } = await page.load('start/own_window.js');
+    showOwnRobot();
+    new OwnWindow();
+    const dialog = document.querySelectorAll('dialog').find(({ id }) => id === 'own');
+    const nameInput = dialog.querySelectorAll('input').find(({ type }) => type !== 'radio');
+    const radios = dialog.querySelectorAll('input').filter(({ type }) => type === 'radio');
+    let own = { name: '', colour: 0 }, kept = true, isKept = true;
+    const stores = (changed) => {
+      own = ownRobotOf({ ...own, ...changed });
+      isKept = window.localStorage.room > 0;
+      if (!isKept) is(pageState.note.value, text('not_kept'), 'said of what is not kept');
+      else kept = JSON.stringify(own);
+      pageState.note.set('');
+    };
+    const acts = {
+      opens() {
+        for (const radio of radios) radio.checked = false;
+        press(page.byId('start_own'));
+        is([dialog.open, nameInput.value, radios.findIndex(({ checked }) => checked)], [true, own.name, own.colour], 'the window');
+      },
+      closes: () => dialog.querySelectorAll('button').find(({ dataset }) => dataset.text === 'close').click(),
+      names() {
+        const name = chance.of(['', ' Robbi ', 'R2', 'a name that is too long for it']);
+        changes(nameInput, { value: name }, 'input');
+        stores({ name });
+      },
+      paints() {
+        const colour = chance.below(COLOURS.length);
+        changes(radios[colour], { checked: true });
+        stores({ colour });
+      },
+      others() { // another one comes, of a class
+        own = { name: chance.of(['', 'Pia']), colour: chance.below(COLOURS.length) };
+        pageState.ownRobot.set(own);
+      },
+      speaks: () => speaks(page, chance.of(LANGUAGES)),
+      fills: () => { window.localStorage.room = chance.of([0, Infinity]); },
+    };
+    const checks = () => {
+      is(pageState.ownRobot.value, own, 'the robot');
+      is(saidOf(page.byId('start_own')).endsWith(own.name) && page.byId('start_own').lastElementChild.textContent, own.name, 'its name');
+      is(window.localStorage.getItem('tiniscript.own_robot') ?? true, kept, 'what is kept');
+      is(radios.map(({ ariaLabel }) => ariaLabel), COLOURS.map(([, , key]) => text(key)), 'the colours');
+    };
+    return { acts, checks };
+  },
+
+  // Children press everything twice: what they hear a second time is not for what has come to its place.
+  async twice(chance) {
+    playsNavigator({});
+    const page = freshPage({}, HTML);
+    const { ignoreSecondPresses, isSecondPress } = await page.load('page/twice.js');
+    ignoreSecondPresses();
+    const buttons = ['one', 'two', 'stop'].map((name) => Object.assign(document.createElement('button'), { id: name, className: name === 'stop' ? 'stop' : '' }));
+    document.body.append(...buttons);
+    const inner = document.createElement('span');
+    buttons[0].append(inner);
+    let heard = [];
+    for (const button of buttons) for (const kind of ['pointerdown', 'mousedown', 'click']) button.addEventListener(kind, (event) => heard.push([kind, event.type === 'click' && isSecondPress(event)]));
+    const elsewhere = document.createElement('p');
+    document.body.append(elsewhere);
+    let first = { ms: -1e9, x: 0, y: 0, button: null }, last = { ms: -1e9, x: 0, y: 0 }, count = 0, tappedTwice = false;
+    const at = (kind, target, more) => {
+      const event = Object.assign(new Event(kind, { bubbles: true, cancelable: true }), more);
+      Object.defineProperty(event, 'timeStamp', { value: now() + 10_000 });
+      target.dispatchEvent(event);
+      return event.defaultPrevented;
+    };
+    const acts = {
+      presses() {
+        const visible = buttons.filter((each) => each.checkVisibility());
+        const target = chance() < 0.15 || !visible.length ? elsewhere : chance.of(visible);
+        const place = chance.of([{ clientX: last.x, clientY: last.y }, { clientX: last.x, clientY: last.y + 5 }, { clientX: last.x + 20, clientY: last.y }, { clientX: chance.below(300), clientY: 50 }]);
+        const pointerType = chance.of(['mouse', 'touch']);
+        const near = (other) => Math.hypot(place.clientX - other.x, place.clientY - other.y) < 30;
+        // A mouse's clicks are counted from the last one, a finger's are not.
+        count = pointerType === 'mouse' && now() - last.ms < 500 && near(last) ? count + 1 : 1;
+        last = { ms: now(), x: place.clientX, y: place.clientY };
+        const isSecond = now() - first.ms < 500 && near(first);
+        tappedTwice = isSecond && pointerType === 'touch';
+        const isSecondClick = count > 1 || tappedTwice;
+        if (!isSecond) first = { ms: now(), x: place.clientX, y: place.clientY, button: target === elsewhere ? null : target };
+        const isHidden = first.button && !first.button.checkVisibility();
+        const takes = (second) => Boolean(second && isHidden && target.id !== 'stop');
+        heard = [];
+        const aim = target.id === 'one' && chance() < 0.5 ? inner : target;
+        const prevented = [at('pointerdown', aim, { ...place, pointerType, detail: 0 }), at('mousedown', aim, { ...place, detail: count }), at('click', aim, { ...place, detail: count })];
+        is(prevented, [takes(isSecond), takes(isSecondClick), takes(isSecondClick)], 'what is taken');
+        if (target !== elsewhere) is(heard, [...takes(isSecond) ? [] : [['pointerdown', false]], ...takes(isSecondClick) ? [] : [['mousedown', false], ['click', isSecondClick]]], 'heard');
+        if (chance() < 0.3) buttons[chance.below(3)].hidden = true; // by what was pressed
+      },
+      keys() {
+        const target = chance.of(buttons.filter((each) => each.checkVisibility()).concat(elsewhere));
+        heard = [];
+        is(at('click', target, { clientX: 0, clientY: 0, detail: 0 }), false, 'a key is taken');
+        if (target !== elsewhere) is(heard, [['click', false]], 'heard of a key');
+      },
+      hides: () => { chance.of(buttons).hidden = chance() < 0.6; },
+    };
+    return { acts: { ...acts, pressesMore: acts.presses, pressesAgain: acts.presses, pressesThen: acts.presses }, checks() {}, waits: [0, 100, 200, 450, 600] };
+  },
+
+  // The line under the world, of one run after another.
+  async timeLine(chance) {
+    playsNavigator({});
+    const page = freshPage({}, HTML);
+    const { TimeLine } = await page.load('virtual/time_line.js');
+    const { Run } = await page.load('virtual/runs.js');
+    resizes = [];
+    const slider = page.byId('time_at'), canvas = page.byId('time_marks');
+    let drawn = [];
+    const pen = { fillStyle: '', fillRect: (...given) => drawn.push([pen.fillStyle, ...given]) };
+    canvas.getContext = () => pen;
+    Object.defineProperty(canvas, 'width', { set() {
+      drawn = [];
+      paintings += 1;
+    }, get: () => size[0] * ratio, configurable: true });
+    Object.defineProperty(canvas, 'height', { set() {}, get: () => size[1] * ratio, configurable: true });
+    let size = [0, 0], ratio = 1, looks = 0, wantedLooks = 0, paintings = 0;
+    const line = new TimeLine(() => { looks += 1; });
+    let run = null, at_ms = null, isDragged = false, isShown = false, isDrawn = false, count = 0, bumps = 0, now_ms = 0;
+    const EMPTY = new Run({ of: 'virtual', text: '', robot: '', program: '' }, { places: [], shows: [], variables: [] }, null);
+    const seen = () => run ?? EMPTY;
+    const momentOf = () => seen().moments.momentAt(at_ms ?? Infinity);
+    const adds = (isQuiet) => {
+      now_ms += 1 + chance.below(300);
+      bumps += !isQuiet && chance() < 0.2 ? 1 : 0;
+      const events = isQuiet ? [] : [[now_ms, chance.of([`SHOW ${chance.below(9)}`, 'BEEP 440 100', 'MOTORS 1 2']), chance.below(3)]];
+      run.add({ now_ms, began_ms: run.beganAt, pose: [0, 0, 0], bumps, at: chance.below(3), places: [chance.below(3)], is_running: true, variables: [], events, rows: chance() < 0.2 ? [[now_ms, 'KEYS 1 0 0']] : [] });
+    };
+    const looksAt = (ms) => {
+      if (!seen().moments.length) return;
+      at_ms = ms;
+      wantedLooks += 1;
+    };
+    const acts = {
+      begins() {
+        if (chance() < 0.2) run = null;
+        else {
+          run = new Run({ of: 'virtual', text: '', robot: 'tinibot', program: '' }, { places: [], shows: [], variables: [] }, null);
+          Object.assign(run, { number: count += 1, beganAt: chance.of([0, null, 40]) });
+          bumps = 0;
+          now_ms = chance.below(500);
+          if (chance() < 0.3) { // as long as another one, with other marks
+            now_ms = 100;
+            for (const ms of [100, 1000, 2000]) run.add({ now_ms: ms, began_ms: 0, pose: [0, 0, 0], bumps, at: 0, places: [ms], is_running: true, variables: [], events: [[ms < 200 ? chance.below(90) + 10 : ms - chance.below(900), 'BEEP 440 100', 0]], rows: [] });
+            now_ms = 2000;
+          } else for (let k = chance.of([0, 1, 2, 30, 30, 30]); k > 0; k -= 1) adds(chance() < 0.5);
+        }
+        at_ms = null;
+        if (run) line.begin(run);
+        else line.begin();
+        isShown = true;
+        isDrawn = seen().moments.length > 1 && size[0] > 0;
+      },
+      goesOn() {
+        if (!run) return;
+        for (let k = 1 + chance.below(4); k > 0; k -= 1) adds(chance() < 0.5);
+        isShown = isDrawn = false;
+      },
+      shows() {
+        line.show();
+        isShown = true;
+        isDrawn = seen().moments.length > 1 && size[0] > 0;
+        const before = paintings;
+        line.show();
+        is(paintings, before, 'what is drawn anew and is the same');
+      },
+      leaves() {
+        at_ms = null;
+        line.leave();
+        isShown = false;
+      },
+      moves() {
+        const ms = chance.below(4000);
+        changes(slider, { value: String(ms) }, 'input');
+        looksAt(ms);
+        isShown = false;
+      },
+      keys() {
+        const key = chance.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home']);
+        const more = { [chance.of(['shiftKey', 'shiftKey', 'altKey', 'none'])]: true };
+        const event = Object.assign(new Event('keydown', { cancelable: true }), { key, ...more });
+        const { moments } = seen();
+        const isOurs = key !== 'Home' && !more.altKey;
+        const moment = isOurs && moments.neighbourOf(momentOf(), ['ArrowLeft', 'ArrowDown'].includes(key) ? -1 : 1, more.shiftKey ? moments.parts : moments.events);
+        slider.dispatchEvent(event);
+        is(event.defaultPrevented, isOurs, 'the browser moves it, too');
+        if (isOurs) looksAt(moments.at(moment).now_ms);
+        isShown = false;
+      },
+      presses() {
+        slider.dispatchEvent(new Event('pointerdown'));
+        isDragged = true;
+      },
+      releases() {
+        window.dispatchEvent(new Event(chance.of(['pointerup', 'pointercancel'])));
+        if (isDragged && at_ms !== null) wantedLooks += 1;
+        isDragged = false;
+      },
+      resizes() {
+        size = chance.of([[0, 0], [100, 20], [300, 20]]);
+        [canvas.clientWidth, canvas.clientHeight] = size;
+        for (const does of resizes) does();
+        isDrawn = size[0] > 0;
+      },
+      darkens() {
+        window.devicePixelRatio = ratio = chance.of([1, 2]);
+        document.documentElement.toggleAttribute('data-dark', chance() < 0.5);
+        isDrawn = false;
+      },
+    };
+    const checks = () => {
+      is(looks, wantedLooks, 'times that somebody looked back');
+      is([line.isDragged, line.run === seen() || !run], [isDragged, true], 'what is held or seen');
+      const { moments, marks } = seen();
+      is(line.seenState, at_ms === null ? null : moments.at(momentOf()), 'the state');
+      const { shown = [] } = moments.at(momentOf());
+      is([...new Map(line.shown.map((event) => [event[2], event])).values()].map(([ms]) => ms).sort(), shown.map(([ms]) => ms).sort(), 'what is shown');
+      if (line.shown.length) is(line.shown.at(-1)[0], Math.max(...shown.map(([ms]) => ms)), 'the newest of what is shown');
+      if (isShown) {
+        const last = moments.at(momentOf());
+        is([slider.disabled, slider.min, slider.max, slider.value], moments.length < 2 ? [true, '0', '0', '0'] : [false, String(moments.first_ms), String(moments.last_ms), String(last.now_ms)], 'the line');
+        if (moments.length > 1) is(slider.getAttribute('aria-valuetext'), `${((last.now_ms - (last.began_ms ?? last.now_ms)) / 1000).toFixed(1)} s`, 'what is said of it');
+      }
+      if (!isDrawn) return;
+      const pixels = (size[0] * ratio - 2 * ratio) / Math.max(1, moments.last_ms - moments.first_ms);
+      const places = new Set(marks.filter((mark) => mark.at_ms >= moments.first_ms).map((mark) => Math.round((mark.at_ms - moments.first_ms) * pixels)));
+      is([...new Set(drawn.map(([, x]) => x))].sort((a, b) => a - b), [...places].sort((a, b) => a - b), 'what is drawn');
+      is(drawn.every(([, , y, , height]) => y + height === size[1] * ratio), true, 'where it is drawn');
+    };
+    return { acts: { ...acts, movesMore: acts.moves, grows: acts.goesOn, showsAgain: acts.shows }, checks };
+  },
+
+  // The window of the last runs.
+  async runs(chance) {
+    playsNavigator({});
+    const page = freshPage({}, HTML);
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { text } = await page.load('page/texts.js');
+    const { bugSentence } = await page.load('page/faults.js');
+    const { Run, Runs } = await page.load('virtual/runs.js');
+    const { RunsWindow } = await page.load('virtual/runs_window.js');
+    const runs = new Runs(), dialog = page.byId('runs'), list = page.byId('runs_list'), said = page.byId('runs_said');
+    let answers = () => ({}), told = [], asked = [], saved = [];
+    const python = {
+      async ask(request, data) {
+        asked.push([request.do, request.end_ms, request.text, data && new TextDecoder().decode(data)]);
+        await later(5);
+        return answers(request);
+      },
+    };
+    URL.createObjectURL = (blob) => blob.text().then((content) => saved.push(content)) && 'blob:';
+    URL.revokeObjectURL = () => {};
+    const runsWindow = new RunsWindow({ python, runs, show: (run) => told.push(['show', run.number]), play: (opened, known) => told.push(['play', opened.file, opened.text, known?.number]) });
+    let notice = '', note = '', kept = [];
+    const REFUSALS = Object.keys(TEXTS).filter((key) => key.startsWith('record_'));
+    const refuses = (name, why) => {
+      if (dialog.open) notice = why;
+      else note = text('not_opened', { name, why });
+    };
+    const titleOf = (run) => text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
+    const fileOf = (content, isReadable = true) => ({ name: chance.of(['a.tsr', 'B.TSR']), slice: () => ({ arrayBuffer: async () => {
+      if (!isReadable) throw new Error('gone');
+      return new TextEncoder().encode(content).buffer;
+    } }) });
+    const opens = async (gives) => {
+      const content = `file ${chance.below(100)}`, isReadable = chance() < 0.8, why = chance() < 0.4 ? chance.of(REFUSALS).slice('record_'.length) : '';
+      answers = () => (why ? { what: why, line: 7 } : { text: 'T', rows: [] });
+      const wasOpen = dialog.open;
+      const file = fileOf(content, isReadable);
+      const given = gives(file);
+      if (given === false) return;
+      await passes(50);
+      if (!isReadable) refuses(file.name, text('unreadable'));
+      else if (why) refuses(file.name, text(`record_${why}`, { line: 7 }));
+      else {
+        is(told.splice(0), [['play', content, 'T', null]], 'what is played');
+        is(dialog.open, false, 'the window stays');
+        if (wasOpen) isOpen = false;
+      }
+    };
+    let isOpen = false;
+    const acts = {
+      ran() {
+        const run = new Run({ of: chance.of(['virtual', 'real']), text: chance.of(['F(1);\n B(1)', 'x'.repeat(90)]), robot: 'tinibot', program: 'p' }, { places: [], shows: [], variables: [] }, null);
+        runs.addRun(run);
+        for (let k = chance.below(4); k > 0; k -= 1) run.addRow([1000 * k, 'BUTTON 1']);
+        run.isJudged = chance() < 0.2;
+        if (chance() < 0.2) run.file = `opened ${run.number}`;
+        run.end_ms = chance.of([null, 3000]);
+        run.clock = chance.of([null, () => 4000]);
+      },
+      opens() {
+        press(page.byId('runs_open'));
+        isOpen = true;
+        kept = runs.newestFirst;
+        notice = kept.length ? '' : text('runs_none');
+      },
+      closes() {
+        press(page.byId('runs_close'));
+        isOpen = false;
+      },
+      sees() {
+        if (!isOpen || !kept.length) return;
+        const index = chance.below(kept.length);
+        press(list.children[index].querySelectorAll('button')[0]);
+        is(told.splice(0), [['show', kept[index].number]], 'the run that is seen');
+        isOpen = false;
+      },
+      async saves() {
+        if (!isOpen || !kept.length) return;
+        const index = chance.below(kept.length), run = kept[index];
+        const button = list.children[index].querySelectorAll('button')[1];
+        if (button.disabled) return;
+        const isBroken = chance() < 0.3, why = new Error('broken');
+        answers = () => {
+          if (isBroken) throw why;
+          return { file: `file of ${run.number}` };
+        };
+        press(button);
+        await passes(50);
+        if (run.file) is([asked, saved], [[], [run.file]], 'what is saved of one that was opened');
+        else {
+          is(asked, [['write_run', run.end_ms ?? run.clock?.() ?? run.rows.at(-1)?.[0] ?? 0, run.origin.text, undefined]], 'what is asked for');
+          is(saved, isBroken ? [] : [`file of ${run.number}`], 'what is saved');
+          if (isBroken) notice = bugSentence(why);
+        }
+      },
+      chooses: () => opens((file) => changes(page.byId('run_file'), { files: [file] })),
+      async drops() {
+        await opens((file) => {
+          if (chance() < 0.2) file.name = 'picture.png';
+          const event = Object.assign(new Event('drop', { cancelable: true }), { dataTransfer: { files: [file], types: ['Files'] } });
+          dispatchEvent(event);
+          is(event.defaultPrevented, true, 'the page is left for the file');
+          if (file.name !== 'picture.png') return true;
+          note = text('not_opened', { name: file.name, why: text('run_not') });
+          return false;
+        });
+      },
+      dropsNothing() {
+        const event = Object.assign(new Event('drop', { cancelable: true }), { dataTransfer: { files: [], types: ['text'] } });
+        dispatchEvent(event);
+        is(event.defaultPrevented, false, 'a dropped text is taken');
+      },
+      async plays() {
+        const known = chance.of([null, ...runs.newestFirst]);
+        answers = () => ({ text: 'O', rows: [] });
+        runsWindow.openData(new TextEncoder().encode('data'), 'n', known);
+        await passes(50);
+        is(told.splice(0), [['play', 'data', 'O', known?.number]], 'what is played');
+        isOpen = false;
+      },
+    };
+    const checks = () => {
+      is(told, [], 'what nobody asked for');
+      is(dialog.open, isOpen, 'whether the window is open');
+      if (isOpen) {
+        is(said.textContent, notice, 'what is said');
+        is(list.children.map((row) => [saidOf(row.querySelectorAll('button')[0]), row.querySelectorAll('button')[1].disabled]), kept.map((run) => [titleOf(run), run.isJudged || !(run.file || run.rows.length)]), 'the list');
+      }
+      is(pageState.note.value, note, 'the note');
+      pageState.note.set('');
+      note = '';
+      [asked, saved] = [[], []];
+    };
+    return { acts: { ...acts, savesMore: acts.saves, savesAgain: acts.saves, opensAgain: acts.opens, ranMore: acts.ran }, checks };
+  },
+
+  // Which world it is: shipped, own, one of before, or a lesson's; and those that are kept come back.
+  async world(chance) {
+    playsNavigator({});
+    const given = () => freshPage({ makePictureOption: (label, value) => Object.assign(document.createElement('option'), { textContent: label, value }), makeWorldPicture() {}, makeBlocksPicture() {}, makeDialPicture() {}, makeSymbolPicture() {}, replaceOptions() {} });
+    let page = given();
+    let changed = 0;
+    const python = {
+      ready: Promise.resolve(),
+      async ask({ do: what, form, name }, data) {
+        await later(chance.below(30));
+        if (what === 'write_world') return { text: JSON.stringify(form) };
+        const text = new TextDecoder().decode(data);
+        try {
+          return { world: { ...JSON.parse(text), name } };
+        } catch {
+          return {};
+        }
+      },
+    };
+    const OWN = ':own';
+    let work = { world: chance.of(['free', OWN, 'nobody knows it']) }, choice, pageState, words_, text, progress;
+    const opens = async (isWhole = true) => {
+      await learns(page);
+      ({ pageState } = await page.load('page/page_state.js'));
+      words_ = await page.load('page/words.js');
+      ({ text } = await page.load('page/texts.js'));
+      progress = await page.load('lesson/progress.js');
+      const { WorldChoice } = await page.load('world/choice.js');
+      choice = new WorldChoice(python, work, () => { changed += 1; });
+      is(await choice.restoreOwn(), isWhole, 'whether all can be read');
+    };
+    const opening = opens();
+    await passes(500);
+    await opening;
+    let newest = null, before = [], brought = null, isKept = true, isDamaged = false, count = 0;
+    const select = () => page.byId('world');
+    const makes = () => ({ ...structuredClone(words_.WORLDS[0]), name: chance.of(['', 'mine']), labels: {}, ambient_percent: count += 1 });
+    const isOwn = () => !brought && newest !== null && work.world === OWN;
+    const chooses = (name) => {
+      work.world = name;
+      brought = null;
+    };
+    const acts = {
+      chooses() {
+        const options = select().children.filter((each) => each.localName === 'option' || each.value);
+        const { value } = chance.of(options);
+        changed = 0;
+        changes(select(), { value });
+        is(changed, 1, 'who shows it hears of it');
+        if (value === ':brought') return;
+        const index = /^:before(\d)$/.exec(value)?.[1];
+        if (index === undefined) return chooses(value);
+        const [world] = before.splice(Number(index), 1);
+        if (newest) before = [newest, ...before].slice(0, 5);
+        newest = world;
+        isKept = true;
+        isDamaged = false;
+        chooses(OWN);
+      },
+      brings() {
+        const request = chance.of([{ lesson: 'one' }, { form: 1 }, 'free', null]);
+        brought = { request, shapes: makes(), label: () => `of ${pageState.language.value}`, goals: [count] };
+        choice.bringWorld(brought);
+      },
+      puts() {
+        const world = makes(), isOther = chance() < 0.5;
+        if ((isOther || !isOwn()) && newest) before = [newest, ...before].slice(0, 5);
+        newest = world;
+        choice.putOwn(world, isOther);
+        isKept = false;
+        chooses(OWN);
+      },
+      keeps() {
+        choice.keepOwn();
+        isKept = true;
+        if (newest) isDamaged = false; // else what is damaged stays
+      },
+      async writes() {
+        if (!newest) return;
+        const written = choice.write(newest);
+        await passes(50);
+        is((await written).text, JSON.stringify(newest), 'what is written');
+      },
+      async reloads() {
+        if (!isKept) return;
+        await passes(200);
+        const stores = ['localStorage', 'sessionStorage'].map((name) => [name, [...window[name]]]);
+        page = given();
+        for (const [name, all] of stores) for (const [key, value] of all) window[name].setItem(key, value);
+        work = { ...work };
+        brought = null;
+        if (newest && chance() < 0.2) {
+          isDamaged = true;
+          for (const name of ['localStorage', 'sessionStorage']) window[name].setItem('tiniscript.world', 'damaged');
+          newest = null;
+        }
+        const again = opens(!isDamaged);
+        await passes(500);
+        await again;
+      },
+      speaks: () => speaks(page, chance.of(LANGUAGES)),
+      stars() {
+        progress.storeStars(progress.starsKeyOfWorld(chance.of(words_.WORLDS).name), 1 + chance.below(3));
+        choice.showStars();
+      },
+    };
+    const checks = () => {
+      const shipped = words_.WORLDS.find(({ name }) => name === work.world) ?? words_.WORLDS[0];
+      const shown = isOwn() ? newest : brought?.shapes ?? shipped;
+      is(choice.shownWorld, shown, 'the world');
+      is([choice.isOwn, choice.isOfLesson, choice.goals], [isOwn(), Boolean(brought?.request?.lesson), brought?.goals ?? []], 'whose it is');
+      is(choice.request, isOwn() ? { form: newest } : brought?.request ?? shown.name, 'what the worker is asked for');
+      const label = ({ labels }) => (labels[pageState.language.value] ?? labels.en ?? '').trim() || text('world_own');
+      const stars = progress.loadStars();
+      is(select().children.map(({ value, textContent }) => [value, textContent]).filter(([value]) => value && value !== ':brought'), [
+        ...words_.WORLDS.map((world) => [world.name, `${world.labels[pageState.language.value] ?? world.labels.en} ${'★'.repeat(stars.get(`world_${world.name}`) ?? 0)}`.trim()]),
+        ...newest ? [[OWN, label(newest)]] : [],
+        ...before.map((world, k) => [`:before${k}`, text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 })]),
+      ], 'the worlds');
+      is(select().children.length, words_.WORLDS.length + (newest ? 1 : 0) + before.length + (brought ? 1 : 0), 'how many there are');
+      is(select().value, brought ? ':brought' : isOwn() ? OWN : shipped.name, 'the one that is chosen');
+    };
+    return { acts, checks };
+  },
+};
+
+for (const [part, begins] of Object.entries(PARTS)) {
+  if (words[2] && words[2] !== part) continue;
+  const done = new Set();
+  for (let seed = first; seed < first + seeds; seed += 1) {
+    const chance = chanceOf(seed + 1), acted = [];
+    try {
+      const { acts, checks, waits = [0, 0, 20, 300] } = await begins(chance);
+      for (let k = 0; k < 60; k += 1) {
+        const act = chance.of(Object.keys(acts));
+        acted.push(act);
+        done.add(act);
+        await acts[act]();
+        await settles();
+        checks();
+        await passes(chance.of(waits));
+      }
+      if (unhandled.length) throw new Fails(`unhandled ${unhandled}`);
+    } catch (why) {
+      console.error(`Error: ${part}, seed ${seed}, after ${acted.slice(-10).join(', ')}:`, why);
+      process.exit(1);
+    }
+  }
+  console.log(JSON.stringify([part, ...done]));
+}
+process.exit(0);
