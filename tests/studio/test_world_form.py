@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
 
+from tests.support.node import in_node, page_data
 from tests.support.texts import LANGUAGES
 from tiniscript import compile
 from tiniscript.lessons import catalogue
@@ -17,6 +19,10 @@ from tiniscript.studio.world_form import form_of, limits, toml_of
 from tiniscript.virtual import worlds
 from tiniscript.virtual.world import World
 from tiniscript.virtual.worlds import read
+
+__all__ = ["page_data"]  # a fixture
+PARTS_SCRIPT = Path(__file__).with_name("world_parts_in_node.mjs")
+HISTORIES = 24
 
 
 def is_near(one: Any, other: Any) -> bool:
@@ -164,3 +170,18 @@ def test_the_limits_are_those_of_the_reader() -> None:
     form = open_world(GOOD_WORLD)["world"]
     form["walls"] = [{"points": [[1, 1]] * points}] * parts
     assert len(read(toml_of(form), "").walls) == parts
+
+
+def count_parts(form: dict[str, Any]) -> dict[str, int]:
+    return {kind: len(parts) for kind, parts in form.items() if isinstance(parts, list)}
+
+
+def test_what_somebody_draws_moves_and_turns_is_the_world_that_was_asked_for(
+    page_data: Path,
+) -> None:
+    """Each change changes its part alone; whatever comes of many is a world, with every part."""
+    lines = in_node(PARTS_SCRIPT, str(page_data), "0", str(HISTORIES))
+    assert len(lines) == HISTORIES
+    for line in lines:
+        form = json.loads(line)
+        assert count_parts(form_of(read(toml_of(form), form["name"]))) == count_parts(form)
