@@ -551,6 +551,41 @@ const PARTS = {
     return { acts: { ...acts, savesMore: acts.saves, savesAgain: acts.saves, opensAgain: acts.opens, ranMore: acts.ran }, checks };
   },
 
+  // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
+  async words(chance) {
+    playsNavigator({});
+    const page = freshPage();
+    await learns(page);
+    const { pageState } = await page.load('page/page_state.js');
+    const { ROBOTS, KINDS, devicesOf, deviceName, blockLabel, wordsOnBlock, tipOf, wordsOf, isRobot } = await page.load('page/words.js');
+    let language = 'en', isSourceText = true, areShown = false;
+    const acts = {
+      shows: () => pageState.areWordsShown.set(areShown = chance() < 0.5),
+      async speaks() {
+        isSourceText = false;
+        await speaks(page, language = chance.of(LANGUAGES));
+      },
+    };
+    const textOf = (key) => (key in TEXTS ? TEXTS[key] + (isSourceText ? '' : ` ${language}`) : '');
+    const checks = () => {
+      const robot = chance.of(ROBOTS), role = chance.of(['sensor', 'actuator']);
+      is(devicesOf(robot.name, role).map(({ text }) => text), robot.devices.filter((device) => device.role === role).map(({ text }) => text), `what ${robot.name} has of ${role}`);
+      is([devicesOf('nobody', role), wordsOf('nobody').size, isRobot('nobody'), isRobot(robot.name)], [[], 0, false, true], 'what nobody has');
+      is(robot.devices.every(({ text }) => wordsOf(robot.name).get(text)?.text === text), true, 'the words of its devices');
+      for (const device of robot.devices) {
+        const label = device.labels[language] ?? device.labels.en;
+        is(areShown ? deviceName(device).startsWith(device.text) : deviceName(device), areShown || label, 'the name of a device');
+        if (areShown && !label.toUpperCase().startsWith(device.text)) is(deviceName(device), `${device.text} ${label}`, 'the name of a device with its word');
+      }
+      const kind = chance.of(Object.keys(KINDS).filter((name) => `block/${name}` in TEXTS)), sentence = textOf(`block/${kind}`);
+      const [, word] = /\{(\S+)\}/.exec(sentence) ?? [];
+      if (word) is(areShown ? blockLabel(kind).includes(word) : blockLabel(kind), areShown || sentence.replace(`{${word}} `, ''), 'the label of a block');
+      is(wordsOnBlock(kind), [...sentence.matchAll(/\{(\S+?)\}/g)].map(([, each]) => each), 'its words');
+      is(tipOf(kind), textOf(`tip/${kind}`), 'what is said of it');
+    };
+    return { acts, checks };
+  },
+
   // Which world it is: shipped, own, one of before, or a lesson's; and those that are kept come back.
   async world(chance) {
     playsNavigator({});

@@ -72,7 +72,12 @@ def test_any_nesting_is_told_from_the_outside() -> None:
         for depth in range(rng.randint(1, 5)):
             head, end = rng.choice((("IF", "ENDIF"), ("WHILE", "END_WHILE")))
             choice_before = rng.choice(
-                ("", "IF(DISTANCE > 1);S;ENDIF\n", "WHILE(DISTANCE > 2);S;END_WHILE\n")
+                (
+                    "",
+                    "IF(DISTANCE > 1);S;ENDIF\n",
+                    "WHILE(DISTANCE > 2);S;END_WHILE\n",
+                    "S // IF(DISTANCE > 3) (and more\n",
+                )
             )
             is_else = head == "IF" and rng.random() < 0.5
             body = f"S\nELSE\n{text}" if is_else else text
@@ -120,5 +125,6 @@ def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
 
 def test_the_task_is_told_that_an_instruction_is_in() -> None:
     text = "W(1)\nTASK\nF(1, 20)\nEND_TASK\nWHEN(DISTANCE < 4)\nS\nEND_WHEN"
-    rows = explanations((text, "W(1)"), (text, "F(1, 20)"), (text, "S"))
-    assert [row["tasks"] for row in rows] == [[], [2], [5]]
+    rows = explanations((text, "W(1)"), (text, "F(1, 20)"), (text, "S"), (text, "WHEN"))
+    assert [row["tasks"] for row in rows] == [[], [2], [5], [5]]
+    assert [row["bodies"] for row in rows] == [[], [2], [5], []], "a WHEN that waits has not begun"

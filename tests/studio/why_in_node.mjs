@@ -4,6 +4,6 @@ const { blocksOf, conditionsAt } = await import(`${process.argv[2]}/virtual/why.
 
 for (const { text, places, at, values } of JSON.parse(process.argv[3])) {
   const found = conditionsAt(text, places, at, (name) => values[name]);
-  const tasks = blocksOf(text, places, /^(?:TASK|WHEN)\b/i).filter(({ has }) => has(at)).map(({ line }) => line);
-  console.log(JSON.stringify({ told: found.map(({ line, condition, values: as, is }) => [line, condition, as, is]), tasks }));
+  const [tasks, bodies] = [false, true].map((isBody) => blocksOf(text, places, /^(?:TASK|WHEN)\b/i).filter(({ has }) => has(at, isBody)).map(({ line }) => line));
+  console.log(JSON.stringify({ told: found.map(({ line, condition, values: as, is }) => [line, condition, as, is]), tasks, bodies }));
 }
