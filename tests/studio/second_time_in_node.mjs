@@ -3888,7 +3888,8 @@ const PARTS = {
           this.ranged = textOf(this.form);
           if (group) this.shown = textOf(formOf(editor.text));
         }
-        showFault() {} setLevel() {} setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
+        showFault(range, sentence) { this.has.fault = JSON.stringify([range, sentence]); }
+        setLevel() {} setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
       },
     });
     let isTyped = false; // since blocks were shown
@@ -4042,7 +4043,10 @@ const PARTS = {
         pageState.breakpoints.set([{ line: (count += 1), column: 1 }]);
         blocks.page.toggleBreakpoint({});
       },
-      runs: () => pageState.virtualRun.set({ ranges: [{ line: (count += 1) }], isHeld: false }),
+      runs() {
+        pageState.virtualRun.set({ ranges: [{ line: (count += 1) }], isHeld: false });
+        pageState.fault.set(count % 2 ? { range: { line: count }, sentence: `f${count}` } : { range: null, sentence: '' });
+      },
       mates() {
         places = [{ line: (count += 1) }];
         views.showMates(places);
@@ -4078,6 +4082,7 @@ const PARTS = {
       if (hasFailed) { // who goes on has it right again
         if (textOf(blocks.form) !== text && !page.byId('blocks_note').textContent) throw new Error('nobody says that blocks and text differ');
         hasFailed = false;
+        asked_ms = now();
         acts.undoes();
         await rests();
         return;
@@ -4089,6 +4094,8 @@ const PARTS = {
       if (!group && blocks.ranged !== text) throw new Error(`their places are those of ${blocks.ranged}`);
       if (blocks.has.mates !== JSON.stringify(places)) throw new Error('others of the group are not at blocks');
       if (undone !== null && blocks.stands !== undone) throw new Error(`blocks stand at ${blocks.stands}, and an undo has put them at ${undone}`);
+      const { range, sentence } = pageState.fault.value;
+      if (blocks.has.fault !== JSON.stringify([range, sentence])) throw new Error(`${blocks.has.fault} is the fault at blocks`);
       if (blocks.has.running !== JSON.stringify(pageState.virtualRun.value.ranges)) throw new Error('what runs is not marked at blocks');
       if (group) for (const line of mine) if (!linesOf(editor.text).includes(line)) throw new Error(`${line} is lost`);
     };
@@ -4105,6 +4112,7 @@ const PARTS = {
         [blocks.stands, blocks.next, undone] = ['L0', null, null];
         editor.put('first\nsecond');
         pageState.breakpoints.set([]);
+        pageState.fault.set({ range: null, sentence: '' });
         pageState.virtualRun.set({ ranges: [], isHeld: false });
         await rests();
         past = [];

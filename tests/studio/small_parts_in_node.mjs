@@ -586,6 +586,146 @@ const PARTS = {
     return { acts, checks };
   },
 
+  // The fields of blocks: numbers that fit their place, tones, names, units; what is typed, chosen and taken back.
+  async fields(chance) {
+    playsNavigator({});
+    const { blocklyInNode } = await import('./blockly_in_node.mjs');
+    const { blockly } = blocklyInNode();
+    const fired = [], drop = { content: [], isClosed: () => {} };
+    blockly.Events = { ...blockly.Events, fire: (event) => fired.push(event), BlockChange: class { constructor(...given) { Object.assign(this, { given: given.slice(1) }); } } };
+    blockly.DropDownDiv = { clearContent: () => { drop.content = []; }, getContentDiv: () => ({ append: (part) => drop.content.push(part) }), setColour() {}, showPositionedByField: (_, closes) => { drop.isClosed = closes; }, isVisible: () => false };
+    const shared = Object.getPrototypeOf(blockly.FieldTextInput.prototype);
+    let takesBack = () => {}, quiet = null;
+    shared.onHtmlInputKeyDown_ = function key() { takesBack(this); };
+    shared.showEditor_ = (_, isQuiet) => { quiet = isQuiet; };
+    blockly.Field.prototype.getSize = () => null; // draws
+    shared.widgetCreate_ = () => ({ inputMode: '' });
+    const page = freshPage({ blockly });
+    await learns(page);
+    const { text } = await page.load('page/texts.js');
+    const { blockLabel } = await page.load('page/words.js');
+    const { rangeOf } = await page.load('blocks/places.js');
+    const { keyOfHertz, hertzOfKey, keyName, nextKeyFrom } = await page.load('blocks/tones.js');
+    const { NumberField, NameField, LineField, UnitField, ArrowField, setTonePlayer, WAY_UNIT } = await page.load('blocks/fields.js');
+    let played = [], isCoarse = false;
+    setTonePlayer((hertz) => played.push(hertz));
+    globalThis.matchMedia = () => ({ matches: isCoarse });
+    const at = (type, index, word) => { // a number in a place of another block
+      const block = { id: 'b', workspace: { id: 'w' } }, parent = { type, getFieldValue: () => word, getField: () => null };
+      parent.inputList = [0, 1].map((k) => ({ name: `V${k}`, connection: { targetBlock: () => (k === index ? block : null) } }));
+      parent.getInput = (name) => parent.inputList.find((each) => each.name === name);
+      block.getParent = () => parent;
+      return block;
+    };
+    const in_ = (field, block) => Object.assign(field, { getSourceBlock: () => block, name: 'N', forceRerender() {} });
+    const number = in_(new NumberField(1), at('move', 0, 'F')), pitch = in_(new NumberField(440), at('beep', 1, 'BEEP'));
+    for (const each of [number, pitch]) each.setEditorValue_ = (value) => each.setValue(value);
+    const fields = [number, pitch, in_(new NameField('A'), at('move', 0, 'F')), in_(new LineField('x'), at('move', 0, 'F'))];
+    const units = { F: 'CM', R: 'DEGREES' };
+    let word = 'F';
+    const unit = in_(new UnitField(units), { getFieldValue: () => word });
+    const arrow = in_(new ArrowField(), { getFieldValue: () => word });
+    arrow.arrowPath = document.createElement('path');
+    const paths = new Map();
+    let hertz = 440;
+    const toneIs = (value) => {
+      is([pitch.getValue(), played, fired.splice(0).length], [value, [value], 0], 'the tone that is chosen');
+      if (pitch.piano) is(pitch.piano.element.querySelectorAll('[aria-pressed=true]').map(({ title }) => title), [`${keyName(keyOfHertz(value), text('notes').split(' '))}, ${value} Hz`], 'the key that is pressed');
+      played = [];
+      hertz = value;
+    };
+    const acts = {
+      types() {
+        const value = chance.of([chance() * 10 ** chance.below(12) * chance.of([1, -1]), 0, 1e-7, 3.5]), place = chance.of([['move', 'F'], ['compare', '']]), { low, high } = rangeOf(...place, 0);
+        in_(number, at(place[0], 0, place[1]));
+        number.isBeingEdited_ = chance() < 0.5;
+        number.setValue(value);
+        const rounded = Math.round(value * 1000) / 1000;
+        const wanted = number.isBeingEdited_ ? Math.min(high, Math.max(low, rounded)) : rounded;
+        is(Math.abs(number.getValue() - wanted) <= Math.abs(wanted) * 1e-9, true, `${value} is ${number.getValue()}, and not ${wanted}`);
+        number.isBeingEdited_ = false;
+        is([/^-?\d+(\.\d*[1-9])?$/.test(number.textValue()), Math.abs(Number(number.textValue()) - number.getValue()) < 0.001], [true, true], `its text ${number.textValue()}`);
+        is(number.widgetCreate_().inputMode, low < 0 ? '' : 'decimal', 'the keys of a phone');
+      },
+      takesBack() {
+        const field = chance.of(fields), before = field.getValue(), changesIt = chance() < 0.6;
+        takesBack = (each) => changesIt && each.setValue(field instanceof NumberField ? before + 1 : `${before}B`);
+        field.onHtmlInputKeyDown_({ key: 'Escape' });
+        is(fired.splice(0).map(({ given }) => given), field.getValue() === before ? [] : [['field', 'N', before, field.getValue()]], 'what others hear of it');
+        if (field === pitch) hertz = field.getValue();
+      },
+      opens() {
+        isCoarse = chance() < 0.5;
+        const isQuiet = chance() < 0.3;
+        pitch.showEditor_(null, isQuiet);
+        is([drop.content.length, drop.content[0] === pitch.piano.element, quiet], [1, true, isQuiet || isCoarse], 'the piano');
+        is(pitch.piano.element.querySelectorAll('[aria-pressed=true]').length, hertzOfKey(keyOfHertz(hertz)) === hertz ? 1 : 0, 'the key that is pressed');
+        number.showEditor_(null, isQuiet);
+        is([drop.content.length, quiet, number.piano ?? null], [1, isQuiet, null], 'a number has a piano');
+      },
+      closes() {
+        drop.isClosed();
+        is(pitch.piano ?? null, null, 'a piano that is closed');
+      },
+      playsKey() {
+        const keys = pitch.piano?.element.querySelectorAll('button').filter(({ title }) => title) ?? [];
+        if (!keys.length) return;
+        const key = chance.of(keys), wanted = Number(/(\d+) Hz/.exec(key.title)[1]);
+        press(key);
+        toneIs(wanted);
+      },
+      steps() {
+        const key = chance.of(['ArrowUp', 'ArrowDown']);
+        const event = Object.assign(new Event('keydown', { cancelable: true }), { key, stopPropagation: () => { event.isStopped = true; } });
+        pitch.onHtmlInputKeyDown_(event);
+        is([event.defaultPrevented, event.isStopped], [true, true], 'what else the key does');
+        toneIs(hertzOfKey(nextKeyFrom(hertz, key === 'ArrowUp' ? 1 : -1)));
+        takesBack = () => {};
+        const other = Object.assign(new Event('keydown', { cancelable: true }), { key });
+        number.onHtmlInputKeyDown_(other);
+        is([other.defaultPrevented, played], [false, []], 'a number is no tone');
+      },
+      looks() { // what is being typed is seen as it is, and what hangs elsewhere may be no tone any more
+        Object.assign(pitch, { isBeingEdited_: true, htmlInput_: { value: '12' } });
+        is(pitch.getText_(), '12', 'what is typed');
+        Object.assign(pitch, { isBeingEdited_: false, htmlInput_: null });
+        Object.assign(pitch, { isDirty_: false, textContent_: { nodeValue: chance() < 0.5 ? pitch.getDisplayText_() : 'before' } });
+        pitch.getSize();
+        is(pitch.isDirty_, pitch.textContent_.nodeValue === 'before', 'whether it is drawn anew');
+        pitch.textContent_ = null;
+      },
+      tunes() {
+        hertz = chance.of([440, 441, 100, 262, 30000]);
+        pitch.setValue(hertz);
+      },
+      names() {
+        const name = fields[2], before = name.getValue(), given = chance.of(['año', 'Straße 2', '  zählen x', '1a', '', '¿?', 'a\u0301', 'x-y z', 'Ñ_ñ']);
+        name.setValue(given);
+        const plain = [...given.normalize('NFC')].map((letter) => (/ñ/i.test(letter) ? 'NI' : letter.normalize('NFD')[0] ?? '')).join('').toUpperCase().trim();
+        const wanted = plain.replace(/[^A-Z0-9_]+/g, '_').replace(/^[^A-Z]+/, '');
+        is(name.getValue(), wanted || before, `the name ${given}`);
+      },
+      lines() {
+        const given = chance.of(['a\nb', 'a\r\nb', 'a\0b', 'plain']);
+        fields[3].setValue(given);
+        is(fields[3].getValue(), given === 'plain' ? given : 'a b', 'a line');
+      },
+      words: () => { word = chance.of(['F', 'R', 'S']); },
+      measures: () => unit.setValue(chance.of(['seconds', WAY_UNIT])),
+    };
+    const checks = () => {
+      const wanted = unit.getValue() === WAY_UNIT ? units[word] ?? '' : '';
+      is([unit.textValue(), unit.getText_()], [wanted, blockLabel(wanted || 'seconds')], 'the unit');
+      arrow.render_();
+      const path = arrow.arrowPath.getAttribute('d');
+      if (!paths.has(word)) paths.set(word, path);
+      is([path, new Set(paths.values()).size], [paths.get(word), paths.size], 'the arrow');
+      is(pitch.getText_() ?? String(pitch.getValue()), hertzOfKey(keyOfHertz(hertz)) === hertz ? `${keyName(keyOfHertz(hertz), text('notes').split(' '))} ${hertz}` : String(hertz), 'what is seen of a tone');
+      is([number.isPitch, number.getText_(), fired, played], [false, null, [], []], 'what nobody asked for');
+    };
+    return { acts, checks, waits: [0] };
+  },
+
   // Which world it is: shipped, own, one of before, or a lesson's; and those that are kept come back.
   async world(chance) {
     playsNavigator({});

@@ -23,6 +23,7 @@ NEEDED_ACTS = {
     "twice": {"presses", "keys", "hides"},
     "timeLine": {"begins", "moves", "keys", "presses", "releases", "resizes"},
     "runs": {"opens", "sees", "saves", "chooses", "drops"},
+    "fields": {"types", "takesBack", "opens", "playsKey", "steps", "names"},
     "words": {"shows", "speaks"},
     "world": {"chooses", "brings", "puts", "keeps", "reloads"},
 }
