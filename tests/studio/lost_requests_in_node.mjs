@@ -67,7 +67,8 @@ class Server {
 
   asked(request, limit_ms) {
     this.said.push(...(request.asked ?? []).filter((each) => each.do === 'keys').map(({ keys }) => keys));
-    return new Promise((resolve, reject) => {
+    if (request.do === 'beat') this.counts();
+    const answered = new Promise((resolve, reject) => {
       setLater(() => reject(new Error('timeout')), limit_ms);
       const arrives = () => {
         const answer = this.answer(request);
@@ -78,6 +79,15 @@ class Server {
       setLater(arrives, this.late_ms());
       if (this.random() < this.again) setLater(() => this.answer(request), this.late_ms());
     });
+    if (request.do === 'beat') answered.then(() => { this.isUnderWay = false; }, () => Object.assign(this, { isUnderWay: false, lost_at_ms: now_ms }));
+    return answered;
+  }
+
+  /** A beat: one at a time, and no more than a class takes; after one that is lost it waits, unless there is something new. */
+  counts() {
+    const waits = this.lost_at_ms > this.wanted_at_ms ? 100 : 0;
+    if (this.isUnderWay || now_ms - this.beat_at_ms < 30 || now_ms - this.lost_at_ms < waits) this.tooSoon += 1;
+    Object.assign(this, { isUnderWay: true, beat_at_ms: now_ms });
   }
 
   answer(request) {
@@ -117,6 +127,7 @@ async function story(random, bad, isWild = false, dies = false) {
   const heard = [];
   let over = 0;
   server.takes_ms = () => (random() < 0.5 ? 1 : Math.floor(random() * 800));
+  Object.assign(server, { tooSoon: 0, isUnderWay: false, beat_at_ms: -1e9, lost_at_ms: -1e9, wanted_at_ms: -1e9 });
   let met = 0;
   let wasMet = false;
   let lost = 0;
@@ -137,6 +148,7 @@ async function story(random, bad, isWild = false, dies = false) {
   const words = []; // how many times each has ended
   for (let k = 0; k < asks; k += 1) {
     ends.push(0);
+    server.wanted_at_ms = now_ms;
     const counts = () => (ends[k] += 1);
     robot.ask({ what: `${server.name} ${k}` }).then((answer) => {
       counts();
@@ -162,7 +174,7 @@ async function story(random, bad, isWild = false, dies = false) {
   const before = JSON.stringify([ends, heard, over]);
   await until(now_ms + 10_000);
   const isQuiet = JSON.stringify([ends, heard, over]) === before;
-  return { words, met, wasMet, isThere, isGone, over, ends, presses, heard, isQuiet, timers: timers.length };
+  return { words, met, wasMet, isThere, isGone, over, ends, presses, heard, isQuiet, timers: timers.length, tooSoon: server.tooSoon };
 }
 
 for (let seed = 0; seed < seeds; seed += 1) {

@@ -238,8 +238,8 @@ PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
 
 
 def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
-    """No event follows its end. If a few in a row are lost, each is still done once, and the page's
-    next connection is like that of a fresh page.
+    """No event follows its end, and no beat comes sooner than it may. If a few in a row are lost,
+    each is still done once, and the page's next connection is like that of a fresh page.
     """
     rows = [json.loads(line) for line in in_node(PAGE_SCRIPT, "400")]
     assert len(rows) == 400
@@ -250,6 +250,7 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
         for part in (row["first"], row["second"]):
             assert set(part["ends"]) == {1} and part["over"] == part["met"] == 1, row
             assert part["isGone"] and part["isQuiet"] and part["timers"] == 0, row
+            assert part["tooSoon"] == 0, row
             assert set(part["heard"]) <= {"STOPPED"}, row
             assert len(part["heard"]) <= part["presses"], row
         assert len(set(row["made"])) == len(row["made"]), row
