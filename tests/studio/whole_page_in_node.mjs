@@ -279,9 +279,14 @@ const ACTS = {
   speed: (chance) => isSeen(at('speed')) && chooses('speed', chance.of(['0.1', '1', '4'])),
   level: (chance) => isSeen(at('level')) && chooses('level', chance.of(['few', 'usual', 'all'])),
   lesson: (chance) => isSeen(at('lesson')) && chooses('lesson', chance.of(['1', '2'])),
-  points(chance) {
+  points(chance, { pageState }) {
     if (at('writing').dataset.view !== 'text' || !view.state.doc.length) return false;
+    const linesNow = () => pageState.breakpoints.value.map(({ line }) => line);
+    const line = view.state.doc.lineAt(view.state.selection.main.head), before = linesNow();
     view.state.facet(codemirror.keymap).flat().find(({ key }) => key === 'F9').run(view);
+    if (pageState.checkResult.value?.places.length) return; // those of the compiler are taken
+    const wanted = !/^\s*[^\s/]/.test(line.text) ? before : before.includes(line.number) ? before.filter((each) => each !== line.number) : [...before, line.number];
+    if (`${wanted.toSorted()}` !== `${linesNow().toSorted()}`) throw new Error(`in ${line.text}, which is not compiled, breakpoints are at ${linesNow()}, and not at ${wanted}`);
   },
   key(chance, { isAnew }) {
     const keys = [{ key: 'Escape' }, { key: 'f' }, ...isAnew ? [] : [{ key: 'z', ctrlKey: true }, { key: 'Z', ctrlKey: true, shiftKey: true }]];
