@@ -11,9 +11,11 @@ import os
 import resource
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
+from itertools import count
 from pathlib import Path
+from random import Random
 from types import FrameType, ModuleType
 from typing import Any, NamedTuple
 
@@ -24,6 +26,7 @@ from tiniscript.base import files
 from tiniscript.bytecode import image as images
 from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
+from tiniscript.flash import ready
 from tiniscript.library import source_map
 from tiniscript.library.source_map import SourceMap
 from tiniscript.link import keys, known_ports, met_robots
@@ -315,3 +318,116 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
             )
     kept_memory.add(THIRD_NUMBER)
     assert THIRD_NUMBER in kept_memory.all()
+
+
+# -- what there is no room for --------------------------------------------------------------------
+
+
+class LimitedMemory(NamedTuple):
+    """A memory with `room`: `entries` returns the numbers that it has, with the value of each.
+
+    Where `ignores_known`, the mention of what it has makes that no newer.
+    """
+
+    module: ModuleType
+    room: str
+    remember: Callable[[int, int], object]
+    entries: Callable[[], dict[int, int]]
+    ignores_known: bool = False
+
+
+FIRMWARE_ROW = ":01000000{value:02X}{check:02X}\n:00000001FF\n"
+
+
+def remember_firmware(number: int, value: int) -> None:
+    row = FIRMWARE_ROW.format(value=value, check=255 - value)
+    assert ready.store("robot", "uno", str(number), row.encode()).path.is_file()
+
+
+def found_firmware() -> dict[int, int]:
+    firmware_files = ready.files(ready.firmware_cache())
+    return {int(file.digest): int(file.path.read_text()[9:11]) for file in firmware_files}
+
+
+def maps_by_number() -> dict[int, int]:
+    maps = {number: source_map.recall(images.checksum(program(number))) for number in NUMBERS}
+    return {number: int(found.lines[0]) for number, found in maps.items() if found is not None}
+
+
+NUMBERS = range(1, 7)
+LIMITED_MEMORIES = {
+    "ports": LimitedMemory(
+        known_ports,
+        "MOST_PORTS",
+        lambda number, value: known_ports.remember(f"COM{number}", str(value)),
+        lambda: {
+            int(port[-1]): int(name)
+            for port, name in known_ports.remembered_ports().name_by_port.items()
+        },
+    ),
+    "robots that were met": LimitedMemory(
+        met_robots,
+        "MOST_PLACES",
+        lambda number, value: met_robots.remember_robot(met_robots_file(), str(number), value),
+        lambda: {
+            int(place): robot
+            for place, robot in met_robots.read_met_robots(met_robots_file()).id_by_place.items()
+        },
+        ignores_known=True,
+    ),
+    "robots that may answer": LimitedMemory(
+        met_robots,
+        "MOST_PLACES",
+        lambda number, _: met_robots.accept(met_robots_file(), number),
+        lambda: dict.fromkeys(met_robots.read_met_robots(met_robots_file()).accepted_ids, 0),
+    ),
+    "profiles": LimitedMemory(
+        given,
+        "MOST_PROFILES",
+        lambda number, _: given.remember(f"/{number}", number),
+        lambda: dict.fromkeys((number for number, _ in given._remembered_profiles()), 0),
+    ),
+    "maps": LimitedMemory(
+        source_map,
+        "MOST_MAPS",
+        lambda number, value: source_map.remember(
+            program(number), SourceMap("", (str(value),), ())
+        ),
+        maps_by_number,
+    ),
+    "firmware": LimitedMemory(ready, "MOST_FILES", remember_firmware, found_firmware),
+}
+HAS_NO_VALUES = ("robots that may answer", "profiles")
+
+
+def date_files(folder: Path, clock: Iterator[int]) -> None:
+    """Give the file that was written last a time of its own, whatever the clock's precision."""
+    paths = [path for path in folder.rglob("*") if path.suffix in (".json", ".hex")]
+    newest = max(paths, key=lambda path: path.stat().st_mtime_ns)
+    moment_s = next(clock)
+    os.utime(newest, (moment_s, moment_s))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", LIMITED_MEMORIES)
+def test_what_was_kept_last_is_there_and_the_oldest_gives_way(
+    name: str, seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """This holds whatever was kept before; each is there once, with its last value."""
+    memory, chance, clock = LIMITED_MEMORIES[name], Random(seed), count(1)
+    room = chance.choice((1, 3))
+    monkeypatch.setattr(memory.module, memory.room, room)
+    expected = dict[int, int]()
+    for _ in range(25):
+        number = chance.choice(NUMBERS)
+        value = 0 if name in HAS_NO_VALUES else chance.randrange(1, 4)
+        memory.remember(number, value)
+        date_files(tmp_path, clock)
+        if not (memory.ignores_known and expected.get(number) == value):
+            expected.pop(number, None)
+            expected[number] = value
+            expected = dict([*expected.items()][-room:])
+        assert memory.entries() == expected
+        if name == "robots that may answer":
+            accepted = met_robots.read_met_robots(met_robots_file()).accepted_ids
+            assert len(accepted) == len(expected), "each is there once"

@@ -32,18 +32,37 @@ def test_a_school_has_more_than_a_hundred_robots() -> None:
     assert len(names) == 150 and next(iter(names.values())) == "R149"
 
 
+# The names of ports, and which of them always mean the same one: those of files never do, because a
+# link in /dev may lead elsewhere later.
+PORTS_BY_NAME = {
+    "COM1": "COM1",
+    "/dev/ttyUSB0": "/dev/ttyUSB0",
+    "ble://Tini": "Tini by radio",
+    "BLE://TINI": "Tini by radio",
+    "tcp://tini": "Tini",
+    "tcp://Tini.local": "Tini",
+    "socket://localhost:1": "1",
+    "SOCKET://127.0.0.1:1": "1",
+    "socket://127.0.0.1:2": "2",
+}
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_newest_port_is_first_and_the_one_used_last_is_known(seed: int) -> None:
-    """This holds whatever was remembered before, and whether the port was used or only seen."""
+    """This holds whatever was remembered before, and whether the port was used or only seen; a port
+    of several names has the last one."""
     chance, last_port, names = Random(seed), None, dict[str, str]()
     for _ in range(20):
         port, name, is_used = (
-            f"COM{chance.randrange(3)}",
+            chance.choice([*PORTS_BY_NAME]),
             chance.choice("AB"),
             chance.random() < 0.5,
         )
         known_ports.remember(port, name, is_used)
         last_port = port if is_used else last_port
-        names = {port: name, **{other: names[other] for other in names if other != port}}
+        other_names = {
+            other: names[other] for other in names if PORTS_BY_NAME[other] != PORTS_BY_NAME[port]
+        }
+        names = {port: name, **other_names}
         assert known_ports.remembered_ports() == (last_port, names)
         assert [*known_ports.remembered_ports().name_by_port] == [*names]
