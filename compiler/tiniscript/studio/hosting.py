@@ -87,7 +87,8 @@ class Hosting:
         """Stop what pages have started, and close all ports; return those if no robot has
         confirmed that."""
         with self._lock:
-            hosted_robots = [*self._robot_by_page.values(), *self._parting_robots]
+            # One that is parting may still be the robot that its page has driven last.
+            hosted_robots = dict.fromkeys([*self._robot_by_page.values(), *self._parting_robots])
         for hosted_robot in hosted_robots:
             hosted_robot.leave(is_letting_go=True)
         for hosted_robot in hosted_robots:
