@@ -431,3 +431,20 @@ def test_what_was_kept_last_is_there_and_the_oldest_gives_way(
         if name == "robots that may answer":
             accepted = met_robots.read_met_robots(met_robots_file()).accepted_ids
             assert len(accepted) == len(expected), "each is there once"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_of_robots_that_were_met_and_that_may_answer_neither_loses_the_other(seed: int) -> None:
+    """They are in one file."""
+    chance, path, places, accepted = Random(seed), met_robots_file(), dict[str, int](), set[int]()
+    for _ in range(20):
+        robot = chance.choice(NUMBERS)
+        if chance.random() < 0.5:
+            met_robots.accept(path, robot)
+            accepted.add(robot)
+        else:
+            place = chance.choice("ab")
+            met_robots.remember_robot(path, place, robot)
+            places[place] = robot
+        found = met_robots.read_met_robots(path)
+        assert (found.id_by_place, {*found.accepted_ids}) == (places, accepted)

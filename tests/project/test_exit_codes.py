@@ -168,24 +168,37 @@ def test_the_generator_fails_where_any_file_is_stale(
 
 
 class Stage:
-    """A release of two parts, in which the step named by `fails` fails."""
+    """A release in which the step named by `fails` fails, as `failure` says."""
 
-    def __init__(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str) -> None:
-        self.fails, self.steps = fails, list[str]()
+    def __init__(
+        self,
+        tmp_path: Path,
+        monkeypatch: pytest.MonkeyPatch,
+        fails: str,
+        failure: type[BaseException] = CannotMake,
+    ) -> None:
+        self.fails, self.failure, self.steps = fails, failure, list[str]()
         self.folder = tmp_path / "made"
         monkeypatch.setattr(release, "_clones", self.clones)
-        monkeypatch.setattr(facts, "release_problems", lambda root: self.complaints_of("a fact"))
+        monkeypatch.setattr(
+            facts,
+            "release_problems",
+            lambda root: self.complaints_of("not committed" if root == ROOT else "a fact"),
+        )
         monkeypatch.setattr(
             release, "find_missing_tool", lambda parts: "".join(self.complaints_of("a tool"))
         )
-        monkeypatch.setattr(Clone, "python", lambda clone, *words, **how: self.step("twine"))
+        monkeypatch.setattr(release, "tag", lambda root, version: self.step("tag"))
+        monkeypatch.setattr(
+            Clone, "python", lambda clone, *words, **how: self.step(f"twine {Path(words[-1]).name}")
+        )
         for name in PARTS:
             monkeypatch.setitem(PARTS, name, PARTS[name]._replace(make=partial(self.make, name)))
 
     def step(self, name: str) -> str:
         self.steps.append(name)
         if name == self.fails:
-            raise CannotMake(f"{name} fails")
+            raise self.failure(f"{name} fails")
         return ""
 
     def complaints_of(self, name: str) -> list[str]:
@@ -208,19 +221,30 @@ class Stage:
         return [file]
 
     def code(self) -> int:
-        return release.main([str(self.folder)])
+        return release.main([str(self.folder), "--tag"])
 
 
 def test_a_release_fails_where_a_step_of_it_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """However it fails: it cannot be done, the disk is full, or somebody ends it. What was released
+    stays as it is."""
     whole = Stage(tmp_path / "whole", monkeypatch, "")
     assert whole.code() == 0 and (whole.folder / release.SUMS_FILE).exists()
     steps = dict.fromkeys(whole.steps)
     assert len(steps) > 3 * len(PARTS)
-    for step in steps:
-        stage = Stage(tmp_path / step, monkeypatch, step)
-        assert stage.code() != 0, f"{step} fails, and nobody notices"
-        is_compared = step.endswith("is the same")
-        assert (stage.folder / release.SUMS_FILE).exists() == is_compared, step
+    assert {"not committed", "twine wheel.whl", "twine sdist.whl", "tag"} <= {*steps}
+    sums = (whole.folder / release.SUMS_FILE).read_bytes()
+    assert whole.code() == 2 and (whole.folder / release.SUMS_FILE).read_bytes() == sums
+    some_steps = ["git", "wheel 2", "twine wheel.whl", "tag"]
+    for failure, failing_steps in (
+        (CannotMake, [*steps]),
+        (OSError, some_steps),
+        (KeyboardInterrupt, some_steps),
+    ):
+        for step in failing_steps:
+            stage = Stage(tmp_path / failure.__name__ / step, monkeypatch, step, failure)
+            assert stage.code() != 0, f"{step} fails, and nobody notices"
+            is_last = step.endswith("is the same") or step == "tag"
+            assert (stage.folder / release.SUMS_FILE).exists() == is_last, step
     capsys.readouterr()

@@ -173,7 +173,8 @@ def test_an_address_is_kept_where_it_is_another_one(
     for url, commits in ((URL, 1), ("https://example.org/other", 2)):
         scratch = tmp_path / str(commits)
         scratch.mkdir()
-        shared_clone, _ = release._clones(scratch, url, whole_stick=False)
+        shared_clone, other_clone = release._clones(scratch, url, whole_stick=False)
+        assert shared_clone.seed != other_clone.seed, "an order of sets would be seen"
         log = subprocess.run(["git", "-C", shared_clone.root, "log", "--format=%s"], text=True,
                               capture_output=True, check=True)  # fmt: skip
         assert len(log.stdout.splitlines()) == commits
