@@ -6,6 +6,7 @@ import json
 import re
 import sys
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -23,7 +24,7 @@ from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.live_state import LiveState
 from tiniscript.library.other_robots import hints_among
 from tiniscript.link import known_ports, ports
-from tiniscript.link.outcomes import POLL_INTERVAL_S, Event, MissedEvent, ShownEvent
+from tiniscript.link.outcomes import POLL_INTERVAL_S, Event, MissedEvent, RestartedEvent, ShownEvent
 from tiniscript.link.payloads import DoneEvent
 from tiniscript.robots import given
 from tiniscript.virtual import directory
@@ -406,6 +407,28 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
         )
     ]  # fmt: skip
     assert hidden == [False, False, True, True, False, False, False, False]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_values_are_hidden_from_the_mark_to_the_end_of_their_run_alone(seed: int) -> None:
+    """This holds for any number of runs, however each begins and ends: nobody may hear its end."""
+    chance, bookkeeping, traced, is_hidden = Random(seed), Bookkeeping(), Bookkeeping(), False
+    boundaries = {"STARTED": "START", "DONE": "DONE", "FAULT": "FAULT", "STOPPED": "STOP",
+                  "RESTARTED": "OFF"}  # fmt: skip
+    for _ in range(200):
+        if chance.random() < 0.2:
+            name = chance.choice([*boundaries])
+            is_hidden = False
+            boundary = RestartedEvent() if name == "RESTARTED" else event(name)
+            assert not bookkeeping.filter_event(boundary)
+            assert not traced.filter_trace_event(boundaries[name], ())
+            continue
+        value, is_yes_no = chance.choice((BOOKKEEPING_MARK, 5, 1)), chance.random() < 0.3
+        is_hidden = is_hidden or (value == BOOKKEEPING_MARK and not is_yes_no)
+        assert bookkeeping.filter_event(ShownEvent(value, is_yes_no)) == is_hidden
+        if not is_yes_no:
+            assert traced.filter_trace_event("SHOW", (value,)) == is_hidden
+        assert not bookkeeping.filter_event(MissedEvent(1))
 
 
 # -- slips with names -----------------------------------------------------------------------------
