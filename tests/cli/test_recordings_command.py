@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
+from io import TextIOWrapper
 from pathlib import Path
 from random import Random
 from time import monotonic
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
 from tests.support.command import Tsc, run_in_process
 from tiniscript import compile, robots
+from tiniscript.base import files
 from tiniscript.cli.commands import upload
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import is_foreign
@@ -408,3 +413,42 @@ def test_each_row_is_in_the_file_before_the_next_one_comes(tmp_path: Path) -> No
         written_text += f"line {k}\n"
         assert path.read_text("utf-8") == written_text
     rows.close()
+
+
+def test_a_disk_that_is_full_is_said_at_each_row_and_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "rows.csv"
+    rows = Rows(str(path), b"old\n")
+    rows._file.close()
+    rows._file = cast(TextIOWrapper, SimpleNamespace(write=fail, flush=fail, close=fail))
+    for add in (partial(rows.add_row, 1, "a"), partial(rows.add_line, "a")):
+        for _ in range(2):
+            with pytest.raises(CommandError, match="unwritable_more"):
+                add()
+    rows.close()  # nothing more is said
+    monkeypatch.setattr(files, "replace", fail)
+    with pytest.raises(CommandError, match="unwritable_more"):
+        Rows(str(path), b"new\n")
+    assert path.read_text("utf-8") == "old\n"
+
+
+def test_a_run_that_a_button_begins_counts_from_its_first_event(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its file is closed at its end."""
+    now_s = 100.0
+    monkeypatch.setattr(recorder, "monotonic", lambda: now_s)
+    record = Recorder(str(tmp_path / "run.tsr"), HEAD, began_s=None)
+    now_s += 7
+    for value in ("1", "2", "3"):
+        record.add_event(0, "SHOW", value)
+        now_s += 0.5
+    record.close()
+    assert record._rows._file.closed
+    rows = decode((tmp_path / "run.tsr").read_bytes()).rows
+    expected = [(0, "SHOW 1"), (500, "SHOW 2"), (1000, "SHOW 3"), (1500, "STOPPED")]
+    assert [(row.ms, row.event) for row in rows] == expected
