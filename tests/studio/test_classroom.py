@@ -15,6 +15,7 @@ import pytest
 
 from tests.support.class_room import PUPIL_ADDRESS, FakeHosting, FakeRobot, Json, Room
 from tests.support.waiting import HANG_LIMIT_S
+from tiniscript.base import files
 from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom, recordings
 from tiniscript.studio import rates as rate_of
@@ -982,3 +983,33 @@ def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
     with pytest.raises(BadRequest):
         room.made.answer(ana, PUPIL_ADDRESS, {**right, "from": 1})
     assert ask_for_run(room, 1) == "x"
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_what_was_kept_last_is_read_whatever_was_kept_before(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A class may be over, and the next one the same; a disk may be full, and a computer crash."""
+    chance, expected, is_full = Random(seed), None, False
+    replace_file = files.replace
+
+    def replace(*fields: Any, **named_fields: Any) -> None:
+        if is_full:
+            raise OSError(28, "No space left on device")
+        replace_file(*fields, **named_fields)
+
+    monkeypatch.setattr(class_keeping, "replace", replace)
+    class_keeping.forget()
+    keeper = Keeper()
+    for _ in range(30):
+        is_full = chance.random() < 0.3
+        state = chance.choice(({"code": "1"}, {"code": "2"}, None))
+        keeper.keep(state)
+        if state is None or not is_full:
+            expected = state
+        if chance.random() < 0.2:
+            keeper.close()
+            keeper = Keeper()
+        found = keeper.read()
+        assert (None if found is None else found.state["code"]) == (expected and expected["code"])
+    keeper.close()

@@ -206,6 +206,40 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, own: str, line: byt
     assert post(own, server.entrances.token, PORTS)[0] == 200
 
 
+def test_a_page_asks_on_one_connection_as_often_as_it_wants(
+    server: serving.Server, own: str
+) -> None:
+    """Its tenth head may be as long as its first."""
+    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
+    headers["X-More"] = "x" * (serving.HEAD_BYTES // 3)
+    with closing(
+        HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
+    ) as connection:
+        sockets = set()
+        for _ in range(10):
+            connection.request("POST", serving.ROBOTS_PATH, PORTS, headers)
+            response = connection.getresponse()
+            assert (response.status, json.loads(response.read())) == (200, {"ports": []})
+            sockets.add(connection.sock)
+        assert len(sockets) == 1
+
+
+def test_the_body_of_a_refused_request_is_no_request(server: serving.Server, own: str) -> None:
+    body = f"GET / HTTP/1.1\r\nHost: {own}\r\n\r\n"
+    head = f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://e\r\n"
+    with socket.create_connection(
+        (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
+    ) as client:
+        client.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n{body}".encode())
+        heard_bytes = b""
+        try:
+            while data := client.recv(4096):
+                heard_bytes += data
+        except ConnectionError:  # it was reset, because its body was not read
+            pass
+    assert heard_bytes.count(b"HTTP/1.1 ") <= 1 and b" 200 " not in heard_bytes, heard_bytes
+
+
 def test_the_page_that_has_asked_last_is_kept(
     server: serving.Server, own: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
