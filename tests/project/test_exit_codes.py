@@ -81,6 +81,28 @@ def test_a_script_fails_where_a_step_of_it_fails(
 
 
 @needs_sh
+@pytest.mark.parametrize(("first_word", "more"), [("", ""), ("--all", "--whole "), ("--quick", "")])
+def test_further_options_go_to_pytest(first_word: str, more: str, tmp_path: Path) -> None:
+    """No file of the script is left in the folder for temporary ones."""
+    clone = folder_of(tmp_path, "venv.sh", "test.sh")
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    (clone / "steps").write_text("")
+    (clone / "fails").write_text("")
+    completed = subprocess.run(
+        ["sh", "tools/test.sh", *first_word.split(), "-k", "a b"],
+        cwd=clone,
+        env={**os.environ, "HERE": str(clone), "CI": "true", "TMPDIR": str(temporary)},
+        capture_output=True,
+    )
+    steps = (clone / "steps").read_text().splitlines()
+    [step] = [step for step in steps if step.startswith("-m pytest -n ")]
+    assert completed.returncode == 0
+    assert step.endswith(f" {more}-k a b") and "--all" not in step and "--quick" not in step
+    assert [*temporary.iterdir()] == []
+
+
+@needs_sh
 def test_without_ci_a_page_that_cannot_be_made_is_not_a_failure(tmp_path: Path) -> None:
     """Its tests are skipped, and say so."""
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
