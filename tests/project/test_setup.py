@@ -310,6 +310,46 @@ def test_whoever_cannot_install_venv_is_not_told_to_do_it_again(
     assert "sudo" not in completed.stderr
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_packages_that_are_missing_and_known_are_installed(seed: int, tmp_path: Path) -> None:
+    """Nobody becomes root for what is there, or for what this system does not have; where a package
+    cannot be had, the tests begin without it."""
+    rng, names = random.Random(seed), ["one", "two", "three", "four"]
+    there, known = ({name for name in names if rng.random() < 0.5} for _ in range(2))
+    if seed == 0:
+        there = {*names}
+    is_online, log = rng.random() < 0.5, tmp_path / "log"
+    log.touch()
+    sh = shutil.which("sh")
+    says_yes = {
+        "dpkg": f"case ' {' '.join(there)} ' in *\" $2 \"*) exit 0;; esac; exit 1",
+        "apt-cache": f"case ' {' '.join(known)} ' in *\" $2 \"*) exit 0;; esac; exit 1",
+        "apt-get": f'echo "$*" >>{log}; exit {0 if is_online else 100}',
+        "sudo": '"$@"',
+        "id": "echo 1000",
+        "dirname": f'exec {shutil.which("dirname")} "$@"',
+    }
+    (tmp_path / "bin").mkdir()
+    for name, text in says_yes.items():
+        (tmp_path / "bin" / name).write_text(f"#!{sh}\n{text}\n")
+        (tmp_path / "bin" / name).chmod(0o755)
+    words = f'. "{ROOT / "tools" / "venv.sh"}"; debian_packages {" ".join(names)}; echo begins'
+    completed = subprocess.run(
+        [str(sh), "-euc", words, str(ROOT / "tools" / "test.sh")],
+        capture_output=True, text=True, env={"PATH": str(tmp_path / "bin"), "LC_ALL": "C"},
+    )  # fmt: skip
+    assert (completed.returncode, completed.stdout) == (0, "begins\n"), completed.stderr
+    missing = [name for name in names if name not in there]
+    found = [name for name in missing if name in known]
+    steps = log.read_text().splitlines()
+    install = f"install -y -qq --no-install-recommends {' '.join(found)}"
+    assert steps == ["update -qq"] * bool(missing) + [install] * bool(found)
+    for name in missing:
+        assert (f"has no package {name}:" in completed.stderr) == (name not in known)
+    assert ("That did not work" in completed.stderr) == (bool(found) and not is_online)
+    assert ("could not ask" in completed.stderr) == (bool(missing) and not is_online)
+
+
 # -- tools/try.py, for every system
 
 
