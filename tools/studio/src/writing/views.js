@@ -298,6 +298,7 @@ export class Views {
   async #undoOrRedo(change) {
     if (this.isBusy) return;
     await this.#sendBlocks();
+    if (this.isBusy) return; // the next block has been taken meanwhile
     change();
     if (this.#isOn) this.#refreshBlocks(true);
   }
@@ -415,7 +416,7 @@ export class Views {
         this.#shownForm = JSON.stringify(this.#blocks.readForm().form);
         this.#shownLayout = this.#blocks.layoutText;
         if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
-        this.#decorateBlocks();
+        if (!this.#isStale()) this.#decorateBlocks(); // else others are made
       }
       if (!this.#changeCount) this.#showState();
     } catch (error) {
