@@ -232,7 +232,9 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
 def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key="KEY_UP"))
     (missed_text,) = sentences_on(lesson, text)
-    assert f"At {seconds} s no key was held down, but the robot was still moving. Make" in missed_text
+    assert (
+        f"At {seconds} s no key was held down, but the robot was still moving. Make" in missed_text
+    )
 
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
@@ -287,7 +289,10 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
             "LOOP(2);LED(TRUE);W(0.1);LED(FALSE);W(0.1);END_LOOP;F(1, 50)",
             "LED was switched on 0 of 2 times",
         ),
-        ("M(50, 50);LED(FALSE);W(1);S", "LED was never switched on. Switch it on and off: LED(TRUE)"),
+        (
+            "M(50, 50);LED(FALSE);W(1);S",
+            "LED was never switched on. Switch it on and off: LED(TRUE)",
+        ),
     ],
 )
 def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:
