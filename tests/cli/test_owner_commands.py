@@ -142,7 +142,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil does not get one
     become_another_computer(monkeypatch, tmp_path, "settings")
-    assert "will only run again after" in on(pty_robot, "stop", "--teacher").out
+    assert "will run again only after" in on(pty_robot, "stop", "--teacher").out
     become_another_computer(monkeypatch, tmp_path, "pupil")
     on(pty_robot, "start").gives(3, "teacher")
     become_another_computer(monkeypatch, tmp_path, "settings")

@@ -102,7 +102,7 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     result = run_trim(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert result.out.endswith(
         "has saved: motors swapped, right wheel reversed, right wheel 5 % weaker, "
-        "the wheels begin to turn at 12 %, moves in CM and DEG at its kit's speeds\n"
+        "the wheels begin to turn at 12 %, uses its kit's speeds for CM and DEG\n"
     )
     assert stored_trim(pty_robot) == Trim(True, False, True, -5, 12, Pace())
     assert run_trim(pty_robot, "--exchange", "no", "--balance", "0").code == 0

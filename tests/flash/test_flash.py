@@ -349,7 +349,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     (["--port", "socket://localhost:1"], "is a wireless or network port."),
     (["--port", "/dev/none"], "there is no port /dev/none"),
     (["--port", "x", "--chip", "teensy"], "uno, nano, nano-old or mega, not teensy"),
-    (["--port", "x", "--robot", "grabber", "--chip", "uno"], "does not fit the board uno"),
+    (["--port", "x", "--robot", "grabber", "--chip", "uno"], "cannot use the board uno"),
     (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
     (["--build", "--robot", "nobody"], "nobody"),
 ])  # fmt: skip

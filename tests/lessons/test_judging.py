@@ -51,7 +51,7 @@ CASES = [
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(0.5, 89)", "stopped 20 cm before the middle of the goal"),
     ('kind = "ends_in"\nat = [140, 100]\nwithin_cm = 5', "F(1, 89)", "F(1.3, 89)", "went 12 cm past the middle"),
     ('kind = "ends_in"\nat = "start"', "F(1, 50); B(1, 50)", "F(1, 50)", "was 22 cm from the goal"),
-    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60)", "only turned on the spot. Forward is F"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60)", "only turned on the spot. To go forward, use F"),
     ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "B(1, 89); F(2, 89)", "before the robot got to the goal 2 of 2"),
     ('kind = "reaches"\nat = [140, 100]\nby_seconds = 2', "F(1, 89)", "F(4, 22)", "took 3.0 s to reach the goal; the limit is 2 s"),
     ('kind = "reaches"\nat = [140, 100]\nby_cm = 50', "F(1, 89)", "B(1, 89); F(2, 89)", "drove 110 cm to the goal; 50 cm is enough"),
@@ -130,7 +130,7 @@ CASES = [
     ('kind = "shows"\n[[criteria]]\nkind = "ends"', "SHOW(1)", "LOOP(FOREVER);W(1);END_LOOP;SHOW(1)", "After 10.0 s the program was still running"),
     ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "F(1, 89);LOOP(FOREVER);SHOW(1);END_LOOP", "did not get to the goal 2 of 2. Look at the move"),
     ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "LOOP(3);F(0.2,50);W(0.5);END_LOOP", "waited 0.5 s; the task asks for 1 s"),
-    ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "F(1,50);W(1);B(1,50)", "1 of 2 times"),
+    ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "F(1,50);W(1);B(1,50)", "2 waits of 1 s between moves; the robot made 1"),
     ('kind = "pauses"\nat_least_seconds = 1\nat = [140, 100]', "F(1,89);W(1);B(1,89)", "F(1,89);B(1,89);W(1);F(0.1,50)", "waited 1.0 s, but 40 cm from the goal; the distance must be 10 cm or less"),
     ('kind = "pauses"\nat_least_seconds = 1\nat = ["start", [140, 100]]', "F(0.1,50);W(1);F(0.9,89);W(1);B(1,50)", "F(0.1,50);W(1);F(0.9,89);B(1,50)", "did not wait 1 s at the goal 2: its nearest wait was 37 cm away"),
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 89);B(1, 89)", "reached the goal but left it again: at the end it was 40 cm away"),
@@ -139,7 +139,7 @@ CASES = [
     ('kind = "uses"\nwords = ["LOOP"]', "LOOP(2);W(0.1);BEEP(0.1,440);ENDLOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP repeats nothing."),
     ('kind = "uses"\nwords = ["LOOP"]', "DEF HOP;BEEP(0.1,440);END_DEF;LOOP(2);HOP;END_LOOP", "LOOP(1);BEEP(0.1,440);END_LOOP", "LOOP repeats nothing."),
     ('kind = "shows"\nvalue = 4', "SHOW(2 + 2)", "SHOW(5)", "showed 5, but 4 is correct"),
-    ('kind = "shows"\nwhat = "DISTANCE"\ntolerance = 1', "SHOW(DISTANCE)", "SHOW(50)", "showed 50, but DISTANCE was about 77 then"),
+    ('kind = "shows"\nwhat = "DISTANCE"\ntolerance = 1', "SHOW(DISTANCE)", "SHOW(50)", "showed 50, but at that moment DISTANCE was about 77"),
     ('kind = "shows"\nwhat = "TIME"\ntolerance = 0.1', "W(1);SHOW(TIME)", "W(1);SHOW(2)", "showed 2, but it drove for 1 s"),
     ('kind = "shows"\ntimes = 2', "SHOW(1);SHOW(TRUE)", "SHOW(1)", "showed 1 of 2 values"),
     ('kind = "shows"', "SHOW(1)", "W(1)", "showed nothing"),
@@ -197,7 +197,7 @@ key = "{key}"
 """
 ANSWER_BY_KEY = {"UP": "F(0.1, 60)", "DOWN": "B(0.1, 60)", "LEFT": "L(0.1, 60)", "RIGHT": "R(0.1, 60)",
                  "A": "BEEP(0.1, 440)", "B": "BEEP(0.1, 440)"}  # fmt: skip
-MISSED_BY_KEY = {"UP": "go forward", "DOWN": "go back", "LEFT": "turn to the left",
+MISSED_BY_KEY = {"UP": "drive forward", "DOWN": "drive backward", "LEFT": "turn to the left",
                  "RIGHT": "turn to the right", "A": "beep", "B": "beep"}  # fmt: skip
 OPPOSITE_KEY = {"UP": "DOWN", "DOWN": "UP", "LEFT": "RIGHT", "RIGHT": "LEFT", "A": "B", "B": "A"}
 
@@ -212,7 +212,7 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
     assert sentences_on(lesson, answer_to_key(key, ANSWER_BY_KEY[key])) == []
     (missed_text,) = sentences_on(lesson, answer_to_key(OPPOSITE_KEY[key], ANSWER_BY_KEY[key]))
     assert (
-        f"After 1.0 s KEY_{key} was held down, but the robot did not {MISSED_BY_KEY[key]}."
+        f"At 1.0 s KEY_{key} was held down, but the robot did not {MISSED_BY_KEY[key]}."
         in missed_text
     )
     if not MISSED_BY_KEY[key].startswith("beep"):
@@ -232,7 +232,9 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
 def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key="KEY_UP"))
     (missed_text,) = sentences_on(lesson, text)
-    assert f"After {seconds} s no key was held down, but the robot still moved. Make" in missed_text
+    assert (
+        f"At {seconds} s no key was held down, but the robot was still moving. Make" in missed_text
+    )
 
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
@@ -282,12 +284,15 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
     ("more", "sentence"),
     [
         ("M(50, 50);LED(TRUE);W(1);LED(FALSE);W(0.1);LED(TRUE);W(0.1);S", ""),
-        ("M(50, 50);LED(TRUE);W(1);LED(TRUE);W(0.1);S", "LED went on 1 of 2 times"),
+        ("M(50, 50);LED(TRUE);W(1);LED(TRUE);W(0.1);S", "LED was switched on 1 of 2 times"),
         (
             "LOOP(2);LED(TRUE);W(0.1);LED(FALSE);W(0.1);END_LOOP;F(1, 50)",
-            "LED went on 0 of 2 times",
+            "LED was switched on 0 of 2 times",
         ),
-        ("M(50, 50);LED(FALSE);W(1);S", "LED never went on. Switch it on and off: LED(TRUE)"),
+        (
+            "M(50, 50);LED(FALSE);W(1);S",
+            "LED was never switched on. Switch it on and off: LED(TRUE)",
+        ),
     ],
 )
 def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:

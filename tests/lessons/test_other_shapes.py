@@ -92,7 +92,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "DEF CORNER; L(0.833, 30); END_DEF; F(3.7, 60); CORNER; F(3.7, 60)": "",
         },
         "rote": {
-            "SI|L(0.3, 60)": "The robot only turned on the spot. Forward is F: F(2, 80)",
+            "SI|L(0.3, 60)": "The robot only turned on the spot. To go forward, use F: F(2, 80)",
             "F(2.78, 80); W(2); B(2.78, 80)": "At the end the robot was 141 cm from the school",
         },
         "wrong": {
@@ -285,7 +285,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "X = 10; F(X + 5 CM, 60)": "The robot showed nothing",
         },
         "wrong": {
-            "D = DISTANCE; F(D - 20 CM, 60); SHOW(D); SHOW(D)": "The robot showed 81.4, but DISTANCE was about 20 then",
+            "D = DISTANCE; F(D - 20 CM, 60); SHOW(D); SHOW(D)": "The robot showed 81.4, but at that moment DISTANCE was about 20",
         },
     },
     17: {
@@ -311,7 +311,7 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
             "SI|W(1); F(1.5, 60); W(1); R(1, 40); W(1); F(1, 60); W(1); B(1, 60); W(1); BEEP(0.5, 440); W(1); L(0.5, 40)": "KEY_LEFT was held down, but the robot did not turn to the left",
         },
         "wrong": {
-            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held down, but the robot still moved. Make",
+            "W(FOREVER) UNTIL(KEY_UP); F(5, 60)": "no key was held down, but the robot was still moving. Make",
             "W(FOREVER) UNTIL(KEY_UP); F(1, 60); W(FOREVER) UNTIL(KEY_DOWN); B(1, 60)": "KEY_RIGHT was held down, but the robot did not turn to the right",
         },
     },

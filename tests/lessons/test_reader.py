@@ -138,7 +138,7 @@ def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
         catalogue.page(folder, catalogue.PUPIL, "en")
     (sentence,) = describe(exception_info.value, "en")
     assert (
-        "pupil.en.md uses {pauses.seconds}, but the lesson has no number of that name" in sentence
+        "pupil.en.md uses {pauses.seconds}, but the lesson has no number with that name" in sentence
     )
     assert "pauses.at_least_seconds" in sentence
     assert describe(exception_info.value, "es") != [sentence]

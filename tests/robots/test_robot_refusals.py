@@ -363,7 +363,9 @@ def test_a_wrong_name_gets_the_nearest_one() -> None:
         with pytest.raises(ProfileRefused) as exception_info:
             robots.load(name)
         assert codes(exception_info.value) == ["no_such_robot"]
-        assert describe(exception_info.value, "en")[0].endswith("or give a .toml file.")
+        assert (
+            "Choose one of these, or give a .toml file: " in describe(exception_info.value, "en")[0]
+        )
 
 
 # ---- anything at all

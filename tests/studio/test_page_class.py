@@ -603,7 +603,7 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     choice.select_option(label="Ana")
     row.locator("button").click()
     ana.locator(".cm-content", has_text="F(1, 77)").wait_for()
-    wait_for_note(ana, "Your teacher gave you back your work.")
+    wait_for_note(ana, "Your teacher has given you your work back.")
     wait_until_checked(ana)
     assert image(ana) == compile("F(1, 77)").image
     row.wait_for(state="detached")  # once her page has reported it
@@ -633,7 +633,7 @@ def test_work_is_kept_until_the_page_has_said_that_it_has_it(
     row = opened_row(teacher, "Ana")
     row.locator("button").click()
     row.filter(has_text="Ana is getting the work back.").wait_for()
-    wait_for_note(ana, "Your teacher gave you back your work.")
+    wait_for_note(ana, "Your teacher has given you your work back.")
     wait_for_status(ana, "The teacher’s computer is not responding.")
     assert "F(1, 77)" in str(shared_class.room.works())
     ana.reload()

@@ -450,7 +450,7 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
     page.locator("#lesson_steps button").last.click()
     assert not page.locator("#note").is_visible()  # the previous step announced it
     page.click("#side_virtual")
-    wait_for_note(page, "This is your program of the lesson. Your own program is in My programs.")
+    wait_for_note(page, "This is your program for the lesson. Your own program is in My programs.")
     write(page, of_lesson)
     page.click("#side_lessons")
     choose_lesson(page, 11)

@@ -395,7 +395,7 @@ def test_a_robot_that_does_not_tell_readings_says_so_where_the_program_has_some(
         wait_for_message(page, "Done.")
         assert note.is_visible() is is_told
         assert [event for event in events(page) if event.startswith("READ")] == []
-    assert note.inner_text().startswith("This robot does not report the readings of its program")
+    assert note.inner_text().startswith("This robot does not report what its program reads")
 
 
 def agrees(page: Page, run: Callable[[], None]) -> None:

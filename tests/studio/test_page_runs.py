@@ -75,12 +75,12 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     run_to_end(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
     assert len(run_names(page)) >= 2
     page.locator("#runs_list li").nth(1).locator("button").first.click()
-    wait_for_status(page, "Looking back: this was at ")  # the text of that run differs
+    wait_for_status(page, "Looking back at ")  # the text of that run differs
     assert page.locator("#where").text_content() == pose
     assert value(page, "X") == "7"
     page.focus("#time_at")
     page.keyboard.press("Home")
-    assert page.locator("#doing").inner_text().startswith("Looking back: this was at 0.0 s.")
+    assert page.locator("#doing").inner_text().startswith("Looking back at 0.0 s.")
     page.click("#step")
     page.locator("#doing", has_not_text="Looking back").wait_for()
     wait_for_phase(page, "paused")
@@ -173,7 +173,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"a letter", "The file is damaged, or is not a run (line 1)."),
+        (b"a letter", "The file is damaged, or is not a saved run (line 1)."),
         (
             real_recording((1, "DONE")).encode()[:-10],
             "The end of the file is missing (after line 2).",

@@ -59,7 +59,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     while times[-1] > 0:
         page.keyboard.press("ArrowLeft")
         assert status_text(page).startswith(
-            f"Looking back: at {seconds(page):.1f} s line 5 ran, F(0.5, "
+            f"Looking back at {seconds(page):.1f} s: line 5 ran, F(0.5, "
         )
         assert seconds(page) < times[-1] or seconds(page) == times[-1] == 0
         if seconds(page) == times[-1]:
@@ -130,7 +130,7 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
     page.focus("#time_at")
     page.keyboard.press("Home")
     part, *values = status_text(page).split(" · ")
-    assert part == "Looking back: at 0.0 s line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
+    assert part == "Looking back at 0.0 s: line 2 ran, F(1, 60) UNTIL(DISTANCE < NEAR)"
     assert values[0].startswith("DISTANCE ") and values[1:] == ["NEAR 30"]
 
 
@@ -170,10 +170,10 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     page.click("#why")
     page.focus("#time_at")
     read_names = set()
-    asked_text = r"Line 3 asks DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
+    asked_text = r"Line 3 checked DISTANCE > 3\. DISTANCE was ([\d.]+)\. The answer was yes\."
     for _ in range(5):
         if match := re.search(asked_text, status_text(page)):
-            assert status_text(page).endswith("The task on line 1 was driving the motors."), (
+            assert status_text(page).endswith("The task on line 1 was using the motors."), (
                 status_text(page)
             )
             read_names.add(match[1])

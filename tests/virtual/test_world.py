@@ -171,7 +171,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
     wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, expected in (
         ("obstacle", "Did you mean obstacles?"),
-        ("nowhere", f"Choose one of these: {', '.join(worlds.names())}"),
+        ("nowhere", f"Choose one of these, or give a .toml file: {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),
