@@ -4010,9 +4010,9 @@ const PARTS = {
           if (!group && chance() < 0.2) presses('undo');
           await passes(chance.below(chance.of([2, 120])));
           blocks.isBusy = false;
-          const line = chance() < 0.7 ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
+          const isNew = chance() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
-          if (line !== `b${count}`) mine = mine.filter((each) => each !== line);
+          if (!isNew) mine = mine.filter((each) => each !== line);
           else {
             mine.push(line);
             blocks.form.body.push({ text: line, kind: 'word', bodies: [] });
