@@ -299,7 +299,7 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
     ("nothing", 0.2), ("nothing", 0.05), ("nothing", 0.02), ("very late", 0.2),
     ("robot hears nothing", 0.2),
 ])  # fmt: skip
-def test_a_second_ctrl_c_ends_the_wait_and_is_not_a_second_word(
+def test_a_second_ctrl_c_ends_the_wait_without_a_second_message(
     name: str, after_s: float, tmp_path: Path
 ) -> None:
     """The waits are for the stop, and for the save after it."""

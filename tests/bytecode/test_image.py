@@ -52,7 +52,7 @@ def change_byte(offset: int, value: int, image: bytes = IMAGE) -> bytes:
 @pytest.mark.parametrize("start", ["SI", "SB", "PING"])
 @pytest.mark.parametrize("code", [b"", CODE, bytes(32767)], ids=["empty", "short", "longest"])
 @pytest.mark.parametrize("later", [b"", b"?", bytes(240)], ids=["", "1", "240"])
-def test_what_is_packed_is_read_back(start: str, code: bytes, later: bytes) -> None:
+def test_packed_images_are_unpacked_unchanged(start: str, code: bytes, later: bytes) -> None:
     if start == "PING" and code:
         return
     data = pack(start, 0x1234, code, later)
@@ -77,7 +77,7 @@ def test_every_changed_bit_is_noticed(image: bytes) -> None:
             assert refusal(bytes(data)) in expected
 
 
-def test_the_first_reason_that_applies_is_said() -> None:
+def test_the_first_applicable_reason_is_reported() -> None:
     """Each reason takes precedence over later ones in the table, whatever else is wrong."""
     bad_start, bad_needs = change_byte(4, 3), change_byte(14, 4)
     both = change_byte(4, 3, bad_needs)
@@ -96,7 +96,7 @@ def test_the_first_reason_that_applies_is_said() -> None:
     assert numbers == list(range(1, 11))
 
 
-def test_an_image_of_version_1_says_which_it_is() -> None:
+def test_an_image_of_version_1_is_refused_with_its_version() -> None:
     """This holds for whole, cut and damaged images: the remedy is to compile again."""
     for data in (OLD, OLD[:9], OLD + b"?", OLD[:-1] + b"?", OLD[:4]):
         with pytest.raises(ImageRefused) as exception_info:
@@ -105,7 +105,7 @@ def test_an_image_of_version_1_says_which_it_is() -> None:
         assert exception_info.value.values == {"theirs": "1.0", "ours": f"{ISA_MAJOR}.{ISA_MINOR}"}
 
 
-def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
+def test_an_image_has_the_lowest_version_with_all_its_instructions() -> None:
     texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
     versions = set()
     for compilation in (compile_text(text, KIT) for text in texts):
@@ -116,7 +116,7 @@ def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
     assert versions == {*second_reader.VERSIONS}
 
 
-def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_instruction_can_raise_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
     """This holds for whichever instruction is the newest, at any position."""
     for op in (op for op in OPS if not op.needs):
         others = b"".join(
@@ -147,7 +147,7 @@ def test_an_image_that_uses_no_device_runs_anywhere() -> None:
         load_image(pack("SI", 1, CODE), KIT)
 
 
-def test_a_kit_may_grow_after() -> None:
+def test_unused_devices_of_the_kit_may_change() -> None:
     """Anything that a program does not use may change too."""
     image = compile_text("LOOP(FOREVER);IF(DISTANCE < 10);STOP;ENDIF;END_LOOP", KIT).image
     more = (*KIT.sensors, Device("SONAR", NUMBER, "cm", 0, 1000))
@@ -169,7 +169,7 @@ def test_a_kit_may_grow_after() -> None:
     ids=lambda change: next(iter(change)),
 )
 @pytest.mark.parametrize("uses", [1, 2, 15, 16, 17, 255, 256, 1000])
-def test_a_device_that_is_another_one_is_noticed(change: dict[str, object], uses: int) -> None:
+def test_a_different_device_is_noticed(change: dict[str, object], uses: int) -> None:
     """However often it is used: no number of uses makes two devices the same."""
     sensors = (*KIT.sensors[:2], KIT.sensors[2]._replace(**change))  # type: ignore[arg-type]
     code = bytes.fromhex("3802") * uses
@@ -227,7 +227,7 @@ def test_the_spec_has_the_devices_of_every_robot() -> None:
         assert f"`{name}`" in text
 
 
-def test_the_spec_promises_no_number_that_is_taken() -> None:
+def test_the_spec_promises_no_number_that_is_in_use() -> None:
     text = SPEC.read_text(encoding="utf-8")
     later = text[text.index("### Room to grow") :]
     promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM)\s+\((\d+)\)", later))

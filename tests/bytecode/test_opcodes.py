@@ -175,7 +175,7 @@ def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> N
             assert op.code % 8 == BY_NAME[comparator].code % 8
 
 
-def test_a_byte_begins_the_codes_of_two() -> None:
+def test_the_escape_byte_begins_two_byte_opcodes() -> None:
     assert opcodes.BY_CODE[ESCAPE] is None
     for code, op in ESCAPED_OPS.items():
         assert op_at(bytes([0, ESCAPE, code]), 1) is op
@@ -204,7 +204,7 @@ def test_numbers_of_one_byte_follow_one_another() -> None:
     assert codes == list(range(codes[0], codes[0] + len(PUSHED_NUMBERS)))
 
 
-def test_a_time_of_one_byte_is_a_time_of_its_own() -> None:
+def test_each_time_byte_encodes_a_distinct_time() -> None:
     times = [time8_ms(byte) for byte in range(256)]
     assert times == sorted({*times})
     assert [times[byte] for byte in (0, 1, 99, 100, 101, 199, 200, 255)] == [

@@ -84,7 +84,7 @@ def test_compile_to_standard_output(
     assert b"18 bytes" in capture_result.err
 
 
-def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
+def test_map_names_the_lines(tsc: Tsc, tmp_path: Path) -> None:
     source, places = tmp_path / "a.ts", tmp_path / "a.map"
     source.write_text("// hello\nW(1)\nX = 0; SHOW(1 / X)\n", encoding="utf-8")
     assert tsc("compile", source, "--map", places).code == 0
@@ -126,7 +126,7 @@ def test_code_has_a_limit_on_every_robot(tsc: Tsc, tmp_path: Path) -> None:
 # -- check --------------------------------------------------------------------------------------
 
 
-def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
+def test_check_reports_all_mistakes_in_both_languages(tsc: Tsc) -> None:
     text = "F(2 80);S = 5\nIF(DISTANCE < 10) STOP ENDIF"
     english, spanish = tsc("check", "-e", text), tsc("check", "--lang", "es", "-e", text)
     assert english.code == spanish.code == 1
@@ -203,12 +203,12 @@ def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
     ["--robot", "nobody"], ["--robot", ""], ["--robot", "/"], ["--robot", "no/such.toml"],
     ["-e", "W(1)"], ["--lang", "fr"], ["--nonsense"], ["another.ts"],
 ])  # fmt: skip
-def test_wrong_use_of_run(tsc: Tsc, arguments: list[str]) -> None:
+def test_run_refuses_wrong_use(tsc: Tsc, arguments: list[str]) -> None:
     for language in ([], ["--lang", "es"]):
         tsc("run", "-e", "DISTANCE", *language, *arguments).gives(2, out="")
 
 
-def test_sensor_of_another_robot(tsc: Tsc) -> None:
+def test_a_sensor_of_another_robot_is_explained(tsc: Tsc) -> None:
     result = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "LINER", "--sensor", "LINE_L=TRUE")
     assert result.out == "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 DONE\n"
     tsc("run", "-e", "SHOW(LINE_L)", "--robot", "liner", "--sensor", "LINE_L=2").gives(2)
@@ -243,7 +243,7 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
         assert word in result.err
 
 
-def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
+def test_an_image_of_another_robot_names_that_robot(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "a.bin"
     for text, robot in (("SHOW(LINE_L)", "liner"), ("GRIPPER(30)", "grabber")):
         assert tsc("compile", "-e", text, "-o", target, "--robot", robot).code == 0
@@ -299,7 +299,7 @@ def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
     assert tsc("fmt", "-e", laid_out).out == laid_out
 
 
-def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
+def test_fmt_leaves_wrong_programs_and_those_that_would_become_too_large(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.cli.commands.fmt.LARGEST_SOURCE_BYTES", 1000)
@@ -311,7 +311,7 @@ def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
     assert tsc("fmt", program.with_suffix(".bin")).code == 2
 
 
-def test_explain(tsc: Tsc) -> None:
+def test_explain_prints_the_explanation_of_a_code(tsc: Tsc) -> None:
     result = tsc("check", "--explain", "TS012").gives(0, out="TS012")
     assert tsc("check", "--explain", "ts012", "--lang", "es").out != result.out
     assert tsc("check", "--explain").out.count("\nTS") > 50

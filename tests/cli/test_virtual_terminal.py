@@ -110,7 +110,7 @@ def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
     assert "80 %" not in drawn_text
 
 
-def test_the_prompt_shows_what_a_person_shows_and_nothing_else() -> None:
+def test_the_prompt_shows_only_requested_values() -> None:
     terminal = Terminal("live", "--virtual", size=SIZE)
     terminal.until("tini>")
     terminal.type("X = 5; SHOW(7)\n")

@@ -100,11 +100,11 @@ def instructions(text: str) -> list[str]:
         ("IF(DISTANCE < 9); S; ENDIF", ["PUSH_READ_2", "IF8_LT 9 -> 0005", "STOP"]),
     ],
 )  # fmt: skip
-def test_the_shortest_instruction(text: str, expected: list[str]) -> None:
+def test_the_shortest_instruction_is_chosen(text: str, expected: list[str]) -> None:
     assert instructions(text) == expected
 
 
-def test_a_reading_before_a_label_stays_where_it_is() -> None:
+def test_a_reading_before_a_label_is_not_moved() -> None:
     """A jump that comes to the SHOW has not passed the READ: it shows the kept reading."""
     text = "X = TRUE; DISTANCE; IF(X); DISTANCE; ENDIF; SHOW(DISTANCE)"
     assert instructions(text)[-4:] == ["IF -> 0007", "READ_2", "PUSH_SENSOR_2", "SHOW"]
@@ -127,7 +127,7 @@ def test_a_reading_before_a_label_stays_where_it_is() -> None:
         ("TIME > 2", True),
     ],
 )
-def test_the_right_side_of_an_and_is_skipped_where_it_matters(right: str, has_jump: bool) -> None:
+def test_the_right_operand_of_and_is_skipped_if_it_matters(right: str, has_jump: bool) -> None:
     text = f"X = TRUE; Y = 1; Z = 2; SHOW(X AND ({right})); SHOW(Y + Z)"
     rows = instructions(text)
     assert any(line.startswith("AND_THEN") for line in rows) == has_jump
@@ -204,7 +204,7 @@ def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: lis
     assert row_texts.count("READ_0") == near.count("READ_0")
 
 
-def test_one_jump_that_gets_longer_makes_others_longer() -> None:
+def test_lengthening_one_jump_lengthens_others() -> None:
     """The outermost of nested IFs gets its far form first, which moves the others."""
     opened_text, closed_text = "IF(X);" * 8, "ENDIF;" * 8
     border = 255 - 7 * 3  # seven IFs with their PUSH_VAR lie in the outermost one, 3 bytes each
@@ -216,7 +216,7 @@ def test_one_jump_that_gets_longer_makes_others_longer() -> None:
         assert [size == 4 for size in sizes] == [skipped > 255 for skipped in over]
 
 
-def test_code_that_no_machine_takes_is_refused_and_not_laid_out_for_ever() -> None:
+def test_code_beyond_every_machine_is_refused_without_endless_layout() -> None:
     most = compile_text("S;" * CODE_BYTES, KIT)
     assert most.is_right and len(most.code) == CODE_BYTES
     over = compile_text("S;" * (CODE_BYTES + 1), KIT)

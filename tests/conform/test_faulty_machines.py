@@ -19,7 +19,7 @@ def runs_by_name() -> dict[str, Run]:
 
 
 @pytest.mark.parametrize("fault", [pytest.param(fault, id=fault.says) for fault in faults()])
-def test_the_case_notices_the_fault(fault: Fault) -> None:
+def test_each_fault_fails_its_case(fault: Fault) -> None:
     run = runs_by_name()[fault.noticed_by]
     right = answer_of(run)
     assert right is not None

@@ -95,7 +95,7 @@ def find_differences(tsc: Tsc, command: str, *more: str) -> list[dict[str, objec
     return rows
 
 
-def test_the_machine_from_the_specification_passes_all(
+def test_the_machine_from_the_specification_passes_all_cases(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
@@ -115,7 +115,7 @@ def test_the_machine_from_the_specification_passes_all(
 
 
 @pytest.mark.parametrize("refusal", ["UNKNOWN_NEEDS", "OTHER_VERSION"])
-def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refusal: str) -> None:
+def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_tasks(refusal: str) -> None:
     cases = [case for case in machine_cases() if case.needs][:4]
     answers = iter([f"REFUSED {refusal}"])
     judged = list(verdicts(cases, lambda request, most: [next(answers)]))
@@ -189,7 +189,7 @@ def patch_oracle(name: str, old: str, becomes: str) -> ModuleType:
 @pytest.mark.parametrize(
     ("file", "old", "new", "named_text"), BREAKAGES, ids=[b[1] for b in BREAKAGES]
 )
-def test_a_broken_machine_is_told(file: str, old: str, new: str, named_text: str) -> None:
+def test_a_broken_machine_is_reported(file: str, old: str, new: str, named_text: str) -> None:
     spec = Spec()
     if file == "verifier":
         assert old in verifier.text()
@@ -245,7 +245,7 @@ def kit_of(case: MachineCase) -> Kit:
     return Kit(sensors, actuators, speeds["speed"], speeds["turn"])
 
 
-def test_names_are_unique_and_each_refusal_is_there() -> None:
+def test_names_are_unique_and_each_refusal_has_a_case() -> None:
     from tiniscript.bytecode.image import REFUSALS
     from tiniscript.bytecode.verify import RULES
 
@@ -319,21 +319,19 @@ def test_a_machine_that_has_ended_is_not_waited_for(
     assert next(looks) == 1, "only when it began to wait"
 
 
-def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(
-    tsc: Tsc, tmp_path: Path
-) -> None:
+def test_a_silent_crash_is_reported_with_its_exit_code(tsc: Tsc, tmp_path: Path) -> None:
     result = conform(tsc, machine(tmp_path, "sys.exit(3)"), "--only", "images: no code")
     assert re.search(r"exit code 3\b(?!:)", result.out)
 
 
-def test_half_an_answer_is_that_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
+def test_half_an_answer_is_reported_as_a_crash(tsc: Tsc, tmp_path: Path) -> None:
     source = "sys.stdin.readline()\nos.write(1, b'0 SHOW 1\\n')\nsys.exit('half')"
     conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100").gives(
         1, out=("exit code 1: half", "line 1: 0 SHOW 1")
     )
 
 
-def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path) -> None:
+def test_binary_output_is_shown_safely(tsc: Tsc, tmp_path: Path) -> None:
     source = "os.write(1, bytes(range(256)) + b'\\n\\x1b[2J 0 DONE')"
     result = conform(tsc, machine(tmp_path, source), "--only", "images: whole").gives(1)
     assert "\x1b" not in result.out
@@ -348,7 +346,7 @@ def test_a_machine_that_reads_nothing_does_no_harm(tsc: Tsc, tmp_path: Path) -> 
     assert "did not finish" in result.out
 
 
-def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
+def test_children_of_a_machine_end_with_it(tsc: Tsc, tmp_path: Path) -> None:
     note = tmp_path / "child"
     source = (
         "import subprocess\n"
@@ -364,13 +362,13 @@ def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", ["no_such_command", "", "'", "/"])
-def test_a_command_that_does_not_start(command: str, tsc: Tsc) -> None:
+def test_a_command_that_does_not_start_is_reported(command: str, tsc: Tsc) -> None:
     result = conform(tsc, command).gives(2)
     assert "does not start" in result.err and "Errno" not in result.err
     assert "no arranca" in conform(tsc, command, "--lang", "es").err
 
 
-def test_without_its_file_the_command_that_makes_it_is_named(
+def test_a_missing_case_file_names_the_command_that_makes_it(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(kit_files, "FOLDER", tmp_path)
@@ -395,7 +393,7 @@ sys.exit(conformance.main(sys.argv[1:]))
 """
 
 
-def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
+def test_cases_are_reproducible_without_test_packages(
     tmp_path: Path,
 ) -> None:
     """A release makes them in two clones, with sets in another order in each."""
@@ -407,7 +405,7 @@ def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
         assert (tmp_path / name).read_bytes() == (conformance.FOLDER / name).read_bytes()
 
 
-def test_wrong_use(tsc: Tsc) -> None:
+def test_wrong_use_is_refused(tsc: Tsc) -> None:
     assert "--port" in tsc("doctor", "--conform").err
     assert tsc("doctor", "--conform").code == 2
     assert tsc("doctor", "--conform", "--machine", "x", "--only", "no such case").code == 2
@@ -421,13 +419,13 @@ def fences() -> Sequence[str]:
     return re.findall(r"^```\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
 
 
-def test_the_page_shows_a_run_as_it_is_asked_for_and_answered() -> None:
+def test_the_page_shows_a_real_request_and_its_answer() -> None:
     case = next(case for case in machine_cases() if case.name == "bytecode_spec: Instructions")
     assert case.request() in fences()
     assert "".join(f"{row}\n" for row in case.answer) in fences()
 
 
-def test_the_page_says_how_many(tsc: Tsc) -> None:
+def test_the_page_states_the_number_of_cases(tsc: Tsc) -> None:
     """About: a new case or two leave the page as true as it was."""
     count = len(machine_cases())
     needing = sum(bool(case.needs) for case in machine_cases())

@@ -87,7 +87,7 @@ def test_a_fault_has_the_line_of_the_program(virtual: tiniscript.VirtualRobotCon
     assert (ending.fault.name, ending.fault.line) == ("DIVIDE_BY_ZERO", 2)
 
 
-def test_a_line_is_done_at_once_and_the_program_stays(
+def test_a_line_runs_at_once_and_the_stored_program_stays(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     stored = virtual.upload("SI|SHOW(7)")
@@ -438,7 +438,7 @@ def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
     assert before.reason == "port_gone"
 
 
-def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_port_is_reported(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 300)
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()

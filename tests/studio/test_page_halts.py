@@ -152,7 +152,7 @@ def halts(page: Page, line: int) -> None:
 
 
 @drawn
-def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
+def test_a_halt_reports_where_the_other_tasks_are(page: Page) -> None:
     tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
     write_with_breakpoints(
         page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,)
