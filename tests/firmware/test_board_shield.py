@@ -133,7 +133,7 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
 @pytest.mark.sampled("name", "chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 @pytest.mark.parametrize("name", SIDES)
-def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:
+def test_both_motors_of_a_side_run_alike(name: str, chip: str) -> None:
     sides = SIDES[name]
     board = start_board(shield(*sides, chip), MOVES).run_for(START + OFF + 50)
     states = motor_states(board)
@@ -147,7 +147,7 @@ def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> Non
 
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(8))
-def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
+def test_no_motor_turns_against_its_side(seed: int) -> None:
     """This holds for any program: in between, a motor is only off, or has one of the two powers."""
     draw = random.Random(seed)
     moves = [(draw.choice([-80, -40, 0, 40, 80]), draw.choice([-80, -40, 0, 40, 80]))
@@ -198,14 +198,16 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     ([(0, "clock", True), (10, "latch", True)], "the clock before the latch"),
     ([(0, "latch", True), (10, "latch", False)], "a pulse of the latch"),
 ])  # fmt: skip
-def test_the_part_refuses_wrong_timing(changes: list[tuple[float, str, bool]], why: str) -> None:
+def test_the_simulated_register_refuses_wrong_timing(
+    changes: list[tuple[float, str, bool]], why: str
+) -> None:
     register = ShiftRegister()
     with pytest.raises(WrongTiming, match=why):
         for ns, name, is_high in changes:
             register.change(ns, name, is_high)
 
 
-def test_the_part_shows_eight_bits_at_its_latch_and_not_before() -> None:
+def test_the_simulated_register_shows_eight_bits_at_its_latch_only() -> None:
     register = ShiftRegister()
     ns = 0.0
     for bit in (1, 0, 1, 0, 0, 1, 1, 0):
@@ -225,7 +227,7 @@ def messages_of(robot: str) -> list[str]:
     return describe(exception_info.value, "en")
 
 
-def test_what_takes_the_shields_pins_is_named() -> None:
+def test_devices_that_take_the_shields_pins_are_named() -> None:
     """A buzzer takes the timer of M1 and M2, on a Mega a servo that of M1."""
     four = profile(*SIDES["four"])
     assert read(four, "test").board.buzzer is None

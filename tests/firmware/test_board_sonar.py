@@ -44,7 +44,7 @@ def read_power_cm(board: Board, ms: float) -> int:
 @pytest.mark.sampled("distance_cm", keep=2)
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 99, 399])
-def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: int) -> None:
+def test_pings_are_30_ms_apart_and_measure_the_distance(name: str, distance_cm: int) -> None:
     """A program that only measures does not measure more often. A sensor wants 10 us, and the loop
     does not wait for it."""
     robot = robots.load(name)
@@ -77,7 +77,7 @@ def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     assert read_power_cm(board, third + 5) == 60
 
 
-def test_until_looks_again_every_40_ms() -> None:
+def test_until_checks_again_every_40_ms() -> None:
     """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
     board = board_with_distances(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START + 250)
@@ -268,7 +268,7 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
     assert board.pin(echo, hangs + 1100) == "in"
 
 
-def test_a_line_that_is_high_for_a_moment_only_is_not_a_hung_sensor() -> None:
+def test_a_briefly_high_line_is_not_a_hung_sensor() -> None:
     """This holds after any pause: a glitch at the moment of a query is not read as 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;W(0.5);END_LOOP"
     robot = robots.load("tinibot")
@@ -285,7 +285,7 @@ def test_a_line_that_is_high_for_a_moment_only_is_not_a_hung_sensor() -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
-def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
+def test_one_wrong_sample_in_fifty_never_becomes_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""
     true, heard_cm = approaching_obstacle(seed, 100)
     board = board_with_distances("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard_cm)
@@ -303,7 +303,7 @@ def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
 @pytest.mark.sampled("number", keep=2)
 @pytest.mark.parametrize("wrong_cm", [3, 400])
 @pytest.mark.parametrize("number", range(FIRST_SAMPLES))
-def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> None:
+def test_a_first_value_is_the_median_of_three(number: int, wrong_cm: float) -> None:
     heard_cm: list[float] = [50] * (FIRST_SAMPLES + 1)
     heard_cm[number] = wrong_cm
     board = board_with_distances(
@@ -313,7 +313,7 @@ def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> N
 
 
 @pytest.mark.parametrize("before_cm", [400, 100])
-def test_what_is_suddenly_there_takes_a_second_ping(before_cm: float) -> None:
+def test_a_sudden_obstacle_needs_a_second_ping(before_cm: float) -> None:
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     board = board_with_distances(text, *[before_cm] * 10, 8).run_for(START + 500)
     comes, confirmed = ping_starts_ms(board, sonar_pins(board.robot)[0])[10:12]

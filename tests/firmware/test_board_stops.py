@@ -52,7 +52,7 @@ def test_a_stop_turns_actuators_off(holds: bool) -> None:
     assert all(abs(us - 1500) < 6 for _, us in pulses(board, GRIPPER)), "a pulse was cut"
 
 
-def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
+def test_a_stopped_actuator_stays_off_until_a_program_sets_it() -> None:
     board = busy(grabber_robot(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 150, START + 200)
     board.press(START + 300, START + 400 - STEADY)
@@ -79,7 +79,7 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
 
 @pytest.mark.sampled("holds")
 @pytest.mark.parametrize("holds", [False, True])
-def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
+def test_a_hanging_main_loop_turns_everything_off(holds: bool) -> None:
     """This includes outputs that a profile holds, because nothing controls them any more."""
     board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER))
     board.level(START + 50, WIRE, True)
@@ -90,7 +90,7 @@ def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
     assert pulses_from(board, START + 160) == 0
 
 
-def test_a_stop_turns_a_fan_and_a_lamp_off_that_is_on_when_low() -> None:
+def test_a_stop_turns_off_a_fan_and_an_active_low_lamp() -> None:
     board = start_board(on_board("tinibot", "uno", *WORKSHOP), "SI|FAN(80);LAMP(TRUE);W(5)")
     for pin in (9, 19):
         board.watch(pin)

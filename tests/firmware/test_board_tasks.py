@@ -39,7 +39,7 @@ def test_the_pins_follow_the_trace(case: Case, robot: Uno) -> None:
 
 
 @each_board
-def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
+def test_the_clock_runs_on_while_four_tasks_count(robot: Uno) -> None:
     text = "LOOP(3);F(0.1, 60);B(0.1, 60);END_LOOP;" + BUSY_PROGRAM.partition(";")[2]
     check_pins(
         program(text)._replace(parts={"tiniscript": text, "senses": "max-time = 0.5"}), robot
@@ -52,7 +52,7 @@ def list_settings(robot: Uno, since: int) -> list[Setting]:
 
 
 @each_board
-def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
+def test_the_robot_backs_away_from_an_obstacle_and_drives_on(robot: Uno) -> None:
     """It does so each time, and if the obstacle has gone in the meantime, it drives on at once."""
     robot.sonar("trigger", "echo", 80)
     wired_uno = computer(robot)
@@ -74,7 +74,7 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
 
 
 @each_board
-def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
+def test_a_missing_echo_delays_no_other_task(robot: Uno) -> None:
     robot.sonar("trigger", "echo", None)
     wired_uno = computer(robot)
     heard_count = len(robot.received_bytes)
@@ -91,7 +91,7 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
 @pytest.mark.sampled("later_ms", "board", keep=2)
 @BOARDS
 @pytest.mark.parametrize("later_ms", [100, 200, 500, 5000])
-def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
+def test_an_echo_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
     """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
     robot.sonar("trigger", "echo", 350)
     wired_uno = computer(robot)
@@ -116,7 +116,7 @@ def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: 
 
 
 @each_board
-def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
+def test_a_stop_ends_busy_tasks(robot: Uno) -> None:
     """It reaches the pins as fast as in any program, and no motor starts again."""
     wired_uno = computer(robot)
     send(wired_uno, BUSY_PROGRAM, is_detached=True)

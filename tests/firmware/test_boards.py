@@ -31,7 +31,7 @@ from tiniscript.robots.ports import AVRS
 
 @pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", sorted(DRIVERS))
-def test_states_of_the_motor_pins(name: str) -> None:
+def test_motor_pins_follow_the_powers(name: str) -> None:
     board = start_board(robot_with_driver(name), MOVES).run_for(START + OFF + 50)
     states = tuple(board.motors(START + ms) for ms in (FORWARD, BACKWARD, TURN, OFF))
     assert states == DRIVERS[name][1]
@@ -39,7 +39,7 @@ def test_states_of_the_motor_pins(name: str) -> None:
 
 
 @pytest.mark.parametrize(("powers", "pin"), [("80, 0", 0), ("0, 80", 3)])
-def test_one_motor_drives_alone(powers: str, pin: int) -> None:
+def test_a_single_motor_can_run_alone(powers: str, pin: int) -> None:
     board = start_board(robot_with_driver("tb6612"), f"SI|M({powers});W(1)").run_for(START + 60)
     state = board.motors(START + 50)
     assert (state[pin], state[-1]) == ("pwm 204", "high")
@@ -81,7 +81,7 @@ def test_a_button_that_is_down_after_a_reset_starts_nothing() -> None:
 LATE_US = 6  # a pulse ends when no other interrupt is at work
 
 
-def test_servos_turn_and_stand_for_a_second() -> None:
+def test_servo_motors_turn_and_rest_for_a_second() -> None:
     board = start_board(robot_with(SERVOS), "SI|F(0.2, 80);M(0, 100);W(0.2)").run_for(START + 2000)
     left, right = (pulses(board, pin) for pin in board.motor_pins())
     assert left[0][0] >= START and right[0][0] >= START

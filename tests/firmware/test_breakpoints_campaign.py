@@ -104,7 +104,7 @@ def compare(seed: int) -> bool:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_a_program_that_is_stepped_does_what_it_does_alone(seed: int) -> None:
+def test_a_stepped_program_does_the_same_as_an_unstepped_one(seed: int) -> None:
     compare(seed)
 
 

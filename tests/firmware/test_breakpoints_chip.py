@@ -178,7 +178,7 @@ def chip(
 
 @pytest.mark.sampled("first", "chip")
 @pytest.mark.parametrize("first", [0, 100, 200])
-def test_a_program_that_is_stepped_gives_its_trace(chip: Uno, first: int) -> None:
+def test_a_stepped_program_gives_its_trace(chip: Uno, first: int) -> None:
     programs_of = images(first)
     for _ in range(2):
         seed, image = next(programs_of)
@@ -197,7 +197,7 @@ def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> No
 
 @pytest.mark.sampled(of="long ways of a chip")
 @pytest.mark.parametrize(("board", "environment"), [*ENVIRONMENT_WITH_BREAKPOINTS.items()])
-def test_what_halts_leaves_the_stack_its_room(
+def test_a_firmware_with_breakpoints_leaves_enough_stack(
     board: str, environment: str, sketches: Callable[[str], Path]
 ) -> None:
     stack = firmware_stack.measure(sketches(environment), robots.load("tinibot"), board, True)

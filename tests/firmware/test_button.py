@@ -39,7 +39,7 @@ def test_spikes_start_nothing_whatever_their_spacing(count: int) -> None:
 
 
 @pytest.mark.parametrize("turn", TURNS_US)
-def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
+def test_a_press_is_reported_at_once_and_its_release_late(turn: int) -> None:
     chance = random.Random(turn)
     cases = []
     for _ in range(200):
@@ -56,7 +56,7 @@ def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
             assert released_us <= edges[-1] + STEADY_US + 3000
 
 
-def test_a_release_that_does_not_last_does_not_count() -> None:
+def test_a_brief_release_does_not_count() -> None:
     """Spikes while the button is held down, at all spacings."""
     cases = [
         (turn, 0, [0, *(100_000 + us for us in spikes(5, spacing_ms * 1000)), 2_000_000])
@@ -68,7 +68,7 @@ def test_a_release_that_does_not_last_does_not_count() -> None:
         assert events[-1][0] >= 2_000_000 + STEADY_US - 1000
 
 
-def test_a_press_after_a_spike_is_told() -> None:
+def test_a_press_after_a_spike_is_reported() -> None:
     """Its first edge may count as the spike's chatter: then it is reported once it has lasted."""
     cases = [(100, 0, [0, SPIKE_US, gap_us, 500_000]) for gap_us in range(200, 60_000, 700)]
     for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
@@ -94,7 +94,7 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
     assert not [change for change in uno.pins.history("left") if change.state == "pwm"]
 
 
-def test_an_uno_that_runs_is_stopped_by_the_first_edge(uno: Uno) -> None:
+def test_the_first_edge_stops_a_running_uno(uno: Uno) -> None:
     wired_uno = computer(uno)
     send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(100)

@@ -75,7 +75,7 @@ def test_the_document_has_every_state() -> None:
     assert list(read_table()) == list(STATES)
 
 
-def test_the_presses_are_what_they_are_called() -> None:
+def test_presses_match_their_names() -> None:
     letters_by_name = {
         name: "".join(letter for _, letter in row) for name, row in letters().items()
     }
@@ -103,7 +103,7 @@ def press_button(table: Table, press: str) -> None:
 @pytest.mark.sampled("press", keep=3)
 @pytest.mark.parametrize("press", PRESSES)
 @pytest.mark.parametrize("state", STATES)
-def test_the_button(state: str, press: str) -> None:
+def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> None:
     table = Table()
     STATES[state](table)
     robot, begun_ms = table.robot, table.robot.now_ms
@@ -141,7 +141,7 @@ def test_the_button(state: str, press: str) -> None:
 
 @pytest.mark.parametrize("has_draft", [True, False])
 @pytest.mark.parametrize("press", PRESSES)
-def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
+def test_only_a_start_discards_text(press: str, has_draft: bool) -> None:
     """An open block continues after presses that start no program."""
     table = Table(has_draft)
     STATES["has an open block of text"](table)
@@ -155,7 +155,7 @@ def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
 
 
 @pytest.mark.parametrize("press", PRESSES)
-def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
+def test_only_a_start_discards_an_upload(press: str) -> None:
     table = Table()
     table.upload_program(SAVED)
     image = image_of(f"SI|{f'F(1, {OTHER}); ' * 90}")
@@ -189,9 +189,7 @@ ACTIONS_DURING_PRESS: dict[str, Callable[[Table], object]] = {
 
 @pytest.mark.parametrize("is_sure", [True, False])
 @pytest.mark.parametrize("meanwhile", ACTIONS_DURING_PRESS)
-def test_a_release_starts_nothing_where_something_ran_or_was_stopped_since(
-    meanwhile: str, is_sure: bool
-) -> None:
+def test_a_release_starts_nothing_after_a_run_or_a_stop(meanwhile: str, is_sure: bool) -> None:
     table = Table()
     table.upload_program(SAVED)
     if "text" in meanwhile:

@@ -112,11 +112,11 @@ def break_off(kind: str, first: int, stride: int) -> int:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_an_upload_that_is_broken_off(kind: str) -> None:
+def test_a_broken_off_upload_leaves_the_robot_usable(kind: str) -> None:
     assert break_off(kind, 3, STRIDE_BYTES) > 450 // STRIDE_BYTES
 
 
-def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
+def test_a_program_overwritten_by_an_upload_is_no_longer_reported() -> None:
     """The robot still says its checksum and its length."""
     robot, session = HostFirmware(KIT), computer()
     robot.wait(200)
@@ -260,9 +260,7 @@ def memory() -> bytes:
 @pytest.mark.parametrize("kind", ROBOT_KINDS)
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("what", REQUESTS_THAT_END_UPLOAD)
-def test_an_upload_that_something_has_come_between_is_over(
-    memory: bytes, what: str, cut: str, kind: str
-) -> None:
+def test_an_interrupted_upload_is_over(memory: bytes, what: str, cut: str, kind: str) -> None:
     """The rest is refused, and the robot acts as without it. The stand-in checks that no byte of
     the running program changes.
     """
@@ -283,7 +281,7 @@ def test_an_upload_that_something_has_come_between_is_over(
 @pytest.mark.parametrize("kind", ROBOT_KINDS)
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("what", REQUESTS_DURING_UPLOAD)
-def test_an_upload_goes_on_beside_what_needs_no_memory(
+def test_an_upload_continues_beside_requests_that_need_no_memory(
     memory: bytes, what: str, cut: str, kind: str
 ) -> None:
     line, rest = cut_by(kind, memory, cut, REQUESTS_DURING_UPLOAD[what])

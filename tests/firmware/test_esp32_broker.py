@@ -73,7 +73,9 @@ def start_drive(broker: Mosquitto, text: str = AWAY_PROGRAM, keys: Keys | None =
     return Drive(robot, teacher, owner, ends)
 
 
-def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: Mosquitto) -> None:
+def test_lack_of_memory_for_a_broker_is_reported_and_the_connection_retried(
+    broker: Mosquitto,
+) -> None:
     robot, owner = join_network(Keys())
     robot.radio("H", b"\1")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
@@ -107,7 +109,7 @@ def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
     assert any(event.name == "STOPPED" for event in owner.events())
 
 
-def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
+def test_a_long_program_and_its_values_pass_the_broker(broker: Mosquitto) -> None:
     lines = "".join(f"X = {k}; " for k in range(400))
     robot, _, owner, ends = start_drive(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
     talk(robot, ends, 300)
@@ -115,7 +117,7 @@ def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
     assert names.count("SHOW") == 2 and "DONE" in names
 
 
-def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
+def test_the_broker_is_stored_reported_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = connect_to_broker(broker, Keys())
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     restarted_robot = restart_with_school_in_reach(robot)
@@ -150,7 +152,7 @@ def test_invalid_broker_settings_are_refused(broker: Mosquitto) -> None:
         assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
 
 
-def test_a_name_and_a_password_where_the_broker_asks_for_them(
+def test_a_broker_may_require_name_and_password(
     brokers: Callable[..., Mosquitto],
 ) -> None:
     user, password = "robots", "a long password: 40 letters and some more"
@@ -167,7 +169,7 @@ def test_a_name_and_a_password_where_the_broker_asks_for_them(
     own.connect_client(Access(user, password)).close()
 
 
-def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
+def test_a_driver_keeps_the_robot_while_it_sends_messages(broker: Mosquitto) -> None:
     """Its silence counts from its last message, not from its first."""
     robot, _ = connect_to_broker(broker, Keys())
     teacher, stranger = broker.connect_client(), broker.connect_client()
@@ -193,7 +195,7 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
     assert not end.has_ended, "it has the robot now, and is not told that again"
 
 
-def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:
+def test_setting_the_same_broker_repeatedly_keeps_one_connection(broker: Mosquitto) -> None:
     """Otherwise it would use up all sockets of an ESP32."""
     robot, owner = connect_to_broker(broker, Keys())
     for _ in range(20):
@@ -204,7 +206,7 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
 # -- stops --------------------------------------------------------------------------------------
 
 
-def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
+def test_a_stranger_can_only_stop(broker: Mosquitto) -> None:
     robot, teacher, owner, ends = start_drive(broker)
     stranger, other = broker.connect_client(), remote(robot, Keys(50), 11)
     end = AtBroker(robot, stranger)
@@ -240,7 +242,7 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     assert motor_state(robot) == "MOTORS 0 0"
 
 
-def test_a_typed_stop_of_a_stranger_stops(broker: Mosquitto) -> None:
+def test_a_strangers_typed_stop_works(broker: Mosquitto) -> None:
     """It is a whole line in one message; a frame's code may contain such bytes."""
     robot, _, owner, ends = start_drive(broker)
     stranger = broker.connect_client()
@@ -263,7 +265,7 @@ def test_a_typed_stop_of_a_stranger_stops(broker: Mosquitto) -> None:
         assert upload_text(robot, ends, owner) == "OK"
 
 
-def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
+def test_retained_messages_count_as_old(broker: Mosquitto) -> None:
     """A retained stop does not prevent driving, and a retained request has no effect."""
     keys = Keys()
     stranger = broker.connect_client()
@@ -292,7 +294,7 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
         stranger.close()
 
 
-def test_what_is_said_again_has_nothing_done(
+def test_replayed_messages_have_no_effect(
     broker: Mosquitto, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All that the owner has said, later, in its order: a whole drive and more."""
@@ -341,7 +343,7 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
 
 @pytest.mark.sampled("how")
 @pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
-def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
+def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
     own, keys = brokers(), Keys()
     robot, _, _, ends = start_drive(own, keys=keys)
     talk(robot, ends, 500)
@@ -387,7 +389,7 @@ def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosqu
 
 
 @pytest.mark.parametrize("is_silent", [False, True])
-def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool) -> None:
+def test_the_last_will_reports_absent_robots(broker: Mosquitto, is_silent: bool) -> None:
     """A connection that ends, and one that falls silent."""
     robot, _ = connect_to_broker(broker, Keys())
     teacher = broker.connect_client()
@@ -397,7 +399,7 @@ def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool)
     in_time(lambda: teacher.list_robots("aula") == gone_robot_presences, "its last will")
 
 
-def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
+def test_announcements_by_strangers_are_bounded(broker: Mosquitto) -> None:
     stranger, teacher = broker.connect_client(), broker.connect_client()
     announcements = {
         "12345678": b"+a/b+#\x1b[2J", "xyz": b"+no id", "1234567": b"+short", "1234567g": b"+no",

@@ -98,7 +98,7 @@ def test_the_owner_drives_over_tls(room: Room) -> None:
     ("another name", "OTHER_NAME"), ("the start of the name", "OTHER_NAME"),
     ("it has ended", "EXPIRED"), ("a broker without TLS", "NO_TLS"),
 ])  # fmt: skip
-def test_who_is_not_trusted_gets_nothing(
+def test_an_untrusted_broker_gets_no_data(
     room: Room, tmp_path: Path, brokers: Callable[..., Mosquitto], what: str, state: str
 ) -> None:
     settings = room.settings()
@@ -129,9 +129,7 @@ def test_who_is_not_trusted_gets_nothing(
 
 
 @drawn
-def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
-    room: Room, tmp_path: Path
-) -> None:
+def test_a_newly_set_broker_does_not_inherit_the_previous_error(room: Room, tmp_path: Path) -> None:
     """Its task is looking a name up, for seconds, when the new one comes."""
     robot, owner = join_network(Keys())
     announce_computer(robot, NAME, "127.0.0.1", wait_ms=3000)
@@ -182,7 +180,7 @@ def test_an_old_tls_is_refused(tmp_path: Path, version: ssl.TLSVersion, state: s
 
 
 @pytest.mark.parametrize("is_chain", [False, True])
-def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
+def test_only_the_brokers_own_certificate_is_accepted_without_its_authority(
     tmp_path: Path, brokers: Callable[..., Mosquitto], is_chain: bool
 ) -> None:
     """The certificate is signed by an unknown authority. Its name and date still count."""
@@ -220,7 +218,7 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
 
 
 @drawn
-def test_whoever_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
+def test_a_silent_peer_is_given_up_while_the_cable_keeps_working(room: Room) -> None:
     """First a computer accepts the connection and stays silent, then the broker does."""
     keys = Keys()
     robot, owner = join_network(keys)
@@ -258,7 +256,7 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
 @pytest.mark.parametrize(("name", "address", "is_found"), [
     (NAME, NOBODY, True), ("nobody.aula", LOCAL, True), ("nobody.aula", NOBODY, False),
 ])  # fmt: skip
-def test_a_broker_is_found_by_its_name_or_where_it_was(
+def test_a_broker_is_found_by_name_or_at_its_last_address(
     brokers: Callable[..., Mosquitto], name: str, address: bytes, is_found: bool
 ) -> None:
     robot, owner = join_network(Keys())
@@ -293,7 +291,7 @@ def test_invalid_tls_settings_are_refused() -> None:
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(most)) == "OK"
 
 
-def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room: Room) -> None:
+def test_the_broker_survives_a_reset_and_a_failed_replacement(room: Room) -> None:
     robot, owner = connect_to_broker(room.broker, Keys(), room.settings())
     robot.fill_nvs()
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"

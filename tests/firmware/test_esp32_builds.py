@@ -36,7 +36,7 @@ needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 @pytest.mark.parametrize("standard", ["gnu++11", "gnu++23"])
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))
-def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> None:
+def test_the_sketch_compiles_for_both_cores(chip: str, major: int, standard: str) -> None:
     """The board, file by file: the modules that know no board are compiled elsewhere."""
     for path in CODE:
         assert complaints(path, *flags_of(chip, major), standard=standard) == ""
@@ -44,7 +44,7 @@ def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> Non
 
 @needs_host
 @pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
-def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
+def test_the_used_tls_functions_exist_in_mbedtls() -> None:
     """Debian's headers: in version 12 those of 2.28, as in ESP-IDF 4.4."""
     flags, file = flags_of("esp32dev", 2), STAND_INS_FOLDER / "signatures.cpp"
     command = ["g++", "-std=gnu++11", *flags, "-dM", "-E", str(file)]
@@ -64,7 +64,7 @@ def test_a_chip_with_its_own_usb_uses_it_as_the_port(major: int) -> None:
 @needs_host
 @pytest.mark.parametrize("pin", [18, 19])
 @pytest.mark.parametrize("part", ["Pwm kBuzzer = {{7", "Pin kStartButton = {8"])
-def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_path: Path) -> None:
+def test_a_header_that_occupies_the_port_is_refused(part: str, pin: int, tmp_path: Path) -> None:
     """A header from before `tsc firmware --board` refused these pins."""
     header = firmware.header([robots.load("tinibotc3")], "a test.")
     assert part in header
@@ -78,7 +78,7 @@ def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_p
 
 
 @needs_host
-def test_a_core_with_another_bluetooth_is_told() -> None:
+def test_a_core_with_different_bluetooth_is_refused() -> None:
     """Arduino's core 3.3 has NimBLE on an ESP32-C3, which delivers written data late."""
     flags = (*flags_of("esp32c3", 3), "-DCONFIG_NIMBLE_ENABLED")
     errors = complaints(BOARD / "esp32" / "low_energy.cpp", *flags)
@@ -162,7 +162,7 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     assert unknown == CORE | OF_VERSION[major] | {"setup", "loop", "esp_spp_disconnect"} & unknown
 
 
-def test_every_file_says_for_which_chip_it_is() -> None:
+def test_every_file_states_its_chip() -> None:
     """The Arduino IDE compiles all files for any board: those of other families are empty."""
     for folder, condition in (("avr", "__AVR__"), ("esp32", "ARDUINO_ARCH_ESP32")):
         for path in (BOARD / folder).glob("*.cpp"):
@@ -182,7 +182,7 @@ def test_our_macros_come_after_the_headers_of_the_core() -> None:
             assert text.index(f"#define {name}") > text.rindex("#include <"), path.name
 
 
-def test_nothing_waits() -> None:
+def test_the_firmware_never_blocks() -> None:
     """The tasks of radios are the exception: they wait for their radio, and delay no one else."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "vTaskDelay", "new", "malloc", "flush"}
     waiting_calls = {}
@@ -201,7 +201,7 @@ def test_the_settings_need_no_registry_of_libraries() -> None:
     assert "lib_deps" not in text
 
 
-def test_the_menu_of_the_arduino_ide_that_has_room_is_named() -> None:
+def test_the_required_partition_menu_of_the_arduino_ide_is_named() -> None:
     """The IDE takes our partitions, and compares with the size of its menu's."""
     rows = [
         [field.strip() for field in line.split(",")]

@@ -34,7 +34,7 @@ def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
 
 @pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
-def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
+def test_an_idle_page_gives_way(is_owned: bool) -> None:
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
     assert upload_text(robot, ends, page, SHORT) == "OK"
@@ -52,7 +52,7 @@ def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
 @pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("is_detached", [False, True])
-def test_the_client_whose_program_runs_stays_the_driver_while_it_is_heard(
+def test_a_client_stays_the_driver_while_it_is_heard_and_its_program_runs(
     is_owned: bool, is_detached: bool
 ) -> None:
     robot, page, other = pair(is_owned)
@@ -73,7 +73,7 @@ SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
 
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("starts", ["a client", "a client, and the button"])
-def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
+def test_a_detached_run_can_be_taken_over_once_its_client_is_silent(
     starts: str, is_owned: bool
 ) -> None:
     """Its values go to the listener, which may take over."""
@@ -95,7 +95,7 @@ def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
-def test_a_page_gives_way_to_nobody_without_a_key() -> None:
+def test_a_page_gives_way_only_to_clients_with_a_key() -> None:
     robot, page, _ = pair(is_owned=True)
     stranger, typed_bytes = session(5, robot), Bytes()
     end = LowEnergy(robot)
@@ -124,7 +124,7 @@ CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
 @pytest.mark.sampled("what", "is_owned", keep=3)
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("what", CHANGES)
-def test_whoever_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
+def test_an_active_client_is_not_overtaken(what: str, is_owned: bool) -> None:
     """However long it takes: each part that changes something counts. Then the next one drives."""
     robot, page, other = pair(is_owned)
     far = LowEnergy(robot)
@@ -164,7 +164,7 @@ def upload_stopped(robot: Esp32Robot, ends: Ends, page: Session) -> None:
 @pytest.mark.parametrize("before", [upload_running, upload_waiting, upload_stopped])
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("has_passed", [False, True])
-def test_behind_the_button_anybody_drives(
+def test_anybody_may_drive_after_the_button(
     before: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
 ) -> None:
     """The previous driver, though still heard, has no part in the new run."""

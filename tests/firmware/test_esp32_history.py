@@ -204,7 +204,7 @@ def check(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_a_robot_is_as_its_twin(part: int) -> None:
+def test_a_robot_behaves_like_its_twin_with_another_history(part: int) -> None:
     for seed in range(part * 5, part * 5 + 5):
         check(seed)
 

@@ -91,7 +91,7 @@ def owner_time_ms(robot: Esp32Robot, make: Make, keys: Keys) -> int:
 @pytest.mark.sampled("make", "wrong", keep=3)
 @pytest.mark.parametrize("make", TRANSPORTS)
 @pytest.mark.parametrize("wrong", DISTURBANCES)
-def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
+def test_errors_of_one_client_do_not_affect_the_next(make: Make, wrong: str) -> None:
     def connected_place() -> tuple[Esp32Robot, Keys]:
         keys = Keys()
         robot, end, _ = far_owner(keys)
@@ -117,7 +117,7 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
 @pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", TRANSPORTS[:2])
 @pytest.mark.parametrize("typed_bytes", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
-def test_nobody_is_told_what_another_one_has_typed(make: Make, typed_bytes: bytes) -> None:
+def test_typed_text_is_never_shown_to_other_clients(make: Make, typed_bytes: bytes) -> None:
     robot, _ = make_owned_robot(Keys())
     talk(robot, [], AUTHORITY_MS)
     talk(robot, [(end := make(robot), Bytes(typed_bytes))], 2)
@@ -170,7 +170,7 @@ STATUS, PING_SEQ = BY_NAME["STATUS"].number, 77
 @pytest.mark.sampled("most")
 @pytest.mark.parametrize("most", [0, 1, 7, 30, 1000])
 @pytest.mark.parametrize("requests", [1, 5, 60])
-def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
+def test_the_next_client_gets_no_remainder_of_a_partial_message(most: int, requests: int) -> None:
     """The network accepts a few bytes at a time, and the client before may leave at any moment."""
     robot, end, _ = far_owner(Keys())
     end.leave()
@@ -193,7 +193,7 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
     assert rests or most == 1000
 
 
-def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
+def test_the_next_client_gets_no_packet_beyond_its_own_mtu() -> None:
     """The agreement of the client before does not matter: a client without one gets 20 bytes."""
     robot, _ = make_owned_robot(Keys())
     for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
@@ -213,7 +213,7 @@ class Late(LowEnergy):
             super().subscribe()
 
 
-def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
+def test_the_next_client_gets_only_its_own_answers_after_subscribing() -> None:
     robot, _ = make_owned_robot(Keys())
     talk(robot, [(end := LowEnergy(robot), Bytes(b"\0"))], 20)
     for number in range(3):
@@ -265,7 +265,7 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
 
 
 @drawn
-def test_whoever_comes_too_early_costs_nobody_anything() -> None:
+def test_a_client_that_connects_too_early_affects_nobody() -> None:
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     owner = remote(robot, keys, 2)
@@ -286,7 +286,7 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
 
 
 @drawn
-def test_whoever_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
+def test_a_disconnect_during_another_connect_is_attributed_correctly() -> None:
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     for _ in range(5):
@@ -318,7 +318,7 @@ FIRST_BYTES = (
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(10))
-def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
+def test_surplus_network_clients_are_disconnected(seed: int) -> None:
     """And whoever has one is told what it asked, whoever had it before."""
     rng = random.Random(seed)
     robot, end, _ = far_owner(keys := Keys())

@@ -21,7 +21,7 @@ def readings(client: Session) -> list[ReadingEvent]:
 
 
 @pytest.mark.parametrize("then", ["stays", "asks again", "leaves", "comes anew"])
-def test_whoever_drives_has_all_readings_whatever_another_one_does(then: str) -> None:
+def test_the_driver_gets_all_readings_whatever_other_clients_do(then: str) -> None:
     """The other client gets none: readings go to the same client as values."""
     robot = boot()
     driver, other = session(1, robot), session(2, robot)

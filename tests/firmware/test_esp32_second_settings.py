@@ -206,7 +206,7 @@ def check_radio(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(10))
-def test_after_any_history_a_radio_does_what_a_fresh_one_does(part: int) -> None:
+def test_a_radio_with_any_history_behaves_like_a_fresh_one(part: int) -> None:
     """It joins, is announced, listens, tries again, and is told, at the same times."""
     for seed in range(part * 5, part * 5 + 5):
         check_radio(seed)
@@ -214,7 +214,7 @@ def test_after_any_history_a_radio_does_what_a_fresh_one_does(part: int) -> None
 
 @pytest.mark.sampled("reason")
 @pytest.mark.parametrize("reason", [15, 202, 203, 204])
-def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
+def test_a_network_that_finally_accepts_is_not_reported_as_refusing(reason: int) -> None:
     """With a weak signal, the robot may have joined and be waiting for its address."""
     robot, owner = make_owned_robot(Keys())
     refuse_robot(robot, SCHOOL, reason)
@@ -256,7 +256,7 @@ def saving_time_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(10))
 @pytest.mark.parametrize("last", REQUEST_MAKERS)
-def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: int) -> None:
+def test_partial_settings_do_not_mix_with_complete_ones(last: str, seed: int) -> None:
     """The sender may disconnect at any moment before the last part."""
     rng = random.Random(seed)
     robot, owner = make_owned_robot(Keys())
@@ -456,7 +456,7 @@ ALL_ANSWER_BYTES = len(CONNECT_ANSWER + SUBSCRIBE_ANSWER + STOP_PUBLICATION * 3 
 @pytest.mark.parametrize("rest", [b"", b"\xff" * 9, b"\x30\xff\xff\xff\xff\xff"])
 @pytest.mark.sampled("part", "rest")
 @pytest.mark.parametrize("part", range(6))
-def test_a_connection_that_is_cut_anywhere_is_made_again(
+def test_a_connection_cut_anywhere_is_restored(
     cut_broker: CutBroker, part: int, rest: bytes
 ) -> None:
     """The cut is in each byte of each packet; the next connection begins like the first."""

@@ -38,7 +38,7 @@ from tiniscript.link.session import Session
 
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_program_over_each_radio(make: Make, major: int) -> None:
+def test_a_program_runs_over_each_radio(make: Make, major: int) -> None:
     robot = boot(major=major)
     client = session(1, robot)
     ends: Ends = [(make(robot), client)]
@@ -48,7 +48,7 @@ def test_a_program_over_each_radio(make: Make, major: int) -> None:
     assert [event.name for event in client.events()] == ["SHOW", "DONE"]
 
 
-def test_a_chip_with_one_core_and_no_serial_port_over_bluetooth() -> None:
+def test_a_single_core_chip_without_serial_port_profile_runs_programs() -> None:
     """Its idle task gets its turn."""
     robot = boot("tinibotc3")
     assert radios(robot)[:2] == ("tini-5678", "")
@@ -60,7 +60,7 @@ def test_a_chip_with_one_core_and_no_serial_port_over_bluetooth() -> None:
     assert two_cores.rests() == 0
 
 
-def test_the_radios_have_the_robots_name() -> None:
+def test_the_radios_show_the_robots_name() -> None:
     robot = boot()
     assert radios(robot)[:2] == ("tini-5678", "tini-5678")
     client = session(1, robot)
@@ -72,7 +72,7 @@ def test_the_radios_have_the_robots_name() -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
+def test_one_client_drives_while_others_watch_and_stop(make: Make) -> None:
     robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)
@@ -119,7 +119,7 @@ HARMLESS_BYTES = {
 
 @pytest.mark.parametrize("driver", range(3))
 @pytest.mark.parametrize("how", PROGRAM_ENDS)
-def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) -> None:
+def test_all_listeners_get_the_same_end_of_a_run(how: str, driver: int) -> None:
     """Each is told once, and their later requests belong to the time after it."""
     text, name = PROGRAM_ENDS[how]
     if (how, driver) == ("its client that leaves", 0):
@@ -161,7 +161,7 @@ def send_data(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) ->
         end[0].send(data)
 
 
-def test_the_next_one_drives_when_the_first_is_silent() -> None:
+def test_the_next_client_drives_once_the_first_is_silent() -> None:
     robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
@@ -178,7 +178,7 @@ def test_the_next_one_drives_when_the_first_is_silent() -> None:
     assert upload_text(robot, ends, first) == "OTHER_DRIVER"
 
 
-def test_whoever_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
+def test_a_driver_keeps_the_robot_while_its_requests_are_in_time() -> None:
     """This holds between short runs, too, and for longer than the longest allowed silence."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
@@ -190,7 +190,7 @@ def test_whoever_drives_keeps_the_robot_while_it_asks_something_in_time() -> Non
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_whoever_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
+def test_a_leaving_client_ends_its_run_and_its_turn(make: Make) -> None:
     robot = boot()
     driver, other = session(1, robot), session(2, robot)
     end = make(robot)
@@ -209,7 +209,7 @@ def test_whoever_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
     assert actions_of(robot)[-1] == "MOTORS 80 80", "nothing of others"
 
 
-def test_whoever_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
+def test_a_client_that_connects_right_after_another_is_not_confused_with_it() -> None:
     """The task of a radio may wait in a write meanwhile."""
     robot = boot()
     driver, other = session(1, robot), session(2, robot)
@@ -222,7 +222,7 @@ def test_whoever_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one
     assert upload_text(robot, ends, other) == "OK"
 
 
-def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> None:
+def test_an_overtaken_upload_is_not_started() -> None:
     """Its memory is another program's by then."""
     robot = boot()
     ends: Ends = [
@@ -243,7 +243,7 @@ def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> Non
     assert wait_for_outcome(robot, ends[:1], fetch) == "OK"
 
 
-def test_notifications_are_as_long_as_was_agreed() -> None:
+def test_notifications_fit_the_negotiated_mtu() -> None:
     robot = boot()
     for mtu, longest in (
         (23, 20),
@@ -277,7 +277,7 @@ def test_slow_notifications_delay_nobody_else() -> None:
     assert actions_of(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
 
 
-def test_what_a_congested_stack_does_not_take_comes_later() -> None:
+def test_output_refused_by_a_congested_stack_is_sent_later() -> None:
     robot = boot()
     once = Bytes(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
     end = LowEnergy(robot)
@@ -299,7 +299,7 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     assert not second.lengths, "what waits for one client is not told to the next one"
 
 
-def test_a_client_that_takes_nothing_stops_nobody() -> None:
+def test_a_client_that_reads_nothing_blocks_nobody() -> None:
     """The ring to it is full: its own replies wait, and the robot continues."""
     robot = boot()
     driver, deaf = session(1, robot), session(2, robot)
@@ -316,7 +316,7 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_whoever_comes_again_begins_anew() -> None:
+def test_a_returning_client_starts_afresh() -> None:
     robot = boot()
     for k in range(5):
         client = session(k + 1, robot)
@@ -329,7 +329,7 @@ def test_whoever_comes_again_begins_anew() -> None:
         assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
+def test_text_is_accepted_over_a_radio_unless_another_client_drives() -> None:
     robot = boot()
     driver, typed_bytes = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
     end = SerialPort(robot)
@@ -349,7 +349,7 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
+def test_line_endings_are_tracked_per_client(make: Make) -> None:
     """An app that ends no lines may follow one that does: its line runs after three seconds all the
     same."""
     robot = boot()
@@ -365,7 +365,7 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
     assert actions_of(robot)[-1] == "MOTORS 50 50"
 
 
-def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
+def test_of_two_simultaneous_typists_the_first_line_is_read() -> None:
     """Both would be read in the same memory: no program is of two."""
     robot = boot()
     first, second = Bytes(b"SI|LOOP(2);"), Bytes()
@@ -387,7 +387,7 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
 @pytest.mark.parametrize(
     "stop", [bytes(STOP_BYTES), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))]
 )
-def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes) -> None:
+def test_a_stop_of_an_idle_robot_discards_text_typed_elsewhere(stop: bytes) -> None:
     robot = boot()
     first, second = Bytes(bytes(4)), Bytes()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
@@ -402,7 +402,7 @@ def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes)
     assert actions_of(robot) == []
 
 
-def test_the_button_of_two_who_claim_is_nobodys() -> None:
+def test_the_button_confirms_neither_of_two_claims() -> None:
     robot = boot()
     first, second = (Session(k, 115200, robot.robot.kit.fingerprint, keys=Keys(k)) for k in (1, 2))
     ends: Ends = [(None, first), (LowEnergy(robot), second)]
@@ -440,7 +440,7 @@ def overrun(robot: Esp32Robot) -> int:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
+def test_overflowing_input_is_counted_and_no_stop_is_lost(make: Make) -> None:
     """A packet of a serial port has up to 990 bytes: the core keeps 512 of them, unless asked."""
     for stop in (bytes(STOP_BYTES), b"\r\nS\r\n"):
         robot = boot()
@@ -456,7 +456,7 @@ def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
         assert overrun(robot) == (2003 - 1022) % 256
 
 
-def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
+def test_a_serial_port_whose_client_reads_nothing_accepts_a_stop() -> None:
     """The core's `write` waits for a second meanwhile."""
     robot = boot()
     end = SerialPort(robot)
@@ -521,7 +521,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> None:
+def test_lines_wait_while_their_answers_are_not_read(make: Make) -> None:
     """Each has an answer, which a client reads late; earlier lines are not lost either."""
     robot = boot()
     end, who = make(robot), Bytes()
@@ -544,7 +544,7 @@ def press_keys(robot: Esp32Robot, ends: Ends, who: Session, keys: int = 1) -> st
     return wait_for_outcome(robot, ends, who.press(keys))
 
 
-def test_keys_come_from_who_drives_or_from_anybody_where_nobody_does() -> None:
+def test_keys_come_from_the_driver_or_from_anybody_without_one() -> None:
     """Keys do not make their sender the driver."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
@@ -560,7 +560,7 @@ def test_keys_come_from_who_drives_or_from_anybody_where_nobody_does() -> None:
     assert upload_text(robot, ends, first) == "OK", "nor is he who has pressed last"
 
 
-def test_keys_end_no_upload_of_somebody_else() -> None:
+def test_keys_do_not_end_another_clients_upload() -> None:
     robot = boot()
     first, second = session(1, robot), session(2, robot)
     ends: Ends = [(None, first), (LowEnergy(robot), second)]

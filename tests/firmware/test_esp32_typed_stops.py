@@ -63,12 +63,12 @@ def stops_after_every_prefix(
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_typed_stop_over_a_radio_while_the_cable_drives(make: Make) -> None:
+def test_a_typed_stop_over_a_radio_stops_a_run_of_the_cable(make: Make) -> None:
     robot = boot()
     stops_after_every_prefix(robot, session(1, robot), None, make(robot))
 
 
-def test_a_typed_stop_over_a_network() -> None:
+def test_a_typed_stop_over_a_network_works() -> None:
     """Typed lines do not drive there, but a typed stop works."""
     robot, owner = join_network(Keys())
     end = Network(robot)
@@ -117,13 +117,13 @@ def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
     end.leave()
 
 
-def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
+def test_a_typed_stop_over_the_cable_stops_a_run_of_a_radio() -> None:
     robot = boot()
     stops_after_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_whoever_comes_next_begins_a_line(make: Make) -> None:
+def test_the_next_client_begins_a_new_line(make: Make) -> None:
     """Unfinished text of the previous client ends with its connection."""
     robot = boot()
     driver = session(1, robot)
@@ -140,7 +140,7 @@ def test_whoever_comes_next_begins_a_line(make: Make) -> None:
 
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4), b"Stop.\n", b"SSS", b"\0S\0"])
-def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
+def test_a_stop_is_recognized_even_if_the_buffer_is_full(make: Make, stop: bytes) -> None:
     """This holds wherever the ring ends within it, and if the robot reads before the rest
     arrives."""
     robot = boot()
@@ -158,7 +158,7 @@ def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_what_is_lost_stops_nobody(make: Make) -> None:
+def test_lost_bytes_cause_no_stop(make: Make) -> None:
     """Nor does a frame that contains a line S and arrives whole after the lost bytes."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
@@ -211,7 +211,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
+def test_a_stop_inside_a_waiting_open_block_belongs_to_the_block(make: Make) -> None:
     """As over a cable, it ends the running program at once and also becomes part of the line."""
     robot = boot()
     end, who = make(robot), Bytes()
@@ -226,7 +226,7 @@ def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
+def test_a_frame_before_a_waiting_stop_has_no_effect(make: Make) -> None:
     robot = boot()
     end = make(robot)
     live = b"\0" + encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
@@ -236,7 +236,7 @@ def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
+def test_a_stop_counts_even_if_its_client_leaves_at_once(make: Make) -> None:
     """In every state of the receiver: the client's other data is discarded, but not a complete
     stop.
     """

@@ -69,7 +69,7 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
 
 
 @FAULTS
-def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
+def test_an_owner_of_an_unreadable_robot_gets_the_reason_and_keeps_the_key(fault: int) -> None:
     kept_memory = claimed_with_program(keys := Keys())
     robot = boot(kept_memory, fault)
     owner = remote(robot, keys, 4)
@@ -84,7 +84,7 @@ def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
 
 
 @pytest.mark.parametrize("fault", [NVS_CLOSED, NVS_NUMBERS_FAIL])  # a new chip has no blobs to read
-def test_a_new_robot_is_nobodys_until_its_memory_can_be_read(fault: int) -> None:
+def test_an_unreadable_new_robot_has_no_owner(fault: int) -> None:
     robot = boot(EMPTY_MEMORY, fault)
     anybody = session(2, robot)
     assert upload_text(robot, [(None, anybody)], anybody) == "NOT_OWNER"

@@ -69,7 +69,7 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
     assert radio_state.service == "_tiniscript._tcp 8473"
 
 
-def test_without_memory_the_announcement_comes_later() -> None:
+def test_lack_of_memory_delays_the_announcement() -> None:
     robot, _ = join_network(Keys())
     rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())
     rebooted_robot.wait(100)
@@ -82,7 +82,7 @@ def test_without_memory_the_announcement_comes_later() -> None:
     assert radios(rebooted_robot).service == "_tiniscript._tcp 8473"
 
 
-def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
+def test_a_network_survives_a_reset_until_it_is_forgotten() -> None:
     robot, owner = join_network(Keys())
     rebooted_robot = restart_with_school_in_reach(robot)
     assert port_of(rebooted_robot)
@@ -130,7 +130,7 @@ def test_the_password_is_not_readable_on_the_line() -> None:
         assert all(text[k : k + 4] not in heard_bytes for k in range(len(text) - 3))
 
 
-def test_a_robot_without_an_owner_takes_none() -> None:
+def test_a_robot_without_an_owner_accepts_no_network() -> None:
     robot = boot()
     client = session(1, robot)
     for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
@@ -141,7 +141,7 @@ def test_a_robot_without_an_owner_takes_none() -> None:
     assert wait_for_outcome(robot, [(None, client)], client.ping()) == "OK"
 
 
-def test_a_stranger_takes_none_away() -> None:
+def test_a_stranger_cannot_remove_the_network() -> None:
     robot, _ = join_network(Keys())
     stranger = remote(robot, Keys(50))
     ends: Ends = [(LowEnergy(robot), stranger)]
@@ -160,7 +160,7 @@ def test_invalid_network_settings_are_refused() -> None:
         assert state(robot, owner) == ("OFF", "OFF")
 
 
-def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
+def test_a_network_is_stored_atomically_while_the_motors_are_off() -> None:
     robot, owner = make_owned_robot(Keys())
     ends: Ends = [(None, owner)]
     assert upload_text(robot, ends, owner, "SI|F(1.5, 40)") == "OK"
@@ -183,7 +183,7 @@ def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
         assert radios(rebooted_robot).joins == 0, entry
 
 
-def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
+def test_a_wrong_password_and_an_unreachable_network_are_reported() -> None:
     """The core says "disconnected" of a wrong password; its event has the reason."""
     robot, owner = join_network(Keys())
     ends: Ends = [(None, owner)]
@@ -239,7 +239,7 @@ def test_no_two_transports_have_the_same_challenge() -> None:
 # -- over TCP -----------------------------------------------------------------------------------
 
 
-def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
+def test_over_wifi_the_owner_drives_and_a_stranger_watches_and_stops() -> None:
     robot, end, owner = far_owner(Keys())
     stranger = remote(robot, Keys(50), 11)
     ends: Ends = [(end, owner), (Network(robot), stranger)]
@@ -255,7 +255,7 @@ def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
+def test_a_robot_without_its_former_owner_does_not_move_over_wifi() -> None:
     keys = Keys()
     robot, owner = join_network(keys)
     assert wait_for_outcome(robot, [(None, owner)], owner.disown(0)) == "OK"
@@ -281,7 +281,7 @@ def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
         "MOTORS 80 80", "MOTORS 0 0"]  # fmt: skip
 
 
-def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
+def test_a_lost_network_ends_the_run_and_the_cable_keeps_working() -> None:
     keys = Keys()
     robot, end, owner = far_owner(keys)
     cable = session(12, robot)
@@ -302,7 +302,7 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     assert actions_of(robot)[-1] == "MOTORS 0 0", "a client that leaves ends its run at once"
 
 
-def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
+def test_strangers_who_trickle_bytes_block_no_stop() -> None:
     """Two have both places, and say a letter of a line now and then; an owner's keeps his."""
     robot, end, owner = far_owner(Keys())
     ends: Ends = [(end, owner)]
@@ -320,7 +320,7 @@ def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
+def test_two_strangers_give_way_to_a_later_client() -> None:
     robot, owner = join_network(Keys())
     waiting, looking = Network(robot), remote(robot, None)
     looking_ends: Ends = [(Network(robot), looking)]
@@ -350,7 +350,7 @@ def test_a_client_whose_first_bytes_stay_unclear_is_disconnected() -> None:
     assert slow.has_ended, "ten seconds after it came, whatever it says"
 
 
-def test_a_client_that_takes_nothing_stops_nobody() -> None:
+def test_a_client_that_reads_nothing_blocks_nobody() -> None:
     robot, owner = join_network(Keys())
     deaf = Network(robot)
     deaf.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
@@ -390,7 +390,7 @@ def is_wifi_off(robot: Esp32Robot) -> bool:
 
 @pytest.mark.sampled("reset")
 @pytest.mark.parametrize("reset", [PANIC, TASK_WATCHDOG, BROWN_OUT])
-def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int) -> None:
+def test_after_three_restarts_wifi_is_off_until_the_cable_enables_it(reset: int) -> None:
     keys = Keys()
     robot, _ = join_network(keys)
     for is_third in (False, False, True):
@@ -419,7 +419,7 @@ ROW = (PANIC, 1000)  # a reset, and how long after the one before
     [(EXTERNAL, 1000)] * 4 + [ROW, (EXTERNAL, 1000), ROW, (EXTERNAL, 1000)],
     [ROW, ROW, (PANIC, 20_000), ROW, ROW, (PANIC, 20_000)],
 ], ids=["power-on", "external", "20 seconds"])  # fmt: skip
-def test_an_invalid_row_of_restarts_is_ignored(row: list[tuple[int, int]]) -> None:
+def test_an_invalid_restart_counter_is_ignored(row: list[tuple[int, int]]) -> None:
     robot, _ = join_network(Keys())
     for reset, lived_ms in row:
         robot = restart(robot, reset, lived_ms)
@@ -428,7 +428,7 @@ def test_an_invalid_row_of_restarts_is_ignored(row: list[tuple[int, int]]) -> No
         assert is_wifi_off(restart(robot, PANIC, 1000))
 
 
-def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:
+def test_wifi_is_off_if_nvs_is_full_and_restarts_without_wifi_do_not_count() -> None:
     keys = Keys()
     robot, owner = join_network(keys)
     for _ in range(2):

@@ -549,7 +549,9 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("text_before", PREVIOUS_HISTORIES)
-def test_a_robot_is_as_its_twin(text_before: str, kind: str, part: int) -> None:
+def test_a_robot_behaves_like_its_twin_with_another_history(
+    text_before: str, kind: str, part: int
+) -> None:
     counts = [check(seed, kind, text_before) for seed in range(part * 10, part * 10 + 10)]
     assert sum(counts) > 20 and min(counts) > 0, counts
 

@@ -220,7 +220,7 @@ def play(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))
-def test_a_hostile_client_is_answered_and_the_robot_lives(seed: int) -> None:
+def test_a_hostile_client_is_answered_and_the_robot_keeps_working(seed: int) -> None:
     play(seed)
 
 

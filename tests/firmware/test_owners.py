@@ -77,7 +77,9 @@ def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
 
 
 @pytest.mark.parametrize("what", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
-def test_what_confirms_no_claim(what: Callable[[Owned, Session], PendingRequest[Any]]) -> None:
+def test_other_button_actions_confirm_no_claim(
+    what: Callable[[Owned, Session], PendingRequest[Any]],
+) -> None:
     table, keys = Owned(), Keys()
     session = table.session(keys)
     assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
@@ -121,7 +123,7 @@ CLAIM_CASES = ["nothing", "cut", "cut, later not", "held", "held and cut", "take
 @pytest.mark.sampled("late_ms")
 @pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
 @pytest.mark.parametrize("what", CLAIM_CASES)
-def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:
+def test_a_claim_ends_within_the_documented_time(late_ms: int, what: str) -> None:
     """However long answers take, and whatever the result of the press. A key that the robot may
     have taken is kept: it is shown the next time."""
     table, keys = Owned(), Keys()
@@ -150,7 +152,7 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
     assert owner_of(table, table.session(keys, nonce=7)) == (OWNED_BY_YOU if is_taken else FREE)
 
 
-def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() -> None:
+def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
     table = Owned()
     first, second = Keys(1), Keys(50)
     early, late = table.session(first, nonce=1), table.session(second, nonce=2)
@@ -176,7 +178,7 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
 
 @pytest.mark.sampled("cut_ms", keep=9)
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
-def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
+def test_a_power_cut_leaves_the_old_or_the_new_key(cut_ms: int) -> None:
     table, keys = Owned(), Keys()
     session = table.claim_session(keys)
     session.claim(KEY_OWNER)
@@ -190,7 +192,7 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     assert owner_of(later, later.session(keys, nonce=77)) == OWNED_BY_YOU
 
 
-def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None:
+def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
     table, keys = Owned(), Keys()
     session = table.session(keys)
     for _ in range(7):  # claims that were left before the button was held
@@ -216,7 +218,7 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     assert [(key.is_pending, key.is_stale) for key in stale.stored_keys] == [(True, True)] * 2
 
 
-def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
+def test_a_key_that_one_side_cannot_store_grants_nothing() -> None:
     table, keys = Owned(), Keys()
     keys.is_full = True
     session = table.session(keys)
@@ -229,7 +231,7 @@ def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
     assert owner_of(table, session) == FREE
 
 
-def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> None:
+def test_a_claim_is_stored_despite_an_unsaved_name_that_stays_reported() -> None:
     table, keys = Owned(), Keys()
     for place in (4, 4 + 31):  # both slots of the name
         table.robot.wear_out(place + 12)  # the first letter of its name
@@ -242,7 +244,7 @@ def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> Non
     assert owner_of(restarted_robot, restarted_robot.session()) == OWNED_BY_OTHER
 
 
-def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
+def test_a_name_is_stored_despite_an_unsaved_key() -> None:
     table, keys = Owned(), Keys()
     session = table.session(keys)
     assert table.outcome(session, session.name(b"NEW")) == "OK"
@@ -255,7 +257,7 @@ def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
 @pytest.mark.parametrize("second", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("first", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])
-def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> None:
+def test_each_claim_needs_its_own_press(first: int, second: int, by: str) -> None:
     """A confirmed claim does not confirm the next one, whatever its number of requests."""
     table, keys = Owned(), Keys()
     session = table.claim_session(keys, first)
@@ -274,7 +276,7 @@ def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> 
 @pytest.mark.parametrize("silent_ms", [0, AUTHORITY_MS + 100])
 @pytest.mark.parametrize("has_pressed", [False, True])
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
-def test_a_press_for_who_has_gone_confirms_nobody_else(
+def test_a_press_for_an_absent_claimant_confirms_nobody_else(
     which: int, has_pressed: bool, silent_ms: int
 ) -> None:
     """Nor does that client's request turn the next press into another client's."""
@@ -298,7 +300,7 @@ def test_a_press_for_who_has_gone_confirms_nobody_else(
     assert table.outcome(session, request) == "OK"
 
 
-def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
+def test_a_stale_key_is_tried_at_most_once_at_hello() -> None:
     table, teacher_session, other = Owned(), Keys(), Keys(70)
     table.claim_session(teacher_session)
     session = table.session(teacher_session, nonce=2)
@@ -312,7 +314,7 @@ def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
     assert owner_of(table, table.session(other, nonce=40)) == OWNED_BY_YOU
 
 
-def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
+def test_a_stale_key_that_works_is_no_longer_stale() -> None:
     """Another session may come between challenge and tag."""
     table, keys = Owned(), Keys()
     table.claim_session(keys)
@@ -327,7 +329,7 @@ def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
 # -- the teacher ----------------------------------------------------------------------------------
 
 
-def test_a_teachers_key_drives_and_gives_a_robot_back() -> None:
+def test_a_teachers_key_drives_and_releases_a_robot() -> None:
     table, pupil, teacher = Owned(), Keys(), Keys(90)
     session = table.session(teacher, nonce=2)
     assert table.claim(session, KEY_TEACHER) == "OK"
@@ -372,7 +374,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: int) -> None:
+def test_a_robot_stays_blocked_by_a_teachers_stop_until_released(seed: int) -> None:
     """This holds for any number of stops, and for any stops, starts and presses in between."""
     rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
@@ -457,7 +459,7 @@ def test_text_drives_an_owned_robot_only_where_it_may() -> None:
     assert b"tsc set text on" in answer()
 
 
-def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None:
+def test_a_robot_identifies_itself_but_leaves_the_buzzer_to_a_program() -> None:
     table = Owned()
     session = table.session()
     assert table.outcome(session, session.identify()) == "OK"
@@ -478,7 +480,7 @@ HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what
 
 
 @pytest.mark.parametrize("holds", HELD_PROGRAMS)
-def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds: str) -> None:
+def test_each_identify_request_shows_the_robot_for_three_seconds(holds: str) -> None:
     """Also while it still shows itself, or has just done so. Then its light shows the result."""
     table = Owned()
     robot, session = table.robot, table.session()
@@ -509,7 +511,7 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
         ]
 
 
-def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
+def test_a_storm_of_identify_requests_affects_no_run_or_stop() -> None:
     """A stranger may ask as often as the line carries it."""
     table, keys = Owned(), Keys()
     session = table.claim_session(keys)
@@ -526,7 +528,7 @@ def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
 
 
 @pytest.mark.sampled(of="other builds of the firmware")
-def test_a_firmware_without_owners_says_so_and_is_free() -> None:
+def test_firmware_without_owner_support_announces_this_and_is_free() -> None:
     table = Owned(defines=("tiniscript_without_owners",))
     session = table.session(Keys())
     assert table.claim(session) == "UNKNOWN_MESSAGE"

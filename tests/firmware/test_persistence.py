@@ -50,7 +50,7 @@ def marks(robot: HostFirmware) -> list[str]:
 # -- motors ---------------------------------------------------------------------------------------
 
 
-def test_what_stands_is_saved_while_it_runs() -> None:
+def test_a_stationary_program_is_saved_while_it_runs() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, WAITS)
     assert read_saved_state(robot, session) == "SAVING"
@@ -87,7 +87,7 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_a_program_that_stands_is_stored_in_the_end_whatever_was_before(seed: int) -> None:
+def test_a_stationary_program_is_finally_stored_after_any_history(seed: int) -> None:
     """Sent again, after another one, after a power-off, or with a supply that was low."""
     chance, texts = Random(seed), [f"SI|SHOW({number})" for number in range(3)]
     robot, session = switched_on(), computer()
@@ -109,7 +109,7 @@ def test_a_program_that_stands_is_stored_in_the_end_whatever_was_before(seed: in
 # -- names and trims ------------------------------------------------------------------------------
 
 
-def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives() -> None:
+def test_a_name_is_confirmed_once_stored_and_deferred_while_driving() -> None:
     """The plug is pulled as soon as the robot has said OK."""
     robot, session = switched_on(), computer()
     for name in (b"TINI", b"TIN", b"ANA"):
@@ -129,7 +129,7 @@ def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives(
 
 
 @pytest.mark.parametrize("cut_ms", range(1, 240, 17))
-def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) -> None:
+def test_an_unconfirmed_name_is_the_old_or_the_new_one(cut_ms: int) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.name(b"OLD")) == OK
     request = session.name(b"NEW")
@@ -139,7 +139,7 @@ def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) ->
     assert request.outcome is None or name == "NEW"
 
 
-def test_a_trim_is_ok_when_it_is_kept() -> None:
+def test_a_trim_is_confirmed_once_stored() -> None:
     robot, session = switched_on(), computer()
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
@@ -150,7 +150,7 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
 
 
-def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
+def test_a_power_cut_while_storing_a_pace_leaves_a_whole_one() -> None:
     """It is the old or the new one, whatever the trim next to it; both are new once the robot has
     answered OK."""
     robot, session = switched_on(), computer()
@@ -176,7 +176,7 @@ def trim_after_power_off(robot: HostFirmware) -> Trim:
     return trim_from_reply(restarted_robot.complete(other, other.trim()))
 
 
-def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
+def test_a_name_that_fits_a_worn_byte_is_stored_after_one_that_did_not() -> None:
     """The byte of the first letter stays an O. A name that did not fit has no effect."""
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
@@ -203,7 +203,7 @@ KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFi
 
 
 @pytest.mark.parametrize("what", KEPT)
-def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) -> None:
+def test_a_failed_save_succeeds_on_a_later_request(what: str) -> None:
     """The memory accepts no writes for a while, as if the supply failed in each write. The first
     answer afterwards may still be about the last time.
     """
@@ -221,7 +221,7 @@ def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) ->
     assert OK in answers and is_kept(robot)
 
 
-def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:
+def test_a_name_is_stored_after_a_program_that_hit_a_worn_byte() -> None:
     """Each save begins with its first byte, wherever the one before has ended."""
     robot, session = switched_on(), computer()
     for power in (20, 30):
@@ -235,7 +235,7 @@ def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:
     assert name_after_power_off(robot) == "NEW"
 
 
-def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
+def test_data_with_a_worn_last_byte_reads_as_empty() -> None:
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
         assert robot.until(session, session.name(name)) == OK
@@ -249,7 +249,7 @@ def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
 # -- the supply -----------------------------------------------------------------------------------
 
 
-def test_a_low_supply_is_told_and_waited_for() -> None:
+def test_a_low_supply_is_reported_and_waited_for() -> None:
     robot, session = switched_on(), computer()
     robot.supply(is_low=True)
     send(robot, session, "SI|SHOW(1)")
@@ -266,7 +266,7 @@ def test_a_low_supply_is_told_and_waited_for() -> None:
     assert name_after_power_off(robot) == "NEW"
 
 
-def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
+def test_with_a_low_supply_another_program_can_still_run() -> None:
     """The earlier program is kept, and the pending one is given up for the new one."""
     robot, session = robot_with_saved_program()
     robot.supply(is_low=True)
@@ -287,7 +287,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
 
 @pytest.mark.sampled("seed", keep=12)
 @pytest.mark.parametrize("seed", range(30))
-def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) -> None:
+def test_a_low_supply_at_any_time_keeps_the_last_program_intact(seed: int) -> None:
     """Uploads arrive at any moment of a save, and the program in memory at a power loss is always
     whole."""
     chance = Random(seed)
@@ -316,7 +316,7 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
     assert program_after_power_off(robot) == programs[-1]
 
 
-def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
+def test_a_low_supply_after_an_interrupted_save_is_reported() -> None:
     """Repairs after a cut need enough voltage; until then, the result is unknown."""
     robot, session = robot_with_saved_program()
     memory = bytearray(robot.memory())
@@ -364,7 +364,7 @@ def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> Non
     assert actions_of(robot)[0] == "MOTORS 80 80" and actions_of(robot)[-1] == "FINISHED"
 
 
-def test_a_robot_that_writes_says_busy_to_fetch() -> None:
+def test_a_robot_that_is_saving_answers_busy_to_fetch() -> None:
     robot, session = robot_with_saved_program()
     broken_upload(robot, session)
     other = computer(3)

@@ -106,9 +106,7 @@ def chip(
 
 @pytest.mark.sampled("first", keep=2)
 @pytest.mark.parametrize("first", range(0, 100, 10))
-def test_a_mega_does_the_same_at_the_same_times_while_it_tells_readings(
-    chip: Uno, first: int
-) -> None:
+def test_reporting_readings_does_not_change_the_timing_of_a_mega(chip: Uno, first: int) -> None:
     compare(next(steady_programs(first))[1], chip)
 
 

@@ -356,7 +356,7 @@ def check(seed: int, kind: str) -> Counter[str]:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(5))
 @pytest.mark.parametrize("kind", KINDS)
-def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
+def test_each_event_is_reported_once(kind: str, part: int) -> None:
     event_counts: Counter[str] = Counter()
     for seed in range(part * 20, part * 20 + 20):
         event_counts += check(seed, kind)
@@ -365,7 +365,7 @@ def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("is_fault_first", [False, True])
-def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
+def test_an_end_is_reported_for_its_own_run_though_another_waits(
     is_fault_first: bool, kind: str
 ) -> None:
     finished_text, fault = "SI|X = 1;W(0.002)", "SI|X = 1;SHOW(1 / (X - X))"

@@ -333,7 +333,7 @@ PARTS = 20
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("starts", START_ACTIONS)
-def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
+def test_the_second_program_runs_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
     if (kind, starts) == ("an esp32", "pushes"):
         starts = "uploads"  # the button takes longer here; `test_button` covers it
     many = CASES_PER_PART[kind]
@@ -365,7 +365,7 @@ def waiting_start() -> tuple[Scene, bytes]:
     return scene, image.code
 
 
-def test_what_the_button_has_asked_for_begins_once() -> None:
+def test_a_start_by_the_button_happens_once() -> None:
     scene, code = waiting_start()
     robot = scene.robot
     robot.step(flags=2)
@@ -378,7 +378,7 @@ def test_what_the_button_has_asked_for_begins_once() -> None:
 
 
 @pytest.mark.parametrize("ends", STOPPING_ENDS)
-def test_what_the_button_has_asked_for_begins_not_after_a_stop(ends: str) -> None:
+def test_a_pending_button_start_is_cancelled_by_a_stop(ends: str) -> None:
     scene, _ = waiting_start()
     scene.robot.step(flags=2)
     END_ACTIONS[ends](scene)
@@ -386,7 +386,7 @@ def test_what_the_button_has_asked_for_begins_not_after_a_stop(ends: str) -> Non
     assert scene.robot.codes() == [] and scene.robot.is_latched
 
 
-def test_what_the_button_has_asked_for_begins_not_after_another_program() -> None:
+def test_a_pending_button_start_is_cancelled_by_another_program() -> None:
     scene, _ = waiting_start()
     robot = scene.robot
     other = image_of("SI|B(60, 40)", KIT).code
@@ -476,7 +476,7 @@ def check_ways(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(PARTS))
-def test_ways_after_anything_are_as_on_a_fresh_robot(part: int) -> None:
+def test_measured_moves_after_any_history_are_as_on_a_fresh_robot(part: int) -> None:
     counts = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
     assert counts["from where it stood"] > 20 and counts["from a move"] > 0, counts
 
@@ -495,7 +495,7 @@ def most_ahead(scene: Scene) -> float:
 
 
 @pytest.mark.parametrize("wheels", [1, 2])
-def test_what_a_held_wheel_was_behind_is_not_made_up_for_by_the_next_program(wheels: int) -> None:
+def test_the_next_program_does_not_make_up_for_a_held_wheel(wheels: int) -> None:
     assert most_ahead(with_discs()) < 0.01
     scene = with_discs()
     uploads(scene, "F(60 CM, 60)")
@@ -532,7 +532,7 @@ def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, .
 
 
 @pytest.mark.parametrize("wheels", [1, 2, 3])
-def test_each_move_is_corrected_however_many_were_corrected_before(wheels: int) -> None:
+def test_each_move_is_corrected_after_any_number_of_corrections(wheels: int) -> None:
     way, _ = ends_of_move(with_discs(), 0, 0)
     scene = with_discs()
     for _ in range(6):
@@ -543,7 +543,7 @@ def test_each_move_is_corrected_however_many_were_corrected_before(wheels: int) 
 
 @pytest.mark.parametrize("is_typed", [True, False])
 @pytest.mark.parametrize("first", ["W(0.05)", "F(60, 40)"])
-def test_what_goes_on_alone_does_so_after_what_does_not(first: str, is_typed: bool) -> None:
+def test_a_detached_run_continues_after_an_attached_one(first: str, is_typed: bool) -> None:
     scene = Scene("a mega")
     robot = scene.robot
     uploads(scene, first)

@@ -70,7 +70,7 @@ INTERVENING_STOPS: dict[str, Callable[[HostFirmware, Session], object]] = {
 
 
 @pytest.mark.parametrize("intervening_stop", INTERVENING_STOPS)
-def test_a_button_that_was_down_meanwhile_starts_nothing(intervening_stop: str) -> None:
+def test_a_button_pressed_meanwhile_starts_nothing(intervening_stop: str) -> None:
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
     robot.talk(session, 1, flags=1)
@@ -85,7 +85,7 @@ def test_a_button_that_was_down_meanwhile_starts_nothing(intervening_stop: str) 
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
-def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> None:
+def test_a_button_released_at_the_moment_of_a_stop_starts_nothing() -> None:
     """The stop has arrived in an interrupt; the main loop sees the button first."""
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
@@ -97,7 +97,7 @@ def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> 
     assert robot.is_latched
 
 
-def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -> None:
+def test_a_stopping_push_starts_nothing_but_the_next_push_does() -> None:
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
     for _ in range(3):
@@ -129,7 +129,7 @@ def test_a_stop_works_every_time(how: str) -> None:
 
 @pytest.mark.parametrize("line", [b"", b"HELLO\n", b"SI|LOOP(2)\n", b"S\n"])
 @pytest.mark.parametrize("stops", [1, 2])
-def test_whoever_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before(
+def test_a_stop_of_zeros_is_answered_with_a_frame_whatever_was_typed_before(
     line: bytes, stops: int
 ) -> None:
     robot = switched_on()
@@ -180,7 +180,7 @@ def after_power_off(table: Table) -> HostFirmware:
 
 
 @pytest.mark.parametrize(("state", "way"), PAIRS)
-def test_a_stop_in_every_state(state: str, way: str) -> None:
+def test_a_stop_works_in_every_state(state: str, way: str) -> None:
     table = table_in_state(state)
     robot = table.robot
     was_running = not robot.is_latched
@@ -207,7 +207,7 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
 
 @pytest.mark.parametrize("after_ms", [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89])
 @pytest.mark.parametrize("state", [save_typed, store_trim])
-def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: int) -> None:
+def test_a_stop_works_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: int) -> None:
     table = Table()
     state(table)
     table.talk(after_ms)
@@ -230,7 +230,7 @@ def drives(robot: HostFirmware) -> bool:
 
 
 @pytest.mark.parametrize("is_asked", ["search", "upload", "nothing"])
-def test_a_robot_that_is_not_heard_any_more_is_not_kept_driving_by_who_looks_for_it(
+def test_searching_for_a_lost_robot_does_not_keep_it_driving(
     is_asked: str,
 ) -> None:
     """The robot hears everything, so its program ends by itself, like that of a lost robot."""

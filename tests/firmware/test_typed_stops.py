@@ -128,7 +128,7 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
 
 @pytest.mark.sampled("name", keep=6)
 @pytest.mark.parametrize("name", ALL_PREFIXES)
-def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
+def test_a_typed_stop_works_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
     """Half of the spellings are typed at one rate, the others at the other one; the receiver
     alone gets each of them after any prefix in `tests/link`. After the last one the robot is asked
     whether it is latched."""
@@ -166,7 +166,9 @@ def stop_time_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     "data", [b"SSS", b"s s\tS", b"FFFFSSS", b"SI|F(1,80)SSS", b"STOPSTOP", b"stop stop", b"\0xSSS",
              b"F(1,stop STOP", b"S" * 40],
 )  # fmt: skip
-def test_whoever_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -> None:
+def test_a_stop_without_line_ends_stops_when_repeated(
+    driving_at: tuple[Uno, int], data: bytes
+) -> None:
     """A held button's row of S, and a second STOP."""
     uno, baud = driving_at
     with uno.try_out():
@@ -184,7 +186,7 @@ def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, 
 
 
 @pytest.mark.parametrize("data", [b"S", b"STOP", b"alto", b"S.", b"Stop now"])
-def test_one_without_a_line_end_stops_after_a_second(
+def test_an_unterminated_stop_stops_after_a_second(
     driving_at: tuple[Uno, int], data: bytes
 ) -> None:
     uno, baud = driving_at
@@ -331,7 +333,7 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
     assert states(uno) == FORWARD and answer_lines(uno, count_before) == "// OK\r\n"
 
 
-def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
+def test_a_pending_mistake_message_is_dropped_by_the_next_line(
     uno_at: tuple[Uno, int],
 ) -> None:
     """A stop after them is looked for before the wire is free; here it belongs to a block."""
@@ -427,7 +429,7 @@ def lines_said(uno: Uno, data: bytes) -> list[str]:
 
 @pytest.mark.sampled("line")
 @pytest.mark.parametrize("line", LINES, ids=lambda line: line[:20])
-def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
+def test_a_lost_pasted_line_is_reported(quick_uno: Uno, line: str) -> None:
     """An Uno keeps 62 bytes of text that waits. At 115200 baud, lines arrive faster than it reads
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"

@@ -34,7 +34,7 @@ def wait_until_saved(wired_uno: Wired, limit_ms: int = 4000) -> int:
 @pytest.mark.parametrize(
     ("volts", "millivolts"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)]
 )
-def test_it_saves_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
+def test_saving_works_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
     wired_uno = computer(robot)
     robot.supply(volts)
     send(wired_uno, SAVES)
@@ -52,7 +52,7 @@ def marks(uno: Uno, since: int) -> list[int]:
     ]
 
 
-def test_a_supply_that_falls_between_two_marks_is_noticed(uno: Uno) -> None:
+def test_a_supply_drop_between_two_checks_is_noticed(uno: Uno) -> None:
     """The voltage is measured before each of the three."""
     wired_uno = computer(uno)
     start_cycle = uno.cycle

@@ -164,7 +164,7 @@ class Trials:
         self.ran += image[HEADER_BYTES:] in ran_counter
 
 
-def test_what_runs_is_what_was_verified() -> None:
+def test_the_verified_code_is_what_runs() -> None:
     trials = Trials(7)
     for _ in range(TRIALS):
         trials.trial()
@@ -172,7 +172,7 @@ def test_what_runs_is_what_was_verified() -> None:
 
 
 @pytest.mark.parametrize("text", [b"X\0", b"t\0", b"D\0", b"a\n\0"])
-def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
+def test_a_typed_letter_does_not_turn_a_number_into_a_move(text: bytes) -> None:
     robot, session = new_robot(), computer()
     assert robot.until(session, session.hello()) == OK
     request = session.live(image_of(HIDDEN_MOVE_PROGRAM).code)

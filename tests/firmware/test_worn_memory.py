@@ -117,7 +117,7 @@ def check(seed: int) -> str:
 
 @pytest.mark.sampled("part", keep=2)
 @pytest.mark.parametrize("part", range(10))
-def test_what_is_said_of_what_is_kept_is_true(part: int) -> None:
+def test_reports_about_stored_data_are_true(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 30, part * 30 + 30))
     assert counts["it says what is not kept"] > 1 and counts["all is kept"] > 1, counts
 

@@ -406,7 +406,7 @@ def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
     assert answer.get("ok"), answer
 
 
-def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) -> None:
+def test_a_duplicate_request_is_executed_once(page: Page, robot: PtyRobot) -> None:
     image = compile("SHOW(1)").image.hex()
     live = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
     page.beat(live)
