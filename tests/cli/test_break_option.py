@@ -106,7 +106,7 @@ def test_a_halt_reports_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     ]
 
 
-def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: PtyRobot) -> None:
+def test_an_instruction_joined_to_the_previous_one_halts_there(pty_robot: PtyRobot) -> None:
     """The compiler takes a reading once: the statement has both."""
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     joined_text = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
@@ -225,7 +225,7 @@ def test_an_image_of_unknown_text_has_no_lines(
     on(pty_robot, "upload", image, "--break", "7").gives(2, "an image has no lines")
 
 
-def test_a_robot_that_cannot_halt_gets_nothing(
+def test_nothing_is_sent_to_a_robot_that_cannot_halt(
     pty_robot: PtyRobot, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
@@ -299,7 +299,7 @@ def test_a_line_halts_at_its_own_breakpoints_and_at_no_earlier_ones(pty_robot: P
 
 
 @pytest.mark.parametrize("halts", ["1", "4"])
-def test_lines_that_halt_do_what_they_do_alone(halts: str, pty_robot: PtyRobot) -> None:
+def test_lines_that_halt_do_the_same_as_without_halts(halts: str, pty_robot: PtyRobot) -> None:
     data = "\n".join(LINES).encode()
     alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
     halt_rows = (

@@ -161,7 +161,7 @@ def test_computers_without_a_key_can_watch_and_stop(
     assert not any(robot.moves for robot in room)
 
 
-def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
+def test_a_suspended_driver_keeps_no_robot_driving(room: Class) -> None:
     """A robot keeps its client for 3 s; another client waits for that, and then gets a message."""
     command = start_endless_upload(room)
     command.signal(signal.SIGSTOP)
@@ -204,7 +204,7 @@ def test_only_clients_that_drive_robots_have_to_keep_them_alive() -> None:
         assert options.ports == ["mqtt://h:1/c/00000001"]
 
 
-def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
+def test_messages_about_a_fleet_suggest_no_option_that_class_lacks() -> None:
     """Options that a class lacks have the fleet's default."""
     own = Options("class", "en").read(["upload"])
     room = SimpleNamespace(

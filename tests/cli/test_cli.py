@@ -24,7 +24,7 @@ WAYS = (
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
+def test_a_mistake_gives_exit_code_1_in_every_command(
     tsc: Tsc, working_folder: Path, way: str
 ) -> None:
     """Nothing is written, run or sent."""
@@ -63,7 +63,7 @@ def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> N
     ("LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
      "stack 1 of 16\n"),
 ])  # fmt: skip
-def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
+def test_compile_reports_the_duration(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
     assert runs in tsc("compile", "-e", text, "-o", tmp_path / "a.bin").out
 
 
@@ -167,7 +167,7 @@ def test_run_prints_the_trace_and_nothing_else(tsc: Tsc) -> None:
     ]  # fmt: skip
 
 
-def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
+def test_run_accepts_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
     result = tsc("run", program.with_suffix(".bin"))
     assert result.out == "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"
@@ -175,7 +175,7 @@ def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
     assert run_in_process("check", "-", data=b"S = 5").code == 1
 
 
-def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
+def test_max_steps_limits_only_steps_that_take_no_time(tsc: Tsc) -> None:
     for text, steps, last in (
         ("W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "50", "2000 LIMIT"),
         ("X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP", "100", "60000 LIMIT"),

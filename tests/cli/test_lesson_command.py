@@ -206,7 +206,7 @@ def test_worksheets_are_complete_pages(
         assert opened == []
 
 
-def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> None:
+def test_a_word_of_another_robot_suggests_no_option_that_lesson_lacks(tsc: Tsc) -> None:
     for language in ("en", "es"):
         result = tsc("lesson", "check", "1", "-e", "SI|F(1,60) UNTIL(LINE_L)", "--lang", language)
         assert result.code == 1

@@ -20,7 +20,7 @@ from tiniscript.link.outcomes import LOST, Event, LostEvent
 from tiniscript.link.requests import OK
 
 
-def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_monitor_writes_the_robots_values(pty_robot: PtyRobot, tmp_path: Path) -> None:
     rows = tmp_path / "rows.csv"
     assert (
         on(pty_robot, "upload", "-e", "SB|SHOW(1.5);W(0.1);SHOW(TRUE);X = 0;SHOW(1 / X)").code == 0

@@ -229,7 +229,7 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
         tsc("set", "trmi", *more, "--lang", "en").gives(2, "Did you mean trim?")
 
 
-def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:
+def test_each_command_is_chosen_by_its_typed_name() -> None:
     for command in COMMANDS:
         verb, *words = command_words(command).split()
         assert command_of(verb, words)[0] == command

@@ -117,7 +117,7 @@ F(FOREVER, 60) UNTIL(DISTANCE < 20)
 SHOW(LIGHT_L + LIGHT_R)"""
 
 
-def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
+def test_a_real_run_is_recorded_with_its_readings_and_replayed_in_another_world(
     tmp_path: Path,
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"

@@ -34,7 +34,7 @@ def forget_maps() -> None:
         path.unlink()
 
 
-def test_upload_names_what_its_program_shows(pty_robot: PtyRobot) -> None:
+def test_upload_names_the_values_of_its_program(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(20_000, 60_000, 12_500))
     text = "SI|SHOW(DISTANCE); SHOW(light_r-light_l)\nSHOW(7)\nSHOW(DISTANCE)"
     result = on(pty_robot, "upload", "-e", text).gives(0)

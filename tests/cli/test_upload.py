@@ -51,7 +51,7 @@ def test_slots_and_checksums_are_printed_on_request(pty_robot: PtyRobot) -> None
     assert result.out.splitlines()[0].endswith("   only in RAM   SI: running")
 
 
-def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
+def test_a_program_continues_without_tsc(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "upload", "-e", OBSTACLE, "--detach")
     assert result.code == 0 and result.out.endswith("SI: running without tsc\n")
     pty_robot.ask(lambda robot: robot.wait(7000))

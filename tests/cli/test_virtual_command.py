@@ -245,7 +245,7 @@ def test_an_accelerated_robot_is_not_lost_and_a_bad_line_only_costs_time() -> No
 
 @pytest.mark.parametrize("start", ["SI", "SB"])
 @pytest.mark.parametrize(("text", "code"), [("SHOW(1)", 0), ("X = 0;SHOW(1 / X)", 1)])
-def test_the_exit_code_is_that_of_the_run_whatever_has_begun_it(
+def test_the_exit_code_is_that_of_the_run_however_it_was_started(
     start: str, text: str, code: int
 ) -> None:
     result = run_in_process("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(

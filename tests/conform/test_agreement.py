@@ -99,7 +99,7 @@ def is_for(name: str, run: Run, answer: list[str]) -> bool:
 UNREAD = "text: The dashes and spaces that phones insert are accepted"
 
 
-def test_the_oracles_say_the_same() -> None:
+def test_the_oracles_agree() -> None:
     """The interpreter has the language reference alone. Code without text and tasks is judged by
     the machine written from the specification alone, and all refused code by its verifier."""
     spec = Spec()

@@ -260,7 +260,7 @@ def test_names_are_unique_and_each_refusal_has_a_case() -> None:
 ONE_SHOT = "list(iter(sys.stdin.readline, 'run\\n'))\nprint('0 DONE', flush=True)"
 
 
-def test_a_machine_that_ends_after_each_answer_is_started_again(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_machine_that_ends_after_each_answer_is_restarted(tsc: Tsc, tmp_path: Path) -> None:
     rows = find_differences(tsc, machine(tmp_path, ONE_SHOT), "--only", "images: ")
     assert rows
     assert {row["what"] for row in rows} == {"differs"}
@@ -288,7 +288,7 @@ def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None
     assert [row["what"] for row in rows] == [what] * tried
 
 
-def test_a_slow_reader_takes_nothing_of_the_next_process(
+def test_a_slow_reader_reads_nothing_of_the_next_process(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A number of a file that is closed is the next pipe's."""

@@ -262,7 +262,7 @@ def test_a_run_after_a_halted_one_has_its_own_clock(way: str, halted_ms: int) ->
     assert it.robot.now_ms - began_ms < 600
 
 
-def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
+def test_the_button_starts_the_verified_program_which_halts_again() -> None:
     it = debug("SI|F(0.2, 80);SHOW(1)", 0)
     assert it.halt() == Halt(0, MAIN_TASK)
     it.robot.push()

@@ -186,7 +186,7 @@ def test_a_stepped_program_gives_its_trace(chip: Uno, first: int) -> None:
         compare(image, chip)
 
 
-def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> None:
+def test_a_robot_that_can_halt_announces_it_and_reads_no_text_on_an_uno(chip: Uno) -> None:
     wired_uno = computer(chip)
     assert wired_uno.until(wired_uno.session.hello()) == OK
     assert wired_uno.session.robot is not None

@@ -138,7 +138,7 @@ LIBRARY = re.compile(r"__\w+(si|di|sf|df)[234]?\d*|mem(cpy|set|cmp|move)|__\w*di
 @pytest.mark.sampled("chip", "major")
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))
-def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_path: Path) -> None:
+def test_the_whole_sketch_links_with_only_the_core(chip: str, major: int, tmp_path: Path) -> None:
     """With compilers for both instruction sets, only names of the core stay unresolved."""
     isa = CHIPS[ISA[chip]]
     if no_compiler(isa):

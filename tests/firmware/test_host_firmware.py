@@ -56,7 +56,7 @@ def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
     assert robot.complete(session, session.live(image.code)).program == image.checksum
 
 
-def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
+def test_after_power_on_nothing_moves_and_the_button_starts_the_stored_program() -> None:
     assert not switched_on().is_lit
     robot, _ = robot_with_saved_program("SI|F(0.5, 80)")
     restarted_robot = switched_on(robot.memory())

@@ -434,7 +434,7 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
     assert table.claim(other, KEY_TEACHER) == "OK"
 
 
-def test_text_drives_an_owned_robot_only_where_it_may() -> None:
+def test_text_drives_an_owned_robot_only_with_permission() -> None:
     """The owner may allow text, or a press of two seconds does until power-off."""
     table, keys = Owned(), Keys()
     session = table.claim_session(keys)

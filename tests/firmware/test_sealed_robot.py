@@ -180,7 +180,7 @@ def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply
 
 @pytest.mark.parametrize("is_cut", [False, True])
 @pytest.mark.parametrize("is_pending", [False, True])
-def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) -> None:
+def test_no_refusal_by_a_stranger_removes_a_key(is_pending: bool, is_cut: bool) -> None:
     """A refusal has no seal: the robot's own answer, which has one, is waited for. An attacker who
     cuts the line may refuse a key forever; without that, the robot opens again."""
     table, _, keys = open_sealed_session()
@@ -305,7 +305,7 @@ def test_a_seal_lost_during_an_upload_loses_no_piece(
         assert table.robot.codes() == [image.code], moment_ms
 
 
-def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
+def test_a_sealed_session_is_renewed_with_a_reset_robot() -> None:
     """This holds whatever the first request is, including one that needs no HELLO."""
     table, session, _ = open_sealed_session()
     later = Owned(table.robot.memory(), seed=7)

@@ -116,7 +116,7 @@ STOP_ACTIONS = {
 
 
 @pytest.mark.parametrize("stop", STOP_ACTIONS)
-def test_text_after_a_stop_does_not_continue_the_text_before_it(stop: str) -> None:
+def test_text_after_a_stop_does_not_continue_earlier_text(stop: str) -> None:
     """The stop comes at any moment of an answer."""
     robot, fresh = switched_on(), switched_on()
     rng = random.Random(stop)

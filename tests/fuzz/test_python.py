@@ -211,7 +211,7 @@ def make(kind: str, count: int, number: int) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_anything_is_taken_or_refused(kind: str) -> None:
+def test_any_input_is_accepted_or_refused(kind: str) -> None:
     make(kind, EXAMPLES, 1)
 
 

@@ -120,7 +120,7 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
     ('n.one = "{n} byte"\nn.one = "{n} bytes"', 3, "n: it is there twice"),
     ('n.one = "{n} byte"\nn.other = "{m} bytes"', 2, "n: {n} is missing"),
 ])  # fmt: skip
-def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
+def test_an_invalid_row_is_dropped_and_reported_with_its_line(
     row: str, line: int, why: str, place: Path
 ) -> None:
     rows = problems(open_translation(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
@@ -140,7 +140,7 @@ def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
     (OWN.encode() + 'a = "Lée {file}."\n'.encode("latin-1"), 2),
     (OWN.encode() + b"\xff\n", 2),
 ])  # fmt: skip
-def test_a_row_that_is_not_in_utf_8_is_said_in_english(data: bytes, line: int, place: Path) -> None:
+def test_a_row_not_in_utf_8_falls_back_to_english(data: bytes, line: int, place: Path) -> None:
     (place / "xx" / "some.toml").write_bytes(data)
     assert ("some.toml", line, "this is no UTF-8: save the file as UTF-8") in problems(
         open_translation(place)
@@ -169,7 +169,7 @@ def test_changes_that_an_editor_makes_to_a_file_are_allowed(place: Path) -> None
     ("some b 123", 1, "this is no file, key and hash: some b 123"),
     ("# note\n\nsome b 00000000\nsome b 00000000", 4, "some b is there twice"),
 ])  # fmt: skip
-def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
+def test_an_invalid_hash_is_reported_with_its_line_and_kept(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / SEEN_FILE, row)
@@ -194,7 +194,7 @@ def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
     ('name = "X"\nname = "Y"', 2, "name: it is there twice"),
     ('name = "X', 1, "this is no TOML: Illegal character"),
 ])  # fmt: skip
-def test_what_a_language_cannot_say_of_itself_is_as_in_english(
+def test_invalid_language_settings_fall_back_to_english(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / ABOUT_FILE, row + "\n")
@@ -225,7 +225,7 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         )
 
 
-def test_what_cannot_be_read_is_wrong_and_costs_the_file(
+def test_an_unreadable_file_is_reported_and_dropped(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = place / "xx" / "some.toml"
@@ -284,7 +284,7 @@ def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: st
     assert sentence.format(n=0) != f"0 {one[2:]}"
 
 
-def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
+def test_a_stale_text_is_shown_in_english_until_reviewed(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     open_translation(place, OWN + 'a = "Lee {file}."\n')
@@ -309,9 +309,7 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
 
 
 @pytest.mark.parametrize("has_run", [False, True])
-def test_a_text_in_front_of_others_moves_and_loses_no_translation(
-    place: Path, has_run: bool
-) -> None:
+def test_a_text_inserted_in_front_loses_no_translation(place: Path, has_run: bool) -> None:
     open_translation(place, 'more = ["", "Quítalo.", "Ponlo."]\n', is_seen=True)
     moved_text = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
                             '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
@@ -333,7 +331,7 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     assert text_of("more") == ("Nuevo." if has_run else "New.")
 
 
-def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(place: Path) -> None:
+def test_a_new_list_item_does_not_take_a_moved_translation(place: Path) -> None:
     open_translation(place, 'more = ["", "Quítalo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
     ((_, line, why),) = problems(open_translation(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
@@ -341,7 +339,7 @@ def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(pl
     assert text_of("more/2") == "New."
 
 
-def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(place: Path) -> None:
+def test_a_translation_and_its_note_follow_the_english_text(place: Path) -> None:
     """Deleted texts are removed; a mistyped key stays, and is reported."""
     notes = '# who\n[x]\nb = "Alto."  # short\n# why\na = "Lee {file}."\ngoes = "Se va."\n# end\n'
     open_translation(place, notes)
@@ -371,7 +369,7 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen_file
 
 
-def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
+def test_a_mistake_in_a_file_loses_no_recorded_review(place: Path) -> None:
     open_translation(place, OWN + 'more = ["", "Quítalo."]\n', is_seen=True)
     seen_file = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
@@ -411,7 +409,7 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
     assert text_of("b/2") == "Abre"
 
 
-def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -> None:
+def test_a_program_is_not_translated_and_may_contain_a_lone_brace(place: Path) -> None:
     write(place / SOURCE_LANGUAGE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
     own = open_translation(place)
     assert problems(own) == []
@@ -426,7 +424,7 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
 
 @settings(deadline=None)
 @given(TEXTS, st.lists(TEXTS, min_size=2))
-def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
+def test_written_rows_are_read_back_unchanged(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
     rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
@@ -445,7 +443,7 @@ def test_a_text_is_written_as_a_person_would(text: str, row: str) -> None:
     assert quote(text) == row
 
 
-def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
+def test_texts_too_long_for_a_robot_and_unknown_lexicon_rows_are_reported(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     entries = [Entry("a", "Stop.", "", {"": text}) for text in ("x" * 41, "Arrêt", "Halte")]
@@ -486,7 +484,7 @@ def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     ("ja", "日本語", "Japanese", "other", "00000"),
     ("tlh", "tlh", "tlh", "one other", "01111"),
 ])  # fmt: skip
-def test_a_new_language_begins_with_what_unicode_knows_of_it(
+def test_a_new_language_starts_with_unicode_data(
     code: str, name: str, english_name: str, forms: str, of_1_0_2_5_11: str, place: Path,
     whole: Callable[..., int], capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -533,7 +531,7 @@ def test_a_stranger_adds_a_language_text_by_text(
     assert "languages/fr/command.toml:2: no_verbe: there is no such English text\n" in out
 
 
-def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
+def test_missing_texts_are_named_with_the_line_to_insert_after() -> None:
     """The line is that of the previous English text, whatever the order of the file."""
     translated = {"": "x"}
     rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
@@ -586,7 +584,7 @@ def test_a_wrong_english_text_goes_into_no_language(
 # -- results
 
 
-def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
+def test_a_clone_regenerates_stale_files_even_if_read_only(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.CACHE_ENDING}"
@@ -617,7 +615,7 @@ def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
     assert stop() == "Alto."
 
 
-def test_a_package_has_no_sources_and_a_page_learns_what_it_needs(place: Path) -> None:
+def test_a_package_without_sources_and_a_page_have_their_texts(place: Path) -> None:
     write(place / "xx" / "some.toml", OWN)
     write(place / "xx" / "names.toml", '"First" = "Primero"\n')
     files = languages.cache_files()
@@ -670,7 +668,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no files of a process")
-def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
+def test_a_clone_on_a_full_disk_has_its_texts(package: Path) -> None:
     code, output = command(package, "complie", "--lang", "es")
     assert code == 2 and "¿Quisiste decir compile?" in output and output.count("\n") == 1
     assert list(package.glob(f"languages/*/*{languages.CACHE_ENDING}*")) == []
@@ -683,7 +681,7 @@ def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
     (lambda path: path.write_text('[tsc]\na = "S"\na = "S"\n'), "3: a: it is there twice"),
     (lambda path: path.write_bytes(b"[tsc]\n\na = '\xff'\n"), "3: this is no UTF-8"),
 ])  # fmt: skip
-def test_english_texts_that_are_wrong_are_said_without_words_of_ours(
+def test_invalid_english_texts_are_reported_without_catalogue_texts(
     spoil: Callable[[Path], object], why: str, package: Path, tmp_path: Path
 ) -> None:
     own = tmp_path / "tiniscript"
@@ -721,7 +719,7 @@ def read_catalog(own: Translation) -> Catalog:
         return read_po(file, abort_invalid=True)
 
 
-def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> None:
+def test_a_po_file_has_texts_with_context_notes_and_flags(own: Translation) -> None:
     assert translators.exchange("xx", own.english) == 0
     assert [
         (message.context, message.id, message.string, message.fuzzy, message.auto_comments,
@@ -736,7 +734,7 @@ def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> 
     ]  # fmt: skip
 
 
-def test_what_comes_back_is_of_the_english_text_beside_it(
+def test_a_returned_translation_belongs_to_its_english_text(
     own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A fuzzy one and an empty one are left out; a text that has changed meanwhile is said."""
@@ -765,7 +763,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
-def test_a_language_goes_out_and_comes_back_with_every_text(
+def test_a_language_is_exported_and_imported_completely(
     language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -802,7 +800,7 @@ HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'
     (HEAD.encode() + b'msgid "a"\nmsgstr "b"\n',
      "xx.po:4: there is no English text with the context of nothing"),
 ])  # fmt: skip
-def test_a_po_with_a_mistake_is_said_with_its_line_and_changes_nothing(
+def test_an_invalid_po_file_is_reported_with_its_line_and_changes_nothing(
     data: bytes | None, why: str, own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if data is not None:

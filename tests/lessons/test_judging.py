@@ -207,7 +207,7 @@ def answer_to_key(key: str, does: str) -> str:
 
 
 @pytest.mark.parametrize("key", ANSWER_BY_KEY)
-def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
+def test_the_judge_presses_a_key_and_checks_the_reaction(tmp_path: Path, key: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key=f"KEY_{key}"))
     assert sentences_on(lesson, answer_to_key(key, ANSWER_BY_KEY[key])) == []
     (missed_text,) = sentences_on(lesson, answer_to_key(OPPOSITE_KEY[key], ANSWER_BY_KEY[key]))
@@ -229,7 +229,7 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
         (answer_to_key("UP", "F(0.1, 60)").replace("END_IF", "ELSE; L(0.1, 60); END_IF"), "0.0"),
     ],
 )
-def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
+def test_an_undriven_robot_stands_still(tmp_path: Path, text: str, seconds: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key="KEY_UP"))
     (missed_text,) = sentences_on(lesson, text)
     assert (
@@ -264,7 +264,7 @@ def test_held_keys_are_not_the_heartbeat_that_a_run_needs(tmp_path: Path) -> Non
     )
 
 
-def test_what_stands_after_a_loop_is_not_in_it(tmp_path: Path) -> None:
+def test_instructions_after_a_loop_do_not_count_as_inside(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "uses"\nwords = ["LOOP"]\n')
     (sentence,) = sentences_on(lesson, "LOOP(2);W(0.1);END_LOOP;BEEP(0.1, 440)")
     assert "repeats nothing" in sentence
@@ -309,7 +309,7 @@ def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> N
         ("WHEN", "WHEN(TRUE);BEEP(0.1, 440);W(FOREVER) UNTIL(FALSE);END_WHEN"),
     ],
 )
-def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
+def test_a_criterion_may_require_a_task(tmp_path: Path, word: str, task: str) -> None:
     needs = f'[[criteria]]\nkind = "beeps"\n[[criteria]]\nkind = "needs"\nwords = ["{word}"]\n'
     lesson = lesson_of(tmp_path, needs, "tinibot32")
     assert sentences_on(lesson, f"F(1, 50)\n{task}\nW(0.1)") == []
@@ -319,7 +319,7 @@ def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
     assert f"does not use {word}. Use it here: {word}" in sentence
 
 
-def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: Path) -> None:
+def test_requirements_of_one_world_hold_in_any_order(tmp_path: Path) -> None:
     needs = (
         '[[criteria]]\nkind = "beeps"\ntimes = 2\n[[criteria]]\nkind = "needs"\nwords = ["LOOP"]\n'
     )
@@ -334,7 +334,7 @@ def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: P
         assert not findings_of(text, lesson, seeds), seeds
 
 
-def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
+def test_advice_on_a_when_condition_mentions_the_robot(tmp_path: Path) -> None:
     reaches = '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n'
     lesson = lesson_of(tmp_path, reaches, "tinibot32")
     (sentence,) = sentences_on(lesson, "WHEN(DISTANCE < 4);F(1, 89);END_WHEN")
@@ -351,7 +351,7 @@ def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
         ("L(90, 60)", "was still moving when time ran out after 10.0 s"),
     ],
 )
-def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, sentence: str) -> None:
+def test_failures_of_the_whole_run_are_reported(tmp_path: Path, text: str, sentence: str) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n')
     (verdict_line,) = sentences_on(lesson, text)
     assert sentence in verdict_line
@@ -368,14 +368,14 @@ def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, senten
         ("W(0.05)", "still running"),
     ],
 )
-def test_a_program_that_never_rests_ends(tmp_path: Path, body: str, ending: str) -> None:
+def test_a_program_that_never_waits_is_ended(tmp_path: Path, body: str, ending: str) -> None:
     """The end comes by actions or by the robot's time, never by the wall clock."""
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends"\n')
     (sentence,) = sentences_on(lesson, f"LOOP(FOREVER);{body};END_LOOP")
     assert ending in sentence
 
 
-def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
+def test_the_same_seed_gives_the_same_world(tmp_path: Path) -> None:
     more = "worlds = 3\nnoise_percent = 2\nmirror = true"
     varies = '[[criteria]]\nkind = "never_touches"\n[[varies]]\npart = "boxes[1]"\ny_cm = [5, 30]\n'
     lesson = lesson_of(tmp_path, varies, more=more)
@@ -389,19 +389,19 @@ def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
     assert tracks[0] == tracks[1] != tracks[2]
 
 
-def test_the_button_starts_what_begins_with_sb(tmp_path: Path) -> None:
+def test_the_button_starts_sb_programs(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "drives"\nat_least_cm = 30\n')
     assert sentences_on(lesson, "SB|F(1, 89)") == []
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_sentence_has_a_next_step(language: str) -> None:
+def test_every_verdict_has_a_next_step(language: str) -> None:
     for key, said_so in all_said(language, "lessons").items():
         if key.startswith("said/"):
             assert said_so.count(". ") + said_so.count("; ") >= 1, key
 
 
-def test_a_wall_that_holds_a_robot_is_named_before_the_time(tmp_path: Path) -> None:
+def test_a_wall_that_blocks_a_robot_is_reported_before_the_timeout(tmp_path: Path) -> None:
     lesson = lesson_of(
         tmp_path,
         '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n[[criteria]]\nkind = "never_touches"\n',

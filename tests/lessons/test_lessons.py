@@ -41,14 +41,14 @@ def name_of(value: object) -> str:
     return str(value.label_by_language["en"]).replace(" ", "_")  # type: ignore[attr-defined]
 
 
-def test_they_are_numbered_without_a_gap() -> None:
+def test_lessons_are_numbered_without_a_gap() -> None:
     assert [int(folder.name[:2]) for folder in FOLDERS] == [*range(1, len(FOLDERS) + 1)]
     assert len(FOLDERS) >= 12
 
 
 @pytest.mark.sampled("folder", "answer", keep=len(answers_of(True)) // 4)
 @pytest.mark.parametrize(("folder", "answer"), answers_of(True), ids=name_of)
-def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
+def test_a_right_answer_passes(folder: Path, answer: Answer) -> None:
     """In the worlds of the task, and in others."""
     lesson = catalogue.load(folder)
     assert findings_of(answer.program, lesson, range(1, lesson.world_count + 1)) == []
@@ -57,7 +57,7 @@ def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
 
 @pytest.mark.sampled("folder", "answer", keep=len(answers_of(False)) // 2)
 @pytest.mark.parametrize(("folder", "answer"), answers_of(False), ids=name_of)
-def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None:
+def test_a_wrong_answer_gets_a_helpful_message(folder: Path, answer: Answer) -> None:
     lesson = catalogue.load(folder)
     findings = findings_of(answer.program, lesson, range(1, lesson.world_count + 1))
     assert findings, "it passes"
@@ -77,14 +77,14 @@ def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
 
 
 @each_lesson
-def test_what_varies_is_asked_for_in_several_worlds(folder: Path) -> None:
+def test_a_varying_lesson_is_checked_in_several_worlds(folder: Path) -> None:
     lesson = catalogue.load(folder)
     assert (lesson.world_count > 1) == bool(lesson.variations or lesson.is_mirrored)
 
 
 @each_lesson
 @in_both
-def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
+def test_the_pages_of_a_lesson_are_complete(folder: Path, language: str) -> None:
     number = int(folder.name[:2])
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
@@ -107,7 +107,7 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
 
 @each_lesson
 @in_both
-def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
+def test_a_worksheet_draws_its_contents(folder: Path, language: str) -> None:
     """Only moving parts are dashed, and a blank is wide enough to write in."""
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
@@ -162,7 +162,7 @@ def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
 
 
 @each_lesson
-def test_no_page_tells_the_answer(folder: Path) -> None:
+def test_no_page_gives_away_the_answer(folder: Path) -> None:
     """A program on a pupil's page is an example: it does not solve the task."""
     lesson = catalogue.load(folder)
     for language in LANGUAGES:
@@ -178,7 +178,7 @@ def test_every_criterion_is_judged() -> None:
     assert {*JUDGES, *text_judging.JUDGES} == set(KINDS)
 
 
-def test_spanish_speaks_to_one_pupil() -> None:
+def test_spanish_texts_address_one_pupil() -> None:
     for folder in FOLDERS:
         page = catalogue.page(folder, catalogue.PUPIL, "es")
         assert not re.search(r"\b(usted|ustedes|vosotros|coloque|escriba|pruebe)\b", page, re.I)

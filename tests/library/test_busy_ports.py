@@ -81,7 +81,7 @@ def test_a_port_that_is_free_soon_is_opened(
 
 @pytest.mark.parametrize("search_s", SEARCH_S)
 @pytest.mark.parametrize("port", PORTS)
-def test_a_port_that_stays_busy_is_said_to_be(
+def test_a_port_that_stays_busy_is_reported(
     monkeypatch: pytest.MonkeyPatch, port: str, search_s: float
 ) -> None:
     place = Place(monkeypatch, search_s, 100 * BUSY_TIMEOUT_S)
@@ -225,7 +225,7 @@ def greeting(version: str, answer: str) -> bytes:
         (greeting(__version__, "right"), "holder_baud"),
     ],
 )
-def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
+def test_attempts_to_reach_an_unshared_port_leave_nothing_open(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, data: bytes, reason: str
 ) -> None:
     """A client that waits for a busy port tries twenty times a second."""

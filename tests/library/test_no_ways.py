@@ -55,7 +55,7 @@ def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_
     assert run_in_process("run", image).out.endswith("741 DONE\n")
 
 
-def test_what_is_lacking_has_a_text_of_its_own() -> None:
+def test_each_missing_feature_has_its_own_text() -> None:
     liner = robots.load("liner")
     assert [missing_need_key(needs, liner) for needs in (0, TASKS, GO, TASKS | GO)] == [
         "", "no_tasks", "", "no_tasks"]  # fmt: skip
@@ -65,7 +65,7 @@ def test_what_is_lacking_has_a_text_of_its_own() -> None:
 
 
 @pytest.mark.parametrize("robot", robots.names())
-def test_all_robots_have_them(program: Path, robot: str) -> None:
+def test_all_shipped_robots_have_ways(program: Path, robot: str) -> None:
     profile = robots.load(robot)
     assert not missing_need_key(GO, profile)
     assert (
@@ -75,7 +75,7 @@ def test_all_robots_have_them(program: Path, robot: str) -> None:
     assert checking.check(TEXT.encode(), robot, "en").image
 
 
-def test_the_machine_in_cpp_has_them(program: Path) -> None:
+def test_the_machine_in_cpp_has_ways(program: Path) -> None:
     result = run_in_process("run", "--machine", "cpp", program)
     assert result.code == 0 and result.out == run_in_process("run", program).out
     assert tiniscript.run(TEXT, machine="cpp").events == tiniscript.run(TEXT).events
@@ -89,7 +89,7 @@ def test_a_move_without_power_is_explained() -> None:
 
 
 @pytest.mark.parametrize(("way", "ms"), [("20 CM", "0.741"), ("X CM", "")])
-def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
+def test_a_sketch_contains_the_time_if_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
     path = tmp_path / "way.ts"
     path.write_text(f"X = 5; F({way}, 60); SHOW(X)", encoding="utf-8")
     result = run_in_process("show", "--arduino", path).gives(0 if ms else 2)

@@ -131,7 +131,7 @@ STORIES = list(itertools.product(START_ACTIONS, END_ACTIONS, (False, True)))
 @pytest.mark.sampled("seed", keep=20)
 @pytest.mark.parametrize("kind", [None, ValueError, KeyboardInterrupt])
 @pytest.mark.parametrize("seed", range(len(STORIES)))
-def test_leaving_is_about_the_last_program_alone(
+def test_leaving_concerns_only_the_last_program(
     monkeypatch: pytest.MonkeyPatch, seed: int, kind: type[BaseException] | None
 ) -> None:
     rng = random.Random(seed)
@@ -150,7 +150,7 @@ def test_leaving_is_about_the_last_program_alone(
         assert leave_robot(robot, line, kind) == fresh, (before, last)
 
 
-def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_that_keeps_running_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reference for the others. Ctrl-C stops any run."""
     for story, calls in (
         (("start", "runs on", False), ["stop", CLOSE_ACTION]),
@@ -167,7 +167,7 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
             assert did == calls if kind is None else did[0] == "stop", (story, kind)
 
 
-def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_late_values_belong_to_the_text_of_their_program(monkeypatch: pytest.MonkeyPatch) -> None:
     """The next one has the same code. Its own events were not read before that."""
     robot, line = connect_client(monkeypatch)
     for name, end in (("NEAR", "; "), ("FAR", "\n")):

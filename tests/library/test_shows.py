@@ -46,7 +46,7 @@ def names(text: str) -> list[str]:
         ("SHOW(5-3)", "5 - 3"), ("SHOW(((2)))", "((2))"), ("SHOW(NOT TRUE)", "NOT TRUE"),
     ],
 )  # fmt: skip
-def test_a_value_is_called_as_the_expression_of_its_show(text: str, expected: str) -> None:
+def test_a_value_is_named_by_the_expression_of_its_show(text: str, expected: str) -> None:
     assert names(text) == [expected]
 
 
@@ -74,7 +74,7 @@ def test_the_copies_of_a_def_are_one_show() -> None:
     assert list_shows(text) == [Show("X", 1, 14)] * 3
 
 
-def test_a_map_that_is_not_of_its_text_names_nothing() -> None:
+def test_a_map_of_another_text_names_nothing() -> None:
     places = tuple(MapLocation(k, *at) for k, at in enumerate(
         [(9, 1, 9, 5), (1, 1, 0, 0), (1, 1, 1, 5), (1, 6, 1, 9), (1, 1, 2, 3), (1, 90, 1, 99)]
     ))  # fmt: skip
@@ -96,7 +96,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("cache")
-def test_a_program_is_found_by_its_checksum_alone() -> None:
+def test_a_program_is_found_by_checksum_only() -> None:
     mine, theirs = compile_right_text("SHOW(DISTANCE)"), compile_right_text("SHOW(LIGHT_R)")
     at = rows(mine.code)[-1].offset
     finder = ShowFinder({checksum(mine.image): make_source_map(mine)})
@@ -111,7 +111,7 @@ def test_a_program_is_found_by_its_checksum_alone() -> None:
 
 
 @pytest.mark.usefixtures("cache")
-def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
+def test_equal_code_is_named_by_its_own_text() -> None:
     first, second = (
         compile_right_text("NEAR = TIME; SHOW(NEAR)"),
         compile_right_text("FAR = TIME; SHOW(FAR)"),
@@ -127,7 +127,7 @@ def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
 
 
 @pytest.mark.usefixtures("cache")
-def test_a_value_is_called_so_whatever_was_shown_before() -> None:
+def test_the_name_of_a_value_does_not_depend_on_earlier_values() -> None:
     """This also holds after a reset of the robot, which restarts its run numbers."""
     programs = [compile_right_text(f"SHOW({name})") for name in ("DISTANCE", "LIGHT_R", "TIME")]
     at = rows(programs[0].code)[-1].offset

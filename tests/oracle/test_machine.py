@@ -59,18 +59,18 @@ def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[in
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
-def test_traces(seed: int) -> None:
+def test_traces_agree(seed: int) -> None:
     endings = {assert_same_trace(*code) for code in codes(seed, 500)}
     assert {"DONE", "LIMIT", "FAULT OVERFLOW", "FAULT DIVIDE_BY_ZERO"} <= endings
 
 
 @each_row("seed", [1, 7, 2**31, 2**32 - 1])
-def test_random_numbers(seed: int) -> None:
+def test_random_numbers_agree(seed: int) -> None:
     text = "LOOP(50); SHOW(RANDOM(1, 6)); SHOW(RANDOM(100, -1000.5)); END_LOOP"
     assert assert_same_trace(compile_text(text, KITS[0][1]).code, 0, {}, seed) == "DONE"
 
 
-def test_late_calls() -> None:
+def test_late_calls_agree() -> None:
     """Delays from 0 to 40 ms, of which a program's own clock makes up 20."""
     lines = 0
     late_ms = [waited * 7 % 41 for waited in range(1, MAX_STEPS)]

@@ -97,7 +97,7 @@ def disassemblies() -> list[pytest.ParameterSet]:
 
 
 @each_row("case", disassemblies())
-def test_disassembly_and_its_beginnings(case: Case) -> None:
+def test_verdicts_on_disassemblies_and_their_prefixes_agree(case: Case) -> None:
     code = assemble(case.parts["bytecode"])
     for actuators in (0, ACTUATORS):
         compare([code[:length] for length in range(len(code) + 1)], SENSORS, actuators)
@@ -110,7 +110,7 @@ def test_a_sensor_in_an_instruction_of_one_byte(code: str) -> None:
     assert compare([bytes.fromhex(code)], 8) == {0}
 
 
-def test_codes_of_up_to_two_bytes() -> None:
+def test_verdicts_on_all_codes_of_up_to_two_bytes_agree() -> None:
     compare(bytes(values) for size in range(3) for values in product(range(256), repeat=size))
 
 
@@ -126,20 +126,20 @@ def test_each_rule_is_broken_by_its_cases() -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
-def test_random_codes(seed: int) -> None:
+def test_verdicts_on_random_codes_agree(seed: int) -> None:
     broken = compare(random_codes(1000 + seed, 5000))
     broken |= compare(task_codes(1000 + seed, 2000))
     assert 0 in broken and len(broken) > 15
 
 
-def test_damaged_programs() -> None:
+def test_verdicts_on_damaged_programs_agree() -> None:
     programs = every_program()
     assert len(programs) > 100
     assert compare(programs) == {0}
     assert len(compare(damage_programs(programs, 1, 5000))) > 15
 
 
-def test_the_steps_name_every_rule_and_every_role() -> None:
+def test_the_steps_cover_every_rule_and_every_role() -> None:
     text = spec_tables.SPEC.read_text(encoding="utf-8")
     steps = text[
         text.index("A verifier keeps this state") : text.index("The control roles of instructions:")
@@ -172,7 +172,7 @@ CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 
 
 @each_row("name", [*READS, *CHECKS])
-def test_it_knows_nothing_of_the_package(name: str) -> None:
+def test_the_verifier_is_independent_of_the_package(name: str) -> None:
     text = (ROOT / "tests" / "oracle" / f"{name}.py").read_text(encoding="utf-8")
     imported_modules = {
         alias.name if isinstance(node, ast.Import) else str(node.module)

@@ -101,7 +101,7 @@ def test_random_programs_with_tasks() -> None:
         "F(TRUE CM, 60)",
     ],
 )
-def test_what_both_refuse(text: str) -> None:
+def test_both_refuse_the_same_programs(text: str) -> None:
     with pytest.raises(Mistake):
         run(text)
     assert not compile_text(text, KITS[0][1]).is_right
@@ -121,12 +121,12 @@ def test_what_both_refuse(text: str) -> None:
         "F(0.009 CM, 40)",
     ],
 )
-def test_what_both_take(text: str) -> None:
+def test_both_accept_the_same_programs(text: str) -> None:
     compilation = compile_text(text, KITS[0][1])
     assert run_python(compilation.image, KITS[0][1], Senses()) == run(text)
 
 
-def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
+def test_a_robot_without_known_speed_has_no_such_moves() -> None:
     theirs, ours = Kit(PAPER_KIT.sensors, (), 45_000), KITS[0][1]._replace(turn=0)
     assert run("F(45 CM, 100)", theirs).endswith("1000 DONE\n")
     assert compile_text("F(45 CM, 100)", ours).is_right
@@ -151,7 +151,7 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
         ("F(200 CM, 60);IF(DISTANCE < 9);S;ENDIF", "", ""),
     ],
 )
-def test_what_is_advised(text: str, code: str, shown_text: str) -> None:
+def test_advice_on_ways_agrees(text: str, code: str, shown_text: str) -> None:
     diagnostics = compile_text(text, KITS[0][1]).diagnostics
     assert [diagnostic.code.number for diagnostic in diagnostics] == [code] * bool(code)
     assert [diagnostic.values.get("way", "") for diagnostic in diagnostics] == [shown_text] * bool(
@@ -159,7 +159,7 @@ def test_what_is_advised(text: str, code: str, shown_text: str) -> None:
     )
 
 
-def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
+def test_degrees_are_shown_only_if_the_robot_has_them() -> None:
     kit = KITS[0][1]._replace(speed=0, turn=0)
     assert not compile_text("R(20, 60)", kit).diagnostics
     (diagnostic,) = compile_text("R(90, 60)", kit).diagnostics

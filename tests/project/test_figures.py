@@ -36,7 +36,7 @@ def commands_run(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return rows
 
 
-def test_it_runs_what_the_page_names(
+def test_the_commands_named_on_the_page_are_run(
     commands_run: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -53,7 +53,7 @@ def test_it_runs_what_the_page_names(
         bench.main(["sizes"])
 
 
-def test_all_that_the_page_names_is_there() -> None:
+def test_everything_named_on_the_page_exists() -> None:
     names = [name for name, *_ in bench.commands()]
     assert {"compiler", "machine", "link", "studio"} <= {*names}
     for name in names:
@@ -79,7 +79,7 @@ def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
     assert len(shown_texts) == len(rows) or name == "machine"
 
 
-def test_the_last_row_of_the_history_of_an_uno_is_what_it_takes_now() -> None:
+def test_the_last_row_of_an_unos_history_is_its_current_size() -> None:
     """Both are on the page, and only one is printed by a benchmark."""
     ((_, flash, holds, *_),) = (
         page.cells(row)

@@ -100,7 +100,7 @@ def pty_robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyRobot]:
 
 
 @each_guide
-def test_what_a_guide_types_prints_what_it_shows(
+def test_commands_of_a_guide_print_the_shown_output(
     pty_robot: PtyRobot, language: str, guide: Path, capsys: pytest.CaptureFixture[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest,

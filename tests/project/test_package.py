@@ -130,7 +130,7 @@ def python(*words: str, folder: Path, **variables: str) -> subprocess.CompletedP
 # -- the wheel
 
 
-def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
+def test_a_wheel_contains_the_repositorys_files_and_nothing_stale(
     wheel: Path, repo_files: set[str]
 ) -> None:
     packed_names = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
@@ -153,7 +153,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     assert len(sources) > 50
 
 
-def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it_is_shown(
+def test_a_wheel_states_its_licence_and_its_description_has_absolute_links(
     wheel: Path, repo: Path
 ) -> None:
     (about,) = wheel.glob("*.dist-info")
@@ -205,9 +205,7 @@ touch compiler/tiniscript/studio/page/index.html
 
 @pytest.mark.sampled(of="source packages")
 @pytest.mark.parametrize("page", ["none", "built", "asked for"])
-def test_a_wheel_says_what_it_is_made_without(
-    source_folder: Path, tmp_path: Path, page: str
-) -> None:
+def test_a_wheel_reports_missing_parts(source_folder: Path, tmp_path: Path, page: str) -> None:
     """Only a person at a terminal is asked to build the page, as with `python -m build --wheel`;
     pip, which has no terminal, needs no npm."""
     folder = tmp_path / "sources"
@@ -283,7 +281,7 @@ def test_a_source_package_has_the_whole_repository(
 
 
 @pytest.mark.sampled(of="source packages")
-def test_a_source_package_is_the_same_from_another_place(
+def test_a_source_package_is_the_same_from_any_folder(
     repo: Path, source_folder: Path, tmp_path: Path
 ) -> None:
     """Twice in a row, of files with other times, in a folder with another name."""
@@ -295,7 +293,7 @@ def test_a_source_package_is_the_same_from_another_place(
     assert first.read_bytes() == second.read_bytes()
 
 
-def test_a_registry_takes_both_packages(wheel: Path, source_folder: Path) -> None:
+def test_a_registry_accepts_both_packages(wheel: Path, source_folder: Path) -> None:
     files = [*wheel.parent.glob("*.whl"), *source_folder.parent.parent.glob("*.tar.gz")]
     assert len(files) == 2
     completed = python("-m", "twine", "check", "--strict", *map(str, files), folder=wheel)

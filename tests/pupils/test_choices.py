@@ -27,7 +27,7 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
     assert 0 < len(checks) <= 40
 
 
-def test_a_program_is_checked_so_often_and_no_more() -> None:
+def test_a_program_is_checked_a_limited_number_of_times() -> None:
     """This limit holds whatever its repairs uncover."""
     (missing,) = check("F(2 80)")
     texts: list[str] = []

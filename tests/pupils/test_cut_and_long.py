@@ -51,7 +51,7 @@ def test_all_cut_programs_end() -> None:
     ],
     ids=["words", "notes", "again", "equal", "kinds", "stops", "steps", "values", "letters"],
 )
-def test_a_long_row_is_read_once(program: str) -> None:
+def test_a_long_line_is_read_once(program: str) -> None:
     assert any(diagnostic.is_mistake for diagnostic in check(program))
     most = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
     assert calls_of_check(program) < most * len(program)

@@ -99,7 +99,7 @@ def codes_with_wrong_offers(text: str) -> list[str]:
     return bad
 
 
-def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
+def test_repairs_offered_for_the_corpus_compile(
     programs: tuple[Entry, ...],
 ) -> None:
     texts = [entry.program for entry in programs]
@@ -110,12 +110,12 @@ def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
 
 
 @each_row("text", ["SI|WAIT UNTIL BUTTON", "SI|W UNTIL BUTTON", "BREIK", "EXIT", "F(FOREVR, 60)"])
-def test_what_would_be_wrong_is_not_offered(text: str) -> None:
+def test_wrong_repairs_are_not_offered(text: str) -> None:
     for diagnostic in check(text):
         assert edits_of(diagnostic) is None
         assert not diagnostic.values.get("fix")
 
 
-def test_a_word_that_is_near_is_still_named() -> None:
+def test_a_similar_word_is_still_suggested() -> None:
     (diagnostic,) = check("BREIK")
     assert diagnostic.values["meant"] == "BREAK" and not diagnostic.values["near"]

@@ -89,7 +89,7 @@ def variants(text: str) -> list[tuple[str, str, float, str]]:
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
-def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
+def test_no_repair_of_an_example_loses_a_sign_or_a_unit(text: str) -> None:
     for wrong, written_text, value, unit in variants(text):
         repaired_text = repair_program(wrong, check).text
         assert is_kept(written_text, value, unit, repaired_text), (wrong, repaired_text)
@@ -97,7 +97,7 @@ def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> 
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
-def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> None:
+def test_suggestions_keep_a_unit_or_report_its_loss(text: str) -> None:
     """A minus is not checked: without it, a move reverses, and the message says so."""
     for wrong, written_text, value, unit in variants(text):
         shown_diagnostics = [
@@ -166,7 +166,7 @@ def loses_nothing(text: str) -> None:
         ("4*(F(2, 80))", "LOOP(4);F(2, 80);END_LOOP", [], []),
     ],
 )  # fmt: skip
-def test_what_a_repair_loses_or_does_more(
+def test_losses_and_additions_of_a_repair_are_found(
     text: str, repaired_text: str, lost: list[str], more: list[str]
 ) -> None:
     assert difference(text, repaired_text, KIT) == (lost, more)
@@ -187,7 +187,7 @@ def test_what_a_repair_loses_or_does_more(
         ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
     ],
 )
-def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(
+def test_repairs_keep_units_and_names_or_are_not_applied(
     wrong: str, repaired_text: str
 ) -> None:
     assert repair_program(wrong, check).text == repaired_text
@@ -205,7 +205,7 @@ def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(
         ("F(- 2 sec, 60)", "B(2, 60)"),
     ],
 )
-def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
+def test_suggestions_name_losses_and_other_readings(
     wrong: str, tried_text: str
 ) -> None:
     (diagnostic,) = check(wrong)
@@ -220,14 +220,14 @@ def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
 @pytest.mark.parametrize(
     "wrong", ["F({0},{1}, {2})", "avanza {0},{1} segundos a {2}", "W({2});F({0},{1}, 80)"]
 )
-def test_digits_of_a_decimal_comma_are_no_other_number(wrong: str, digits: str) -> None:
+def test_digits_after_a_decimal_comma_are_not_a_second_number(wrong: str, digits: str) -> None:
     """`F(1,5, 15)` is F(1.5, 15): its 15 is there."""
     text = wrong.format(digits[0], digits[1:], digits)
     for diagnostic in check(text):
         assert "lost" not in diagnostic.values, (text, diagnostic.values)
 
 
-def test_no_repair_takes_a_sign_for_a_command_out() -> None:
+def test_no_repair_removes_a_sign_as_a_command() -> None:
     """A stop sign is S, in any place; a sign without meaning may be removed."""
     rows = (read_language_file(language, "lexicon.txt").split("\n") for language in languages())
     command_rows = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
@@ -244,14 +244,14 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
             )
 
 
-def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
+def test_a_loss_in_one_line_does_not_block_repairs_of_others() -> None:
     """A number of another line is not that of this one, and BLA is unknown."""
     wrong = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"
     right = wrong.replace("F(2 80)", "F(2, 80)").replace("LUZ_ESQ", "LIGHT_L")
     assert repair_program(wrong, check).text == right
 
 
-def test_a_unit_is_told_where_it_stands() -> None:
+def test_a_unit_is_reported_at_its_place() -> None:
     wrong = "F(25 CM, 60) UNTIL(DISTANCE < 10 CM)"
     (diagnostic,) = check(wrong)
     assert (diagnostic.values["found"], wrong[slice(*diagnostic.span)]) == ("10 CM", "10 CM")

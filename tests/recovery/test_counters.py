@@ -46,7 +46,7 @@ def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) 
 
 @pytest.mark.parametrize("text", ["for each {v} from {a} to {b}", "para cada {v} de {a} a {b}"])
 @pytest.mark.parametrize("name", NAMES)
-def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
+def test_an_unused_counter_becomes_a_loop_count(text: str, name: str) -> None:
     for first, last in RANGES:
         wrong = f"SI|{text.format(v=name, a=first, b=last)}\nF(1, 60)\nEND_LOOP"
         assert mend(wrong) == f"SI|LOOP({last - first + 1})\nF(1, 60)\nEND_LOOP"
@@ -56,7 +56,7 @@ def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
     "text",
     ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"],
 )  # fmt: skip
-def test_what_counts_otherwise_is_left(text: str) -> None:
+def test_other_counting_loops_are_left_alone(text: str) -> None:
     fixes = [
         diagnostic.values.get("fix", "") for diagnostic in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")
     ]
@@ -73,7 +73,7 @@ STEPS = {
 @pytest.mark.parametrize(
     ("first", "last", "step"), [(10, 100, 10), (0, 9, 2), (1, 5, 1), (5, 6, 3)]
 )
-def test_a_counter_that_goes_by_steps_shows_the_same_numbers(
+def test_a_counter_with_steps_shows_the_same_numbers(
     head: str, end: str, first: int, last: int, step: int
 ) -> None:
     wrong = f"{head.format(a=first, b=last, c=last + 1, s=step)}\nSHOW(I)\n{end}"

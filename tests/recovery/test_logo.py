@@ -30,7 +30,7 @@ LINES = (
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize(("line", "right"), LINES)
-def test_a_line_of_logo_is_rebuilt_as_a_whole(line: str, right: str, place: str) -> None:
+def test_a_line_of_logo_is_converted_as_a_whole(line: str, right: str, place: str) -> None:
     for loop, forward, backward, to_right, left in LANGUAGES:
         words = {"o": loop, "f": forward, "b": backward, "r": to_right, "l": left}
         wrong = place.format(line.format(**words))
@@ -42,7 +42,7 @@ def test_a_line_of_logo_is_rebuilt_as_a_whole(line: str, right: str, place: str)
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_the_power_is_the_one_of_the_program(place: str) -> None:
+def test_converted_logo_uses_the_programs_power(place: str) -> None:
     wrong = place.format("F(2, 35);REPEAT 4 [FD 30 RT 90]")
     (diagnostic,) = check(wrong)
     assert diagnostic.values["fix"] == "LOOP(4);F(30 CM, 35);R(90 DEG, 35);END_LOOP"
@@ -69,7 +69,7 @@ TAUGHT = (("TO SQUARE", "END"), ("para cuadrado", "fin"), ("aprenda quadrado", "
 
 @pytest.mark.parametrize(("head", "end"), TAUGHT)
 @pytest.mark.parametrize(("line", "right"), LINES)
-def test_a_word_that_is_taught_is_a_def(line: str, right: str, head: str, end: str) -> None:
+def test_a_logo_procedure_becomes_a_def(line: str, right: str, head: str, end: str) -> None:
     words = {"o": "repeat", "f": "fd", "b": "bk", "r": "rt", "l": "lt"}
     name = head.split()[1].upper()
     wrong = f"{head}\n{line.format(**words)}\n{end}\n{name}"
@@ -78,7 +78,7 @@ def test_a_word_that_is_taught_is_a_def(line: str, right: str, head: str, end: s
 
 
 @pytest.mark.parametrize(("head", "end"), [("para todo", "fin"), ("para robot", "fin")])
-def test_a_word_without_a_body_teaches_nothing(head: str, end: str) -> None:
+def test_a_logo_procedure_without_a_body_defines_nothing(head: str, end: str) -> None:
     assert not any(
         "DEF" in diagnostic.values.get("fix", "")
         for diagnostic in check(f"F(2, 80)\n{head}\n{end}")

@@ -52,7 +52,7 @@ CALL_SLIPS = (
 
 
 @pytest.mark.parametrize("language", languages())
-def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: str) -> None:
+def test_no_message_about_a_def_has_a_gap_or_a_wrong_word(language: str) -> None:
     for count, slip in product(ARGUMENT_COUNTS, CALL_SLIPS):
         names, numbers = (", ".join(its[:count]) for its in (NAMES, NUMBERS))
         header = slip.format(w="", a=names) if slip[0] == "{" else ""
@@ -85,7 +85,7 @@ UNTAUGHT_NAMES = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "
 
 
 @pytest.mark.parametrize("name", UNTAUGHT_NAMES)
-def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: str) -> None:
+def test_an_undefined_word_is_explained_with_def_for_any_values(name: str) -> None:
     for given_text in GIVEN_VALUES:
         text = f"{name}({given_text})"
         first = check(text)[0]
@@ -95,7 +95,7 @@ def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: st
 
 
 @pytest.mark.parametrize("count", range(1, PARAMETERS + 1))
-def test_another_count_of_values_shows_the_call_and_says_how_many(count: int) -> None:
+def test_a_wrong_number_of_values_is_reported_with_the_call(count: int) -> None:
     usage = f"SIDE({', '.join(NAMES[:count])})"
     for value_count in range(PARAMETERS + 2):
         text = f"DEF {usage}\nS\nEND_DEF\nSIDE({', '.join(['60'] * value_count)})"
@@ -137,7 +137,7 @@ EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
 
 
 @each_row("count, extra", product(ARGUMENT_COUNTS, EXTRAS))
-def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, extra: str) -> None:
+def test_wrong_text_after_a_defs_name_is_reported_with_the_right_header(count: int, extra: str) -> None:
     """Default values of Python for calls without any. All names are known below."""
     names = NAMES[:count]
     right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
@@ -149,7 +149,7 @@ def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, 
 
 
 @pytest.mark.parametrize("count", range(2, PARAMETERS + 1))
-def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> None:
+def test_a_missing_comma_in_a_def_is_shown_in_its_header(count: int) -> None:
     names = NAMES[:count]
     right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for bits in range(1, 1 << (count - 1)):
@@ -202,7 +202,7 @@ def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> No
 @pytest.mark.parametrize(
     "right", ["F(2, 80)", "B(1, 60)", "L(0.5, 60)", "BEEP(1, 440)", "M(50, -30)"]
 )
-def test_a_point_before_a_space_is_a_comma(right: str, point: str) -> None:
+def test_a_point_before_a_space_is_read_as_a_comma(right: str, point: str) -> None:
     for place in ("{}", "SI|{}", "W(1);{};S", "S\n{}\nS"):
         wrong = place.format(right.replace(", ", point))
         assert repair_program(wrong, check).text == place.format(right), wrong

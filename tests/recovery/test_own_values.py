@@ -24,7 +24,7 @@ THOUSANDS = ("1,000", "2,500", "12,000", "1,500")
 @pytest.mark.parametrize("form", CALL_FORMS)
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 @pytest.mark.parametrize(("value", "power"), [("40", "70"), ("7.5", "35"), ("V", "V"), ("V", "45")])
-def test_a_unit_that_is_a_value_goes_to_its_own(
+def test_a_unit_given_as_a_value_joins_its_value(
     form: str, word: str, unit: str, value: str, power: str
 ) -> None:
     begun_text = "V = 12;" if "V" in (value, power) else ""
@@ -47,7 +47,7 @@ def test_a_comma_in_thousands_does_not_separate_values(place: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["W(1,500)", "BEEP(1,500, 440)", "F(1,500)", "MAX(1,500)"])
-def test_where_decimals_go_the_comma_may_be_theirs(text: str) -> None:
+def test_a_comma_is_not_removed_where_it_may_be_decimal(text: str) -> None:
     assert not any("1500" in diagnostic.values.get("fix", "") for diagnostic in check(f"SI|{text}"))
 
 
@@ -74,7 +74,7 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
         ("BEEP(262, 500)", "BEEP(0.5, 262)", "BEEP(0.262, 500)"),
     ],
 )
-def test_values_that_suit_two_places_or_another_unit_are_shown_as_both(
+def test_ambiguous_values_are_shown_in_both_readings(
     text: str, first: str, other: str
 ) -> None:
     (diagnostic,) = check(text)

@@ -36,7 +36,7 @@ ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewr
 
 
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
-def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.TokenRow | rewrites.SignRow) -> None:
+def test_the_example_of_a_row_is_read_as_stated(row: rewrites.TokenRow | rewrites.SignRow) -> None:
     wrong, right = row.example
     readings = []
     for kit in KITS:
@@ -116,7 +116,7 @@ BLOCK_GAPS = {"whole", "line", "lines", "times", "ends"}
 
 
 @each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMES_OF_CODE])
-def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
+def test_a_message_contains_only_facts_of_its_slip(code: Code) -> None:
     """Each value of a slip is used by a text, and every used value exists."""
     names = {*slips.NAMES_OF_CODE[code]}
     gap_sets = []
@@ -133,7 +133,7 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
     assert code in CODES_SAID_ELSEWHERE or set().union(*whole) <= names
 
 
-def test_a_line_is_searched_once_for_the_same_names() -> None:
+def test_a_line_is_searched_only_once_for_the_same_names() -> None:
     line = lexemes("F(2 80)")
     one, same, other = (Names([lexemes(text)], KIT) for text in ("", "", "X = 1"))
     readings = lines.read(line, one)
@@ -141,7 +141,7 @@ def test_a_line_is_searched_once_for_the_same_names() -> None:
     assert lines.read(line, other) is not readings
 
 
-def test_the_parser_says_where_it_cannot_go_on() -> None:
+def test_the_parser_reports_where_it_cannot_continue() -> None:
     names = Names([], KIT)
     assert lines.parse_line(lexemes("S; F(2 80)"), names) == Failure(2, 5)
     assert lines.parse_line(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
@@ -165,7 +165,7 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
         "S\n,,",
     ],
 )
-def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
+def test_ambiguous_repairs_are_only_suggested(wrong: str) -> None:
     candidate = find_meant_program(wrong)
     assert candidate is None or not candidate.is_applied
 
@@ -183,7 +183,7 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
         ("SHOW(ABSS(-3))", "SHOW(ABS(-3))"),  # no other word has brackets in a value
     ],
 )
-def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
+def test_repairs_with_one_reading_are_applied(wrong: str, right: str | None) -> None:
     candidate = find_meant_program(wrong)
     assert (candidate.text if candidate and candidate.is_applied else None) == right
 
@@ -201,7 +201,7 @@ def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> No
         ("SHOW(BATERIA)", "grabber", None),
     ],
 )
-def test_words_of_a_kit_are_read_on_its_robots_alone(
+def test_words_of_a_kit_are_recognized_only_on_its_robots(
     wrong: str, kit: str, right: str | None
 ) -> None:
     own = robots.load(kit).kit
@@ -216,7 +216,7 @@ def test_words_of_a_kit_are_read_on_its_robots_alone(
         ("F(1, 50)\nREPITE", None),  # no empty block is offered
     ],
 )
-def test_what_may_be_meant_is_a_question(wrong: str, asked_text: str | None) -> None:
+def test_possible_meanings_are_asked_as_a_question(wrong: str, asked_text: str | None) -> None:
     candidate = find_meant_program(wrong)
     assert (candidate and candidate.text, bool(candidate and candidate.is_applied)) == (
         asked_text,
@@ -225,7 +225,7 @@ def test_what_may_be_meant_is_a_question(wrong: str, asked_text: str | None) -> 
 
 
 @pytest.mark.parametrize(("how", "is_made"), [("applied", False), ("offered", True)])
-def test_a_row_that_is_made_without_asking_loses_no_number(
+def test_automatically_applied_rows_lose_no_number(
     monkeypatch: pytest.MonkeyPatch, how: str, is_made: bool
 ) -> None:
     monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")

@@ -59,7 +59,7 @@ _BLOCK_WORDS = {word for word, row in WORDS.items() if row.role.belongs_to_block
 
 @pytest.mark.sampled("seed", keep=SEEDS_IN_CI // 3)
 @pytest.mark.parametrize("seed", range(SEEDS_IN_CI))
-def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
+def test_only_the_wrong_line_is_reported(seed: int) -> None:
     """After, before and between right ones, which are no longer looked at for warnings."""
     chance = random.Random(seed)
     program, line = chance.choice(right_lines()), chance.choice(wrong_lines())
@@ -69,7 +69,7 @@ def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
 
 
 @each_row("odd", ODD_LINES)
-def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> None:
+def test_unusual_but_right_lines_are_right_beside_a_wrong_one(odd: str) -> None:
     for line in (
         "F(2;80)",
         "F(2, 8=9",
@@ -123,4 +123,4 @@ def _starts_at_once(text: str) -> bool:
 
 if __name__ == "__main__":
     for seed in range(int(sys.argv[1])):
-        test_a_wrong_line_is_told_of_alone(seed)
+        test_only_the_wrong_line_is_reported(seed)

@@ -20,7 +20,7 @@ PLACES = (
     ("asked_text", "share"),
     [("LIGHT_L > 80", "LIGHT_L > 818"), ("DISTANCE < 50", "DISTANCE < 200")],
 )
-def test_a_percentage_of_a_sensor_is_shown_as_its_number(
+def test_a_percentage_of_a_sensor_is_converted_to_its_range(
     asked_text: str, share: str, percent: str
 ) -> None:
     for place in PLACES:

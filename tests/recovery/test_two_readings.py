@@ -32,7 +32,7 @@ SURROUNDINGS = ("{}", "SI|W(1);{}", "{};S", "LOOP(3);{};END_LOOP", "DEF A1;{};EN
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 @pytest.mark.parametrize("words", PROGRAM_BY_NOTE)
-def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> None:
+def test_possible_comments_are_read_as_comments_first(words: str, language: str) -> None:
     for place in (*LAST_PLACES, *EARLIER_PLACES):
         text = place.format(f"F(3, 50) {words}")
         diagnostic = next(
@@ -47,7 +47,7 @@ def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> No
 @pytest.mark.parametrize("separator", [";", "\n"])
 @pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize(("asked_text", "other"), IFS)
-def test_an_else_that_asks_the_opposite_asks_nothing(
+def test_an_else_with_the_opposite_condition_needs_none(
     asked_text: str, other: str, template: str, separator: str
 ) -> None:
     body = separator.join((f"IF({asked_text})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
@@ -64,7 +64,7 @@ def test_an_else_that_asks_the_opposite_asks_nothing(
 
 @pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("other", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
-def test_an_else_that_asks_something_else_is_an_elseif(template: str, other: str) -> None:
+def test_an_else_with_another_condition_becomes_elseif(template: str, other: str) -> None:
     wrong = template.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")
     diagnostic = next(
         diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
@@ -74,7 +74,7 @@ def test_an_else_that_asks_something_else_is_an_elseif(template: str, other: str
 
 @pytest.mark.parametrize("one", ["F(3, 60)", "L(2, 40)"])
 @pytest.mark.parametrize("other", ["B(3, 60)", "F(1, 30)"])
-def test_tasks_that_drive_may_be_meant_one_after_the_other(one: str, other: str) -> None:
+def test_tasks_that_drive_may_be_meant_sequentially(one: str, other: str) -> None:
     text = f"SI|TASK;{one};END_TASK;TASK;{other};END_TASK"
     (warning,) = check(text)
     assert re.search(rf"{re.escape(one)};{re.escape(other)}", warning.values["after"])

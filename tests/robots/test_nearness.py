@@ -29,7 +29,7 @@ def test_a_shipped_robot_is_nearest_to_itself(name: str) -> None:
     assert chips[0] == chips[1]
 
 
-def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
+def test_common_parts_count_before_differing_ones() -> None:
     text = TEXTS["liner"].replace(BATTERY, "")
     assert text != TEXTS["liner"]
     head, _, rest = text.partition("[board.sensors.BATTERY]")
@@ -50,13 +50,13 @@ def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
     )  # fmt: skip
 
 
-def test_more_in_common_counts_before_fewer_others() -> None:
+def test_more_common_parts_count_before_fewer_differing_ones() -> None:
     distance, _, button = robots.load("grabber").kit.sensors
     mine = robots.load("tinibot")._replace(kit=Kit((distance, button), ()))
     assert nearest_to(mine)[:3] == ("grabber", False, ("DISTANCE", "BUTTON"))
 
 
-def test_the_command_says_it_of_a_file_and_of_nothing_shipped(tsc: Tsc, tmp_path: Path) -> None:
+def test_the_command_names_the_nearest_robot_only_for_custom_files(tsc: Tsc, tmp_path: Path) -> None:
     own = tmp_path / "mine.toml"
     own.write_text(TEXTS["tinibot"], encoding="utf-8")
     result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")

@@ -103,7 +103,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
         ("BEEP(1, NOTA)", "Which number is NOTA?"),
     ],
 )  # fmt: skip
-def test_what_is_offered(text: str, fix: str) -> None:
+def test_the_expected_fix_is_offered(text: str, fix: str) -> None:
     offers = [message(diagnostic, Source(text), "en").fix for diagnostic in check(text)]
     assert fix in offers[-1]
 
@@ -115,7 +115,7 @@ def test_what_is_offered(text: str, fix: str) -> None:
         ("F(1, 80) // voy; W(2); compro; STOP", ["W(2)", "STOP"]),
     ],
 )
-def test_all_the_instructions_of_a_note_are_offered(text: str, rows: list[str]) -> None:
+def test_all_instructions_in_a_comment_are_offered(text: str, rows: list[str]) -> None:
     (warning,) = check(text)
     assert warning.values["rest"] == "; ".join(rows)
     assert check("\n".join(["F(1, 80) // voy", *rows])) == []

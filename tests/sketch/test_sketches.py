@@ -107,7 +107,7 @@ def test_examples(path: Path, echo_us: float) -> None:
 
 @pytest.mark.sampled("number", keep=len(ANSWERS) // 10)
 @pytest.mark.parametrize("number", range(len(ANSWERS)), ids=lambda n: ANSWERS[n][0])
-def test_answers_of_lessons(number: int) -> None:
+def test_sketches_of_lesson_answers_agree(number: int) -> None:
     text = ANSWERS[number][1]
     liner = robots.load("liner").kit
     robot = robots.load("liner" if not compile_text(text, ROBOT.kit).is_right else "tinibot")
@@ -132,7 +132,7 @@ POWERS = [(80, 80), (-40, -40), (50, -100), (0, 0)]
 
 
 @pytest.mark.parametrize("name", sorted(DRIVERS))
-def test_drivers_of_motors(name: str) -> None:
+def test_motor_drivers_work_in_a_sketch(name: str) -> None:
     motors = shift_signal(run_sketch(MOVES, 400, robot_with_driver(name)).motors, START_MS, (0, 0))
     lasting = [value for at, until, value in spans(motors, 399) if until - at > 5]
     assert lasting == POWERS
@@ -164,14 +164,14 @@ def test_servos_that_turn_get_their_pulses() -> None:
         assert sum(at < 200 for at, _ in pulse_list) >= 8
 
 
-def test_a_gripper_and_a_lamp_of_a_mega() -> None:
+def test_gripper_and_lamp_of_a_mega_are_set() -> None:
     robot = robots.load("grabber")
     agrees(
         "SI|GRIPPER(90);LED(TRUE);W(0.2);GRIPPER(0);LED(FALSE);W(0.2)", robot, NO_ECHO_US, 100, 1
     )
 
 
-def test_a_pwm_actuator() -> None:
+def test_a_pwm_actuator_is_set() -> None:
     from tests.support.edited_robots import TEXTS
     from tiniscript.robots.reader import read
 
@@ -185,7 +185,7 @@ def test_a_pwm_actuator() -> None:
 
 
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 150])
-def test_an_echo_is_a_distance(distance_cm: int) -> None:
+def test_an_echo_is_converted_to_a_distance(distance_cm: int) -> None:
     robot = robots.load("tinibot")
     board = SketchBoard(robot, sketch("SI|DISTANCE;SHOW(DISTANCE)", robot))
     pins = robot.board.sensors[2].pins
@@ -262,14 +262,14 @@ def test_a_program_that_has_ended_plays_its_tune() -> None:
     ("SI|M(50, 50);X = 0;SHOW(1 / X)", "FAULT DIVIDE_BY_ZERO"),
     ("SI|M(50, 50);X = 0;SHOW(1 % X)", "FAULT DIVIDE_BY_ZERO"),
 ])  # fmt: skip
-def test_a_fault_stops_the_motors_and_says_its_name(text: str, name: str) -> None:
+def test_a_fault_stops_the_motors_and_prints_its_name(text: str, name: str) -> None:
     run = run_sketch(text, 60)
     assert run.text == name + "\r\n"
     assert run.motors[-1][1] == (0, 0) and (50, 50) in [value for _, value in run.motors]
 
 
 @pytest.mark.parametrize("text", ["PING|check_connection", "", "SI|"])
-def test_a_program_that_does_nothing(text: str) -> None:
+def test_a_sketch_of_an_empty_program_does_nothing(text: str) -> None:
     run = run_sketch(text, 50)
     assert {value for _, value in run.motors} == {(0, 0)} and run.text == ""
 

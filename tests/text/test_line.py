@@ -32,7 +32,7 @@ from tiniscript.syntax.checksums import with_checksum
         ("START\nM(\u2013 5,\u00a06)", "START;M(-5,6)"),
     ],
 )
-def test_what_is_left_of_a_text(text: str, line: str) -> None:
+def test_a_text_is_reduced_to_a_line(text: str, line: str) -> None:
     assert line_of(Source(text)) == with_checksum(line)
 
 

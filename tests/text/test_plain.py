@@ -118,7 +118,7 @@ def test_each_word_is_its_own_instruction(text: str, says: str) -> None:
 
 
 @each_row("number, code", NUMBER_CODES)
-def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> None:
+def test_a_number_uses_the_first_suitable_push(number: str, code: str) -> None:
     """This also holds in optimized code."""
     assert plain_of(f"SHOW({number})").code.hex(" ") == f"{code} 39"
     assert compile_text(f"SHOW({number})", TINIBOT).code.hex(" ") == f"{code} 39"
@@ -146,7 +146,7 @@ def test_the_length_is_that_with_short_jumps() -> None:
     assert [place.offset for place in code.locations[:3]] == [0, 3, 4]
 
 
-def test_code_that_fits_a_level_has_no_far_jump() -> None:
+def test_code_that_fits_a_level_has_no_far_jumps() -> None:
     code = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
     assert len(code.code) == code.short_length == CODE_BYTES
     assert "FAR" not in disassemble(code.code)

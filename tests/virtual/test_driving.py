@@ -42,7 +42,7 @@ def test_the_nearest_point_is_inside_or_an_end() -> None:
     assert nearest_point(Segment(Point(1, 1), Point(1, 1)), 4, 5) == (1, 1)
 
 
-def test_segments_cross_or_have_a_distance() -> None:
+def test_segments_cross_or_are_a_distance_apart() -> None:
     assert crosses(WALL_ACROSS, Segment(Point(0, 0), Point(20, 0)))
     assert not crosses(WALL_ACROSS, Segment(Point(0, 0), Point(9, 0)))
     assert gap_between(WALL_ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
@@ -80,7 +80,7 @@ def make_driving(world: World, start: Pose | None = None, robot: Robot = TINIBOT
     return Driving(robot.body, world.obstacles(), start or world.start)
 
 
-def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
+def test_without_obstacles_the_path_follows_the_wheels() -> None:
     drive = make_driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
     pose = Pose(1000, 1000, 0)
     now_ms = 0.0
@@ -131,7 +131,7 @@ def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
 
 
 @pytest.mark.parametrize("aside", [2, 5, -7])
-def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: float) -> None:
+def test_the_end_of_a_wall_does_not_hold_a_robot_by_its_side(aside: float) -> None:
     end = 100 + aside
     drive = make_driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
     drive.set_motors(0, 60, 60)
@@ -174,7 +174,7 @@ def test_looking_changes_nothing() -> None:
     assert ends[0] == ends[1] == ends[2]
 
 
-def test_the_way_has_no_gaps_and_few_corners() -> None:
+def test_the_path_has_no_gaps_and_few_corners() -> None:
     drive = make_driving(floor())
     drive.set_motors(0, 50, 50)
     drive.set_motors(3000, 30, -30)
@@ -247,7 +247,7 @@ def test_a_line_sensor_is_over_a_line_or_not() -> None:
         assert read(line, left, Pose(x, y, 0), LINER) * ONE == is_black
 
 
-def test_a_bumper_notices_what_is_in_front() -> None:
+def test_a_bumper_notices_an_obstacle_in_front() -> None:
     hull, bumper = Hull(LINER.body), 2
     for heading, is_touched in ((0, True), (30, True), (80, False), (180, False)):
         cos = math.cos(math.radians(heading))
@@ -258,7 +258,7 @@ def test_a_bumper_notices_what_is_in_front() -> None:
         assert read(floor(), bumper, off, LINER) == 0
 
 
-def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -> None:
+def test_a_sensor_without_a_place_gives_a_plausible_or_set_value() -> None:
     pose = Pose(100, 100, 0)
     assert read(floor(), 3, pose, LINER) == 5  # BATTERY, 0 to 10 V
     assert read(floor(), 1, pose, GRABBER) == 20  # TEMPERATURE
@@ -268,7 +268,7 @@ def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -
     assert sensing.peek(3, pose) == 6500
 
 
-def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
+def test_noise_is_about_as_large_as_specified() -> None:
     sensing = Sensing(TINIBOT, floor(), 0.05, Random(1))
     pose = Pose(100, 100, 0)
     readings = [sensing.read(DISTANCE, pose) / ONE / 87 for _ in range(400)]

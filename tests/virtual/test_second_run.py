@@ -120,7 +120,7 @@ def check(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_a_second_run_is_as_on_a_robot_that_was_switched_on_there(part: int) -> None:
+def test_a_second_run_is_as_on_a_freshly_started_robot(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
     assert counts["little"] < 8, counts
 

@@ -143,11 +143,11 @@ def test_the_world_of_the_documents_is_valid(language: str) -> None:
         ),
     ],
 )
-def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, message: str) -> None:
+def test_a_fault_in_a_world_is_reported_with_its_place(text: str, message: str) -> None:
     assert any(message in line for line in refusals_of(text)), refusals_of(text)
 
 
-def test_all_that_is_wrong_is_said_at_once() -> None:
+def test_all_faults_of_a_world_are_reported_at_once() -> None:
     text = RIGHT.replace("x_cm = 50", "x_cm = true") + "[[lamps]]\nz_cm = 1\n"
     assert (
         len(refusals_of(text)) == 3
@@ -164,7 +164,7 @@ def test_a_robot_that_does_not_fit_is_refused() -> None:
 
 
 @pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
-def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
+def test_files_that_are_not_worlds_are_refused(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
     binary, large, wrong = tmp_path / "b.toml", tmp_path / "l.toml", tmp_path / "w.toml"
     binary.write_bytes(bytes(range(256)))
     large.write_bytes(b"#" * 70_000)
@@ -185,7 +185,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
             assert (expected in result.err) == (language == "en"), result.err
 
 
-def test_a_picture_has_the_longer_side_that_it_may_have() -> None:
+def test_the_longer_side_of_a_picture_has_the_allowed_size() -> None:
     text = """
         floor = { width_cm = 130, height_cm = 70, border = true }
         start = { x_cm = 20, y_cm = 20, heading = 0 }"""
