@@ -187,9 +187,7 @@ def test_losses_and_additions_of_a_repair_are_found(
         ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
     ],
 )
-def test_repairs_keep_units_and_names_or_are_not_applied(
-    wrong: str, repaired_text: str
-) -> None:
+def test_repairs_keep_units_and_names_or_are_not_applied(wrong: str, repaired_text: str) -> None:
     assert repair_program(wrong, check).text == repaired_text
 
 
@@ -205,9 +203,7 @@ def test_repairs_keep_units_and_names_or_are_not_applied(
         ("F(- 2 sec, 60)", "B(2, 60)"),
     ],
 )
-def test_suggestions_name_losses_and_other_readings(
-    wrong: str, tried_text: str
-) -> None:
+def test_suggestions_name_losses_and_other_readings(wrong: str, tried_text: str) -> None:
     (diagnostic,) = check(wrong)
     shown_message = message(diagnostic, Source(wrong), "en")
     assert shown_message.fix == tried_text

@@ -44,7 +44,9 @@ def test_a_line_with_a_checksum_is_left_alone() -> None:
     ("span", "before"),
     [((0, 3), (0, 3)), ((1, 2), (0, 3)), ((3, 5), (3, 5)), ((6, 6), (7, 7)), ((2, 8), (0, 9))],
 )
-def test_a_place_after_edits_maps_back_to_the_original(span: tuple[int, int], before: object) -> None:
+def test_a_place_after_edits_maps_back_to_the_original(
+    span: tuple[int, int], before: object
+) -> None:
     diagnostic = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
     edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
     moved_diagnostic = to_original(diagnostic, edits, Source("SI|F(2, 80)"))

@@ -47,7 +47,9 @@ def test_following_the_message_gives_a_right_program(use: str, separator: str) -
 
 @pytest.mark.parametrize("use", USES)
 @pytest.mark.parametrize("other_statement", ["", ";F(2 80)", ";BLA(3)"])
-def test_a_call_used_as_a_value_without_return_is_reported_once(use: str, other_statement: str) -> None:
+def test_a_call_used_as_a_value_without_return_is_reported_once(
+    use: str, other_statement: str
+) -> None:
     text = f"SI|DEF DOUBLE(N);SHOW(N);END_DEF;{use}{other_statement}"
     first, *others = check(text)
     assert (first.code.number, first.values.get("called")) == ("TS051", "DOUBLE")

@@ -37,9 +37,7 @@ ORDERS = ("F(1, 60)", "S")
 
 @pytest.mark.sampled("key_text", "side", keep=100)
 @pytest.mark.parametrize(("key_text", "side"), CASES)
-def test_a_paraphrased_key_becomes_its_reading_in_any_condition(
-    key_text: str, side: str
-) -> None:
+def test_a_paraphrased_key_becomes_its_reading_in_any_condition(key_text: str, side: str) -> None:
     for place in PLACES:
         assert repair_program(place.replace("{}", key_text), check).text == place.replace(
             "{}", f"KEY_{side}"
@@ -48,9 +46,7 @@ def test_a_paraphrased_key_becomes_its_reading_in_any_condition(
 
 @pytest.mark.parametrize("key", ["KEY", "TECLA", "FLECHA", "SETA"])
 @pytest.mark.parametrize("other", [" = SPACE", "", " = 1", " == ENTER", "_ESPACIO", " = Z"])
-def test_an_unknown_key_is_reported_with_all_keys(
-    key: str, other: str
-) -> None:
+def test_an_unknown_key_is_reported_with_all_keys(key: str, other: str) -> None:
     for place in PLACES:
         text = place.replace("{}", key + other, 1).replace("{}", "KEY_A")
         (diagnostic,) = check(text)

@@ -31,7 +31,7 @@ def test_words_after_a_command_without_values_are_removed(
 
 @pytest.mark.parametrize("words", WORDS)
 @pytest.mark.parametrize("end", ["END_LOOP", "END_WHILE"])
-def test_words_after_an_end_are_taken_out(end: str, words: str) -> None:
+def test_words_after_an_end_are_removed(end: str, words: str) -> None:
     head = {"END_LOOP": "LOOP(2)", "END_WHILE": "WHILE(DISTANCE > 9)"}[end]
     for tail in ("", ";S", "\nW(1)"):
         wrong = f"SI|{head};F(1, 60);{end} {words}{tail}"

@@ -137,7 +137,9 @@ EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
 
 
 @each_row("count, extra", product(ARGUMENT_COUNTS, EXTRAS))
-def test_wrong_text_after_a_defs_name_is_reported_with_the_right_header(count: int, extra: str) -> None:
+def test_wrong_text_after_a_defs_name_is_reported_with_the_right_header(
+    count: int, extra: str
+) -> None:
     """Default values of Python for calls without any. All names are known below."""
     names = NAMES[:count]
     right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)

@@ -74,8 +74,6 @@ def test_the_seconds_of_motors_are_those_of_a_wait(
         ("BEEP(262, 500)", "BEEP(0.5, 262)", "BEEP(0.262, 500)"),
     ],
 )
-def test_ambiguous_values_are_shown_in_both_readings(
-    text: str, first: str, other: str
-) -> None:
+def test_ambiguous_values_are_shown_in_both_readings(text: str, first: str, other: str) -> None:
     (diagnostic,) = check(text)
     assert (diagnostic.values["fix"], diagnostic.values["rival"]) == (first, other)

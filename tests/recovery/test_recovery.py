@@ -216,7 +216,7 @@ def test_words_of_a_kit_are_recognized_only_on_its_robots(
         ("F(1, 50)\nREPITE", None),  # no empty block is offered
     ],
 )
-def test_possible_meanings_are_asked_as_a_question(wrong: str, asked_text: str | None) -> None:
+def test_possible_meanings_become_a_question(wrong: str, asked_text: str | None) -> None:
     candidate = find_meant_program(wrong)
     assert (candidate and candidate.text, bool(candidate and candidate.is_applied)) == (
         asked_text,

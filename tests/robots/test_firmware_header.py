@@ -161,7 +161,9 @@ def test_a_header_describes_its_robot() -> None:
      "analog_scaled(*value, 1023000, -1000, 0);"),
     ((('trigger = 4\necho = 3', 'trigger = 4\necho = "A5"'),), "each(PCINT1_vect)"),
 ])  # fmt: skip
-def test_changes_of_a_profile_appear_in_the_header(changes: tuple[tuple[str, str], ...], line: str) -> None:
+def test_changes_of_a_profile_appear_in_the_header(
+    changes: tuple[tuple[str, str], ...], line: str
+) -> None:
     assert line in firmware.header([read_changed_profile("uno", "tinibot", *changes)], "a test.")
 
 

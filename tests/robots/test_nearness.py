@@ -56,7 +56,9 @@ def test_more_common_parts_count_before_fewer_differing_ones() -> None:
     assert nearest_to(mine)[:3] == ("grabber", False, ("DISTANCE", "BUTTON"))
 
 
-def test_the_command_names_the_nearest_robot_only_for_custom_files(tsc: Tsc, tmp_path: Path) -> None:
+def test_the_command_names_the_nearest_robot_only_for_custom_files(
+    tsc: Tsc, tmp_path: Path
+) -> None:
     own = tmp_path / "mine.toml"
     own.write_text(TEXTS["tinibot"], encoding="utf-8")
     result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")

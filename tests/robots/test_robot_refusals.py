@@ -133,7 +133,9 @@ REFUSED = [
 
 
 @each_row("code, name, old, new, path", REFUSED)
-def test_invalid_profiles_are_refused(code: str, name: str, old: str, new: str, path: str | None) -> None:
+def test_invalid_profiles_are_refused(
+    code: str, name: str, old: str, new: str, path: str | None
+) -> None:
     refusals = refusal(edit_profile(name, old, new))
     if path is None:
         assert codes(refusals) == [code]
@@ -161,7 +163,9 @@ pin = {pin}
     ("l298n", 3, 2, "board.buzzer"),
     ("l298n", 5, None, ""),  # timer 0 keeps the time, and does PWM besides
 ])  # fmt: skip
-def test_timer_conflicts_of_an_uno_are_refused(motors: str, pin: int, timer: int | None, first: str) -> None:
+def test_timer_conflicts_of_an_uno_are_refused(
+    motors: str, pin: int, timer: int | None, first: str
+) -> None:
     """Servos take PWM 9 and 10, the buzzer PWM 3 and 11; the names of both are said."""
     text_before, _, text_after = TEXTS["tinibot"].partition("[board.motors]")
     wired_text = {

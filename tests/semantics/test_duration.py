@@ -55,7 +55,9 @@ def duration_of(text: str, is_optimized: bool = True) -> Duration:
         ("DEF A;S;END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 0, None),
     ],
 )
-def test_the_duration_of_an_ending_program_is_known(text: str, least: int, most: int | None) -> None:
+def test_the_duration_of_an_ending_program_is_known(
+    text: str, least: int, most: int | None
+) -> None:
     for is_optimized in (True, False):
         assert duration_of(text, is_optimized) == Duration(least, most, False)
 

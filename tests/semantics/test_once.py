@@ -109,9 +109,7 @@ BEEP = "BEEP(5, 440)"
 @pytest.mark.parametrize("separator", [";", "\n"])
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("move", MOVES)
-def test_one_action_of_a_lone_task_is_moved_outside(
-    move: str, order: int, separator: str
-) -> None:
+def test_one_action_of_a_lone_task_is_moved_outside(move: str, order: int, separator: str) -> None:
     inside = [move, BEEP][:: -1 if order else 1]
     text = f"SI|{separator.join(['TASK', *inside, 'END_TASK'])}"
     (diagnostic,) = diagnostics_of(codes.LONE_TASK, text)

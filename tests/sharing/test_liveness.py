@@ -127,9 +127,7 @@ def test_a_holder_that_falls_silent_is_given_up(monkeypatch: pytest.MonkeyPatch,
 
 
 @pytest.mark.parametrize("takes_s", [DEAF_S * 3, LONG_S])
-def test_a_slow_request_is_answered(
-    monkeypatch: pytest.MonkeyPatch, takes_s: float
-) -> None:
+def test_a_slow_request_is_answered(monkeypatch: pytest.MonkeyPatch, takes_s: float) -> None:
     holder = Holder(lambda: 0.1)
     line = open_shared_connection(monkeypatch, holder)
     request: PendingRequest[EmptyReply] = line.begin(lambda session: session.name(b"Pia"))

@@ -298,7 +298,9 @@ def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_the_next_client_is_treated_like_the_first(part: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_next_client_is_treated_like_the_first(
+    part: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     counts = Counter(check(seed, monkeypatch) for seed in range(part * 12, (part + 1) * 12))
     assert counts["little"] < 6, counts
 

@@ -83,9 +83,7 @@ def each_line(
 
 
 @pytest.mark.parametrize("other", ["tidies", "leaves"])
-def test_a_server_registered_during_a_removal_is_found(
-    number: int, other: str
-) -> None:
+def test_a_server_registered_during_a_removal_is_found(number: int, other: str) -> None:
     live = registration(number, "live")
 
     def prepare() -> tuple[Callable[[], object], Callable[[], object]]:

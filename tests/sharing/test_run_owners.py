@@ -115,9 +115,7 @@ STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
 
 
 @pytest.mark.parametrize("start_index", range(len(STARTS)))
-def test_no_start_reaches_a_robot_that_was_just_stopped(
-    line: FakeLine, start_index: int
-) -> None:
+def test_no_start_reaches_a_robot_that_was_just_stopped(line: FakeLine, start_index: int) -> None:
     """Such requests end, and later ones without a start are sent."""
     with (
         closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,

@@ -51,9 +51,7 @@ def test_stop_works_while_another_terminal_is_driving(pty_robot: PtyRobot) -> No
     assert hellos(pty_robot) == 1
 
 
-def test_commands_share_one_session(
-    pty_robot: PtyRobot, link: Command, tmp_path: Path
-) -> None:
+def test_commands_share_one_session(pty_robot: PtyRobot, link: Command, tmp_path: Path) -> None:
     result = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)").gives(0, "")
     assert result.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. The button starts it."]
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
@@ -137,9 +135,7 @@ def test_a_client_may_use_a_different_robot_profile(pty_robot: PtyRobot) -> None
     assert command.wait_for_result().code == 0
 
 
-def test_monitor_shows_live_events_without_bookkeeping(
-    pty_robot: PtyRobot, link: Command
-) -> None:
+def test_monitor_shows_live_events_without_bookkeeping(pty_robot: PtyRobot, link: Command) -> None:
     monitor = Command("monitor", "--port", pty_robot.port, "--json")
     assert monitor.process.stderr
     monitor.process.stderr.readline()

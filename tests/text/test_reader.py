@@ -227,9 +227,7 @@ RIGHT_LINES = (
 @pytest.mark.sampled("tail")
 @pytest.mark.parametrize("tail", ["", "  ", "// note", " // note"])
 @pytest.mark.parametrize("line", RIGHT_LINES)
-def test_a_missing_end_is_reported_after_the_last_character(
-    line: str, tail: str
-) -> None:
+def test_a_missing_end_is_reported_after_the_last_character(line: str, tail: str) -> None:
     """A correct line cut after any of its tokens lacks only its rest.
 
     It belongs before a comment.

@@ -152,9 +152,7 @@ def test_a_crash_on_a_bad_disk_loses_no_readable_data(
     assert final is not None and are_same(final, program)
 
 
-def test_an_overlong_journal_is_rotated(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_overlong_journal_is_rotated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(journals, "MOST_BYTES", 3000)
     path = tmp_path / "journal"
     _, program = begin_journal(path)

@@ -253,7 +253,9 @@ TASK; W(0.5); S; W(60); END_TASK"""
     "F(30 CM, 60); SHOW(1)", "R(90 DEG, 60); SHOW(1)",
     "W(60)\nWHEN(TIME > 0.1); F(30 CM, 60); SHOW(1); END_WHEN",
 ])  # fmt: skip
-def test_a_move_ends_even_if_a_disc_flickers_at_rest(profile: Robot, hertz: float, text: str) -> None:
+def test_a_move_ends_even_if_a_disc_flickers_at_rest(
+    profile: Robot, hertz: float, text: str
+) -> None:
     """A second after the motors were turned off at most: then no wheel turns."""
     for numbers in ((0,), (0, 1)):
         robot, talk = started_robot(text, 2, profile)

@@ -88,9 +88,7 @@ def test_the_copies_of_a_def_have_one_name(kind: str) -> None:
 
 @each_row("kind", KINDS)
 @pytest.mark.parametrize("stops", [False, True])
-def test_a_program_after_one_with_waiting_values_has_its_own_names(
-    kind: str, stops: bool
-) -> None:
+def test_a_program_after_one_with_waiting_values_has_its_own_names(kind: str, stops: bool) -> None:
     """Both have their SHOWs at the same places."""
     desk = Desk(kind, SLOW)
     desk.send("SI|NEAR = 1; LOOP(FOREVER); SHOW(NEAR); END_LOOP")

@@ -302,7 +302,9 @@ def test_a_running_robot_continues_by_itself() -> None:
     ("tinibot32", (LARGE_FRAME, LARGE_WINDOW), "esp32"),
     ("tinibotc3", (LARGE_FRAME, LARGE_WINDOW), "esp32"),
 ])  # fmt: skip
-def test_a_virtual_robot_reports_the_sizes_of_its_chip(name: str, sizes: tuple[int, int], level: str) -> None:
+def test_a_virtual_robot_reports_the_sizes_of_its_chip(
+    name: str, sizes: tuple[int, int], level: str
+) -> None:
     talk = Talk(robot_in(name=name))
     hello_reply = talk.wait_for(talk.session.hello()).values
     assert (hello_reply.largest, hello_reply.window) == sizes

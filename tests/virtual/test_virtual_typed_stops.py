@@ -46,7 +46,9 @@ def test_blank_lines_do_not_affect_a_clients_line(simulator: Simulator) -> None:
 
 
 @pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS", b"SSSS", b"Stop.", b"PARA"])
-def test_silence_completes_the_stop_of_a_possible_web_page(simulator: Simulator, word: bytes) -> None:
+def test_silence_completes_the_stop_of_a_possible_web_page(
+    simulator: Simulator, word: bytes
+) -> None:
     assert sniff_robot_client(word) is None
     with visit(simulator) as client:
         client.sendall(RUNNING_LINE)

@@ -56,7 +56,9 @@ def test_the_bytecode_of_a_program_is_as_stated(case: Case, request: pytest.Fixt
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "plain"))
-def test_the_plain_code_of_a_program_is_as_stated(case: Case, request: pytest.FixtureRequest) -> None:
+def test_the_plain_code_of_a_program_is_as_stated(
+    case: Case, request: pytest.FixtureRequest
+) -> None:
     program = compile_case(case).program
     assert program is not None
     expect(case, "plain", disassemble(plain_code(program).code), request)
