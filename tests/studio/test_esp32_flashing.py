@@ -91,7 +91,9 @@ def test_a_different_board_is_not_changed(how: dict[str, Any], ended_text: str) 
         ({"spoils": True}, "flash_differs"),
     ],
 )
-def test_a_partial_firmware_is_never_reported_as_complete(how: dict[str, Any], ended_text: str) -> None:
+def test_a_partial_firmware_is_never_reported_as_complete(
+    how: dict[str, Any], ended_text: str
+) -> None:
     assert flash("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended_text
 
 

@@ -322,9 +322,7 @@ def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
         start_drive(1)
 
 
-def test_a_connect_with_a_lost_answer_is_repeated(
-    asker: AskingPage, robot: PtyRobot
-) -> None:
+def test_a_connect_with_a_lost_answer_is_repeated(asker: AskingPage, robot: PtyRobot) -> None:
     """The same one is offered, or the page's next one takes over its port; a late one has no
     effect.
     """

@@ -184,7 +184,9 @@ def test_the_same_robot_keeps_its_held_keys(page_data: Path) -> None:
 
 
 @pytest.mark.parametrize("way", ["host", "direct"])
-def test_a_constantly_moving_stick_is_sent_with_its_current_position(page_data: Path, way: str) -> None:
+def test_a_constantly_moving_stick_is_sent_with_its_current_position(
+    page_data: Path, way: str
+) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""
     packets = json.loads(in_node(WAYS_SCRIPT, str(page_data), way)[0])
     moved = [y for _, y in packets["sent"][:-1]]

@@ -462,9 +462,7 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
 
 @pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["search", "group"])
-def test_a_flyout_closes_when_a_block_is_dragged_out(
-    page: Page, way: str
-) -> None:
+def test_a_flyout_closes_when_a_block_is_dragged_out(page: Page, way: str) -> None:
     start(page, "SI|S;\n", "few")
     if way == "search":
         page.fill(".search input", "repeat")

@@ -442,7 +442,9 @@ COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
 
 
 @drawn
-def test_a_pupils_picture_is_drawn_once_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
+def test_a_pupils_picture_is_drawn_once_a_second(
+    first: Page, pages: Pages, shared_class: Class
+) -> None:
     """Whatever the page writes meanwhile, the newest is drawn then. Others have no wait."""
     teacher = open_teacher_page(pages, shared_class)
     remove_all_but_ana(shared_class)

@@ -122,7 +122,9 @@ def test_each_screen_is_fully_visible_and_axe_finds_nothing(
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_the_bar_above_the_program_stays_in_one_row_for_any_robot_name(page: Page, language: str) -> None:
+def test_the_bar_above_the_program_stays_in_one_row_for_any_robot_name(
+    page: Page, language: str
+) -> None:
     speak(page, language)
     for width in (1000, 1024, 1366):
         page.set_viewport_size({"width": width, "height": 600})

@@ -250,9 +250,7 @@ def test_any_stalled_file_of_a_run_is_reported_until_it_arrives(
 
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", COMPILER_FILES)
-def test_an_abandoned_compiler_is_loaded_again_by_the_next_run(
-    visits: Pages, name: str
-) -> None:
+def test_an_abandoned_compiler_is_loaded_again_by_the_next_run(visits: Pages, name: str) -> None:
     """The first retry fails, the next succeeds."""
     page = visits.blank(is_alone=True)
     page.add_init_script(RECORDING_SCRIPT)

@@ -234,9 +234,7 @@ def test_findings_match_their_readers_blocks_or_text(page: Page, language: str) 
 @pytest.mark.long
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
-def test_a_shadow_indicates_more_text_below(
-    page: Page, size: tuple[int, int]
-) -> None:
+def test_a_shadow_indicates_more_text_below(page: Page, size: tuple[int, int]) -> None:
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.evaluate(SETTLED_SCRIPT)
     if page.locator("html[data-phone]").count():

@@ -135,7 +135,9 @@ def test_a_hanging_hidden_or_offline_page_stops_its_robot(
 
 
 @drawn
-def test_two_tabs_do_not_compete_for_a_robot(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
+def test_two_tabs_do_not_compete_for_a_robot(
+    first: tuple[Pages, Page], page: Page, robot: PtyRobot
+) -> None:
     other = first[0].another(page)
     other.click("#side_real")
     other.locator("#link_port option").first.wait_for(state="attached")

@@ -106,9 +106,7 @@ def test_a_lost_connect_is_retried(
 
 
 @drawn
-def test_a_connect_after_lost_ones_takes_over_their_connection(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_a_connect_after_lost_ones_takes_over_their_connection(page: Page, robot: PtyRobot) -> None:
     tear_requests(page, "connect", lose_answer, times=3)
     page.click("#side_real")
     page.click("#link_look")
@@ -155,9 +153,7 @@ class Mute:
 
 @pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["button", "hidden"])
-def test_only_the_outcome_of_a_stop_is_reported_once(
-    page: Page, robot: PtyRobot, way: str
-) -> None:
+def test_only_the_outcome_of_a_stop_is_reported_once(page: Page, robot: PtyRobot, way: str) -> None:
     connect(page, robot)
     start_drive(page, robot)
     page.evaluate(LISTENING_SCRIPT)
@@ -205,9 +201,7 @@ def test_two_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> N
 
 
 @drawn
-def test_five_presses_of_stop_are_reported_once(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_five_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
     start_drive(page, robot)
@@ -270,9 +264,7 @@ def test_a_lost_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
 
 
 @drawn
-def test_a_request_to_a_silent_robot_is_reported_as_waiting(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_a_request_to_a_silent_robot_is_reported_as_waiting(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     Mute(page, "LOST")
     robot.switch_off()

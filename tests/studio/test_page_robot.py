@@ -48,7 +48,9 @@ FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
         ("line", "liner", "line"),
     ],
 )
-def test_a_run_on_the_page_equals_one_without(page: Page, name: str, robot: str, world: str) -> None:
+def test_a_run_on_the_page_equals_one_without(
+    page: Page, name: str, robot: str, world: str
+) -> None:
     """The browser's WebAssembly and floating point, and Python's in wasmtime: to the last digit."""
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
     image = compile(text, robot).image

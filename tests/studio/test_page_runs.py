@@ -98,9 +98,7 @@ def test_only_the_newest_ten_runs_are_kept(page: Page) -> None:
     page.click("#runs_close")
 
 
-def test_a_saved_run_replays_alike_in_page_and_command_line(
-    page: Page, tmp_path: Path
-) -> None:
+def test_a_saved_run_replays_alike_in_page_and_command_line(page: Page, tmp_path: Path) -> None:
     page.select_option("#speed", "1")
     write(
         page,

@@ -119,9 +119,7 @@ def seen_runs(page: Page) -> list[str]:
     return runs
 
 
-def test_gauges_show_sensor_values_without_announcing_them(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_gauges_show_sensor_values_without_announcing_them(page: Page, robot: PtyRobot) -> None:
     """No motor turns, no value is shown as a program's, and no run is kept."""
     count_before = len(robot.actions)
     runs = seen_runs(page)
@@ -222,9 +220,7 @@ def test_a_stop_also_stops_the_gauges_until_requested(page: Page, robot: PtyRobo
 
 
 @drawn
-def test_requested_gauges_return_automatically(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_requested_gauges_return_automatically(page: Page, robot: PtyRobot) -> None:
     watch_senses(page)
     page.click("#link_leave")
     page.locator("html:not([data-robot=connected])").wait_for(state="attached")

@@ -81,7 +81,9 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     assert robot.stands_after_ms(began_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
 
 
-def test_two_tabs_do_not_compete_for_a_robot(context: BrowserContext, page: Page, robot: PtyRobot) -> None:
+def test_two_tabs_do_not_compete_for_a_robot(
+    context: BrowserContext, page: Page, robot: PtyRobot
+) -> None:
     other = context.new_page()
     enter(other, page.url)
     other.click("#side_real")

@@ -150,9 +150,7 @@ def test_in_a_lesson_the_robot_view_is_large_until_the_next_step(
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
-def test_a_judged_run_is_large_until_its_verdict(
-    page: Page, size: tuple[int, int]
-) -> None:
+def test_a_judged_run_is_large_until_its_verdict(page: Page, size: tuple[int, int]) -> None:
     large = see_last_step(page, size)
     for is_still in (False, True):
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")

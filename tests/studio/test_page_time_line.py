@@ -77,9 +77,7 @@ def test_events_can_be_stepped_backward_and_forward(page: Page) -> None:
 
 @pytest.mark.sampled("button")
 @pytest.mark.parametrize("button", ["pause", "step", "stop"])
-def test_a_run_pauses_while_rewound_and_resumes_from_the_present(
-    page: Page, button: str
-) -> None:
+def test_a_run_pauses_while_rewound_and_resumes_from_the_present(page: Page, button: str) -> None:
     start_run(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
     wait_for_phase(page, "running")
     page.locator("#trace", has_text="SHOW 3").wait_for(state="attached")

@@ -348,9 +348,7 @@ def test_returned_work_goes_to_my_programs_if_the_pupil_keeps_it_out_of_the_grou
     luz.click("#programs_close")
 
 
-def test_an_outdated_change_is_reported(
-    two: tuple[Page, Page], shared_class: Class
-) -> None:
+def test_an_outdated_change_is_reported(two: tuple[Page, Page], shared_class: Class) -> None:
     ana, luz = two
     show_program_on_both(two)
     ana.context.set_offline(True)

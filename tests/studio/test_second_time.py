@@ -231,9 +231,7 @@ class ComingPage:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_nothing_starts_after_a_stop_for_all_at_any_time(
-    hosting: Hosting, seed: int
-) -> None:
+def test_nothing_starts_after_a_stop_for_all_at_any_time(hosting: Hosting, seed: int) -> None:
     """Neither open pages nor new connections start anything; driving robots stop. After the latch
     time, pages drive again.
     """

@@ -99,9 +99,7 @@ ROW = 8  # seeds
 
 @pytest.mark.sampled("first", keep=1)
 @pytest.mark.parametrize("first", range(0, 10 * ROW, ROW))
-def test_starting_anew_shows_the_same_as_a_reload(
-    page_data: Path, first: int
-) -> None:
+def test_starting_anew_shows_the_same_as_a_reload(page_data: Path, first: int) -> None:
     """Whatever was pressed before, and whatever is pressed then; what the page keeps, both keep.
 
     At rest the page says and shows what is so, and nothing that was typed is lost."""

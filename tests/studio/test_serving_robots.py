@@ -48,7 +48,9 @@ def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
 PORTS = b'{"do": "ports"}'
 
 
-def test_requests_of_the_studios_page_are_answered(server: serving.Server, own: str, robots: Recorder) -> None:
+def test_requests_of_the_studios_page_are_answered(
+    server: serving.Server, own: str, robots: Recorder
+) -> None:
     status, data = post(own, server.entrances.token, PORTS)
     assert (status, json.loads(data)) == (200, {"ports": []})
     name = f"localhost:{server.server_port}"
@@ -114,7 +116,9 @@ def test_a_wrong_length_and_two_tokens_are_refused(
     assert robots.asked == []
 
 
-def test_other_addresses_accept_no_requests(server: serving.Server, own: str, robots: Recorder) -> None:
+def test_other_addresses_accept_no_requests(
+    server: serving.Server, own: str, robots: Recorder
+) -> None:
     for path in ("/", "/robots/"):
         assert post(own, server.entrances.token, PORTS, path)[0] == 404
     assert robots.asked == []
@@ -183,7 +187,9 @@ def test_closed_pages_take_no_place(server: serving.Server, own: str) -> None:
 
 
 @pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])
-def test_a_request_head_is_limited_to_16_kilobytes(server: serving.Server, own: str, line: bytes) -> None:
+def test_a_request_head_is_limited_to_16_kilobytes(
+    server: serving.Server, own: str, line: bytes
+) -> None:
     """However its bytes are divided into lines, and whether it ends or not."""
     with socket.create_connection(
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
