@@ -247,9 +247,7 @@ def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("left", ["exit 1", "exit 127", "case $* in *pip*) exit 1;; esac; echo it"])
-def test_the_shell_does_not_start_an_unusable_environment(
-    left: str, tmp_path: Path
-) -> None:
+def test_the_shell_does_not_start_an_unusable_environment(left: str, tmp_path: Path) -> None:
     """Its creation may have been interrupted, or the system may have a new Python since."""
     python = 'case "$*" in *environment*) echo python3;; esac'
     completed = run_script(tmp_path, {"../.venv/bin/python": left, "python3": python})

@@ -37,7 +37,9 @@ def test_a_pair_of_motor_commands_becomes_one_m(pair: tuple[str, str], place: st
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 @pytest.mark.parametrize("place", PLACES)
-def test_a_message_about_a_single_motor_explains_that_m_sets_both(place: str, language: str) -> None:
+def test_a_message_about_a_single_motor_explains_that_m_sets_both(
+    place: str, language: str
+) -> None:
     for pair in PAIRS:
         for name in pair:
             text = place.format(f"{name}(60)")
