@@ -198,9 +198,14 @@ def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: lis
     assert [line for line in near if line.startswith(short)]
     code = compile_right_text(text.format("S;" * 256)).code
     row_texts = [row.text for row in rows(code)]
-    at = next(k for k, line in enumerate(row_texts) if line.startswith("IF_FAR"))
-    assert [row_texts[at].split()[0], *row_texts[at - 3 : at]] == [far[3], *far[:3]]
-    assert row_texts[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # at the PUSH_VAR_0 of SHOW(X)
+    far_index = next(k for k, line in enumerate(row_texts) if line.startswith("IF_FAR"))
+    assert [row_texts[far_index].split()[0], *row_texts[far_index - 3 : far_index]] == [
+        far[3],
+        *far[:3],
+    ]
+    assert row_texts[far_index].endswith(
+        f"-> {rows(code)[-2].offset:04x}"
+    )  # at the PUSH_VAR_0 of SHOW(X)
     assert row_texts.count("READ_0") == near.count("READ_0")
 
 

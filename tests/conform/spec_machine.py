@@ -37,10 +37,10 @@ class Spec:
         if needs and not self.refuses_only:
             refusal = "UNKNOWN_NEEDS"
         code = data[data[5] :] if not refusal else b""
-        rule, at = verifier.verdict(code, len(sensors), len(actuators), needs, self.verifier)
+        rule, offset = verifier.verdict(code, len(sensors), len(actuators), needs, self.verifier)
         if rule:
             names = {number: name for name, number in rule_numbers().items()}
-            refusal = f"{names[rule]} {at}"
+            refusal = f"{names[rule]} {offset}"
         hashes = {"sensor": list(map(_hash, sensors, ["sensor"] * 32)),
                   "actuator": list(map(_hash, actuators, ["actuator"] * 32))}  # fmt: skip
         if not refusal and _devices(code, hashes) != int.from_bytes(data[6:8], "little"):
@@ -79,14 +79,14 @@ def _hash(row: list[str], word: str) -> int:
 
 def _devices(code: bytes, hashes: dict[str, list[int]]) -> int:
     """Return the hash of those that the code uses."""
-    total = at = 0
-    while at < len(code):
-        row = instruction_at(code, at)
-        used = [(operand.kind, value) for operand, value in row.read(code, at)]
+    total = position = 0
+    while position < len(code):
+        row = instruction_at(code, position)
+        used = [(operand.kind, value) for operand, value in row.read(code, position)]
         for kind, value in (*used, *row.implied):
             if kind in hashes:
                 total = total << 1 & 0xFFFF ^ 0x2D * (total >> 15) ^ hashes[kind][value]
-        at += row.size
+        position += row.size
     return total
 
 

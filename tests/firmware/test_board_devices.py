@@ -161,9 +161,9 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
                  for _ in range(draw.randint(1, 3))]  # fmt: skip
         pause = draw.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
         tasks.append(f"LOOP(FOREVER)\n{''.join(reads)}{pause}\nEND_LOOP")
-    own, *others = tasks[:3]
-    text = f"SI|LONGEST = 0;COUNT = 0\n{own}\n"
-    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in others) + SHOW_RESULTS_CODE
+    main_task, *other_tasks = tasks[:3]
+    text = f"SI|LONGEST = 0;COUNT = 0\n{main_task}\n"
+    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in other_tasks) + SHOW_RESULTS_CODE
     board = start_board(on_board("tinibot", "mega", *DIM_SENSOR), text).run_for(START + 530)
     longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20
@@ -239,8 +239,10 @@ def test_servo_and_lamp_are_set() -> None:
     board.run_for(START + 320)
     pulse_list = pulses(board, 11)
     assert pulse_list[0][0] > START
-    for after, us in ((25, 600), (125, 1500), (225, 2400)):
-        lengths = [length for ms, length in pulse_list if START + after < ms < START + after + 70]
+    for after_ms, us in ((25, 600), (125, 1500), (225, 2400)):
+        lengths = [
+            length for ms, length in pulse_list if START + after_ms < ms < START + after_ms + 70
+        ]
         assert lengths and all(abs(length - us) < 3 for length in lengths)
     assert board.pin(30, START + 50) == "high"
 
@@ -295,8 +297,8 @@ def test_interrupts_are_never_off_for_long(name: str) -> None:
     text = "SI|LOOP(30);M(80, 80);BEEP(0.001, 20000);A = DISTANCE;END_LOOP"
     if name == "grabber":
         text = text.replace("A = DIS", "GRIPPER(90);A = DIS")
-    at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
-    pins = robot.board.sensors[at].pins
+    sonar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
+    pins = robot.board.sensors[sonar_index].pins
     board = start_board(robot, text)
     board.echoes(pins["trigger"], pins["echo"], [1000])
     board.run_for(START + 200)

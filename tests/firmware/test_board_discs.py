@@ -185,13 +185,13 @@ def test_moves_are_straight_after_a_wheel_was_held(sketches: Callable[[str], Pat
 def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:
     """Toggle both discs at this rate."""
     half = CYCLES_PER_MS * 1000 // (2 * hertz)
-    at, level = uno.cycle, False
+    cycle, level = uno.cycle, False
     for _ in range(milliseconds):
-        while at < uno.cycle + CYCLES_PER_MS:
+        while cycle < uno.cycle + CYCLES_PER_MS:
             level = not level
             for number, pin in enumerate(pins(ROBOT)):
-                uno.drive(f"D{pin}", level, at=at + number * half // 3)
-            at += half
+                uno.drive(f"D{pin}", level, at=cycle + number * half // 3)
+            cycle += half
         run_ms(1)
 
 

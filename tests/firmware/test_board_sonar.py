@@ -48,8 +48,8 @@ def test_pings_are_30_ms_apart_and_measure_the_distance(name: str, distance_cm: 
     """A program that only measures does not measure more often. A sensor wants 10 us, and the loop
     does not wait for it."""
     robot = robots.load(name)
-    at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
-    trigger, echo = sonar_pins(robot, at)
+    offset_usnar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
+    trigger, echo = sonar_pins(robot, offset_usnar_index)
     board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM])
@@ -171,9 +171,12 @@ ECHO_US = 50 * US_PER_CM
 EDGE_US = 100.0  # distance from an edge within which a glitch may count as the edge
 PHASES = [
     *range(5, 440, 29),  # before the echo
-    *(DELAY_US + at for at in (-60, -31, -20, -5, 5, 20, 40, 71, 95, 130)),
+    *(DELAY_US + offset_us for offset_us in (-60, -31, -20, -5, 5, 20, 40, 71, 95, 130)),
     *range(DELAY_US + 150, DELAY_US + 2900, 149),
-    *(DELAY_US + round(ECHO_US) + at for at in (-120, -95, -60, -31, -15, -5, 5, 20, 69, 90, 120)),
+    *(
+        DELAY_US + round(ECHO_US) + offset_us
+        for offset_us in (-120, -95, -60, -31, -15, -5, 5, 20, 69, 90, 120)
+    ),
     *range(DELAY_US + 3100, 24_000, 1501),
 ]
 

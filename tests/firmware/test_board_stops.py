@@ -35,7 +35,7 @@ def interrupt(code: str) -> str:
 
 
 def pulses_from(board: Board, ms: float) -> int:
-    return sum(at > ms for at, _ in pulses(board, GRIPPER))
+    return sum(at_ms > ms for at_ms, _ in pulses(board, GRIPPER))
 
 
 @pytest.mark.sampled("holds")
@@ -61,9 +61,9 @@ def test_a_stopped_actuator_stays_off_until_a_program_sets_it() -> None:
     for ms in (152, 299, 399, 450, 498):
         assert board.pin(LED, START + ms) == "low"
     assert board.pin(LED, START + 505) == "high"
-    times = [at - START for at, _ in pulses(board, GRIPPER)]
-    assert not [at for at in times if 151 < at < 499]
-    assert [at for at in times if at > 500]
+    times = [at_ms - START for at_ms, _ in pulses(board, GRIPPER)]
+    assert not [at_ms for at_ms in times if 151 < at_ms < 499]
+    assert [at_ms for at_ms in times if at_ms > 500]
 
 
 def test_a_program_that_is_being_stopped_sets_nothing() -> None:
@@ -73,8 +73,8 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     board.level(START + 50.123, WIRE, True)
     board.run_for(START + 80)
     edges = [cycle / MS - START for cycle in board.edges(LED)]
-    assert [at for at in edges if at < 50.1]
-    assert not [at for at in edges if at > 50.3]
+    assert [at_ms for at_ms in edges if at_ms < 50.1]
+    assert not [at_ms for at_ms in edges if at_ms > 50.3]
 
 
 @pytest.mark.sampled("holds")

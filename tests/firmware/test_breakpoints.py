@@ -89,8 +89,8 @@ def test_a_step_is_a_statement() -> None:
 def test_an_offset_inside_a_statement_is_not_a_place(text: str) -> None:
     it = Debugged(text)
     starts = statement_starts(it.image.code)
-    for at in range(len(it.image.code) + 3):
-        assert it.places(at) == (OK if at in starts else BAD_VALUE), at
+    for offset in range(len(it.image.code) + 3):
+        assert it.places(offset) == (OK if offset in starts else BAD_VALUE), offset
     assert it.places(*starts[:4]) == OK
     assert it.places(*starts[:3], 1000) == BAD_VALUE
 
@@ -422,16 +422,16 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
         "SI|N = 0;WHILE(N < 3);N = N + 1;IF(N = 2);BREAK;ENDIF;END_WHILE;W(0.1)",
     ):
         it = Debugged(text)
-        for at in statement_starts(it.image.code):
+        for offset in statement_starts(it.image.code):
             session = it.session
-            assert it.robot.until(session, session.break_at((at,))) == OK
+            assert it.robot.until(session, session.break_at((offset,))) == OK
             it.start()
             count = 0
             while it.halt() is not None:
                 count += 1
                 assert count < 20
                 it.go()
-            assert count == count_visits(it.image, at), (text, at, count)
+            assert count == count_visits(it.image, offset), (text, offset, count)
 
 
 def test_a_show_without_room_halts_once() -> None:
@@ -483,7 +483,7 @@ def test_a_step_stays_in_its_task_unless_another_task_reaches_a_breakpoint() -> 
     text = "SI|TASK;W(0.1);SHOW(1);W(0.1);SHOW(2);END_TASK;W(0.15);SHOW(8);W(1);SHOW(9)"
     it = Debugged(text)
     places = statement_starts(it.image.code)
-    main = places.index(next(at for at in places if at >= places[6]))
+    main = places.index(next(offset for offset in places if offset >= places[6]))
     assert it.places(places[1]) == OK
     it.start()
     assert it.halt() == Halt(places[1], 0)

@@ -72,10 +72,10 @@ def run_in_tsc(image: Image) -> Seen:
     rows = [line.split(maxsplit=2) for line in trace.splitlines()]
     end_ms = float(rows[-1][0])
     times = [(float(row[0]), row[2]) for row in rows if row[1] == "MOTORS"]
-    ends = [at for at, _ in times[1:]] + [end_ms]
+    ends = [at_ms for at_ms, _ in times[1:]] + [end_ms]
     settings = [
-        (end - at, (int(powers.split()[0]), int(powers.split()[1])))
-        for (at, powers), end in zip(times, ends, strict=False)
+        (end - at_ms, (int(powers.split()[0]), int(powers.split()[1])))
+        for (at_ms, powers), end in zip(times, ends, strict=False)
     ]
     shows = [row[2] for row in rows if row[1] == "SHOW"]
     return Seen(shows, settings, rows[-1][1] in ("DONE", "FAULT"), end_ms)
@@ -107,8 +107,8 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
     cycles = sorted({cycle for cycle in changes if cycle > since})
     ends = [*cycles[1:], uno.cycle]
     settings = [
-        ((end - at) / CYCLES_PER_MS, (power(uno, "left", at), power(uno, "right", at)))
-        for at, end in zip(cycles, ends, strict=False)
+        ((end - cycle) / CYCLES_PER_MS, (power(uno, "left", cycle), power(uno, "right", cycle)))
+        for cycle, end in zip(cycles, ends, strict=False)
     ]
     session.stop(wired_uno.now_ms)
     wired_uno.run(200)

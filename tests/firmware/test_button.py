@@ -86,9 +86,9 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
     for spacing_ms in (1, 3, 10, 20, 25, *range(28, 36), 60, 100, 200):
         for count in (2, 5):
             for k in range(count):
-                at = uno.cycle + (1 + k * spacing_ms) * CYCLES_PER_MS
-                uno.drive("button", False, at=at)
-                uno.drive("button", None, at=at + SPIKE_US * CYCLES_PER_MS // 1000)
+                cycle = uno.cycle + (1 + k * spacing_ms) * CYCLES_PER_MS
+                uno.drive("button", False, at=cycle)
+                uno.drive("button", None, at=cycle + SPIKE_US * CYCLES_PER_MS // 1000)
             uno.run_ms(count * spacing_ms + 80)
             assert states(uno) == OFF, (spacing_ms, count)
     assert not [change for change in uno.pins.history("left") if change.state == "pwm"]
@@ -98,9 +98,9 @@ def test_the_first_edge_stops_a_running_uno(uno: Uno) -> None:
     wired_uno = computer(uno)
     send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(100)
-    at = uno.cycle + CYCLES_PER_MS
-    uno.drive("button", False, at=at)
+    cycle = uno.cycle + CYCLES_PER_MS
+    uno.drive("button", False, at=cycle)
     uno.run_ms(3)
     assert states(uno) == OFF
     off_cycle = max(uno.pins[name].cycle for name in OFF)
-    assert off_cycle - at < CYCLES_PER_MS
+    assert off_cycle - cycle < CYCLES_PER_MS

@@ -107,9 +107,9 @@ def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> 
     table = Table()
     STATES[state](table)
     robot, begun_ms = table.robot, table.robot.now_ms
-    was_latched, before = robot.is_latched, len(robot.did)
+    was_latched, count_before = robot.is_latched, len(robot.did)
     press_button(table, press)
-    rows = [row.split(" ", 1) for row in robot.did[before:]]
+    rows = [row.split(" ", 1) for row in robot.did[count_before:]]
     moves = [(int(ms) - begun_ms, what) for ms, what in rows if what.startswith("MOTORS")]
     wanted_texts, columns = read_table()[state], PRESSES[press][1]
     first_ms = letters()[press][0][0]

@@ -231,8 +231,8 @@ def frames_of(image: Image) -> list[tuple[str, bytes]]:
     body = data[CHECKSUM_OFFSET + 4 :]
     return [
         ("BEGIN", bytes([RUN]) + data[2:CHECKSUM_OFFSET]),
-        *(("DATA", at.to_bytes(2, "little") + body[at : at + PIECE_BYTES])
-          for at in range(0, len(body), PIECE_BYTES)),
+        *(("DATA", offset.to_bytes(2, "little") + body[offset : offset + PIECE_BYTES])
+          for offset in range(0, len(body), PIECE_BYTES)),
         ("COMMIT", data[CHECKSUM_OFFSET : CHECKSUM_OFFSET + 4]),
     ]  # fmt: skip
 

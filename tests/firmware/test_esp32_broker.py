@@ -156,17 +156,19 @@ def test_a_broker_may_require_name_and_password(
     brokers: Callable[..., Mosquitto],
 ) -> None:
     user, password = "robots", "a long password: 40 letters and some more"
-    own = brokers(user, password)
-    robot, owner = connect_to_broker(own, Keys(), own.settings("aula", user, password))
+    own_broker = brokers(user, password)
+    robot, owner = connect_to_broker(
+        own_broker, Keys(), own_broker.settings("aula", user, password)
+    )
     assert b"40 letters" in robot.read_kept().entries[BROKER_KEY], "it has come whole"
-    wrong = own.settings("aula", user, "another one")
+    wrong = own_broker.settings("aula", user, "another one")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "REFUSED")
     for access in (Access(), Access(user, "another one"), Access("who", "x")):
         with pytest.raises(PortError) as failure:
-            own.connect_client(access)
+            own_broker.connect_client(access)
         assert failure.value.reason == errors.REFUSED
-    own.connect_client(Access(user, password)).close()
+    own_broker.connect_client(Access(user, password)).close()
 
 
 def test_a_driver_keeps_the_robot_while_it_sends_messages(broker: Mosquitto) -> None:
@@ -344,14 +346,14 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
 @pytest.mark.sampled("how")
 @pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
 def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
-    own, keys = brokers(), Keys()
-    robot, _, _, ends = start_drive(own, keys=keys)
+    own_broker, keys = brokers(), Keys()
+    robot, _, _, ends = start_drive(own_broker, keys=keys)
     talk(robot, ends, 500)
     assert motor_state(robot) == "MOTORS 80 80"
     if how == "dies":
-        own.kill()
+        own_broker.kill()
     elif how == "stalls":
-        own.stall()
+        own_broker.stall()
     else:
         set_network_in_reach(robot, "", "")
     begun_ms = robot.now_ms
@@ -359,14 +361,14 @@ def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], how: 
     while motor_state(robot) != "MOTORS 0 0":
         talk(robot, ends, 5)
         assert robot.now_ms < begun_ms + limit_ms
-    own.stall(False)
+    own_broker.stall(False)
     if how == "dies":
-        own.start()
+        own_broker.start()
     school_in_reach(robot)
     cable = remote(robot, keys, 20)
     assert wait_for_outcome(robot, [(None, cable)], cable.ping()) == "OK"
     until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
-    next_client, end = remote(robot, keys, 13), own.connect_client()
+    next_client, end = remote(robot, keys, 13), own_broker.connect_client()
     talk(robot, [], AUTHORITY_MS + 3000)
     assert upload_text(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
     end.close()

@@ -185,14 +185,14 @@ def test_only_the_brokers_own_certificate_is_accepted_without_its_authority(
 ) -> None:
     """The certificate is signed by an unknown authority. Its name and date still count."""
     authority = Authority(tmp_path)
-    own = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
+    own_room = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
     authority.rules("other.aula")
     trust, other = (der(authority.sign(name)) for name in (NAME, "other.aula"))
     robot, owner = join_network(Keys())
     for settings, state in (
-        (own.settings(trust=other), "UNTRUSTED"), (own.settings(trust=trust), "READY"),
-        (own.settings("localhost", trust=trust), "OTHER_NAME"),
-        (own.settings(today=LATER, trust=trust), "EXPIRED"),
+        (own_room.settings(trust=other), "UNTRUSTED"), (own_room.settings(trust=trust), "READY"),
+        (own_room.settings("localhost", trust=trust), "OTHER_NAME"),
+        (own_room.settings(today=LATER, trust=trust), "EXPIRED"),
     ):  # fmt: skip
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         talk(robot, [(None, owner)], 50)
@@ -203,14 +203,14 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
     tmp_path: Path, brokers: Callable[..., Mosquitto]
 ) -> None:
     authority, keys = Authority(tmp_path), Keys()
-    own = Room(brokers(more=authority.rules(NAME)), authority)
-    robot, _ = connect_to_broker(own.broker, keys, own.settings())
+    own_room = Room(brokers(more=authority.rules(NAME)), authority)
+    robot, _ = connect_to_broker(own_room.broker, keys, own_room.settings())
     owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, own.connect()), owner)]
+    ends: Ends = [(AtBroker(robot, own_room.connect()), owner)]
     assert upload_text(robot, ends, owner) == "OK"
     talk(robot, ends, 500)
     assert motor_state(robot) == "MOTORS 80 80"
-    own.broker.kill()
+    own_room.broker.kill()
     begun_ms = robot.now_ms
     while motor_state(robot) != "MOTORS 0 0":
         talk(robot, ends, 5)

@@ -68,9 +68,9 @@ def test_a_header_that_occupies_the_port_is_refused(part: str, pin: int, tmp_pat
     """A header from before `tsc firmware --board` refused these pins."""
     header = firmware.header([robots.load("tinibotc3")], "a test.")
     assert part in header
-    own = tmp_path / "own.h"
-    own.write_text(header.replace(part, f"{part[:-1]}{pin}"), encoding="utf-8")
-    flags = (*flags_of("esp32c3", 2), "-DARDUINO_USB_MODE=1", f'-Dtiniscript_own="{own}"')
+    own_header = tmp_path / "own.h"
+    own_header.write_text(header.replace(part, f"{part[:-1]}{pin}"), encoding="utf-8")
+    flags = (*flags_of("esp32c3", 2), "-DARDUINO_USB_MODE=1", f'-Dtiniscript_own="{own_header}"')
     file = BOARD / "esp32" / "serial.cpp"
     errors = complaints(file, *flags, "-DARDUINO_USB_CDC_ON_BOOT=1")
     assert "error" in errors and "Pins 18 and 19 are the USB of an ESP32-C3" in errors

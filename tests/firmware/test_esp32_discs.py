@@ -192,10 +192,10 @@ def test_input_only_pins_count_edges(pins: dict[str, int]) -> None:
 @KINDS
 @pytest.mark.parametrize("major", [2, 3])
 def test_the_sketch_compiles_for_both_cores(profile: Robot, major: int, tmp_path: Path) -> None:
-    own = tmp_path / "own.h"
-    own.write_text(firmware.header([profile], "a test."), encoding="utf-8")
+    own_header = tmp_path / "own.h"
+    own_header.write_text(firmware.header([profile], "a test."), encoding="utf-8")
     flags = (
-        f'-Dtiniscript_own="{own}"',
+        f'-Dtiniscript_own="{own_header}"',
         *flags_of("esp32dev", major),
         f"-I{STAND_INS_FOLDER / 'core'}",
     )

@@ -161,17 +161,17 @@ def upload_stopped(robot: Esp32Robot, ends: Ends, page: Session) -> None:
     talk(robot, ends, 100)
 
 
-@pytest.mark.parametrize("before", [upload_running, upload_waiting, upload_stopped])
+@pytest.mark.parametrize("prepare", [upload_running, upload_waiting, upload_stopped])
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("has_passed", [False, True])
 def test_anybody_may_drive_after_the_button(
-    before: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
+    prepare: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
 ) -> None:
     """The previous driver, though still heard, has no part in the new run."""
     robot, page, other = pair(is_owned)
     ends: Ends = [(None, page), (LowEnergy(robot), other)]
-    before(robot, ends, page)
-    for _ in range(1 + (before is upload_running)):  # the first press is a stop
+    prepare(robot, ends, page)
+    for _ in range(1 + (prepare is upload_running)):  # the first press is a stop
         talk(robot, ends, 100, flags=1)
         talk(robot, ends, 300, flags=2)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "the button has started it"

@@ -61,8 +61,8 @@ def test_the_robot_classifies_clients_like_a_virtual_one(knocked_at: Esp32Robot)
         data = b"".join(chance.choice(words) for _ in range(chance.randrange(1, 4)))[:400]
         data = data[: chance.randrange(len(data) + 1)]
         if chance.random() < 0.3 and data:
-            at = chance.randrange(len(data))
-            data = data[:at] + chance.randbytes(1) + data[at + 1 :]
+            cut_index = chance.randrange(len(data))
+            data = data[:cut_index] + chance.randbytes(1) + data[cut_index + 1 :]
         assert sniff(knocked_at, data) is sniff_robot_client(data), data
     for data in FOREIGN_GREETINGS.values():
         for k in range(min(len(data), 400)):

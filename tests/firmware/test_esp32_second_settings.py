@@ -185,12 +185,12 @@ class Life:
 def check_radio(seed: int) -> str:
     rng = random.Random(seed)
     # each one after each
-    before, end = [*CONNECTION_ENDS][seed // 5 % 5], [*CONNECTION_ENDS][seed % 5]
+    previous_end, end = [*CONNECTION_ENDS][seed // 5 % 5], [*CONNECTION_ENDS][seed % 5]
     old = Life()
     for _ in range(rng.choice((1, 2, 5))):
         old.step(rng)
     old.robot.radio("H", b"\0")
-    old.move_to(before, SCHOOL)
+    old.move_to(previous_end, SCHOOL)
     old.use(rng.choice((SCHOOL, SCHOOL, HOTSPOT)))
     old.robot.wait(rng.choice((50, 1000, JOIN_RETRY_MS)))
     last = rng.choice((SECOND_NETWORK, SECOND_NETWORK, SECOND_NETWORK, HOTSPOT, None))

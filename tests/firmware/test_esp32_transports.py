@@ -484,8 +484,8 @@ def paste(size: int, burst: int, gap_ms: int) -> Callable[[Esp32Robot, End, byte
     """Return a function that sends a text at a radio's pace: writes of a size, so many at once."""
 
     def send(robot: Esp32Robot, end: End, text: bytes, who: Bytes) -> None:
-        for at in range(0, len(text), size * burst):
-            for k in range(at, min(at + size * burst, len(text)), size):
+        for offset in range(0, len(text), size * burst):
+            for k in range(offset, min(offset + size * burst, len(text)), size):
                 end.send(text[k : k + size])
             talk(robot, [(end, who)], gap_ms)
 
@@ -507,8 +507,8 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     lines = b"".join(b"F(0.01, %d)%b\r\n" % (20 + k, comment) for k in range(40))
     text = b"LOOP(1)\r\n" + lines + b"END_LOOP\r\n"
     by_cable = boot()
-    for at in range(0, len(text), 11):
-        by_cable.step(text[at : at + 11])
+    for offset in range(0, len(text), 11):
+        by_cable.step(text[offset : offset + 11])
     by_cable.wait(2500)
     robot = boot()
     make, send = PACES[pace]

@@ -211,8 +211,8 @@ def test_a_line_that_replaces_a_run_starts_from_its_own_beginning(is_line: bool)
     assert shown_values == [1, 5000]
 
 
-@pytest.mark.parametrize("at", range(-5, 0))
-def test_a_damaged_line_does_not_affect_the_running_one(at: int) -> None:
+@pytest.mark.parametrize("position", range(-5, 0))
+def test_a_damaged_line_does_not_affect_the_running_one(position: int) -> None:
     """Code is made ready while its frame arrives: not where the code lies that runs."""
     robot, session = switched_on(), computer()
     live(robot, session, "SI|F(0.2, 40); F(0.2, 50); SHOW(7)")
@@ -221,9 +221,9 @@ def test_a_damaged_line_does_not_affect_the_running_one(at: int) -> None:
     payload = bytes([RUN]) + image_of("SI|F(0.2, 90); F(0.2, 90); SHOW(9)").code
     frame = Frame(BY_NAME["LIVE"].number, (session._seq + 1) & 0xFF, session._epoch, payload)
     wire = bytearray(encode_frame(frame))
-    if at < -1:
-        wire[at] ^= 0x11
-    for byte in wire if at < -1 else wire[:-1]:  # a sequence cut before its end
+    if position < -1:
+        wire[position] ^= 0x11
+    for byte in wire if position < -1 else wire[:-1]:  # a sequence cut before its end
         robot.step(bytes([byte]))
     robot.talk(session, 600)
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]

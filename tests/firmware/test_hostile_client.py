@@ -116,7 +116,7 @@ class Client:
         epoch = rng.choice((self.epoch, self.epoch, self.epoch ^ rng.randrange(1, 256)))
         is_stale = epoch != self.epoch
         self.robot.did.clear()
-        before = self.robot.is_latched
+        was_latched = self.robot.is_latched
         status = self.ask(number, payload, epoch)[0]
         is_known = number in BY_NUMBER and BY_NUMBER[number].name not in RADIO_MESSAGES
         if not is_known:
@@ -125,7 +125,7 @@ class Client:
             assert status == STATUSES["BAD_LENGTH"]
         elif is_stale and number >= FIRST_ACTING:
             assert status == STATUS_STALE
-        if status in REJECTING_STATUSES and before:
+        if status in REJECTING_STATUSES and was_latched:
             assert not [line for line in self.robot.did if " MOTORS " in line]
 
     def repeat_frame(self) -> None:
@@ -148,17 +148,17 @@ class Client:
         image = pack("SI", 0, code)
         mode = bytes([rng.choice((0x00, 0x20, 0x30))])
         reply = self.ask_by_name("BEGIN", mode + image[2:10])
-        body, at = image[14:], 0
+        body, offset = image[14:], 0
         if len(code) > ROOM_BYTES and reply[0] != STATUS_STALE:
             assert reply[0] != STATUS_OK
-        while reply[0] == STATUS_OK and at < len(body):
+        while reply[0] == STATUS_OK and offset < len(body):
             if rng.random() < 0.1:
                 rng.choice((self.hello, self.zeros, self.line, self.request))()
-            piece = body[at : at + rng.choice((1, 20, 53))]
-            reply = self.ask_by_name("DATA", at.to_bytes(2, "little") + piece)
+            piece = body[offset : offset + rng.choice((1, 20, 53))]
+            reply = self.ask_by_name("DATA", offset.to_bytes(2, "little") + piece)
             if reply[0] == STATUS_OK:
-                at = int.from_bytes(reply[1:3], "little")
-                assert at <= len(body)
+                offset = int.from_bytes(reply[1:3], "little")
+                assert offset <= len(body)
         if self.ask_by_name("COMMIT", image[10:14])[0] == STATUS_OK:
             assert self.fetch_image() == image
             assert code != b"\xff" * 9

@@ -55,17 +55,23 @@ def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
     assert not [event for event in whole.readings if event.sensor & UNTOLD]
     for sensor in range(len(KIT.sensors)):
         all_of_it = [event for event in whole.readings if event.sensor == sensor]
-        at = 0
+        position = 0
         for event in limited_sensed_run.readings:
             if event.sensor & ~UNTOLD != sensor:
                 continue
             if not event.sensor & UNTOLD:
-                assert event == all_of_it[at], "nothing is left out before it"
-                at += 1
+                assert event == all_of_it[position], "nothing is left out before it"
+                position += 1
             else:  # the value is the last reading
-                before = [k for k, reading in enumerate(all_of_it) if reading.ms <= event.ms]
-                assert before and before[-1] >= at and all_of_it[before[-1]].value == event.value
-                at = before[-1] + 1
+                earlier_indices = [
+                    k for k, reading in enumerate(all_of_it) if reading.ms <= event.ms
+                ]
+                assert (
+                    earlier_indices
+                    and earlier_indices[-1] >= position
+                    and all_of_it[earlier_indices[-1]].value == event.value
+                )
+                position = earlier_indices[-1] + 1
 
 
 def test_a_too_slow_line_is_reported() -> None:

@@ -64,8 +64,8 @@ def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list
     changes = sorted({change.cycle for name in MOTORS for change in uno.pins.history(name)
                       if since < change.cycle < end})  # fmt: skip
     lasting = [(cycle, f"{power(uno, 'left', cycle)} {power(uno, 'right', cycle)}")
-               for cycle, after in zip(changes, [*changes[1:], end], strict=False)
-               if after - cycle > SAME_SETTING_MS * CYCLES_PER_MS]  # fmt: skip
+               for cycle, next_cycle in zip(changes, [*changes[1:], end], strict=False)
+               if next_cycle - cycle > SAME_SETTING_MS * CYCLES_PER_MS]  # fmt: skip
     first = lasting[0][0] if lasting else 0
     return [((cycle - first) / CYCLES_PER_MS, powers) for cycle, powers in lasting], reading_count
 

@@ -196,12 +196,12 @@ def test_an_open_line_may_continue_with_any_character(
     """Digits and signs begin frames, too, but not where a line waits for its end."""
     robot = switched_on()
     type_text(robot, "W(0)\n", 100)
-    *before, last = lines
-    for line in before:
+    *first_lines, last_line = lines
+    for line in first_lines:
         assert set(type_text(robot, line + end, pause_ms)) <= {
             "// Waiting for )", "// Waiting for END_LOOP",
         }  # fmt: skip
-    assert type_text(robot, last + end, 400)[-2:] == ["// OK", "// DONE"]
+    assert type_text(robot, last_line + end, 400)[-2:] == ["// OK", "// DONE"]
     assert actions_of(robot)[1:] == LINE
 
 
@@ -585,8 +585,8 @@ def test_long_names_are_accepted_until_the_memory_is_full() -> None:
 def test_a_line_of_10000_bytes_is_discarded(what: str) -> None:
     robot = switched_on()
     data = (what * 10_000).encode()[:10_000]
-    for at in range(0, len(data), 20):  # one step for each turn
-        robot.step(data[at : at + 20])
+    for offset in range(0, len(data), 20):  # one step for each turn
+        robot.step(data[offset : offset + 20])
     robot.step(b"\n")
     assert robot.did == []
     robot.wait(1100)
@@ -603,8 +603,8 @@ def test_help_lists_a_device_with_a_long_name(letters: int) -> None:
     answers = type_text(robot, "HELP\n", 2000)
     assert max(map(len, answers)) <= LINE_LETTERS
     words = [word for answer in answers for word in answer.removeprefix("// ").split()]
-    own = ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
-    assert words[-10:] == [*own, *(device.name for device in REMOTE)]
+    device_names = ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
+    assert words[-10:] == [*device_names, *(device.name for device in REMOTE)]
 
 
 @pytest.mark.parametrize("seed", range(4))

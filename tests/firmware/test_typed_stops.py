@@ -419,12 +419,12 @@ def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
 
 def lines_said(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
-    before, sent_count = len(uno.sent_bytes), -1
+    start_index, sent_count = len(uno.sent_bytes), -1
     uno.send(data)
     while sent_count != len(uno.sent_bytes):
         sent_count = len(uno.sent_bytes)
         uno.run_ms(QUIET_MS)
-    return answer_lines(uno, before).splitlines()
+    return answer_lines(uno, start_index).splitlines()
 
 
 @pytest.mark.sampled("line")

@@ -66,9 +66,9 @@ def undo(robot: HostFirmware, session: Session) -> int:
 # -- refused --------------------------------------------------------------------------------------
 
 
-def with_byte(text: str, at: int, value: int) -> bytes:
+def with_byte(text: str, index: int, value: int) -> bytes:
     image = bytearray(bytes_of(text))
-    image[at] = value
+    image[index] = value
     return bytes(image)
 
 
@@ -112,8 +112,8 @@ def test_undo_does_not_restore_an_unrunnable_program(image: bytes, is_first: boo
 def test_a_robot_starts_with_the_newest_runnable_program(image: bytes, has_good: bool) -> None:
     """Its checksum is right, so that only the verifier or the kit says no."""
     good = bytes_of(PROGRAM_A)
-    before = [(SECOND_SLOT, 6, good)] if has_good else []
-    robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST_SLOT, 7, image))), computer()
+    good_slots = [(SECOND_SLOT, 6, good)] if has_good else []
+    robot, session = HostFirmware(KIT, eeprom_with(*good_slots, (FIRST_SLOT, 7, image))), computer()
     robot.wait(400)
     assert read_saved_state(robot, session) == ("STORED" if has_good else "NOTHING")
     assert robot.is_lit == has_good

@@ -115,8 +115,8 @@ def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> 
         pin_changes_before = [change for change in driving if change.cycle <= cycle]
         assert pin_changes_before[-1].state == "low"
         # 3.4 ms from the beginning of the write, with the event in the middle.
-        after = [change.cycle for change in driving if change.cycle > cycle]
-        assert not after or after[0] - cycle >= 1.5 * CYCLES_PER_MS
+        later_cycles = [change.cycle for change in driving if change.cycle > cycle]
+        assert not later_cycles or later_cycles[0] - cycle >= 1.5 * CYCLES_PER_MS
     assert wired_uno.session.is_running
 
 

@@ -127,8 +127,8 @@ class Trials:
         if how == 2:
             return [self.frame("PROGRAM", bytes([mode]) + code)]
         pieces = [
-            self.frame("DATA", at.to_bytes(2, "little") + body[at : at + 9])
-            for at in range(0, len(body), 9)
+            self.frame("DATA", offset.to_bytes(2, "little") + body[offset : offset + 9])
+            for offset in range(0, len(body), 9)
         ]
         begin = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
         return [begin, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]

@@ -72,8 +72,10 @@ def harness(name: str) -> Path:
     for pattern in PARTS[name]:
         code += sorted(SOURCES.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
-    own = DEFINES_BY_HARNESS.get(name, ()) + (() if name == "machine" else (NO_TRACE_CMP_FLAG,))
-    return build_with(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
+    own_defines = DEFINES_BY_HARNESS.get(name, ()) + (
+        () if name == "machine" else (NO_TRACE_CMP_FLAG,)
+    )
+    return build_with(COMPILER, [*code, *headers], (*FLAGS, *own_defines, *WARNINGS))
 
 
 class Found(NamedTuple):

@@ -58,8 +58,8 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
 
     def change(text: str, edits: list[tuple[float, int, str]]) -> str:
         for where, removed_count, piece in edits:
-            at = int(where * len(text))
-            text = text[:at] + piece + text[at + removed_count :]
+            index = int(where * len(text))
+            text = text[:index] + piece + text[index + removed_count :]
         return text
 
     edit = st.tuples(

@@ -44,26 +44,28 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
     catalogue = languages.merged_catalogue(name, language)
     assert catalogue.problems == []
     assert [
-        at for at, entry in catalogue.entries.items() if entry.translation and entry.is_stale
+        key for key, entry in catalogue.entries.items() if entry.translation and entry.is_stale
     ] == []
     assert [
-        at for at, entry in catalogue.entries.items() if entry.seen_hash == UNKNOWN_HASH
+        key for key, entry in catalogue.entries.items() if entry.seen_hash == UNKNOWN_HASH
     ] == [], f"python -m tools.languages --seen {language}"
     if read_language(FOLDER / language / ABOUT_FILE).is_complete:
-        wanted_keys = {at for at, entry in SOURCES[name].entries.items() if not entry.is_same}
-        translated = {at for at, entry in catalogue.entries.items() if entry.is_translated}
+        wanted_keys = {key for key, entry in SOURCES[name].entries.items() if not entry.is_same}
+        translated = {key for key, entry in catalogue.entries.items() if entry.is_translated}
         assert wanted_keys <= translated
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
 def test_a_language_is_up_to_date(language: str, tmp_path: Path) -> None:
     """The tool would write the same files."""
-    own = Translation(language, sources())
-    bytes_before = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
-    assert [path for path, problems in own.problems() if problems] == []
-    assert [*own.follow_moved_texts()] == []
-    own.folder = tmp_path
-    own.write()
+    translation = Translation(language, sources())
+    bytes_before = {
+        path.name: path.read_bytes() for path in translation.folder.iterdir() if path.is_file()
+    }
+    assert [path for path, problems in translation.problems() if problems] == []
+    assert [*translation.follow_moved_texts()] == []
+    translation.folder = tmp_path
+    translation.write()
     for path in tmp_path.iterdir():
         assert path.read_bytes() == bytes_before[path.name], "python -m tools.languages"
 

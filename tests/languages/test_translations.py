@@ -76,10 +76,12 @@ def text_of(key: str, language: str = "xx") -> str | dict[str, str]:
     return languages.texts("some", language)[key]
 
 
-def open_translation(place: Path, own: str | None = None, is_seen: bool = False) -> Translation:
+def open_translation(
+    place: Path, own_text: str | None = None, is_seen: bool = False
+) -> Translation:
     """Return the translation `xx` as the tool sees it; `is_seen`: of the current English texts."""
-    if own is not None:
-        write(place / "xx" / "some.toml", own)
+    if own_text is not None:
+        write(place / "xx" / "some.toml", own_text)
     english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
     if is_seen:
@@ -128,12 +130,12 @@ def test_an_invalid_row_is_dropped_and_reported_with_its_line(
     assert text_of("b") == "Alto." and text_of("more/2") == "Quítalo."
     if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
         assert text_of("a") == "Read {file}."
-    before = (place / "xx" / "some.toml").read_text().splitlines()
+    rows_before = (place / "xx" / "some.toml").read_text().splitlines()
     reopened_translation = open_translation(place)
     assert [*reopened_translation.follow_moved_texts()] == []
     reopened_translation.write()
-    after = (place / "xx" / "some.toml").read_text().splitlines()
-    assert sorted(after) == sorted(before), "it keeps what somebody must mend"
+    rows_after = (place / "xx" / "some.toml").read_text().splitlines()
+    assert sorted(rows_after) == sorted(rows_before), "it keeps what somebody must mend"
 
 
 @pytest.mark.parametrize(("data", "line"), [
@@ -173,10 +175,10 @@ def test_an_invalid_hash_is_reported_with_its_line_and_kept(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / SEEN_FILE, row)
-    own = open_translation(place, OWN)
-    assert problems(own) == [(SEEN_FILE, line, why)]
-    own.note_seen(["*"])
-    own.write()
+    translation = open_translation(place, OWN)
+    assert problems(translation) == [(SEEN_FILE, line, why)]
+    translation.note_seen(["*"])
+    translation.write()
     assert (place / "xx" / SEEN_FILE).read_text() == row
 
 
@@ -198,8 +200,8 @@ def test_invalid_language_settings_fall_back_to_english(
     row: str, line: int, why: str, place: Path
 ) -> None:
     write(place / "xx" / ABOUT_FILE, row + "\n")
-    ((name, at, problem),) = problems(open_translation(place, OWN))
-    assert (name, at) == (ABOUT_FILE, line) and problem.startswith(why)
+    ((name, line_number, problem),) = problems(open_translation(place, OWN))
+    assert (name, line_number) == (ABOUT_FILE, line) and problem.startswith(why)
     languages.forget_languages()
     assert languages.language_info("xx").forms == ("one", "other")
     assert text_of("b") == "Alto."
@@ -228,14 +230,16 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
 def test_an_unreadable_file_is_reported_and_dropped(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = place / "xx" / "some.toml"
-    write(own, OWN)
+    own_path = place / "xx" / "some.toml"
+    write(own_path, OWN)
 
     def refuse_access(path: Path) -> bytes:
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "read_bytes", refuse_access)
-    assert read_translation_file(own).problems == [(1, "this cannot be read: Permission denied")]
+    assert read_translation_file(own_path).problems == [
+        (1, "this cannot be read: Permission denied")
+    ]
 
 
 # -- contents of a language
@@ -292,8 +296,8 @@ def test_a_stale_text_is_shown_in_english_until_reviewed(
     open_translation(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     assert text_of("b") == "Stop now." and text_of("a") == "Lee {file}."
-    own = open_translation(place)
-    assert tool.report(own) == 0
+    translation = open_translation(place)
+    assert tool.report(translation) == 0
     out = capsys.readouterr().out
     assert "some.toml:2: b: its English text has changed, and so it is said in English: St" in out
     assert "xx: 1 texts are stale." in out and "xx: 1 of 5 texts are translated" in out
@@ -301,8 +305,8 @@ def test_a_stale_text_is_shown_in_english_until_reviewed(
     assert tool.report(open_translation(place)) == 4, "a whole language says all, and as it is now"
     open_translation(place, is_seen=True)
     assert text_of("b") == "Stop now.", "somebody has run the tool for others"
-    assert own.note_seen(["x*", "b"]) == ["x*"]
-    own.write()
+    assert translation.note_seen(["x*", "b"]) == ["x*"]
+    translation.write()
     assert text_of("b") == "Alto."
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
     assert text_of("b") == "Stop.", "of the text before it is none now"
@@ -315,9 +319,9 @@ def test_a_text_inserted_in_front_loses_no_translation(place: Path, has_run: boo
                             '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
     write(place / SOURCE_LANGUAGE / "some.toml", moved_text)
     if has_run:
-        own = open_translation(place)
-        assert [*own.follow_moved_texts()] == []
-        own.write()
+        translation = open_translation(place)
+        assert [*translation.follow_moved_texts()] == []
+        translation.write()
         assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
             'more = ["", "Ponlo.", "", "Quítalo."]\n'
         )
@@ -346,11 +350,11 @@ def test_a_translation_and_its_note_follow_the_english_text(place: Path) -> None
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH + 'goes = "It goes."\n')
     open_translation(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
-    own = open_translation(
+    translation = open_translation(
         place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n'
     )
-    assert [*own.follow_moved_texts()] == ["some.toml: goes"]
-    own.write()
+    assert [*translation.follow_moved_texts()] == ["some.toml: goes"]
+    translation.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
         '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
     )
@@ -374,14 +378,14 @@ def test_a_mistake_in_a_file_loses_no_recorded_review(place: Path) -> None:
     seen_file = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
-        own = open_translation(place, spoilt, is_seen=True)
-        assert [*own.follow_moved_texts()] == []
-        own.write()
+        translation = open_translation(place, spoilt, is_seen=True)
+        assert [*translation.follow_moved_texts()] == []
+        translation.write()
         assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen_file[:60])
         file_text = (place / "xx" / "some.toml").read_text(encoding="utf-8")
         assert sorted(file_text.splitlines()) == sorted(spoilt.splitlines())
     (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
-    own = open_translation(place, is_seen=True)
+    translation = open_translation(place, is_seen=True)
     assert "some b" in (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     open_translation(place, OWN)
     assert text_of("b") == "Stop now.", "it is stale still"
@@ -395,8 +399,8 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         place / SOURCE_LANGUAGE / "some.toml",
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
-    own = open_translation(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
-    entries = [entry for entry in own.merge("some").entries.values() if not entry.is_same]
+    translation = open_translation(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
+    entries = [entry for entry in translation.merge("some").entries.values() if not entry.is_same]
     assert [(it.key, it.english, it.notes, it.translation[""]) for it in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
         ("door", "Open", [], "Abierta"),
@@ -411,10 +415,10 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
 
 def test_a_program_is_not_translated_and_may_contain_a_lone_brace(place: Path) -> None:
     write(place / SOURCE_LANGUAGE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
-    own = open_translation(place)
-    assert problems(own) == []
-    own.put_all("some", pseudo(own.english["some"]))
-    own.write()
+    translation = open_translation(place)
+    assert problems(translation) == []
+    translation.put_all("some", pseudo(translation.english["some"]))
+    translation.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == 'a = "À. ñandú"\n'
     assert text_of("b/wrong") == "LOOP(3) {"
 
@@ -447,8 +451,8 @@ def test_texts_too_long_for_a_robot_and_unknown_lexicon_rows_are_reported(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     entries = [Entry("a", "Stop.", "", {"": text}) for text in ("x" * 41, "Arrêt", "Halte")]
-    own = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
-    assert [why for _, why in check_robot(own)] == [
+    catalogue = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
+    assert [why for _, why in check_robot(catalogue)] == [
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
@@ -507,8 +511,8 @@ def test_a_stranger_adds_a_language_text_by_text(
     place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     whole("fr")
-    own = place / "fr" / "command.toml"
-    write(own, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
+    own_path = place / "fr" / "command.toml"
+    write(own_path, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
     languages.forget_languages()
     assert (
         languages.find_language("fr_CA.UTF-8")
@@ -524,7 +528,7 @@ def test_a_stranger_adds_a_language_text_by_text(
     assert "fr: 1 of " in (out := capsys.readouterr().out) and "new" not in out
     (row,) = (place / "fr" / SEEN_FILE).read_text(encoding="utf-8").splitlines()[1:]
     assert row.startswith("command no_verb ")
-    write(own, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
+    write(own_path, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
     assert whole("--check") == whole() == 1
     out = capsys.readouterr().out
     assert "languages/fr/command.toml:1: no_verb: {found} is missing\n" in out
@@ -587,17 +591,17 @@ def test_a_wrong_english_text_goes_into_no_language(
 def test_a_clone_regenerates_stale_files_even_if_read_only(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.CACHE_ENDING}"
+    own_path, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.CACHE_ENDING}"
 
     def stop() -> str:
         languages.forget_languages()
         return languages.text("some", "b", "xx")
 
-    write(own, OWN)
+    write(own_path, OWN)
     assert stop() == "Alto."
     path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
     assert stop() == "Paro.", "it is read as it is while nothing is newer"
-    for source in (own, place / "xx" / SEEN_FILE, place / "xx" / ABOUT_FILE,
+    for source in (own_path, place / "xx" / SEEN_FILE, place / "xx" / ABOUT_FILE,
                    place / SOURCE_LANGUAGE / "some.toml"):  # fmt: skip
         path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
         source.touch()
@@ -607,9 +611,9 @@ def test_a_clone_regenerates_stale_files_even_if_read_only(
     for half in (b"", path.read_bytes()[:20], b"\xff", b"[]"):
         path.write_bytes(half)
         assert stop() == "Alto.", half
-    own.unlink()
+    own_path.unlink()
     assert stop() == "Stop.", "what was made of it is no translation"
-    write(own, OWN)
+    write(own_path, OWN)
     path.unlink()
     path.mkdir()  # makes the file impossible to write
     assert stop() == "Alto."
@@ -684,18 +688,18 @@ def test_a_clone_on_a_full_disk_has_its_texts(package: Path) -> None:
 def test_invalid_english_texts_are_reported_without_catalogue_texts(
     spoil: Callable[[Path], object], why: str, package: Path, tmp_path: Path
 ) -> None:
-    own = tmp_path / "tiniscript"
-    shutil.copytree(package, own)
+    package_folder = tmp_path / "tiniscript"
+    shutil.copytree(package, package_folder)
     for name, words in (
         ("messages", ["check", "-e", "SI|F(2 80)"]),
         ("command", ["check", "no_such.ts", "--lang", "es"]),
         ("command", ["complie"]),
     ):
-        path = own / "languages" / SOURCE_LANGUAGE / f"{name}.toml"
+        path = package_folder / "languages" / SOURCE_LANGUAGE / f"{name}.toml"
         if path.is_file():
             path.chmod(0o644)
         spoil(path)
-        code, output = command(own, *words)
+        code, output = command(package_folder, *words)
         assert code == 2 and output == output.splitlines()[0] + "\n"
         assert output.startswith(f"tsc: {path}:{why}")
 
@@ -714,7 +718,7 @@ def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Transla
     return open_translation(place)
 
 
-def read_catalog(own: Translation) -> Catalog:
+def read_catalog(translation: Translation) -> Catalog:
     with Path("xx.po").open("rb") as file:
         return read_po(file, abort_invalid=True)
 
@@ -782,10 +786,10 @@ def test_a_language_is_exported_and_imported_completely(
             translation.merge(name) for translation in (translation_before, translation_after)
         )
         assert new.problems == []
-        for at, entry in old.entries.items():
+        for key, entry in old.entries.items():
             is_asked = not entry.is_same
-            assert new.entries[at].translation == entry.translation or not is_asked, at
-            assert new.entries[at].seen_hash == entry.seen_hash or not is_asked, at
+            assert new.entries[key].translation == entry.translation or not is_asked, key
+            assert new.entries[key].seen_hash == entry.seen_hash or not is_asked, key
 
 
 HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'

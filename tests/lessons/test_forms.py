@@ -86,8 +86,8 @@ def test_block_users_get_findings_about_blocks(language: str) -> None:
     for key in (key for key in texts("lessons", language) if key.startswith("said/")):
         words = ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",)
         for word in words:
-            own = {"word": word, "question": "DISTANCE < 15", "what": "DISTANCE"}
-            finding = Finding("", key.removeprefix("said/"), {**values, **own}, {})
+            own_values = {"word": word, "question": "DISTANCE < 15", "what": "DISTANCE"}
+            finding = Finding("", key.removeprefix("said/"), {**values, **own_values}, {})
             terminal, on_blocks = (sentence(finding, language, form) for form in (TEXT, BLOCKS))
             assert not re.search(r"`|\[\[|\]\]", terminal)
             is_line_on_floor = "follows" in key

@@ -173,7 +173,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         whys.append(True)
     if step.endswith("_shared"):
         whys.append(RuntimeError("a bug"))
-    before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
+    count_before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
     for why in whys:
         with monkeypatch.context() as patched:
             patched.setattr(step, failing_call(why))
@@ -184,7 +184,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         assert lock is not None, f"{why!r} leaves its lock"
         lock.close()
         if sys.platform == "linux":
-            assert len(list(Path("/proc/self/fd").iterdir())) == before, why
+            assert len(list(Path("/proc/self/fd").iterdir())) == count_before, why
     monkeypatch.setattr(Client, "_share", lambda *_: None)
     line = open_client().connection
     assert Device.opened[-1].is_open

@@ -29,8 +29,8 @@ def test_the_robots_of_the_lessons_are_suggested() -> None:
 def test_a_robot_named_in_the_program_is_suggested(name: str) -> None:
     """Also where others have the word, too."""
     kit = robots.load(name).kit
-    own = {BUTTON, *robots.load("tinibot").kit.names}  # of a button there is another message
-    for word in {device.name for device in kit.sensors} - own:
+    own_names = {BUTTON, *robots.load("tinibot").kit.names}  # of a button there is another message
+    for word in {device.name for device in kit.sensors} - own_names:
         assert first_named(f"// robot: {name}\nSI|SHOW({word})") == name
 
 

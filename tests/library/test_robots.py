@@ -183,11 +183,11 @@ def test_wrong_use_of_a_connection_raises_an_error(
 
 
 def test_a_virtual_robot_ends_with_its_context() -> None:
-    before = threading.active_count()
+    count_before = threading.active_count()
     with tiniscript.virtual_robot() as robot:
         assert [entry.address for entry in directory.running_robots()] == [robot.port]
     assert not list(directory._folder().iterdir())
-    assert threading.active_count() == before
+    assert threading.active_count() == count_before
 
 
 def test_the_virtual_robot_of_another_process_is_found_without_a_port() -> None:
@@ -433,19 +433,19 @@ def test_a_pulled_cable_is_reported_twice(pty_robot: PtyRobot) -> None:
         robot.upload(FOREVER)
         pty_robot.pull()
         robot.wait()
-    before = error_info.value.__context__
-    assert isinstance(before, tiniscript.RobotError)
-    assert before.reason == "port_gone"
+    earlier_error = error_info.value.__context__
+    assert isinstance(earlier_error, tiniscript.RobotError)
+    assert earlier_error.reason == "port_gone"
 
 
 def test_a_silent_port_is_reported(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 300)
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()
-    before = threading.active_count()
+    count_before = threading.active_count()
     with pytest.raises(tiniscript.RobotError) as error_info:
         tiniscript.connect(pty_robot.port, language="es")
-    assert threading.active_count() == before
+    assert threading.active_count() == count_before
     assert error_info.value.reason == "link_silent"
     assert "Nada responde" in str(error_info.value)
     # and the port is free again

@@ -141,13 +141,13 @@ def test_leaving_concerns_only_the_last_program(
     fresh = leave_robot(robot, line, kind)
     for _ in range(8):
         robot, line = connect_client(monkeypatch)
-        before = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
-        for story in before:
+        earlier_stories = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
+        for story in earlier_stories:
             play_story(robot, line, story)
             line.events.clear()
             line.unsaved_looks = 0
-        assert play_story(robot, line, last) == outcome, before
-        assert leave_robot(robot, line, kind) == fresh, (before, last)
+        assert play_story(robot, line, last) == outcome, earlier_stories
+        assert leave_robot(robot, line, kind) == fresh, (earlier_stories, last)
 
 
 def test_a_program_that_keeps_running_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -176,10 +176,11 @@ def test_late_values_belong_to_the_text_of_their_program(monkeypatch: pytest.Mon
         program = checksum(compilation.image)
         line.program = program
         robot.upload(compilation.source.text, save=False)
-        at = rows(compilation.code)[-1].offset
+        offset = rows(compilation.code)[-1].offset
         late: list[Event] = [
-            ShownEvent(1000, 0, line.run, program, at), FaultEvent(line.run, 1, at, program),
-        ]  # fmt: skip
+            ShownEvent(1000, 0, line.run, program, offset),
+            FaultEvent(line.run, 1, offset, program),
+        ]
         line.events += [(int(monotonic() * 1000), event) for event in late]
     events = list(robot.events(0.2))
     assert [(event.values.get("name"), event.values["line"]) for event in events] == [

@@ -245,8 +245,10 @@ class Board(Simulated):
         compilation = compile_text(text, robot.kit)
         assert compilation.image, compilation.diagnostics
         image_before = compile_text(BUILT_IN_PROGRAM, robot.kit).image
-        at = elf.index(image_before)
-        self.elf = elf[:at] + compilation.image + b"\0" * 4 + elf[at + len(compilation.image) + 4 :]
+        start = elf.index(image_before)
+        self.elf = (
+            elf[:start] + compilation.image + b"\0" * 4 + elf[start + len(compilation.image) + 4 :]
+        )
         self.changes: list[Change] = []
         self.copies: list[dict[int, int]] = []  # watched registers at the end of each
         self.quiet_us = 0.0  # longest time with interrupts off

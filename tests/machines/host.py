@@ -315,12 +315,17 @@ def compile_once(
     path = builds / (_key(compiler, flags, made_from) + suffix)
     if not path.exists():
         same = _preprocess(compiler, builds, flags, words) if suffix == ".o" else path
-        make_once(same, lambda own: _run_compiler(compiler, [*flags, *words, "-o", str(own)]))
+        make_once(
+            same,
+            lambda temporary_path: _run_compiler(
+                compiler, [*flags, *words, "-o", str(temporary_path)]
+            ),
+        )
         if same != path:
-            own = path.with_suffix(f".{os.getpid()}-{get_ident()}")
-            own.hardlink_to(same)
-            own.replace(path)
-            own.unlink(missing_ok=True)  # a hard link to the same file remains
+            temporary_path = path.with_suffix(f".{os.getpid()}-{get_ident()}")
+            temporary_path.hardlink_to(same)
+            temporary_path.replace(path)
+            temporary_path.unlink(missing_ok=True)  # a hard link to the same file remains
     return path
 
 
@@ -336,9 +341,9 @@ def make_once(path: Path, make: Callable[[Path], object]) -> Path:
         with path.with_name(f"{path.name}.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not path.exists():
-                own = path.with_name(f"{path.name}.{os.getpid()}")
-                make(own)
-                own.replace(path)
+                temporary_path = path.with_name(f"{path.name}.{os.getpid()}")
+                make(temporary_path)
+                temporary_path.replace(path)
     return path
 
 

@@ -151,9 +151,9 @@ def test_a_module_is_found_at_any_speed(kind: str, baud: int) -> None:
 def test_requested_settings_are_changed_and_others_kept(kind: str, baud: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(end)
-    before = end.name, end.pin, end.data_baud
+    settings_before = end.name, end.pin, end.data_baud
     assert set_up_module(wire, WantedSettings()) == []
-    assert (end.name, end.pin, end.data_baud) == before
+    assert (end.name, end.pin, end.data_baud) == settings_before
     set_up_everything(wire, end, "Tini-7F3A", baud)
     end.power_on()
     assert end.baud == baud

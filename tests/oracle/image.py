@@ -35,9 +35,12 @@ MAJOR, MINOR = max(VERSIONS)
 
 def version(code: bytes, needs: int) -> tuple[int, int]:
     """Return the lowest version that has all instructions and needs of verified code."""
-    at, names = 0, set()
-    while at < len(code):
-        name, at = spec_tables.instruction_at(code, at).name, spec_tables.decode(code, at)[2]
+    offset, names = 0, set()
+    while offset < len(code):
+        name, offset = (
+            spec_tables.instruction_at(code, offset).name,
+            spec_tables.decode(code, offset)[2],
+        )
         names.add(name)
     added = (
         number

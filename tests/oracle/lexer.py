@@ -46,13 +46,13 @@ def tokens_of(text: str) -> list[Token]:
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     text = "\n".join(map(without_checksum, text.split("\n")))
     tokens: list[Token] = []
-    line, depth, at = 1, 0, 0
-    while at < len(text):
-        match = _TOKEN.match(text, at)
+    line, depth, position = 1, 0, 0
+    while position < len(text):
+        match = _TOKEN.match(text, position)
         if match is None:
-            raise Mistake(f"line {line}: {text[at]!r} is not understood")
+            raise Mistake(f"line {line}: {text[position]!r} is not understood")
         kind, word = str(match.lastgroup), match.group().upper()
-        at = match.end()
+        position = match.end()
         if kind == "symbol" and word in "()":
             depth = max(0, depth + (1 if word == "(" else -1))
         if word == ";" and depth > 0:
@@ -61,7 +61,7 @@ def tokens_of(text: str) -> list[Token]:
             kind, word = "word", "DEG"
         if word in FIXED_WORDS:
             names, meaning = FIXED_WORDS[word]
-            values, at = _read_values(text, at, len(names)) if names else ([], at)
+            values, position = _read_values(text, position, len(names)) if names else ([], position)
             for token in tokens_of(meaning)[:-1]:
                 replacements = dict(zip(names, values, strict=True)).get(token.text, [token])
                 tokens += (one._replace(line=line) for one in replacements)
@@ -73,9 +73,9 @@ def tokens_of(text: str) -> list[Token]:
     return tokens
 
 
-def _read_values(text: str, at: int, count: int) -> tuple[list[list[Token]], int]:
+def _read_values(text: str, position: int, count: int) -> tuple[list[list[Token]], int]:
     """The tokens of each value in the brackets that begin here, and where these end."""
-    match = re.compile(r"\s*\(").match(text, at)
+    match = re.compile(r"\s*\(").match(text, position)
     if match is None:
         raise Mistake("a word without its values")
     begin = end = match.end()

@@ -123,8 +123,8 @@ class Run:
         self.passed = reached
 
     def step(self) -> None:
-        row, operands, after, to = decode(self.code, self.pc)
-        self.pc = after
+        row, operands, next_pc, to = decode(self.code, self.pc)
+        self.pc = next_pc
         self.do(row, row.stem, operands, to)
 
     def do(self, row: Instruction, name: str, operands: Sequence[int], to: int) -> None:

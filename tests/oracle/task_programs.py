@@ -39,9 +39,9 @@ class TaskAuthor:
             if YES_NO in self.defs[name]:  # the first call determines its kind
                 self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
         tasks = rng.randint(1, MOST_TASKS)
-        before = sorted(rng.randint(0, 3) for _ in range(tasks))
+        when_counts = sorted(rng.randint(0, 3) for _ in range(tasks))
         for place in range(4):
-            for _ in range(before.count(place)):
+            for _ in range(when_counts.count(place)):
                 self.task()
             if place < 3:
                 self.body(rng.randint(0, 2), 0)

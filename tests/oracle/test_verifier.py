@@ -78,16 +78,16 @@ def damage_programs(programs: list[bytes], seed: int, count: int) -> Iterator[by
     for _ in range(count):
         code = bytearray(rng.choice(programs))
         for _ in range(rng.choice((1, 1, 2, 3))):
-            at = rng.randrange(len(code)) if code else 0
+            index = rng.randrange(len(code)) if code else 0
             kind = rng.randrange(6)
             if kind == 0:
-                del code[at : at + 1]
+                del code[index : index + 1]
             elif kind == 1:
-                code[at:at] = code[at : at + 1]
+                code[index:index] = code[index : index + 1]
             elif kind == 2 and rng.random() < 0.2:
-                del code[at:]
+                del code[index:]
             elif code:
-                code[at] = rng.choice((code[at] ^ 1 << rng.randrange(8), rng.randrange(256)))
+                code[index] = rng.choice((code[index] ^ 1 << rng.randrange(8), rng.randrange(256)))
         yield bytes(code)
 
 

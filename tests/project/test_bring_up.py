@@ -49,9 +49,12 @@ def commands(text: str) -> list[list[str]]:
 
 
 def test_both_lists_contain_the_same_commands() -> None:
-    own = {"PUERTO": "PORT", "RED": "NETWORK", "puesta.txt": "bring-up.txt"}
+    english_words = {"PUERTO": "PORT", "RED": "NETWORK", "puesta.txt": "bring-up.txt"}
     english, spanish = (
-        [[own.get(word, word) for word in command] for command in commands(path.read_text("utf-8"))]
+        [
+            [english_words.get(word, word) for word in command]
+            for command in commands(path.read_text("utf-8"))
+        ]
         for path in LISTS.values()
     )
     assert english == spanish

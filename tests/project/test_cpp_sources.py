@@ -167,10 +167,10 @@ def test_each_header_is_included_once(path: Path) -> None:
 
 def names_in(mangled_text: str) -> list[str]:
     """Return the names in a name of the linker: `8Receiver5watchEh` has `Receiver` and `watch`."""
-    names, at = [], 0
-    while digits := re.match(r"\d+", mangled_text[at:]):
-        at += len(digits[0]) + int(digits[0])
-        names.append(mangled_text[at - int(digits[0]) : at])
+    names, position = [], 0
+    while digits := re.match(r"\d+", mangled_text[position:]):
+        position += len(digits[0]) + int(digits[0])
+        names.append(mangled_text[position - int(digits[0]) : position])
     return names
 
 

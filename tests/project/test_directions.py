@@ -85,9 +85,9 @@ def test_a_right_program_loads_no_modules_for_wrong_ones_or_other_verbs(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
     )
-    own = {module for module in modules if module.startswith("tiniscript")}
-    assert not {word for word in own if OF_WRONG.match(word)}
-    assert len(own) <= 68
+    own_modules = {module for module in modules if module.startswith("tiniscript")}
+    assert not {word for word in own_modules if OF_WRONG.match(word)}
+    assert len(own_modules) <= 68
     unwanted_modules = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
                 "tiniscript.link", "tiniscript.base.translations",
                 "tiniscript.vm.machine", "tiniscript.vm.runner", "tiniscript.bytecode.disassembly",

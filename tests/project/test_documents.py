@@ -142,9 +142,9 @@ def test_a_translation_links_to_documents_of_its_language(
     wrong = []
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
         led = (page.parent / target).resolve().relative_to(ROOT).as_posix()
-        own = name_in(language, led)
-        if led not in (english, own) and (ROOT / own).is_file():
-            wrong.append(f"{target}: there is {own}")
+        own_name = name_in(language, led)
+        if led not in (english, own_name) and (ROOT / own_name).is_file():
+            wrong.append(f"{target}: there is {own_name}")
     assert not wrong, "\n".join(wrong)
 
 

@@ -158,8 +158,8 @@ def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path)
 
 @each_guide
 def test_all_guides_have_the_same_commands_and_headings(language: str, guide: Path) -> None:
-    english, own = steps(GUIDE_BY_LANGUAGE["en"]), steps(guide)
-    for step, other in zip(english, own, strict=True):
+    english_steps, own_steps = steps(GUIDE_BY_LANGUAGE["en"]), steps(guide)
+    for step, other in zip(english_steps, own_steps, strict=True):
         assert step.words[:1] == other.words[:1]
         assert bool(step.name) == bool(other.name)
     headings = [

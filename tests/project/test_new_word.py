@@ -219,8 +219,8 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
     value = [["NAME", "X"], ["NUMBER", "2"], ["ADD", ""]]
     assert body == [["plain_1", WIGGLE.text, [value]]]
     assert printed == "SI|WIGGLE(X + 2)\n"
-    own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has no text for it
-    assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own]
+    own_text = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has no text for it
+    assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own_text]
     packed, rows, ranges = tables.split("tini_progmem = {")[1:]
     for word in (HORN.text, WIGGLE.text):
         assert f"// {word}" in packed and f"// {word}" not in rows

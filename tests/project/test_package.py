@@ -91,8 +91,8 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
     ):
         (stale / name).parent.mkdir(parents=True, exist_ok=True)
         (stale / name).touch()
-    own = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
-    own.write_text("#error")
+    own_header = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
+    own_header.write_text("#error")
     page = repo / "compiler" / BUILT_PAGE
     page.parent.mkdir()
     page.touch()
@@ -101,7 +101,7 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
     folder = tmp_path_factory.mktemp("wheel")
     with zipfile.ZipFile(build_package(repo, "build_wheel", folder)) as zip_file:
         zip_file.extractall(folder / "unpacked")
-    own.unlink()
+    own_header.unlink()
     cases.unlink()
     shutil.rmtree(page.parent)
     return folder / "unpacked"

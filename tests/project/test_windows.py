@@ -294,7 +294,7 @@ class Kernel:
 
 
 @pytest.mark.parametrize(
-    ("before", "taken", "handle", "is_read", "after"),
+    ("mode_before", "taken", "handle", "is_read", "mode_after"),
     [
         (3, 7, 42, True, 7),  # cmd: it can, and was not asked
         (2, 7, 42, True, 7),
@@ -304,10 +304,10 @@ class Kernel:
     ],
 )  # fmt: skip
 def test_colors_are_for_consoles_that_read_them(
-    before: int, taken: int, handle: int, is_read: bool, after: int,
+    mode_before: int, taken: int, handle: int, is_read: bool, mode_after: int,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    kernel = Kernel(before, taken)
+    kernel = Kernel(mode_before, taken)
     runtime = ModuleType("msvcrt")
     runtime.get_osfhandle = lambda number: handle  # type: ignore[attr-defined]
     monkeypatch.setattr(sys, "platform", "win32")
@@ -318,7 +318,7 @@ def test_colors_are_for_consoles_that_read_them(
     assert not streams.reads_sequences(console), "it has no number"
     monkeypatch.setattr(console, "fileno", lambda: 1)
     assert streams.reads_sequences(console) is is_read
-    assert kernel.mode == after
+    assert kernel.mode == mode_after
     assert streams.has_colors(console) is is_read
     monkeypatch.setenv("NO_COLOR", "1")
     assert not streams.has_colors(console)

@@ -121,16 +121,18 @@ def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
     ways: dict[tuple[str, int], set[int]] = {}
     for file, start, end in frozenset().union(*branches):
         ways.setdefault((file, start), set()).add(end)
-    is_branch = {at for at, ends in ways.items() if len(ends) > 1}
+    is_branch = {position for position, ends in ways.items() if len(ends) > 1}
     return [frozenset(arc for arc in arcs if arc[:2] in is_branch) for arcs in branches]
 
 
-def choose_cover(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
+def choose_cover(
+    branches: Sequence[frozenset[Branch]], covered_before: Iterable[int] = ()
+) -> list[int]:
     """Return the numbers of a few sets whose union is that of all.
 
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
     """
-    chosen_before, uncovered = set(before), set().union(*branches)
+    chosen_before, uncovered = set(covered_before), set().union(*branches)
     heap = [(-len(branch_set), k not in chosen_before, k) for k, branch_set in enumerate(branches)]
     heapq.heapify(heap)
     chosen = []

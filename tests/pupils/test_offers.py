@@ -25,7 +25,10 @@ def spans_in_changed_text(edits: list[Edit]) -> list[Span]:
     grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered_edits]
     starts = [edit.span.start + shift for edit, shift in
               zip(ordered_edits, accumulate(grown, initial=0), strict=False)]  # fmt: skip
-    return [Span(at, at + len(edit.text)) for at, edit in zip(starts, ordered_edits, strict=True)]
+    return [
+        Span(start, start + len(edit.text))
+        for start, edit in zip(starts, ordered_edits, strict=True)
+    ]
 
 
 def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
@@ -49,16 +52,16 @@ def find_wrong_codes(
 ) -> list[str]:
     """Return the codes of mistakes in the part of the changed program that a message shows."""
     changed_text = apply_edits(text, edits)
-    own = sorted(edits_of(diagnostic) or edits)
+    own_edits = sorted(edits_of(diagnostic) or edits)
     spans = [
         span
         for edit, span in zip(sorted(edits), spans_in_changed_text(edits), strict=True)
-        if edit in own
+        if edit in own_edits
     ]
     value = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
-    at = changed_text.find(value, max(0, spans[0].start - len(value))) if value else -1
-    if 0 <= at < spans[-1].end:
-        spans.append(Span(at, at + len(value)))
+    position = changed_text.find(value, max(0, spans[0].start - len(value))) if value else -1
+    if 0 <= position < spans[-1].end:
+        spans.append(Span(position, position + len(value)))
     return [
         diagnostic.code.number for diagnostic in check(changed_text)
         if diagnostic.is_mistake

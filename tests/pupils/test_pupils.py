@@ -94,7 +94,7 @@ def test_the_chosen_programs_reach_the_same_code_as_all() -> None:
     steps = ([1], [1, 2], [2], [3, 1], [1, 3])
     sets = [frozenset(("", k, k) for k in step) for step in steps]
     assert choose_cover(sets) == [1, 3]
-    assert choose_cover(sets, before=[4]) == [1, 4], "what was taken before stays"
+    assert choose_cover(sets, covered_before=[4]) == [1, 4], "what was taken before stays"
 
 
 def test_the_corpus_is_unchanged(

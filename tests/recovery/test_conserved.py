@@ -46,20 +46,20 @@ def numbers(text: str) -> list[tuple[float, str]]:
     pairs = []
     for match in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
         text_before, text_after = text[: match.start()], text[match.end() :]
-        own = next((unit for pattern, unit in PLACES if pattern.search(text_before)), None)
-        if own == "":
+        own_unit = next((unit for pattern, unit in PLACES if pattern.search(text_before)), None)
+        if own_unit == "":
             way = re.match(r"(?i) ?(CM|DEG)\b", text_after)
-            own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
+            own_unit = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
         is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", text_before) is not None
-        pairs.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
+        pairs.append((-float(match[0]) if is_minus else float(match[0]), own_unit or ""))
     return pairs
 
 
 def is_kept(written_text: str, value: float, unit: str, repaired_text: str) -> bool:
     """Return whether a program has a number with its sign and unit, or still as it was written."""
     return written_text in repaired_text or any(
-        abs(number - value) < 0.001 and (not own or not unit or own == unit)
-        for number, own in numbers(repaired_text)
+        abs(number - value) < 0.001 and (not own_unit or not unit or own_unit == unit)
+        for number, own_unit in numbers(repaired_text)
     )
 
 

@@ -41,16 +41,16 @@ def test_a_line_with_a_checksum_is_left_alone() -> None:
 
 
 @pytest.mark.parametrize(
-    ("span", "before"),
+    ("span", "span_before"),
     [((0, 3), (0, 3)), ((1, 2), (0, 3)), ((3, 5), (3, 5)), ((6, 6), (7, 7)), ((2, 8), (0, 9))],
 )
 def test_a_place_after_edits_maps_back_to_the_original(
-    span: tuple[int, int], before: object
+    span: tuple[int, int], span_before: object
 ) -> None:
     diagnostic = Diagnostic(codes.ODD_CHARACTER, Span(*span), {"also": "LIGHT_R < 300"})
     edits = [Edit(Span(5, 6), ""), Edit(Span(0, 3), "SI|")]
     moved_diagnostic = to_original(diagnostic, edits, Source("SI|F(2, 80)"))
-    assert (moved_diagnostic.span, moved_diagnostic.values) == (before, diagnostic.values)
+    assert (moved_diagnostic.span, moved_diagnostic.values) == (span_before, diagnostic.values)
 
 
 def test_an_unreadable_condition_is_shown_as_written() -> None:

@@ -151,8 +151,8 @@ def test_a_unit_stays_with_its_number_and_the_alternative_is_shown(
     word: str, unit: str, template: str, power: str, way: str
 ) -> None:
     wrong = template.format(f"{word}({power}, {way} {unit})")
-    own, other = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
-    assert codes_and_fixes(wrong) == [("TS076", f"{own} or {other}")]
+    own_reading, other_reading = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
+    assert codes_and_fixes(wrong) == [("TS076", f"{own_reading} or {other_reading}")]
     assert repair_program(wrong, check).text == wrong
 
 

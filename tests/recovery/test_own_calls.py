@@ -168,8 +168,8 @@ def test_a_missing_comma_in_a_def_is_shown_in_its_header(count: int) -> None:
 @pytest.mark.parametrize("word", sorted(word for word in WORDS if WORDS[word].is_call))
 @pytest.mark.parametrize("count", [0, *ARGUMENT_COUNTS])
 def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, count: int) -> None:
-    own = len(WORDS[word].arguments)
-    if count == own:
+    argument_count = len(WORDS[word].arguments)
+    if count == argument_count:
         return  # the callee is ambiguous
     head = f"({', '.join(NAMES[:count])})" if count else ""
     call = f"({', '.join(NUMBERS[:count])})" if count else ""

@@ -128,8 +128,8 @@ def test_a_message_contains_only_facts_of_its_slip(code: Code) -> None:
             gap_sets.append({*re.findall(r"\{@?(\w+)\}", text)})
             text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
     assert names <= set().union(*gap_sets) | DEDUPED_GAPS.get(code, set())
-    own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
-    whole = [names & own for names in gap_sets if names <= own | BLOCK_GAPS]
+    own_gaps = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
+    whole = [names & own_gaps for names in gap_sets if names <= own_gaps | BLOCK_GAPS]
     assert code in CODES_SAID_ELSEWHERE or set().union(*whole) <= names
 
 
@@ -204,8 +204,8 @@ def test_repairs_with_one_reading_are_applied(wrong: str, right: str | None) -> 
 def test_words_of_a_kit_are_recognized_only_on_its_robots(
     wrong: str, kit: str, right: str | None
 ) -> None:
-    own = robots.load(kit).kit
-    candidate = Recovery(wrong, own, partial(mistakes, own)).best_candidate()
+    own_kit = robots.load(kit).kit
+    candidate = Recovery(wrong, own_kit, partial(mistakes, own_kit)).best_candidate()
     assert (candidate.text if candidate and candidate.is_applied else None) == right
 
 

@@ -33,8 +33,12 @@ _START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
 
 @cache
 def right_lines() -> list[str]:
-    own = [*programs(), *(entry.program for entry in entries() if not entry.messages), *ODD_LINES]
-    return sorted(line for line in own if _starts_at_once(line) and not _mistakes(line))
+    candidates = [
+        *programs(),
+        *(entry.program for entry in entries() if not entry.messages),
+        *ODD_LINES,
+    ]
+    return sorted(line for line in candidates if _starts_at_once(line) and not _mistakes(line))
 
 
 @cache
@@ -95,9 +99,9 @@ def test_a_word_after_an_instruction_begins_no_block(block: str) -> None:
         check_reported_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
 
 
-def check_reported_alone(before: list[str], line: str, after: list[str]) -> None:
-    rows = "\n".join([*before, line, *after]).split("\n")
-    wrong_row = "\n".join(before).count("\n") + 1
+def check_reported_alone(lines_before: list[str], line: str, lines_after: list[str]) -> None:
+    rows = "\n".join([*lines_before, line, *lines_after]).split("\n")
+    wrong_row = "\n".join(lines_before).count("\n") + 1
     source = Source("\n".join(rows))
     diagnostics = [diagnostic for diagnostic in check(source.text) if diagnostic.is_mistake]
     assert diagnostics, source.text

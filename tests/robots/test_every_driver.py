@@ -146,9 +146,9 @@ ALL_ROBOTS = [
 
 def compile_all(robot: Robot, folder: Path) -> None:
     """Compile without output: a compiler quickly reports errors that no test of the text finds."""
-    header, own = firmware.header([robot], "a test."), folder / "own.h"
-    own.write_text(header, encoding="utf-8")
-    own_define = f'-Dtiniscript_own="{own}"'
+    header, own_header = firmware.header([robot], "a test."), folder / "own.h"
+    own_header.write_text(header, encoding="utf-8")
+    own_define = f'-Dtiniscript_own="{own_header}"'
     if robot.board.chip.startswith("esp32"):
         need(missing())
         flags = (*flags_of(robot.board.chip, 2), own_define, "-Wpedantic")

@@ -59,12 +59,12 @@ def test_more_common_parts_count_before_fewer_differing_ones() -> None:
 def test_the_command_names_the_nearest_robot_only_for_custom_files(
     tsc: Tsc, tmp_path: Path
 ) -> None:
-    own = tmp_path / "mine.toml"
-    own.write_text(TEXTS["tinibot"], encoding="utf-8")
-    result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    own_profile = tmp_path / "mine.toml"
+    own_profile.write_text(TEXTS["tinibot"], encoding="utf-8")
+    result = tsc("firmware", "--board", own_profile, "-o", tmp_path / "own.h")
     assert "Your robot has the same kit as tinibot" in result.err
-    own.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
-    result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    own_profile.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
+    result = tsc("firmware", "--board", own_profile, "-o", tmp_path / "own.h")
     assert result.err == (
         "Of the robots that come with tsc, grabber is the most similar to yours. In common:"
         " DISTANCE, TEMPERATURE, BUTTON, LED. Only grabber has: GRIPPER. Only yours has: GRIPPER.\n"

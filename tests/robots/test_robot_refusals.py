@@ -385,20 +385,22 @@ def mutate(text: str, chance: random.Random) -> str:
     """A text with some lines deleted, doubled, moved, or given another value."""
     lines = text.split("\n")
     for _ in range(chance.choice((1, 1, 2, 5, 20))):
-        at = chance.randrange(len(lines))
-        key, equals, _ = lines[at].partition("=")
+        index = chance.randrange(len(lines))
+        key, equals, _ = lines[index].partition("=")
         how = chance.randrange(6)
         if how == 0:
-            del lines[at]
+            del lines[index]
         elif how == 1:
-            lines.insert(chance.randrange(len(lines)), lines[at])
-        elif how == 2 and lines[at]:
-            cut = chance.randrange(len(lines[at]))
-            lines[at] = lines[at][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[at][cut + 1 :]
+            lines.insert(chance.randrange(len(lines)), lines[index])
+        elif how == 2 and lines[index]:
+            cut = chance.randrange(len(lines[index]))
+            lines[index] = (
+                lines[index][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[index][cut + 1 :]
+            )
         elif how == 3:
-            lines[at] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[at])
+            lines[index] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[index])
         elif equals:
-            lines[at] = f"{key}= {chance.choice(ODD_NUMBERS)}"
+            lines[index] = f"{key}= {chance.choice(ODD_NUMBERS)}"
         lines = lines or [""]
     return "\n".join(lines)
 

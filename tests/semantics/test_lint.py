@@ -142,7 +142,7 @@ def test_a_row_reports_only_its_codes(monkeypatch: pytest.MonkeyPatch) -> None:
 
         return row._replace(report=find)
 
-    rows = {at: [*map(watch_row, its)] for at, its in lints._ROWS.items()}
+    rows = {node_kind: [*map(watch_row, its)] for node_kind, its in lints._ROWS.items()}
     monkeypatch.setattr(lints, "_ROWS", rows)
     for text in [*(text for text, _ in ADVISED_PROGRAMS), *WRONG]:
         check_text(text, KIT)

@@ -121,10 +121,12 @@ def test_the_check_of_a_profile_reports_missing_room(
     tsc: Tsc, tmp_path: Path, more: int, is_told: bool
 ) -> None:
     text = (Path(robots.__file__).parent / "grabber.toml").read_text(encoding="utf-8")
-    own = "".join(f'[[kit.sensors]]\nname = "S{k}"\nkind = "yes/no"\n\n' for k in range(more))
+    more_sensors = "".join(
+        f'[[kit.sensors]]\nname = "S{k}"\nkind = "yes/no"\n\n' for k in range(more)
+    )
     wired = (f'[board.sensors.S{k}]\ndriver = "digital"\npin = {36 + k}\n' for k in range(more))
     path = tmp_path / "my.toml"
-    profile = text.replace("[[kit.sensors]]", f"{own}[[kit.sensors]]", 1)
+    profile = text.replace("[[kit.sensors]]", f"{more_sensors}[[kit.sensors]]", 1)
     path.write_text("\n".join([profile, *wired]), encoding="utf-8")
     result = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
     assert result.code == 0 and ("more than 8 sensors" in result.err) == is_told, result

@@ -111,10 +111,10 @@ def test_comments_keep_their_places() -> None:
         "// one\nSI|F(1, 50) // two\nIF(LIGHT_R > 1)\n// three\nS\nENDIF // four\n// five"
     )
     rows = [row.strip() for row in text.splitlines()]
-    at = [rows.index(f"// {word}") for word in ("one", "two", "three", "four", "five")]
-    assert at == sorted(at)
-    assert rows[at[1] + 1].startswith("forward(1, 50);")
-    assert rows[at[2] + 1].startswith("stopMotors();")
+    row_indices = [rows.index(f"// {word}") for word in ("one", "two", "three", "four", "five")]
+    assert row_indices == sorted(row_indices)
+    assert rows[row_indices[1] + 1].startswith("forward(1, 50);")
+    assert rows[row_indices[2] + 1].startswith("stopMotors();")
 
 
 @pytest.mark.parametrize("comment", ["ends in \\", "??/", "*/ /* */", "ñandú ¿qué? \t x", "\\"])

@@ -66,9 +66,9 @@ def test_any_subset_of_lines_may_have_checksums(end: str) -> None:
         assert messages(end.join([*rows[:-1], "R~00000000"])) != []
 
 
-@pytest.mark.parametrize("at", range(len(LINE)))
-def test_a_changed_line_is_a_mistake(at: int) -> None:
-    changed_text = LINE[:at] + chr(ord(LINE[at]) ^ 1) + LINE[at + 1 :]
+@pytest.mark.parametrize("index", range(len(LINE)))
+def test_a_changed_line_is_a_mistake(index: int) -> None:
+    changed_text = LINE[:index] + chr(ord(LINE[index]) ^ 1) + LINE[index + 1 :]
     assert ("TS058", "~B77E7BD9") in messages(f"{changed_text}~B77E7BD9")
     assert not compile_program(f"{changed_text}~B77E7BD9").image
 

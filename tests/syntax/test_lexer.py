@@ -128,11 +128,11 @@ def texts() -> list[str]:
 def test_tokens_and_comments_of_any_text_follow_one_another() -> None:
     for text in texts():
         scanned = scan(text)
-        at = 0
+        position = 0
         for token in sorted((*scanned.tokens, *scanned.comments), key=lambda token: token.start):
-            assert at <= token.start <= token.end <= len(text), text
-            at = token.end
-        assert at == len(text)
+            assert position <= token.start <= token.end <= len(text), text
+            position = token.end
+        assert position == len(text)
 
 
 def test_everything_but_spaces_becomes_tokens_as_written() -> None:

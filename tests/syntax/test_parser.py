@@ -319,10 +319,10 @@ def test_nodes_of_any_text_follow_one_another_inside_their_blocks() -> None:
     for text in broken_programs():
         body = parse(Source(text)).program.body
         for outer, inside in ((Span(0, len(text)), body), *spans(body)):
-            at = outer.start
+            position = outer.start
             for node in inside:
-                assert at <= node.span.start <= node.span.end <= outer.end, text
-                at = node.span.start
+                assert position <= node.span.start <= node.span.end <= outer.end, text
+                position = node.span.start
 
 
 def test_diagnostics_of_any_text_point_into_it() -> None:

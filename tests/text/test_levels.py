@@ -186,9 +186,11 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         assert reader.code_bytes == plain_code(compilation.program).short_length, (
             compilation.source.text
         )
-        own = (name for procedure in compilation.program.procedures for name in procedure.values)
+        value_names = (
+            name for procedure in compilation.program.procedures for name in procedure.values
+        )
         names = [*reader.variables, *(name + 8 * "?" for name in reader.defs)]
-        names += (compilation.program.variables[k] for k in own)
+        names += (compilation.program.variables[k] for k in value_names)
         assert reader.used_bytes == sum(1 + len(name) for name in names), compilation.source.text
 
 
@@ -203,8 +205,8 @@ def test_sensors_read_on_every_branch_are_not_read_again(end: str) -> None:
 
 def test_names_also_take_room() -> None:
     long = "".join(f"{chr(65 + k)}{'X' * 49}=0;" for k in range(7))
-    before = 6 * (2 + 51)
-    needed = before + 2 * 50 + 1
+    bytes_before = 6 * (2 + 51)
+    needed = bytes_before + 2 * 50 + 1
     values = {"code": str(needed), "limit": str(UNO.room), "over": str(needed - UNO.room)}
     # At the place where the memory is full.
     assert problems_of(long) == [("TS310", "G" + "X" * 49, values)]
@@ -241,8 +243,8 @@ def test_a_word_unknown_to_all_levels_is_reserved_only_for_names(
     assert words.index(WORDS["BEEP"]) > words.index(WORDS["SI"])
     packed_text, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]
     assert "// BEEP" in packed_text and "// BEEP" not in rows and "// SHOW" in rows
-    before = sum(len(word.text) for word in words[: words.index(WORDS["BEEP"])])
-    assert text_tables.bytes_before("later") == before
+    letters_before = sum(len(word.text) for word in words[: words.index(WORDS["BEEP"])])
+    assert text_tables.bytes_before("later") == letters_before
 
 
 def test_missing_reader_entries_for_a_new_word_are_reported() -> None:

@@ -103,11 +103,11 @@ def test_each_line_of_a_program_may_have_a_checksum() -> None:
 
 def test_every_damage_of_one_byte_is_noticed() -> None:
     line = add_checksum(b"F(2, 80);S // note")
-    for at in range(len(line)):
+    for index in range(len(line)):
         for byte in b"~/0aF(\x00\xc2":
-            damaged_bytes = line[:at] + bytes((byte,)) + line[at + 1 :]
+            damaged_bytes = line[:index] + bytes((byte,)) + line[index + 1 :]
             if damaged_bytes.lower() != line.lower():
-                assert not answer_to(damaged_bytes).is_program or at > line.index(b"/"), (
+                assert not answer_to(damaged_bytes).is_program or index > line.index(b"/"), (
                     damaged_bytes
                 )
 

@@ -90,8 +90,8 @@ def test_observers_change_nothing(seed: int) -> None:
         driving, watch = driving_in(body, world), random.Random(seed + look_count)
         for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
             driving.set_motors(ms, left, right)
-            for at in sorted(watch.sample(range(ms, until), min(look_count, until - ms))):
-                driving.pose_at(at) if watch.random() < 0.5 else driving.advance_to(at)
+            for at_ms in sorted(watch.sample(range(ms, until), min(look_count, until - ms))):
+                driving.pose_at(at_ms) if watch.random() < 0.5 else driving.advance_to(at_ms)
         ends.append(
             (driving.advance_to(9000), rivals_of(driving), driving.bumps, driving.has_fallen)
         )
@@ -126,17 +126,17 @@ def test_no_body_ever_overlaps_another(seed: int) -> None:
     touched_count = 0
     for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
         driving.set_motors(ms, left, right)
-        for at in range(ms, until, 7):
-            driving.advance_to(at)
+        for at_ms in range(ms, until, 7):
+            driving.advance_to(at_ms)
             bodies = driving.bodies()
             for k, (hull, pose) in enumerate(bodies):
                 for other, place in bodies[:k]:
                     apart = gap_between(hull.spine(pose), other.spine(place))[0]
                     gap = apart - hull.radius_cm - other.radius_cm
-                    assert gap > -1e-3, f"{at} ms"
+                    assert gap > -1e-3, f"{at_ms} ms"
                     touched_count += gap < 0.1
                 contact = hull.contact(pose, driving.obstacles)
-                assert contact is None or contact.gap_cm > -1e-3, f"{at} ms"
+                assert contact is None or contact.gap_cm > -1e-3, f"{at_ms} ms"
     assert touched_count or not any(rival.power_percent for rival in world.rivals)
 
 
@@ -209,8 +209,8 @@ def test_an_unpushed_rival_stays_in_its_ring() -> None:
         driving = bout(text + HEAD_ON_RIVAL.format(power).replace("180", str(heading)))
         driving.has_fallen = True  # falling does not end this run
         driving.set_motors(0, 1, 0)
-        for at in range(0, 20_000, 50):
-            driving.advance_to(at)
+        for at_ms in range(0, 20_000, 50):
+            driving.advance_to(at_ms)
             [rival] = driving.rivals
             assert math.dist(rival[:2], (100, 100)) < 80
 
@@ -277,8 +277,8 @@ def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
         sensing = Sensing(SUMO, world)
         driving.set_motors(0, power, power)
         seen_ms = next(
-            at for at in range(0, 20_000, 10)
-            if sensing.peek(0, pose := driving.advance_to(at)) or sensing.peek(1, pose)
+            at_ms for at_ms in range(0, 20_000, 10)
+            if sensing.peek(0, pose := driving.advance_to(at_ms)) or sensing.peek(1, pose)
         )  # fmt: skip
         assert seen_ms > 300 and not driving.has_fallen
         driving.advance_to(seen_ms + 150)

@@ -242,9 +242,9 @@ def test_a_move_after_an_ended_one_has_its_full_length() -> None:
 TASK; W(0.5); S; W(60); END_TASK"""
     robot, talk = started_robot(text, 2)
     talk.wait(500)
-    before, _, _ = displacement(robot)
+    ahead_before, _, _ = displacement(robot)
     talk.wait(5000)
-    assert abs(displacement(robot)[0] - before - 30) <= 2
+    assert abs(displacement(robot)[0] - ahead_before - 30) <= 2
 
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
@@ -296,10 +296,12 @@ def test_a_silent_disc_is_the_fault_stuck(
     sentence = fault_sentence(status.fault, status.fault_at, 0, None, "en")
     side = ("left", "right")[number]
     assert sentence.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
-    at = status.fault_at
+    fault_offset = status.fault_at
     code = unpack(compile_text(text, TWO.kit).image).code
-    op = BY_CODE[code[at]]
-    assert op.control_role == "until" if op else code[at] == ESCAPE, "the GO, or the UNTIL"
+    op = BY_CODE[code[fault_offset]]
+    assert op.control_role == "until" if op else code[fault_offset] == ESCAPE, (
+        "the GO, or the UNTIL"
+    )
     assert (op is not None) == ("UNTIL" in text)
     talk.wait(300)
     assert stands_for_a_while(robot)

@@ -111,5 +111,5 @@ def test_the_robots_own_trace_agrees(kind: str) -> None:
     [places] = desk.maps.values()
     for event in desk.robot.take_events():
         if event.kind == "SHOW":
-            at = places.location_at(event.offset)
-            assert at and NAMES[event.values[0] // 1000] in places.line(at.line)
+            location = places.location_at(event.offset)
+            assert location and NAMES[event.values[0] // 1000] in places.line(location.line)

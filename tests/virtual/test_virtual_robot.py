@@ -380,7 +380,7 @@ def test_identify_can_be_seen_and_heard() -> None:
     for _ in range(35):
         talk.wait(100)
         lights.append(robot.is_lit)
-    assert sum(before != now for before, now in pairwise(lights)) >= 10
+    assert sum(was_lit != is_lit for was_lit, is_lit in pairwise(lights)) >= 10
     assert [event.kind for event in robot.take_events()] == ["BEEP"] * 3
 
 

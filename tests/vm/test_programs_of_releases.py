@@ -80,8 +80,8 @@ def programs_of_this_version() -> Iterator[ReleasedProgram]:
 
 def write_release_file() -> str:
     """Return the file of this version."""
-    before = [version for version in versions() if version != __version__]
-    earlier = {old[:2] for version in before for old in released_programs(version)}
+    earlier_versions = [version for version in versions() if version != __version__]
+    earlier = {old[:2] for version in earlier_versions for old in released_programs(version)}
     parts: dict[tuple[str, str], str] = {}
     for old in programs_of_this_version():
         text = old.text.rstrip("\n") + "\n"

@@ -338,6 +338,6 @@ def test_both_machines_report_the_show_of_a_value() -> None:
             traces.append((robot.calls, robot.shown))
         assert traces[0] == traces[1], image.hex()
         show_rows = traces[0][1]
-        assert all(code[at] in SHOWS for at, _ in show_rows), image.hex()
+        assert all(code[offset] in SHOWS for offset, _ in show_rows), image.hex()
         waited += sum(not is_taken for _, is_taken in show_rows)
     assert waited > 100
