@@ -57,10 +57,12 @@ class Spec:
         def late(waited_ms: int, reached: int) -> int:
             return -reached % every[min(waited_ms, len(every)) - 1]
 
-        slow = {int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])}
+        delays_by_sensor = {
+            int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])
+        }
 
         def is_slow(sensor: int, passed_ms: int) -> bool:
-            period_ms, from_ms, to_ms = slow.get(sensor, (1, 0, 0))
+            period_ms, from_ms, to_ms = delays_by_sensor.get(sensor, (1, 0, 0))
             return from_ms <= passed_ms % period_ms < to_ms
 
         limits = numbers["until"], numbers["seed"], 10**6
@@ -82,8 +84,8 @@ def _devices(code: bytes, hashes: dict[str, list[int]]) -> int:
     total = position = 0
     while position < len(code):
         row = instruction_at(code, position)
-        used = [(operand.kind, value) for operand, value in row.read(code, position)]
-        for kind, value in (*used, *row.implied):
+        used_devices = [(operand.kind, value) for operand, value in row.read(code, position)]
+        for kind, value in (*used_devices, *row.implied):
             if kind in hashes:
                 total = total << 1 & 0xFFFF ^ 0x2D * (total >> 15) ^ hashes[kind][value]
         position += row.size

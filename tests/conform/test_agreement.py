@@ -66,8 +66,8 @@ CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # one of so many runs
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "here"))
-        for name, (_, why, _) in CPP.items()
+        pytest.param(name, marks=pytest.mark.skipif(bool(reason), reason=reason or "here"))
+        for name, (_, reason, _) in CPP.items()
     ],
 )
 def test_a_machine_in_cpp_agrees(name: str) -> None:

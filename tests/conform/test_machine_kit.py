@@ -72,8 +72,8 @@ def test_a_sensor_that_is_late_has_a_line_after_the_readings() -> None:
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert rows[-7:-5] == ["readings 0 5000", "slow 0 100 0 32"]
     assert Spec().answer(rows) == ["33 READ LIGHT_R 5", "33 SHOW 5.033", "33 DONE"]
-    late = case._replace(until_ms=31)
-    (rows,) = runs(late.request().splitlines(keepends=True))
+    late_case = case._replace(until_ms=31)
+    (rows,) = runs(late_case.request().splitlines(keepends=True))
     assert Spec().answer(rows) == ["31 LIMIT"]
 
 
@@ -84,13 +84,13 @@ def machine(tmp_path: Path, source: str) -> str:
     return shlex.join([sys.executable, str(path)])
 
 
-def conform(tsc: Tsc, command: str, *more: str) -> CommandResult:
-    return tsc("doctor", "--conform", "--machine", command, *more)
+def conform(tsc: Tsc, command: str, *options: str) -> CommandResult:
+    return tsc("doctor", "--conform", "--machine", command, *options)
 
 
-def find_differences(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
+def find_differences(tsc: Tsc, command: str, *options: str) -> list[dict[str, object]]:
     """Return the differences."""
-    result = conform(tsc, command, "--json", *more).gives(1)
+    result = conform(tsc, command, "--json", *options).gives(1)
     rows: list[dict[str, object]] = json.loads(result.out)["found"]
     return rows
 
@@ -120,11 +120,11 @@ def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_tasks(ref
     answers = iter([f"REFUSED {refusal}"])
     judged = list(verdicts(cases, lambda request, most: [next(answers)]))
     assert [verdict.what for verdict in judged] == [LACKS] * 4
-    last = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
-    judged = list(verdicts(cases, lambda request, most: next(last)))
+    answers_with_late_refusal = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
+    judged = list(verdicts(cases, lambda request, most: next(answers_with_late_refusal)))
     assert [verdict.what for verdict in judged] == [AGREES] * 3 + [DIFFERS]
-    other = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
-    judged = list(verdicts(cases, lambda request, most: next(other)))
+    answers_with_other_refusal = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
+    judged = list(verdicts(cases, lambda request, most: next(answers_with_other_refusal)))
     assert [verdict.what for verdict in judged] == [DIFFERS] + [AGREES] * 3
 
 
@@ -176,31 +176,33 @@ BREAKAGES = [
 ]  # fmt: skip
 
 
-def patch_oracle(name: str, old: str, becomes: str) -> ModuleType:
+def patch_oracle(name: str, old_code: str, new_code: str) -> ModuleType:
     """Return a module of `tests/oracle` that is changed in one place."""
     module = ModuleType(f"tests.oracle.{name}")
     path = ROOT / "tests" / "oracle" / f"{name}.py"
     source, module.__file__ = path.read_text(encoding="utf-8"), str(path)
-    assert old in source
-    exec(compile(source.replace(old, becomes), name, "exec"), vars(module))
+    assert old_code in source
+    exec(compile(source.replace(old_code, new_code), name, "exec"), vars(module))
     return module
 
 
 @pytest.mark.parametrize(
-    ("file", "old", "new", "named_text"), BREAKAGES, ids=[b[1] for b in BREAKAGES]
+    ("file", "old_code", "new_code", "named_text"), BREAKAGES, ids=[b[1] for b in BREAKAGES]
 )
-def test_a_broken_machine_is_reported(file: str, old: str, new: str, named_text: str) -> None:
+def test_a_broken_machine_is_reported(
+    file: str, old_code: str, new_code: str, named_text: str
+) -> None:
     spec = Spec()
     if file == "verifier":
-        assert old in verifier.text()
-        spec.verifier = verifier.text().replace(old, new)
+        assert old_code in verifier.text()
+        spec.verifier = verifier.text().replace(old_code, new_code)
     elif file == "image":
-        spec.image = patch_oracle(file, old, new)
+        spec.image = patch_oracle(file, old_code, new_code)
     elif file == "machine":
-        spec.machine = patch_oracle(file, old, new)
+        spec.machine = patch_oracle(file, old_code, new_code)
     else:
         spec.machine = patch_oracle("machine", "", "")
-        spec.machine.__dict__.update(vars(patch_oracle(file, old, new)))
+        spec.machine.__dict__.update(vars(patch_oracle(file, old_code, new_code)))
     cases = [case for case in machine_cases() if named_text in case.name and not case.needs]
 
     def answer_request(request: str, most: int) -> list[str]:
@@ -276,16 +278,16 @@ HOSTILE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("what", HOSTILE)
-def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None:
-    source, message, tried = HOSTILE[what]
+@pytest.mark.parametrize("behaviour", HOSTILE)
+def test_a_hostile_machine_is_named(behaviour: str, tsc: Tsc, tmp_path: Path) -> None:
+    source, message, tried = HOSTILE[behaviour]
     command = machine(tmp_path, source)
-    timeout_s = "1" if what == "hang" else "100"  # a busy computer starts Python in a second
+    timeout_s = "1" if behaviour == "hang" else "100"  # a busy computer starts Python in a second
     result = conform(tsc, command, "--timeout", timeout_s).gives(1, out=message)
     assert result.out.splitlines()[-1].startswith("0 of ")
     assert "too many got no response." in result.out
     rows = find_differences(tsc, command, "--timeout", timeout_s)
-    assert [row["what"] for row in rows] == [what] * tried
+    assert [row["what"] for row in rows] == [behaviour] * tried
 
 
 def test_a_slow_reader_reads_nothing_of_the_next_process(

@@ -134,10 +134,10 @@ FRAME_CHANGES: dict[str, tuple[Change, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.sampled("what", keep=len(FRAME_CHANGES) // 4)
-@pytest.mark.parametrize("what", FRAME_CHANGES)
-def test_a_frame_changed_in_transit_is_named(what: str, pty_robot: PtyRobot) -> None:
-    change, named_text = FRAME_CHANGES[what]
+@pytest.mark.sampled("change_name", keep=len(FRAME_CHANGES) // 4)
+@pytest.mark.parametrize("change_name", FRAME_CHANGES)
+def test_a_frame_changed_in_transit_is_named(change_name: str, pty_robot: PtyRobot) -> None:
+    change, named_text = FRAME_CHANGES[change_name]
     checks = [
         check for check in all_checks(link_test_suite()) if check.name.startswith(named_text)
     ][:3]

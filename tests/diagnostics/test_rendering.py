@@ -152,8 +152,8 @@ def test_braces_ats_and_line_ends_in_a_program_have_no_effect() -> None:
         full_message = message(
             Diagnostic(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en"
         )
-        plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
-        assert full_message.fix == f"Write a number instead of {plain}"
+        plain_text = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
+        assert full_message.fix == f"Write a number instead of {plain_text}"
 
 
 def test_terms_and_units_are_translated() -> None:
@@ -247,9 +247,9 @@ def test_an_explanation_is_complete() -> None:
 
 
 def test_a_code_is_found_however_it_is_written() -> None:
-    whole = explain("TS017", "en")
-    assert whole is not None
-    assert explain("ts017", "en") == explain(" 017 ", "en") == whole
+    full_text = explain("TS017", "en")
+    assert full_text is not None
+    assert explain("ts017", "en") == explain(" 017 ", "en") == full_text
     for code in ("TS999", "", "TS", "terms", "labels", "TSTS017", "٢٠٥", "hello"):
         assert explain(code, "en") is None
 

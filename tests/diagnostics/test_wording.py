@@ -50,8 +50,8 @@ def test_forever_is_suggested_as_a_time() -> None:
 
 
 @pytest.mark.parametrize("lang", LANGUAGES)
-@pytest.mark.parametrize("last", ["F(1, 60)", "LOOP(2);S;END_LOOP", "IF(KEY_A)\nS\nENDIF"])
-def test_the_end_of_a_block_is_on_a_line_of_its_own(last: str, lang: str) -> None:
-    text = f"SI|IF(DISTANCE < 9)\n{last}"
+@pytest.mark.parametrize("last_line", ["F(1, 60)", "LOOP(2);S;END_LOOP", "IF(KEY_A)\nS\nENDIF"])
+def test_the_end_of_a_block_is_on_a_line_of_its_own(last_line: str, lang: str) -> None:
+    text = f"SI|IF(DISTANCE < 9)\n{last_line}"
     message = messages_of(text, lang)[-1]
     assert message.code == "TS024" and "ENDIF" in message.fix and ": ENDIF" not in message.fix

@@ -24,11 +24,11 @@ WAITING_PROGRAM = "SI|LED(TRUE);GRIPPER(90);W(60)"
 SET_ACTIONS = ["SET 1 1", "SET 0 90000"]
 
 
-def start_program(text: str, **how: bool) -> tuple[HostFirmware, Session]:
+def start_program(text: str, **options: bool) -> tuple[HostFirmware, Session]:
     robot = HostFirmware(KIT)
     robot.wait(200)
     session = Session(1, 9600, KIT.fingerprint)
-    assert robot.until(session, session.upload(image_of(text, KIT), **how)) == OK
+    assert robot.until(session, session.upload(image_of(text, KIT), **options)) == OK
     robot.talk(session, 50)
     return robot, session
 

@@ -62,8 +62,8 @@ def test_every_request_is_classified_by_authority() -> None:
     assert state_of(table, stranger) == STATE_RUNNING
 
 
-@pytest.mark.parametrize("how", ["silence", "STATE", "HELLO"])
-def test_authority_ends_with_its_connection_and_is_proved_again(how: str) -> None:
+@pytest.mark.parametrize("ending", ["silence", "STATE", "HELLO"])
+def test_authority_ends_with_its_connection_and_is_proved_again(ending: str) -> None:
     """It ends less than 2 s after its last frame if a radio dropped out, or when another client
     arrives."""
     table, keys = Owned(), Keys()
@@ -71,9 +71,9 @@ def test_authority_ends_with_its_connection_and_is_proved_again(how: str) -> Non
     session._handshake._keys = None  # without a key, it cannot authenticate
     table.pass_time(None, 1900)
     assert table.outcome(session, session.trim()) == "OK"
-    if how == "silence":
+    if ending == "silence":
         table.pass_time(None, 2050)
-    elif how == "STATE":
+    elif ending == "STATE":
         table.pass_time(None, 10, DISCONNECTED)
     else:
         session = table.session(nonce=9)
@@ -136,10 +136,10 @@ def test_wrong_keys_do_not_affect_the_owner() -> None:
     """This is on a line whose other end is unknown to the robot."""
     table, keys = Owned(), Keys()
     table.claim_session(keys)
-    wrong = Keys()
+    wrong_keys = Keys()
     for count in range(20):
-        wrong.stored_keys = [keys.stored_keys[0]._replace(key=bytes([200 + count] * 16))]
-        thief = table.session(wrong, nonce=10 + count)
+        wrong_keys.stored_keys = [keys.stored_keys[0]._replace(key=bytes([200 + count] * 16))]
+        thief = table.session(wrong_keys, nonce=10 + count)
         assert owner_of(table, thief) == OWNED_BY_OTHER
         assert table.outcome(thief, thief.start()) == "WRONG_KEY"
     owner = table.session(keys, nonce=9)
@@ -174,9 +174,9 @@ def test_a_reset_with_the_same_seed_gives_a_new_challenge_or_needs_the_key() -> 
     memory = table.robot.memory()
     challenges = set()
     for seed in range(12):
-        later = Owned(memory, seed=seed)
-        session = later.session(keys, nonce=4)
-        _, answers = later.frames(session, session.hello())
+        restarted = Owned(memory, seed=seed)
+        session = restarted.session(keys, nonce=4)
+        _, answers = restarted.frames(session, session.hello())
         reply = max(answers, key=len)
         challenges.add(b"".join(answer for answer in answers if answer != reply))
     assert len(challenges) == 12
@@ -212,8 +212,8 @@ def send_forged_frames(frames: int, seed: int) -> int:
             stopped_event = table.robot.wait(60, bytes(8))
             assert b"\xa2" in stopped_event, (count, stopped_event)  # STOPPED
             table.robot.wait(1100)
-        how = chance.randrange(3)
-        if how == 0:
+        kind = chance.randrange(3)
+        if kind == 0:
             data = chance.choice(recorded_bytes) + b"\0"
         else:
             message = chance.choice(
@@ -227,7 +227,7 @@ def send_forged_frames(frames: int, seed: int) -> int:
             if message.name == "CLAIM":
                 payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 16)))
             thief._seq = (thief._seq + 1) & 0xFF
-            seq = thief._seq if how == 1 else chance.randrange(256)
+            seq = thief._seq if kind == 1 else chance.randrange(256)
             data = encode_frame(Frame(message.number, seq, thief._epoch, payload))
         sent_bytes = table.robot.step(b"\0" + data)
         accepted_count += sum(grants_key_request(answer) for answer in sent_bytes.split(b"\0"))

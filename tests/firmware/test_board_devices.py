@@ -100,7 +100,7 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     return level == f"pwm {20 * 653 >> 8}"
 
 
-@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "says"), [
+@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "expected"), [
     ("liner", "LINE_L", 15, True, True),
     ("liner", "LINE_R", 16, False, False),
     ("liner", "BUTTON", 12, True, False),
@@ -108,9 +108,11 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     ("grabber", "BUTTON", 28, False, True),
 ])  # fmt: skip
 def test_a_level_reads_as_yes_or_no(
-    name: str, sensor: str, pin: int, is_high: bool, says: bool
+    name: str, sensor: str, pin: int, is_high: bool, expected: bool
 ) -> None:
-    assert is_true(robots.load(name), sensor, lambda board: board.level(0, pin, is_high)) == says
+    assert (
+        is_true(robots.load(name), sensor, lambda board: board.level(0, pin, is_high)) == expected
+    )
 
 
 def test_thresholds_and_thousandths_are_read() -> None:
@@ -125,9 +127,9 @@ def test_thresholds_and_thousandths_are_read() -> None:
 def test_a_line_sensor_is_over_black_from_250_on(sensor: str, channel: int) -> None:
     """The threshold is that of ELEGOO's own program."""
     car = robots.load("elegoo4")
-    for millivolts, says in ((1180, False), (1260, True)):
+    for millivolts, expected in ((1180, False), (1260, True)):
         is_black = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
-        assert is_black == says
+        assert is_black == expected
 
 
 DIM_SENSOR = (
@@ -157,13 +159,13 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     draw = random.Random(seed)
     tasks = []
     for number in range(draw.randint(2, 4)):
-        reads = [READING_CODE.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
+        reading_programs = [READING_CODE.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
                  for _ in range(draw.randint(1, 3))]  # fmt: skip
         pause = draw.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
-        tasks.append(f"LOOP(FOREVER)\n{''.join(reads)}{pause}\nEND_LOOP")
+        tasks.append(f"LOOP(FOREVER)\n{''.join(reading_programs)}{pause}\nEND_LOOP")
     main_task, *other_tasks = tasks[:3]
     text = f"SI|LONGEST = 0;COUNT = 0\n{main_task}\n"
-    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in other_tasks) + SHOW_RESULTS_CODE
+    text += "".join(f"TASK\n{task}\nEND_TASK\n" for task in other_tasks) + SHOW_RESULTS_CODE
     board = start_board(on_board("tinibot", "mega", *DIM_SENSOR), text).run_for(START + 530)
     longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20

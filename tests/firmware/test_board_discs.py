@@ -42,7 +42,7 @@ extern "C" void test_turn() {
 
 
 def counting_board(robot: Robot) -> Board:
-    board = Board(robot, more=COPY_COUNTS_CODE)
+    board = Board(robot, extra_code=COPY_COUNTS_CODE)
     board.watched |= {LEFT_COUNT_REGISTER, RIGHT_COUNT_REGISTER}
     assert robot.board.discs
     for pin in robot.board.discs.pins.values():
@@ -176,10 +176,10 @@ def test_moves_are_straight_after_a_wheel_was_held(sketches: Callable[[str], Pat
         pose_before = robot.pose
         assert robot.drive("F(100 CM, 80)") == "DONE"
         pose = robot.pose
-    along = math.radians(pose_before.heading)
+    heading_rad = math.radians(pose_before.heading)
     x, y = pose.x_cm - pose_before.x_cm, pose.y_cm - pose_before.y_cm
-    assert abs(x * math.cos(along) + y * math.sin(along) - 100) <= 1.5
-    assert abs(y * math.cos(along) - x * math.sin(along)) <= 2.4
+    assert abs(x * math.cos(heading_rad) + y * math.sin(heading_rad) - 100) <= 1.5
+    assert abs(y * math.cos(heading_rad) - x * math.sin(heading_rad)) <= 2.4
 
 
 def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:

@@ -158,12 +158,12 @@ def test_no_motor_turns_against_its_side(seed: int) -> None:
     left_of = set(sides[0].split())
     previous = (0, 0)
     for number, (left, right) in enumerate(moves):
-        begin, end = START + 20 * number, START + 20 * (number + 1)
+        begin_ms, end_ms = START + 20 * number, START + 20 * (number + 1)
         levels = [int(percent * 2.55) for percent in (left, right)]
-        steady = powers_at(states, end - 1)
+        steady = powers_at(states, end_ms - 1)
         assert steady == {m: p for m, p in both(sides, *levels).items() if p}
         for state in states:
-            if not begin - 1 < state.cycle / MS < end - 1:
+            if not begin_ms - 1 < state.cycle / MS < end_ms - 1:
                 continue
             for motor, power in state.powers.items():
                 side = 0 if motor in left_of else 1
@@ -175,8 +175,8 @@ def test_no_motor_turns_against_its_side(seed: int) -> None:
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     robot = shield(*SIDES["four"], chip)
-    more = STOPS if chip == "uno" else ""
-    board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", more)
+    extra_code = STOPS if chip == "uno" else ""
+    board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", extra_code)
     if chip == "uno":
         board.level(START + 50.123, 19, True)
     board.press(400, 450)
@@ -189,7 +189,7 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     assert enable[0] < 100, "its outputs are off before a program drives"
 
 
-@pytest.mark.parametrize(("changes", "why"), [
+@pytest.mark.parametrize(("changes", "message"), [
     ([(0, "data", True), (20, "clock", True)], "data before the clock"),
     ([(0, "data", True), (0, "clock", True)], "data before the clock"),
     ([(0, "clock", True), (HOLD_NS - 1, "data", True)], "data after the clock"),
@@ -199,10 +199,10 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     ([(0, "latch", True), (10, "latch", False)], "a pulse of the latch"),
 ])  # fmt: skip
 def test_the_simulated_register_refuses_wrong_timing(
-    changes: list[tuple[float, str, bool]], why: str
+    changes: list[tuple[float, str, bool]], message: str
 ) -> None:
     register = ShiftRegister()
-    with pytest.raises(WrongTiming, match=why):
+    with pytest.raises(WrongTiming, match=message):
         for ns, name, is_high in changes:
             register.change(ns, name, is_high)
 

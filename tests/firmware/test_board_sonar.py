@@ -24,12 +24,12 @@ DELAY_US = 460  # time from the trigger to the echo
 
 
 def board_with_distances(
-    text: str, *distances_cm: float, robot: Robot | None = None, more: str = ""
+    text: str, *distances_cm: float, robot: Robot | None = None, extra_code: str = ""
 ) -> Board:
     """The distances of its pings, one after the other; the last one stays."""
     robot = robot or robots.load("tinibot")
     trigger, echo = sonar_pins(robot)
-    board = start_board(robot, text, more)
+    board = start_board(robot, text, extra_code)
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM for distance_cm in distances_cm])
     return board
@@ -81,8 +81,8 @@ def test_until_checks_again_every_40_ms() -> None:
     """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
     board = board_with_distances(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START + 250)
-    left = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
-    assert [round(ms / 10) for ms in left] == [0, 3, 6, 10, 14, 17]
+    ping_ms = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
+    assert [round(ms / 10) for ms in ping_ms] == [0, 3, 6, 10, 14, 17]
     assert board.motors(START + 173)[0] == "pwm 51"
     assert board.motors(START + 178)[0] == "low"
 
@@ -108,15 +108,15 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     robot = robots.load("tinibot")
     trigger, _ = sonar_pins(robot)
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
-    plain = board_with_distances(text, 20, 70).run_for(START + 40)
-    left = plain.edges(trigger)[0] / MS
-    board = board_with_distances(text, 20, 70, robot=robot, more=RESTART_CODE)
-    board.level(left + after_ms, 19, True)
+    plain_board = board_with_distances(text, 20, 70).run_for(START + 40)
+    first_ping_ms = plain_board.edges(trigger)[0] / MS
+    board = board_with_distances(text, 20, 70, robot=robot, extra_code=RESTART_CODE)
+    board.level(first_ping_ms + after_ms, 19, True)
     board.run_for(START + 160)
     first, second, *others = ping_starts_ms(board, trigger)
     assert SPACING_MS <= second - first < SPACING_MS + 2
     drive_starts_ms = driven_ms(board, 1)
-    assert not [ms for ms in drive_starts_ms if left + after_ms + 0.5 < ms < others[1] + 3]
+    assert not [ms for ms in drive_starts_ms if first_ping_ms + after_ms + 0.5 < ms < others[1] + 3]
     assert {read_power_cm(board, ms) for ms in drive_starts_ms if ms > second} == {70}
 
 
@@ -151,8 +151,8 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
         board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
     board.run_for(START + 600)
     starts_ms = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
-    both = sorted(ms for times in starts_ms for ms in times)
-    assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
+    all_starts_ms = sorted(ms for times in starts_ms for ms in times)
+    assert min(b - a for a, b in pairwise(all_starts_ms)) >= SPACING_MS
     assert min(len(times) for times in starts_ms) >= 4
     drive_starts_ms = driven_ms(board, 2)
     assert len(drive_starts_ms) > 10
@@ -299,8 +299,8 @@ def test_one_wrong_sample_in_fifty_never_becomes_a_reading(seed: int) -> None:
     for ms in readings:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
-        most = max(4, 0.2 * true[number] + 3)
-        assert abs(cm - true[number]) < most, (number, heard_cm[number - 2 : number + 1])
+        most_cm = max(4, 0.2 * true[number] + 3)
+        assert abs(cm - true[number]) < most_cm, (number, heard_cm[number - 2 : number + 1])
 
 
 @pytest.mark.sampled("number", keep=2)

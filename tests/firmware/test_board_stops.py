@@ -15,12 +15,12 @@ WIRE = 53  # a pin of a Mega whose change is an interrupt
 HANGING_HANDLER = "ISR(PCINT0_vect) { sei(); for (;;) {} }"
 
 
-def grabber_robot(holds: bool = False) -> Robot:
-    return on_board("grabber", "mega", *([HOLD_AT_STOP] if holds else []))
+def grabber_robot(holds_position: bool = False) -> Robot:
+    return on_board("grabber", "mega", *([HOLD_AT_STOP] if holds_position else []))
 
 
-def busy(robot: Robot, text: str, more: str = "") -> Board:
-    board = start_board(robot, text, more)
+def busy(robot: Robot, text: str, extra_code: str = "") -> Board:
+    board = start_board(robot, text, extra_code)
     board.watch(GRIPPER)
     board.watch(LED)
     return board
@@ -38,17 +38,17 @@ def pulses_from(board: Board, ms: float) -> int:
     return sum(at_ms > ms for at_ms, _ in pulses(board, GRIPPER))
 
 
-@pytest.mark.sampled("holds")
-@pytest.mark.parametrize("holds", [False, True])
-def test_a_stop_turns_actuators_off(holds: bool) -> None:
+@pytest.mark.sampled("holds_position")
+@pytest.mark.parametrize("holds_position", [False, True])
+def test_a_stop_turns_actuators_off(holds_position: bool) -> None:
     """A lamp in any case; a servo gets no more pulses, unless its profile says that it holds."""
-    board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)")
+    board = busy(grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)")
     board.press(START + 105, START + 300)
     board.run_for(START + 280)
     assert board.pin(LED, START + 104) == "high"
     assert board.pin(LED, START + 106) == "low"
     assert pulses_from(board, START) >= 5
-    assert (pulses_from(board, START + 106) >= 5) == holds
+    assert (pulses_from(board, START + 106) >= 5) == holds_position
     assert all(abs(us - 1500) < 6 for _, us in pulses(board, GRIPPER)), "a pulse was cut"
 
 
@@ -77,11 +77,13 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     assert not [at_ms for at_ms in edges if at_ms > 50.3]
 
 
-@pytest.mark.sampled("holds")
-@pytest.mark.parametrize("holds", [False, True])
-def test_a_hanging_main_loop_turns_everything_off(holds: bool) -> None:
+@pytest.mark.sampled("holds_position")
+@pytest.mark.parametrize("holds_position", [False, True])
+def test_a_hanging_main_loop_turns_everything_off(holds_position: bool) -> None:
     """This includes outputs that a profile holds, because nothing controls them any more."""
-    board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER))
+    board = busy(
+        grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER)
+    )
     board.level(START + 50, WIRE, True)
     board.run_for(START + 170)
     assert board.pin(LED, START + 140) == "high"

@@ -46,9 +46,9 @@ def test_the_clock_runs_on_while_four_tasks_count(robot: Uno) -> None:
     )
 
 
-def list_settings(robot: Uno, since: int) -> list[Setting]:
+def list_settings(robot: Uno, since_cycle: int) -> list[Setting]:
     """Return the motor settings since a cycle, without those of standing."""
-    return [setting for setting in motor_settings(robot, since) if setting[1:] != (0, 0)]
+    return [setting for setting in motor_settings(robot, since_cycle) if setting[1:] != (0, 0)]
 
 
 @each_board
@@ -61,12 +61,12 @@ def test_the_robot_backs_away_from_an_obstacle_and_drives_on(robot: Uno) -> None
     assert states(robot) == FORWARD
     for wait_ms in (0, 7):
         wired_uno.run(wait_ms)
-        near = robot.cycle
+        near_cycle = robot.cycle
         robot.sonar("trigger", "echo", 10)
         wired_uno.run(700)
         robot.sonar("trigger", "echo", 80)
         wired_uno.run(800)
-        settings = list_settings(robot, near)
+        settings = list_settings(robot, near_cycle)
         assert [setting[1:] for setting in settings] == [(-60, -60), (60, -60), (60, 60)]
         begins, turns, goes_on = (setting.ms for setting in settings)
         assert begins < NOTICE_MS and abs(turns - begins - 500) < OFF_MS
@@ -125,9 +125,9 @@ def test_a_stop_ends_busy_tasks(robot: Uno) -> None:
     robot.send(STOP_BYTES)
     robot.run_ms(20)
     stop_cycle = max(robot.pins[name].cycle for name in ("left", "right"))
-    last = robot.received_bytes[STOP_ZEROS - 1 - len(STOP_BYTES)].cycle
+    last_cycle = robot.received_bytes[STOP_ZEROS - 1 - len(STOP_BYTES)].cycle
     assert states(robot) == OFF
-    assert 0 < stop_cycle - last < STOP_US * CYCLES_PER_MS // 1000
+    assert 0 < stop_cycle - last_cycle < STOP_US * CYCLES_PER_MS // 1000
     wired_uno.run(300)
     assert states(robot) == OFF
     assert wired_uno.session.events()[-1].name == "STOPPED"

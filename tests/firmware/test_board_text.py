@@ -112,11 +112,11 @@ def test_a_line_starts_the_motors_and_s_stops_them(robot: Uno) -> None:
 @each_board
 def test_the_obstacle_program_runs_line_by_line(robot: Uno) -> None:
     robot.sonar("trigger", "echo", 40)
-    *lines, last = OBSTACLE_LINES
+    *lines, last_line = OBSTACLE_LINES
     for line in lines:
         assert type_and_listen(robot, f"{line}\r\n", 40) == []
     assert states(robot) == OFF
-    assert type_and_listen(robot, f"{last}\r", 40) == ["// OK"]
+    assert type_and_listen(robot, f"{last_line}\r", 40) == ["// OK"]
     assert states(robot) == FORWARD
     assert 0 < time_since_line_end_ms(robot) <= PROGRAM_MS
     robot.sonar("trigger", "echo", 5)
@@ -172,12 +172,15 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
     """Built by `tsc firmware`. The other language takes no flash."""
     skip_unless_available()
     project = copy_sketch(tmp_path)
-    for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
+    for language, answer, other_language in (
+        ("es", "500: 0 a 100", "en"),
+        ("en", "500: 0 to 100", "es"),
+    ):
         robot = robots.load("tinibot", "mega").with_language(language)
         (project / building.HEADER_FILE).write_text(building.header(robot), encoding="utf-8")
         pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
-        for language_code in (language, other):
+        for language_code in (language, other_language):
             assert (pack_texts(rows(language_code)).texts in elf.read_bytes()) == (
                 language_code == language
             )

@@ -117,12 +117,14 @@ def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -
     board.press(500, 600)
     board.press(700, 800)
     board.run_for(850)
-    off = ("low",) * len(board.motor_pins())
-    assert board.motors(START + 50) != off  # the left one turns round, and may be off just then
+    off_levels = ("low",) * len(board.motor_pins())
+    assert (
+        board.motors(START + 50) != off_levels
+    )  # the left one turns round, and may be off just then
     stop_cycle = [cycle for cycle in board.list_motor_changes() if cycle < 790 * MS][-1] / MS
     assert 0 < (stop_cycle - START - 50.123) * 1000 < STOP_US or stop_cycle < START + 50.123
     for ms in (START + 50.123 + STOP_US / 1000, START + 51, 450, 650, 799):
-        assert board.motors(ms) == off
+        assert board.motors(ms) == off_levels
     assert board.list_motor_changes()[-1] > 800 * MS  # the button releases the latch
 
 
@@ -141,9 +143,9 @@ def test_a_stop_at_any_cycle_stops(chip: str, lamp: str, stop_pin: int, group: i
     changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired_text))
     robot = on_board("tinibot", chip, *changes)
     bit = AVRS[chip].interrupt_by_pin[stop_pin].bit
-    more = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
-    more = more.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
-    board = start_board(robot, STOPPING, more)
+    extra_code = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
+    extra_code = extra_code.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
+    board = start_board(robot, STOPPING, extra_code)
     board.sweep(1, SWEPT_CYCLES, STOP_US, stop_pin)  # before the program drives again
     board.run_for(START + 2)
     edges = [cycle for cycle in board.edges(7) if cycle > (START + 1) * MS]

@@ -147,8 +147,8 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
     wait_until_saved(robot, session)
     assert robot.complete(session, session.read_tasks()).is_halted
     restarted_robot = switched_on(robot.memory())
-    assert fetch_image(restarted_robot, other := computer(7))[15:] == image.code
-    assert restarted_robot.complete(other, other.status()).program == image.checksum
+    assert fetch_image(restarted_robot, other_session := computer(7))[15:] == image.code
+    assert restarted_robot.complete(other_session, other_session.status()).program == image.checksum
 
 
 def test_a_place_is_reported_with_the_programs_checksum() -> None:
@@ -549,10 +549,10 @@ def test_a_halted_line_does_the_same_as_an_unhalted_one(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "more"),
+    ("name", "extra_bytes"),
     [("PROGRAM", b"\0"), ("BEGIN", bytes((ISA_MAJOR, 0, 0, 16, 0, 0, 1, 0))), ("START", b"")],
 )
-def test_only_a_line_can_be_asked_to_halt(name: str, more: bytes) -> None:
+def test_only_a_line_can_be_asked_to_halt(name: str, extra_bytes: bytes) -> None:
     it = Debugged(DRIVE_PROGRAM)
     mode = HALTS | RUN * (name != "START")
-    assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + more)
+    assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + extra_bytes)

@@ -110,7 +110,7 @@ def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> 
     was_latched, count_before = robot.is_latched, len(robot.did)
     press_button(table, press)
     rows = [row.split(" ", 1) for row in robot.did[count_before:]]
-    moves = [(int(ms) - begun_ms, what) for ms, what in rows if what.startswith("MOTORS")]
+    moves = [(int(ms) - begun_ms, action) for ms, action in rows if action.startswith("MOTORS")]
     wanted_texts, columns = read_table()[state], PRESSES[press][1]
     first_ms = letters()[press][0][0]
     stops = wanted_texts[EDGE_COLUMN] == "stops it"
@@ -120,18 +120,18 @@ def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> 
         wanted_texts[event] not in ("-", "stops it") for event in (EDGE_COLUMN, LATE_COLUMN)
     )
     if stops:
-        assert [what for _, what in moves] == ["MOTORS 0 0"]
+        assert [action for _, action in moves] == ["MOTORS 0 0"]
         assert moves[0][0] <= first_ms + 2
         assert robot.is_latched
     elif starts:
-        assert [what for _, what in moves] == [f"MOTORS {table.program} {table.program}"]
+        assert [action for _, action in moves] == [f"MOTORS {table.program} {table.program}"]
         up_ms = letters()[press][-1][0]
         assert up_ms <= moves[0][0]
         assert not robot.is_latched
     else:
         assert moves == []
         assert robot.is_latched
-    beeps = [what for _, what in rows if what.startswith("BEEP 1568")]
+    beeps = [action for _, action in rows if action.startswith("BEEP 1568")]
     is_forgotten = table.is_reset_down and press == HELD_FOR_EVER
     assert len(beeps) == (
         is_forgotten

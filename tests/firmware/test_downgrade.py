@@ -136,8 +136,12 @@ class Between:
         if frame.number == BY_NAME["PROGRAM"].number:
             payload[:4] = image_of(FOREVER).checksum.to_bytes(4, "little")
         if frame.number == AUTHENTICATE and self.draw.random() < 0.5:
-            wrong = bytes([self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0])
-            return encode_frame(frame._replace(payload=wrong, is_reply=True, is_sealed=False))
+            wrong_payload = bytes(
+                [self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0]
+            )
+            return encode_frame(
+                frame._replace(payload=wrong_payload, is_reply=True, is_sealed=False)
+            )
         frame = frame._replace(payload=b"\0" + bytes(payload), is_reply=True)
         return encode_frame(frame._replace(is_sealed=False))
 
@@ -296,18 +300,18 @@ def test_accepted_robots_and_those_with_a_known_key_are_trusted() -> None:
     request = session.hello()
     talk_honestly(strange, session, request)
     assert request.outcome and request.outcome.status == OTHER_ROBOT
-    other = request.outcome.detail
-    keys.accepted_ids.add(other)
+    robot_id = request.outcome.detail
+    keys.accepted_ids.add(robot_id)
     for _ in range(2):
         talk_honestly(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
-        assert session.robot and session.robot.id == other
+        assert session.robot and session.robot.id == robot_id
     strange.table.claim_session(keys)  # in another slot
     keys.accepted_ids.clear()
     session = strange.session(3, keys, ROBOT_PLACE)
     talk_honestly(strange, session, request := session.hello())
     assert request.outcome and request.outcome.status == 0
-    assert keys.id_by_place[ROBOT_PLACE] == other
+    assert keys.id_by_place[ROBOT_PLACE] == robot_id
 
 
 def test_an_unknown_robot_is_trusted() -> None:
@@ -376,8 +380,8 @@ def test_seal_support_is_learned_only_from_the_robot_itself() -> None:
 
 def play_either(ends: tuple[End, End, Stranger], seed: int) -> str:
     """Play one of somebody in between, or one of a stranger with an id of its own."""
-    robot, other, strange = ends
-    return one_stranger(other, strange, seed) if seed % 2 else one_trial(robot, seed)
+    robot, other_end, strange = ends
+    return one_stranger(other_end, strange, seed) if seed % 2 else one_trial(robot, seed)
 
 
 if __name__ == "__main__":

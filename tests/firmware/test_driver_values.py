@@ -95,9 +95,10 @@ def test_a_sensor_reads_its_simulated_input(driver: Driver) -> None:
 @pytest.mark.parametrize("driver", ACTUATORS, ids=names(ACTUATORS))
 def test_an_actuators_setting_appears_at_its_pins(driver: Driver) -> None:
     name, wiring = name_and_wiring(driver)
-    less, more = SET_VALUES[driver.used_by.split()[1]]
+    low_value, high_value = SET_VALUES[driver.used_by.split()[1]]
     board = start_board(
-        ROBOT_WITH_ALL_DRIVERS, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)"
+        ROBOT_WITH_ALL_DRIVERS,
+        f"SI|{name}({low_value});W({SET_MS / 1000});{name}({high_value});W(1)",
     )
     pins = wiring.pins.values()
     for pin in pins:

@@ -82,35 +82,35 @@ def test_the_owner_drives_over_tls(room: Room) -> None:
     teacher = room.connect()
     assert list_present_robots(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    clients: Ends = [(AtBroker(robot, teacher), owner)]
     lines = "".join(f"X = {k}; " for k in range(200))
-    assert upload_text(robot, ends, owner, f"SI|{lines}F(9, 80)") == "OK"
-    talk(robot, ends, 300)
+    assert upload_text(robot, clients, owner, f"SI|{lines}F(9, 80)") == "OK"
+    talk(robot, clients, 300)
     assert motor_state(robot) == "MOTORS 80 80"
     teacher.stop("aula")
-    talk(robot, ends, 100)
+    talk(robot, clients, 100)
     assert motor_state(robot) == "MOTORS 0 0"
 
 
-@pytest.mark.sampled("what", "state", keep=3)
-@pytest.mark.parametrize(("what", "state"), [
+@pytest.mark.sampled("fault", "state", keep=3)
+@pytest.mark.parametrize(("fault", "state"), [
     ("another authority", "UNTRUSTED"), ("no certificate", "UNTRUSTED"),
     ("another name", "OTHER_NAME"), ("the start of the name", "OTHER_NAME"),
     ("it has ended", "EXPIRED"), ("a broker without TLS", "NO_TLS"),
 ])  # fmt: skip
 def test_an_untrusted_broker_gets_no_data(
-    room: Room, tmp_path: Path, brokers: Callable[..., Mosquitto], what: str, state: str
+    room: Room, tmp_path: Path, brokers: Callable[..., Mosquitto], fault: str, state: str
 ) -> None:
     settings = room.settings()
-    if what == "another authority":
+    if fault == "another authority":
         settings = room.settings(trust=Authority(tmp_path).der)
-    elif what == "no certificate":
+    elif fault == "no certificate":
         settings = room.settings(trust=b"\x30\x82\x01\x00" + bytes(256))
-    elif what == "another name":
+    elif fault == "another name":
         settings = room.settings("localhost")
-    elif what == "the start of the name":
+    elif fault == "the start of the name":
         settings = room.settings(NAME[:-1])
-    elif what == "it has ended":
+    elif fault == "it has ended":
         settings = room.settings(today=LATER)
     else:
         settings = settings._replace(port=brokers().port)
@@ -133,8 +133,8 @@ def test_a_newly_set_broker_does_not_inherit_the_previous_error(room: Room, tmp_
     """Its task is looking a name up, for seconds, when the new one comes."""
     robot, owner = join_network(Keys())
     announce_computer(robot, NAME, "127.0.0.1", wait_ms=3000)
-    wrong = room.settings(trust=Authority(tmp_path).der)
-    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    wrong_settings = room.settings(trust=Authority(tmp_path).der)
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong_settings)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "UNTRUSTED")
     talk(robot, [(None, owner)], 4500)
     assert broker_settings_of(robot, owner)[1] == "UNTRUSTED"
@@ -187,10 +187,11 @@ def test_only_the_brokers_own_certificate_is_accepted_without_its_authority(
     authority = Authority(tmp_path)
     own_room = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
     authority.rules("other.aula")
-    trust, other = (der(authority.sign(name)) for name in (NAME, "other.aula"))
+    trust, other_trust = (der(authority.sign(name)) for name in (NAME, "other.aula"))
     robot, owner = join_network(Keys())
     for settings, state in (
-        (own_room.settings(trust=other), "UNTRUSTED"), (own_room.settings(trust=trust), "READY"),
+        (own_room.settings(trust=other_trust), "UNTRUSTED"),
+        (own_room.settings(trust=trust), "READY"),
         (own_room.settings("localhost", trust=trust), "OTHER_NAME"),
         (own_room.settings(today=LATER, trust=trust), "EXPIRED"),
     ):  # fmt: skip
@@ -206,14 +207,14 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
     own_room = Room(brokers(more=authority.rules(NAME)), authority)
     robot, _ = connect_to_broker(own_room.broker, keys, own_room.settings())
     owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, own_room.connect()), owner)]
-    assert upload_text(robot, ends, owner) == "OK"
-    talk(robot, ends, 500)
+    clients: Ends = [(AtBroker(robot, own_room.connect()), owner)]
+    assert upload_text(robot, clients, owner) == "OK"
+    talk(robot, clients, 500)
     assert motor_state(robot) == "MOTORS 80 80"
     own_room.broker.kill()
     begun_ms = robot.now_ms
     while motor_state(robot) != "MOTORS 0 0":
-        talk(robot, ends, 5)
+        talk(robot, clients, 5)
         assert robot.now_ms < begun_ms + DEAD_MAN_MS
 
 
@@ -247,8 +248,10 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
         assert cuts.bytes_left[:2] == [0, 0] and cuts.bytes_left[2] < 1500
         teacher = room.connect()
-        far = remote(robot, keys)
-        assert upload_text(robot, [(AtBroker(robot, teacher), far)], far) == "OK"
+        remote_session = remote(robot, keys)
+        assert (
+            upload_text(robot, [(AtBroker(robot, teacher), remote_session)], remote_session) == "OK"
+        )
     finally:
         cuts.close()
 
@@ -286,9 +289,11 @@ def test_invalid_tls_settings_are_refused() -> None:
             wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
         ), settings
         assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
-    most = PLAIN._replace(name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY))
-    assert most.is_sound
-    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(most)) == "OK"
+    longest_settings = PLAIN._replace(
+        name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY)
+    )
+    assert longest_settings.is_sound
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(longest_settings)) == "OK"
 
 
 def test_the_broker_survives_a_reset_and_a_failed_replacement(room: Room) -> None:

@@ -149,11 +149,13 @@ def test_the_whole_sketch_links_with_only_the_core(chip: str, major: int, tmp_pa
     for path in code:
         objects.append(str(tmp_path / f"{len(objects)}.o"))
         compile_one(isa, path, objects[-1], flags)
-    whole = str(tmp_path / "whole.o")
-    subprocess.run([*isa.linker, "-r", *objects, "-o", whole], check=True)
-    assert ram_of(isa, whole) <= MOST_RAM, "the radios need the rest"
+    object_path = str(tmp_path / "whole.o")
+    subprocess.run([*isa.linker, "-r", *objects, "-o", object_path], check=True)
+    assert ram_of(isa, object_path) <= MOST_RAM, "the radios need the rest"
     names = isa.measurer.replace("-size", "-nm")
-    output = subprocess.run([names, "-u", whole], capture_output=True, text=True, check=True).stdout
+    output = subprocess.run(
+        [names, "-u", object_path], capture_output=True, text=True, check=True
+    ).stdout
     symbols = {line.split()[-1] for line in output.splitlines()}
     serial = {name for name in symbols if "HardwareSerial" in name}
     assert all(any(word in name for word in SERIAL) for name in serial)

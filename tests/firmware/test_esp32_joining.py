@@ -21,13 +21,13 @@ JOIN_RETRY_MS = 15_000  # kJoinAgainMs
 @drawn
 def test_a_late_address_is_waited_for() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
+    clients: Ends = [(None, owner)]
     school_in_reach(robot)
     robot.radio("l", pack("<I", 40_000))
-    assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
-    talk(robot, ends, 39_000)
+    assert wait_for_outcome(robot, clients, owner.join(SCHOOL)) == "OK"
+    talk(robot, clients, 39_000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
-    talk(robot, ends, 2000)
+    talk(robot, clients, 2000)
     assert state(robot, owner) == ("STATION", "READY")
     assert radios(robot).joins == 1, "each try would begin anew"
 
@@ -35,8 +35,8 @@ def test_a_late_address_is_waited_for() -> None:
 @drawn
 def test_a_robot_out_of_reach_of_its_network_leaves_the_antenna_to_bluetooth() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
-    assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
+    clients: Ends = [(None, owner)]
+    assert wait_for_outcome(robot, clients, owner.join(SCHOOL)) == "OK"
     robot.wait(20 * JOIN_RETRY_MS)
     assert 20 <= radios(robot).joins <= 21
     school_in_reach(robot)

@@ -60,10 +60,10 @@ def test_a_line_that_stays_low_counts_as_unconnected() -> None:
     """A cable that was pulled out stays as it is, and the robot has its button."""
     robot = boot()
     client = session(1, robot)
-    ends: Ends = [(None, client)]
+    clients: Ends = [(None, client)]
     upload = client.upload(image_of("SB|F(60, 80)"))
-    assert wait_for_outcome(robot, ends, upload) == "OK"
-    talk(robot, ends, 2000)
+    assert wait_for_outcome(robot, clients, upload) == "OK"
+    talk(robot, clients, 2000)
     robot.hold_line()
     robot.wait(1500)
     robot.push()

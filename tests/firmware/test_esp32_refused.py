@@ -53,8 +53,8 @@ class StrictBroker:
     def _talk(self, end: socket.socket) -> None:
         data = b""
         try:
-            while more := end.recv(4096):
-                data += more
+            while received := end.recv(4096):
+                data += received
                 while len(data) >= 2 and len(data) >= 2 + data[1]:  # no packet of ours is longer
                     self._answer(end, data[0] & 0xF0, data[2 : 2 + data[1]])
                     data = data[2 + data[1] :]
@@ -136,15 +136,15 @@ def test_a_stop_before_the_answer_counts(brokers: list[StrictBroker]) -> None:
 
 def test_a_failed_access_point_is_not_ready_and_retried() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
+    clients: Ends = [(None, owner)]
     robot.radio("H", b"\1")
-    assert wait_for_outcome(robot, ends, owner.join(HOTSPOT)) == "OK"
-    talk(robot, ends, 1000)
+    assert wait_for_outcome(robot, clients, owner.join(HOTSPOT)) == "OK"
+    talk(robot, clients, 1000)
     assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
     assert not radios(robot).is_access_point
-    talk(robot, ends, 30_000)
+    talk(robot, clients, 30_000)
     assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
     robot.radio("H", b"\0")
-    talk(robot, ends, 16_000)
+    talk(robot, clients, 16_000)
     assert state(robot, owner) == ("ACCESS_POINT", "READY")
     assert radios(robot).is_access_point and radios(robot).network.encode() == HOTSPOT.name

@@ -92,13 +92,13 @@ right_backward = 33
 """
 
 
-def wire_robot(motors: str, more: str = DEVICES_TEXT) -> Esp32Robot:
+def wire_robot(motors: str, profile_text: str = DEVICES_TEXT) -> Esp32Robot:
     """Return a robot with these motors, and one device of every driver."""
     text = TEXTS["tinibot32"].partition("# ---- Its body")
     head = re.sub(r"\[board\.motors\].*?(?=\n\[board\.sensors)", motors, text[0], flags=re.S)
-    kit = re.sub(r"(?m)^\[board\]", more.partition("[board")[0] + "[board]", head)
+    kit = re.sub(r"(?m)^\[board\]", profile_text.partition("[board")[0] + "[board]", head)
     body = re.sub(r"(?s)# ---- What people call it.*", "", text[2])
-    devices = "[board" + more.partition("[board")[2]
+    devices = "[board" + profile_text.partition("[board")[2]
     return switched_on(Esp32Robot(read(kit + devices + text[1] + body, "mine")))
 
 
@@ -164,7 +164,10 @@ def test_no_note_of_a_tune_follows_a_tone() -> None:
     robot.did.clear()
     send(robot, session, "SI|BEEP(0.2, 440);W(1)")
     robot.talk(session, 900)
-    assert [what for what in actions_of(robot) if "TONE" in what][-2:] == ["TONE 440", "TONE 0"]
+    assert [action for action in actions_of(robot) if "TONE" in action][-2:] == [
+        "TONE 440",
+        "TONE 0",
+    ]
 
 
 def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:

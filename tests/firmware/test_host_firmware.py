@@ -43,16 +43,16 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
     send(robot, session, "SI|F(1, 80)")
     robot.talk(session, 1200)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-    first, last = (int(line.split()[0]) for line in robot.did[:2])
-    assert last - first == 1000
+    first_ms, last_ms = (int(line.split()[0]) for line in robot.did[:2])
+    assert last_ms - first_ms == 1000
     assert [event.name for event in session.events()] == ["DONE"]
     assert robot.is_latched
 
 
-@pytest.mark.parametrize("more", ["", "\nTASK\nW(1); S\nEND_TASK"])
-def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
+@pytest.mark.parametrize("extra_text", ["", "\nTASK\nW(1); S\nEND_TASK"])
+def test_code_in_one_frame_is_the_program_that_was_compiled(extra_text: str) -> None:
     """The robot makes its image, which lists its needs."""
-    robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){more}")
+    robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){extra_text}")
     assert robot.complete(session, session.live(image.code)).program == image.checksum
 
 

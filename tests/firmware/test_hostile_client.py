@@ -103,10 +103,10 @@ class Client:
             (*(message.number for message in REQUESTS[1:]), rng.choice(UNKNOWN_NUMBERS), 0)
         )
         fields = BY_NUMBER[number].request if number in BY_NUMBER else ()
-        least, most = sizes(fields)
-        most = min(most, payload_bytes(LARGEST_NUMBER))
+        least_bytes, most_bytes = sizes(fields)
+        most_bytes = min(most_bytes, payload_bytes(LARGEST_NUMBER))
         payload = rng.randbytes(
-            rng.choice((least, most, rng.randrange(most + 1), rng.randrange(57)))
+            rng.choice((least_bytes, most_bytes, rng.randrange(most_bytes + 1), rng.randrange(57)))
         )
         payload = payload[: MOST_RETIRED if number in RETIRED_NUMBERS else None]
         if fields and fields[0].name == "mode" and payload:
@@ -121,7 +121,7 @@ class Client:
         is_known = number in BY_NUMBER and BY_NUMBER[number].name not in RADIO_MESSAGES
         if not is_known:
             assert status == STATUSES["UNKNOWN_MESSAGE"]
-        elif not least <= len(payload) <= most:
+        elif not least_bytes <= len(payload) <= most_bytes:
             assert status == STATUSES["BAD_LENGTH"]
         elif is_stale and number >= FIRST_ACTING:
             assert status == STATUS_STALE
@@ -165,14 +165,14 @@ class Client:
 
     def fetch_image(self) -> bytes:
         """Return the image that the robot holds."""
-        image, whole = b"", HEADER_BYTES
-        while len(image) < whole:
+        image, total_bytes = b"", HEADER_BYTES
+        while len(image) < total_bytes:
             reply = self.ask_by_name("FETCH", len(image).to_bytes(2, "little"))
             if reply[0] == STATUS_BUSY:
                 self.put(b"", 50)
                 continue
             assert reply[0] == STATUS_OK
-            whole = int.from_bytes(reply[1:3], "little")
+            total_bytes = int.from_bytes(reply[1:3], "little")
             image += reply[3:]
         return image
 

@@ -138,15 +138,15 @@ def test_in_an_open_block_a_key_line_belongs_to_the_program() -> None:
     assert robot.remote() == RELEASED
 
 
-@pytest.mark.parametrize("how", ["text", "zeros", "button"])
-def test_after_a_stop_key_lines_count_as_silence(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["text", "zeros", "button"])
+def test_after_a_stop_key_lines_count_as_silence(stop_kind: str) -> None:
     """A person who keeps holding a key can type a program a second later."""
     robot = boot()
     type_text(robot, DRIVE_PROGRAM + "\n", 100)
     assert "MOTORS 50 50" in robot.did[-1]
-    if how == "text":
+    if stop_kind == "text":
         type_text(robot, "S\n", 20)
-    elif how == "zeros":
+    elif stop_kind == "zeros":
         robot.wait(20, bytes(4))
         robot.wait(1500)  # from here on the robot reads text again
         type_text(robot, "KEY_UP\n", 20)

@@ -78,14 +78,14 @@ def test_a_program_of_version_1_is_ignored(place: int) -> None:
 
 
 def test_an_older_program_of_this_version_is_used() -> None:
-    mine = bytes_of("SB|F(0.1, 60)")
+    own_image = bytes_of("SB|F(0.1, 60)")
     robot, session = open_session(
-        eeprom_with((FIRST_SLOT, 3, mine), (SECOND_SLOT, 4, LATER_VERSION_IMAGE))
+        eeprom_with((FIRST_SLOT, 3, own_image), (SECOND_SLOT, 4, LATER_VERSION_IMAGE))
     )
     assert read_saved_state(robot, session) == "STORED"
-    later = with_checksum(mine[:3] + b"\2" + mine[4:])  # a later minor version
+    later_image = with_checksum(own_image[:3] + b"\2" + own_image[4:])  # a later minor version
     robot, session = open_session(
-        eeprom_with((FIRST_SLOT, 3, later), (SECOND_SLOT, 2, LATER_VERSION_IMAGE))
+        eeprom_with((FIRST_SLOT, 3, later_image), (SECOND_SLOT, 2, LATER_VERSION_IMAGE))
     )
     assert read_saved_state(robot, session) == "OTHER_VERSION"
 

@@ -49,9 +49,9 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == OWNED_BY_YOU
     assert table.tries(session) == "OK"
-    later = Owned(table.robot.memory(), seed=7)
-    assert owner_of(later, later.session()) == OWNED_BY_OTHER
-    assert owner_of(later, later.session(keys, nonce=2)) == OWNED_BY_YOU
+    restarted = Owned(table.robot.memory(), seed=7)
+    assert owner_of(restarted, restarted.session()) == OWNED_BY_OTHER
+    assert owner_of(restarted, restarted.session(keys, nonce=2)) == OWNED_BY_YOU
 
 
 def a_shorter_press(table: Owned, session: Session) -> PendingRequest[Any]:
@@ -76,13 +76,13 @@ def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
     return request
 
 
-@pytest.mark.parametrize("what", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
+@pytest.mark.parametrize("act", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
 def test_other_button_actions_confirm_no_claim(
-    what: Callable[[Owned, Session], PendingRequest[Any]],
+    act: Callable[[Owned, Session], PendingRequest[Any]],
 ) -> None:
     table, keys = Owned(), Keys()
     session = table.session(keys)
-    assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
+    assert table.outcome(session, act(table, session)) == "HOLD_BUTTON"
     assert keys.stored_keys == []
     assert owner_of(table, session) == FREE
 
@@ -122,8 +122,8 @@ CLAIM_CASES = ["nothing", "cut", "cut, later not", "held", "held and cut", "take
 
 @pytest.mark.sampled("late_ms")
 @pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
-@pytest.mark.parametrize("what", CLAIM_CASES)
-def test_a_claim_ends_within_the_documented_time(late_ms: int, what: str) -> None:
+@pytest.mark.parametrize("ending", CLAIM_CASES)
+def test_a_claim_ends_within_the_documented_time(late_ms: int, ending: str) -> None:
     """However long answers take, and whatever the result of the press. A key that the robot may
     have taken is kept: it is shown the next time."""
     table, keys = Owned(), Keys()
@@ -131,42 +131,42 @@ def test_a_claim_ends_within_the_documented_time(late_ms: int, what: str) -> Non
     line = Late(table, session, late_ms)
     began_ms = table.robot.now_ms
     request = session.claim(KEY_OWNER)
-    line.is_cut = what.startswith("cut")
+    line.is_cut = ending.startswith("cut")
     line.pass_time(WAIT_LIMIT_MS - 6000)
-    line.is_cut = what == "cut"
-    if what[:4] in ("held", "take"):
+    line.is_cut = ending == "cut"
+    if ending[:4] in ("held", "take"):
         line.pass_time(1, BUTTON_PRESSED)
         line.pass_time(30)
         line.pass_time(1970, BUTTON_HELD)
-        line.is_cut = what == "held and cut"
+        line.is_cut = ending == "held and cut"
         while (
-            what == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
+            ending == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
         ):
             line.pass_time(LINE_STEP_MS)
-        line.is_cut |= what == "taken and cut"
+        line.is_cut |= ending == "taken and cut"
     line.until(request)
     assert table.robot.now_ms <= began_ms + WAIT_LIMIT_MS + 2 * LINE_STEP_MS
     table.robot.step(flags=BUTTON_RELEASED)
     is_taken = owner_of(table, table.session(nonce=8)) != FREE
-    assert is_taken or what not in ("held", "taken and cut")
+    assert is_taken or ending not in ("held", "taken and cut")
     assert owner_of(table, table.session(keys, nonce=7)) == (OWNED_BY_YOU if is_taken else FREE)
 
 
 def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
     table = Owned()
     first, second = Keys(1), Keys(50)
-    early, late = table.session(first, nonce=1), table.session(second, nonce=2)
-    early.claim(KEY_OWNER)
-    table.pass_time(early, 300)
+    early_session, late_session = table.session(first, nonce=1), table.session(second, nonce=2)
+    early_session.claim(KEY_OWNER)
+    table.pass_time(early_session, 300)
     table.pass_time(None, 2100)  # out of reach
     table.hold(None, 2500)
     assert owner_of(table, table.session(nonce=5)) == FREE
-    early.claim(KEY_OWNER)
-    table.pass_time(early, 300)
-    request = late.claim(KEY_OWNER)  # its session is alive
-    table.pass_time(late, 300)
-    table.hold(late, 2200)
-    assert table.outcome(late, request) == "OK"
+    early_session.claim(KEY_OWNER)
+    table.pass_time(early_session, 300)
+    request = late_session.claim(KEY_OWNER)  # its session is alive
+    table.pass_time(late_session, 300)
+    table.hold(late_session, 2200)
+    assert table.outcome(late_session, request) == "OK"
     next_session = table.session(first, nonce=3)
     assert table.outcome(next_session, next_session.claim(KEY_OWNER)) in ("NOT_OWNER", "WRONG_KEY")
     assert table.tries(table.session(first, nonce=4)) != "OK"
@@ -187,9 +187,9 @@ def test_a_power_cut_leaves_the_old_or_the_new_key(cut_ms: int) -> None:
     table.pass_time(session, 31)
     table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, cut_ms)
-    later = Owned(table.robot.memory(), seed=cut_ms)
+    restarted = Owned(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
-    assert owner_of(later, later.session(keys, nonce=77)) == OWNED_BY_YOU
+    assert owner_of(restarted, restarted.session(keys, nonce=77)) == OWNED_BY_YOU
 
 
 def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
@@ -199,8 +199,8 @@ def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
         session.claim(KEY_OWNER)
         table.pass_time(session, 300)
         session = table.session(keys, nonce=len(keys.stored_keys) + 1)
-    left = list(keys.stored_keys)
-    assert len(left) == 7
+    keys_left = list(keys.stored_keys)
+    assert len(keys_left) == 7
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     table.pass_time(session, 1, BUTTON_PRESSED)
@@ -208,12 +208,12 @@ def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
     table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, 400)
     table.robot.step(flags=BUTTON_RELEASED)
-    keys.stored_keys = [left[0], keys.stored_keys[-1]._replace(is_pending=True)]
-    later = table.session(keys, nonce=99)
-    assert owner_of(table, later) == OWNED_BY_YOU
+    keys.stored_keys = [keys_left[0], keys.stored_keys[-1]._replace(is_pending=True)]
+    later_session = table.session(keys, nonce=99)
+    assert owner_of(table, later_session) == OWNED_BY_YOU
     assert [(key.key[0], key.is_pending) for key in keys.stored_keys] == [(8, False)]
     stale = Keys()
-    stale.stored_keys = left[:2]
+    stale.stored_keys = keys_left[:2]
     assert owner_of(table, table.session(stale, nonce=100)) == OWNED_BY_OTHER
     assert [(key.is_pending, key.is_stale) for key in stale.stored_keys] == [(True, True)] * 2
 
@@ -301,17 +301,17 @@ def test_a_press_for_an_absent_claimant_confirms_nobody_else(
 
 
 def test_a_stale_key_is_tried_at_most_once_at_hello() -> None:
-    table, teacher_session, other = Owned(), Keys(), Keys(70)
+    table, teacher_session, other_keys = Owned(), Keys(), Keys(70)
     table.claim_session(teacher_session)
     session = table.session(teacher_session, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
     assert session.robot
     teacher_session.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
-    table.claim_session(other)
+    table.claim_session(other_keys)
     for nonce in range(10, 30):  # more often than it may be tried
         assert owner_of(table, table.session(teacher_session, nonce=nonce)) == OWNED_BY_OTHER
         assert [key.is_stale for key in teacher_session.stored_keys] == [True]
-    assert owner_of(table, table.session(other, nonce=40)) == OWNED_BY_YOU
+    assert owner_of(table, table.session(other_keys, nonce=40)) == OWNED_BY_YOU
 
 
 def test_a_stale_key_that_works_is_no_longer_stale() -> None:
@@ -430,8 +430,8 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
             assert table.outcome(session, session.hello()) == str(UNPROVEN)
             session = table.session()
         assert owner_of(table, session) == owner
-    other = table.session(Keys(200), nonce=3)
-    assert table.claim(other, KEY_TEACHER) == "OK"
+    other_session = table.session(Keys(200), nonce=3)
+    assert table.claim(other_session, KEY_TEACHER) == "OK"
 
 
 def test_text_drives_an_owned_robot_only_with_permission() -> None:
@@ -479,18 +479,18 @@ STEP_MS, STEPS = 250, 12  # pattern of the light
 HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what it runs": FOREVER}
 
 
-@pytest.mark.parametrize("holds", HELD_PROGRAMS)
-def test_each_identify_request_shows_the_robot_for_three_seconds(holds: str) -> None:
+@pytest.mark.parametrize("held_program", HELD_PROGRAMS)
+def test_each_identify_request_shows_the_robot_for_three_seconds(held_program: str) -> None:
     """Also while it still shows itself, or has just done so. Then its light shows the result."""
     table = Owned()
     robot, session = table.robot, table.session()
     assert table.outcome(session, session.hello()) == "OK"
-    if text := HELD_PROGRAMS[holds]:
+    if text := HELD_PROGRAMS[held_program]:
         upload = session.upload(image_of(text), saves=False, is_detached=True)
         assert table.outcome(session, upload) == "OK"
     robot.wait(100)
-    says, number = robot.is_lit, session.robot.id if session.robot else 0
-    runs = holds == "what it runs"
+    was_lit_before, number = robot.is_lit, session.robot.id if session.robot else 0
+    runs = held_program == "what it runs"
     tune = [] if runs else [131 * (4 + (number >> 3 * k) % 8) for k in range(3)]
     for seq, before_ms in enumerate((1, 249, 251, 700, 2999, 3500)):
         for is_second in (False, True):
@@ -503,7 +503,7 @@ def test_each_identify_request_shows_the_robot_for_three_seconds(holds: str) -> 
             for _ in range((before_ms if not is_second else STEPS * STEP_MS + 500) - 1):
                 robot.step()
                 was_lit.append(robot.is_lit)
-        expected = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500
+        expected = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [was_lit_before] * 500
         assert was_lit == expected, before_ms
         beeps = [line.split() for line in robot.did if "BEEP" in line]
         assert beeps == [

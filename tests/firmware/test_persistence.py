@@ -143,8 +143,8 @@ def test_a_trim_is_confirmed_once_stored() -> None:
     robot, session = switched_on(), computer()
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
-        restarted_robot, other = switched_on(robot.memory()), computer(2)
-        values = restarted_robot.complete(other, other.trim())
+        restarted_robot, other_session = switched_on(robot.memory()), computer(2)
+        values = restarted_robot.complete(other_session, other_session.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVE_PROGRAM, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
@@ -172,8 +172,8 @@ def test_a_power_cut_while_storing_a_pace_leaves_a_whole_one() -> None:
 
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
-    restarted_robot, other = switched_on(robot.memory()), computer(2)
-    return trim_from_reply(restarted_robot.complete(other, other.trim()))
+    restarted_robot, other_session = switched_on(robot.memory()), computer(2)
+    return trim_from_reply(restarted_robot.complete(other_session, other_session.trim()))
 
 
 def test_a_name_that_fits_a_worn_byte_is_stored_after_one_that_did_not() -> None:
@@ -202,21 +202,23 @@ KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFi
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("what", KEPT)
-def test_a_failed_save_succeeds_on_a_later_request(what: str) -> None:
+@pytest.mark.parametrize("request_name", KEPT)
+def test_a_failed_save_succeeds_on_a_later_request(request_name: str) -> None:
     """The memory accepts no writes for a while, as if the supply failed in each write. The first
     answer afterwards may still be about the last time.
     """
     robot, session = robot_with_saved_program()
-    asks, is_kept = KEPT[what]
+    make_request, is_kept = KEPT[request_name]
     for place in range(len(robot.memory())):
         robot.wear_out(place)
-    is_program = what == "a program"  # programs are answered at once
-    assert robot.until(session, asks(session)) == (OK if is_program else STATUSES["NOT_KEPT"])
+    is_program = request_name == "a program"  # programs are answered at once
+    assert robot.until(session, make_request(session)) == (
+        OK if is_program else STATUSES["NOT_KEPT"]
+    )
     robot.talk(session, 3000)
     assert not is_kept(robot)
     robot.mend()
-    answers = {robot.until(session, asks(session)) for _ in "12"}
+    answers = {robot.until(session, make_request(session)) for _ in "12"}
     robot.talk(session, 3000)
     assert OK in answers and is_kept(robot)
 
@@ -344,11 +346,11 @@ def session_while_name_is_written(
 ) -> Session:
     """Return another session of a robot with a stored program that writes its name."""
     broken_upload(robot, session)
-    other = computer(3)
-    assert robot.until(other, other.hello()) == OK
-    other.name(name)
-    robot.talk(other, 5)
-    return other
+    other_session = computer(3)
+    assert robot.until(other_session, other_session.hello()) == OK
+    other_session.name(name)
+    robot.talk(other_session, 5)
+    return other_session
 
 
 def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> None:
@@ -358,30 +360,34 @@ def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> Non
     another = computer(4)
     assert robot.complete(another, another.fetch()).image == bytes_of(text)
     robot.talk(another, 1000)
-    other = session_while_name_is_written(robot, another, b"ANOTHER ONE")
+    other_session = session_while_name_is_written(robot, another, b"ANOTHER ONE")
     robot.push(1)
-    robot.talk(other, 7000)
+    robot.talk(other_session, 7000)
     assert actions_of(robot)[0] == "MOTORS 80 80" and actions_of(robot)[-1] == "FINISHED"
 
 
 def test_a_robot_that_is_saving_answers_busy_to_fetch() -> None:
     robot, session = robot_with_saved_program()
     broken_upload(robot, session)
-    other = computer(3)
-    assert robot.until(other, other.hello()) == OK
+    other_session = computer(3)
+    assert robot.until(other_session, other_session.hello()) == OK
 
-    naming = other._queue_exchange(send_single(Request("NAME", {"name": b"NEW"}), EmptyReply))
-    assert robot.until(other, naming) == STATUSES["SAVING"]
-    request = other._queue_exchange(send_single(Request("FETCH", {"offset": 0}), FetchReply))
-    assert robot.until(other, request) == STATUSES["BUSY"]
+    naming = other_session._queue_exchange(
+        send_single(Request("NAME", {"name": b"NEW"}), EmptyReply)
+    )
+    assert robot.until(other_session, naming) == STATUSES["SAVING"]
+    request = other_session._queue_exchange(
+        send_single(Request("FETCH", {"offset": 0}), FetchReply)
+    )
+    assert robot.until(other_session, request) == STATUSES["BUSY"]
 
 
 def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
     robot, session = switched_on(write_ms=12), computer()
     send(robot, session, "SB|F(0.2, 80)")
     robot.talk(session, 2000)
-    other = session_while_name_is_written(robot, session)
+    other_session = session_while_name_is_written(robot, session)
     robot.push(1)
-    other.stop(robot.now_ms)
-    robot.talk(other, 2000)
+    other_session.stop(robot.now_ms)
+    robot.talk(other_session, 2000)
     assert [line for line in actions_of(robot) if line.startswith("MOTORS")] == []

@@ -33,15 +33,18 @@ def test_reporting_readings_does_not_change_the_timing_of_pins(seed: int) -> Non
     waiting SHOW changes everything after it.
     """
     text = program(random.Random(seed))
-    alone, reporting = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
-    apart = largest_difference_ms(alone.did, reporting.did)
+    silent_run, reporting_run = (
+        sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True)
+    )
+    apart = largest_difference_ms(silent_run.did, reporting_run.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= LARGEST_DELAY_MS or not is_steady(text, seed), text
     shown_events = [
-        [event for event in run.events if event.name == "SHOW"] for run in (alone, reporting)
+        [event for event in run.events if event.name == "SHOW"]
+        for run in (silent_run, reporting_run)
     ]
     assert abs(len(shown_events[0]) - len(shown_events[1])) <= max(2, len(shown_events[0]) // 20)
-    assert not alone.readings
+    assert not silent_run.readings
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -49,14 +52,14 @@ def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
     """A line without delay reports all readings; a slow one the same, or that some are missing."""
     text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
     every_ms = 5 if seed % 2 else 30
-    whole, limited_sensed_run = (
+    full_run, limited_run = (
         sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
     )
-    assert not [event for event in whole.readings if event.sensor & UNTOLD]
+    assert not [event for event in full_run.readings if event.sensor & UNTOLD]
     for sensor in range(len(KIT.sensors)):
-        all_of_it = [event for event in whole.readings if event.sensor == sensor]
+        all_of_it = [event for event in full_run.readings if event.sensor == sensor]
         position = 0
-        for event in limited_sensed_run.readings:
+        for event in limited_run.readings:
             if event.sensor & ~UNTOLD != sensor:
                 continue
             if not event.sensor & UNTOLD:

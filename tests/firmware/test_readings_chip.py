@@ -52,7 +52,7 @@ def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list
     assert wired_uno.until(session.tell_readings(is_told)) == OK
     wired_uno.run(wait_ms)
     assert wired_uno.until(session.start()) == OK
-    since, rng = uno.cycle, random.Random(1)
+    since_cycle, rng = uno.cycle, random.Random(1)
     for _ in range(RUN_MS // CHANGE_INTERVAL_MS):
         for pin in LIGHT:
             uno.analog(pin, rng.randrange(1024))
@@ -62,7 +62,7 @@ def run_image(image: Image, uno: Uno, is_told: bool, wait_ms: int) -> tuple[list
     session.stop(wired_uno.now_ms)
     wired_uno.run(200)
     changes = sorted({change.cycle for name in MOTORS for change in uno.pins.history(name)
-                      if since < change.cycle < end})  # fmt: skip
+                      if since_cycle < change.cycle < end})  # fmt: skip
     lasting = [(cycle, f"{power(uno, 'left', cycle)} {power(uno, 'right', cycle)}")
                for cycle, next_cycle in zip(changes, [*changes[1:], end], strict=False)
                if next_cycle - cycle > SAME_SETTING_MS * CYCLES_PER_MS]  # fmt: skip
@@ -83,11 +83,14 @@ def compare(text: str, uno: Uno) -> int:
     """Run a program with readings: it behaves as without them. Return the number of reported
     readings."""
     image = image_of(text, KIT)
-    did, told_count = run_image(image, uno, True, 0)
+    changes_without_readings, told_count = run_image(image, uno, True, 0)
     nearest_ms = inf
     for begin_ms in START_TIMES_MS:
         nearest_ms = min(
-            nearest_ms, largest_difference_ms(run_image(image, uno, False, begin_ms)[0], did)
+            nearest_ms,
+            largest_difference_ms(
+                run_image(image, uno, False, begin_ms)[0], changes_without_readings
+            ),
         )
         if nearest_ms <= LARGEST_DELAY_MS:
             return told_count

@@ -155,14 +155,14 @@ class Client:
         begun_programs = [self.programs[code] for code in self.robot.codes()]
         actions = [line.split()[1] for line in self.robot.did]
         self.robot.did.clear()
-        for what, end in (("FINISHED", DONE), ("FAULTED", FAULT)):
-            if what in actions:
+        for event_name, end in (("FINISHED", DONE), ("FAULTED", FAULT)):
+            if event_name in actions:
                 if end == FAULT:
                     self.begin(begun_programs)
                 self.runs[-1].ended = end
                 self.runs[-1].ended_ms, self.runs[-1].ended_epoch = self.robot.now_ms, self.epoch
                 self.runs[-1].is_ended = True
-                self.log.append((self.robot.now_ms, what))
+                self.log.append((self.robot.now_ms, event_name))
         self.begin(begun_programs)
         if self.runs and self.robot.is_latched:
             self.runs[-1].is_ended = True
@@ -330,7 +330,7 @@ class Client:
         assert not [stop for stop in self.stops if stop.must], "a stop that nobody is told of"
         for number, run in enumerate(self.runs, 1):
             # The button may start the next one while the line is busy.
-            begins_ms = [later.begun_ms for later in self.runs[number : number + 1]]
+            begins_ms = [later_run.begun_ms for later_run in self.runs[number : number + 1]]
             is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < LONGEST_OUTPUT_MS
             assert run.ended in (0, *run.reported_ends) or is_overtaken, f"no end of {number}"
             if run.ended == DONE:

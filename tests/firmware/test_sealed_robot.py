@@ -308,9 +308,9 @@ def test_a_seal_lost_during_an_upload_loses_no_piece(
 def test_a_sealed_session_is_renewed_with_a_reset_robot() -> None:
     """This holds whatever the first request is, including one that needs no HELLO."""
     table, session, _ = open_sealed_session()
-    later = Owned(table.robot.memory(), seed=7)
-    later.robot.now_ms = table.robot.now_ms
-    assert later.outcome(session, session.status()) == "OK"
+    restarted = Owned(table.robot.memory(), seed=7)
+    restarted.robot.now_ms = table.robot.now_ms
+    assert restarted.outcome(session, session.status()) == "OK"
     assert session._sealing.seal
 
 
@@ -321,11 +321,11 @@ def test_sessions_with_the_same_numbers_have_different_seals() -> None:
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
-        later = Owned(memory, seed=seed)
-        assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
+        restarted = Owned(memory, seed=seed)
+        assert owner_of(restarted, restarted.session(keys, nonce=4)) == OWNED_BY_YOU
         for data in sent_bytes * 3:
-            later.robot.wait(5, b"\0" + data + b"\0")
-        assert not [line for line in later.robot.did if "MOTORS" in line]
+            restarted.robot.wait(5, b"\0" + data + b"\0")
+        assert not [line for line in restarted.robot.did if "MOTORS" in line]
 
 
 def test_a_stranger_gets_all_public_messages_beside_a_seal() -> None:
@@ -355,9 +355,9 @@ def attack(frames: int, seed: int) -> Counter[str]:
     chance = random.Random(seed)
     table, session, _keys = open_sealed_session()
     recorded_frames, _ = upload_and_capture(table, session, SHORT)
-    old = recorded_frames[-1:]
+    recorded = recorded_frames[-1:]
     robot = table.robot
-    thief = Thief(chance, old)
+    thief = Thief(chance, recorded)
     counts: Counter[str] = Counter(accepted=0)
     memory = robot.memory()
     for count in range(frames):
@@ -376,8 +376,8 @@ def attack(frames: int, seed: int) -> Counter[str]:
             robot.did.clear()
         if count % 200 == 100:  # the seal lives on
             assert table.outcome(session, session.status()) == "OK", f"seed {seed}, frame {count}"
-        how, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
-        counts[how] += 1
+        kind, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
+        counts[kind] += 1
         sent_bytes = robot.wait(2, b"\0" + data + b"\0")
         packets = [part for part in sent_bytes.split(b"\0") if part]
         counts["accepted"] += sum(grants_key_request(data) or _is_sealed(data) for data in packets)

@@ -39,7 +39,7 @@ def send_waiting_program(robot: HostFirmware, session: Session) -> None:
 
 
 def run_to_end(
-    robot: HostFirmware, session: Session, text: str, last: str, milliseconds: int
+    robot: HostFirmware, session: Session, text: str, last_action: str, milliseconds: int
 ) -> None:
     """Run a line to its end, without a computer if that end is a lost link."""
     live(robot, session, text)
@@ -47,7 +47,7 @@ def run_to_end(
         robot.wait(milliseconds)
     else:
         robot.talk(session, milliseconds)
-    assert actions_of(robot)[-1] == last
+    assert actions_of(robot)[-1] == last_action
 
 
 def leave_live(robot: HostFirmware, session: Session) -> None:
@@ -112,12 +112,16 @@ def test_a_stopping_push_starts_nothing_but_the_next_push_does() -> None:
         assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-@pytest.mark.parametrize("how", ["zeros", "STOP"])
-def test_a_stop_works_every_time(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["zeros", "STOP"])
+def test_a_stop_works_every_time(stop_kind: str) -> None:
     """Stop, button, stop, button: the sender repeats the stop as if no answer had arrived."""
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
-    stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
+    stop = (
+        bytes(8)
+        if stop_kind == "zeros"
+        else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
+    )
     for _ in range(300):  # more often than an 8-bit counter can count
         robot.push(2)
         assert actions_of(robot)[-1] == "MOTORS 80 80"
@@ -190,8 +194,8 @@ def test_a_stop_works_in_every_state(state: str, way: str) -> None:
     assert robot.is_latched
     count_before = len(robot.did)
     table.talk(1500)
-    later = [line for line in actions_of(robot)[count_before:] if line.startswith("MOTORS")]
-    assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
+    later_moves = [line for line in actions_of(robot)[count_before:] if line.startswith("MOTORS")]
+    assert set(later_moves) <= {"MOTORS 0 0"}, "nothing begins by itself"
     if state == "is saving its program":
         restarted_robot = after_power_off(table)
         restarted_robot.push()
@@ -214,15 +218,15 @@ def test_a_stop_works_at_any_time_of_a_save(state: Callable[[Table], None], afte
     table.robot.step(ZEROS)
     assert table.robot.is_latched
     table.robot.wait(1500)
-    later = after_power_off(table)
+    image_after = after_power_off(table)
     session = computer(7)
     if state is store_trim:
         request = session.trim()
-        assert later.until(session, request) == OK
+        assert image_after.until(session, request) == OK
         assert request.outcome and request.outcome.values.least in (0, 1)
-    later.push()
-    later.talk(session, 50)
-    assert actions_of(later)[-1] == f"MOTORS {table.program} {table.program}"
+    image_after.push()
+    image_after.talk(session, 50)
+    assert actions_of(image_after)[-1] == f"MOTORS {table.program} {table.program}"
 
 
 def drives(robot: HostFirmware) -> bool:

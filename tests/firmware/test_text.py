@@ -153,21 +153,23 @@ def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored_text: str) -
 
 @pytest.mark.sampled(of="other builds of the firmware")
 @pytest.mark.parametrize(
-    "language, says",
+    "language, message",
     [
         ("en", "Needs tsc, or a Mega or ESP32"),
         ("es", "Usa tsc, un Mega o un ESP32"),
         ("pt", "Use tsc, um Mega ou um ESP32"),
     ],
 )
-def test_an_uno_reports_the_board_that_tasks_ways_and_defs_need(language: str, says: str) -> None:
+def test_an_uno_reports_the_board_that_tasks_ways_and_defs_need(
+    language: str, message: str
+) -> None:
     defines = ("tiniscript_no_defs",)
     robot = HostFirmware(robots.load("tinibot").kit, language=language, defines=defines)
     robot.wait(1000)
     lines = {"F(20 CM, 60)": 6, "r(90 deg, 60)": 6, "TASK": 1, "SI|WHEN(TRUE)": 4, "S;END_TASK": 3,
              "EndWhen": 1, "ENDTASK = 5": 1, "DEF A": 1}  # fmt: skip
     for line, column in lines.items():
-        assert type_text(robot, line + "\n", 1100) == [f"// {column}: {says}"], line
+        assert type_text(robot, line + "\n", 1100) == [f"// {column}: {message}"], line
         robot.wait(4000)
 
 
@@ -252,8 +254,8 @@ def test_a_line_runs_and_its_end_is_reported() -> None:
     robot = switched_on()
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert actions_of(robot) == LINE
-    first, last = (int(line.split()[0]) for line in robot.did[:2])
-    assert last - first == 200
+    first_ms, last_ms = (int(line.split()[0]) for line in robot.did[:2])
+    assert last_ms - first_ms == 200
     assert done_after(robot, "f ( 0.2 , 50 )\r") == LINE
 
 
@@ -279,13 +281,13 @@ def test_a_wrong_line_changes_nothing(line: str) -> None:
     assert fetch_image(robot, session) == bytes_before
 
 
-@pytest.mark.parametrize("saves", [True, False])
-def test_typed_lines_leave_the_stored_program(saves: bool) -> None:
+@pytest.mark.parametrize("is_saved", [True, False])
+def test_typed_lines_leave_the_stored_program(is_saved: bool) -> None:
     """Also one that is in memory only: there is room for two programs."""
-    robot, session, bytes_before = read_back(saves)
+    robot, session, bytes_before = read_back(is_saved)
     assert type_text(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
     assert fetch_image(robot, session) == bytes_before
-    assert status(robot, session).saved == (SAVED_STORED if saves else SAVED_MEMORY)
+    assert status(robot, session).saved == (SAVED_STORED if is_saved else SAVED_MEMORY)
     robot.wait(4000)
     assert push_button(robot) == SAVED_BACK
 
@@ -316,22 +318,22 @@ def test_a_program_of_frames_replaces_sb() -> None:
 # -- ends of a run that text has started -----------------------------------------------------------
 
 
-@pytest.mark.parametrize("how", ["s\n", "STOP", "zeros", "button"])
-def test_a_stop_of_a_typed_program_latches(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["s\n", "STOP", "zeros", "button"])
+def test_a_stop_of_a_typed_program_latches(stop_kind: str) -> None:
     """Text within a second after it may have been under way, even if the line was silent before the
     stop.
     """
     robot, _ = robot_with_program()
     type_text(robot, "SI|F(30,50)\n", 3000)
     assert actions_of(robot) == ["MOTORS 50 50"]
-    if how == "button":
+    if stop_kind == "button":
         robot.push()
-    elif how == "zeros":
+    elif stop_kind == "zeros":
         robot.wait(50, bytes(8))
     else:
-        assert type_text(robot, how, 1100 if how == "STOP" else 60) == ["// STOPPED"]
+        assert type_text(robot, stop_kind, 1100 if stop_kind == "STOP" else 60) == ["// STOPPED"]
     robot.wait(100)
-    for _ in range({"STOP": 0, "s\n": 1}.get(how, 4)):  # typed here: lines soon count again
+    for _ in range({"STOP": 0, "s\n": 1}.get(stop_kind, 4)):  # typed here: lines soon count again
         type_text(robot, "SI|F(1,50)\n", 700)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     robot.wait(1500)
@@ -431,10 +433,10 @@ def test_a_word_that_begins_like_s_in_an_open_block_may_be_typed_slowly(
 
 def test_a_truncated_or_late_program_is_reported() -> None:
     robot = switched_on()
-    for how in (b"\0", b"\x01\x02\0"):
+    for garbage in (b"\0", b"\x01\x02\0"):
         type_text(robot, "SI|LOOP(2)\n")
         type_text(robot, "F(0.1")
-        assert type_text(robot, how, 600) == ["// Lines end with Enter, not with 0"], how
+        assert type_text(robot, garbage, 600) == ["// Lines end with Enter, not with 0"], garbage
         robot.wait(1500)
     type_text(robot, "SI|LOOP(2)\n", 1100)
     assert robot.wait(60_000) == b"// Too late. Begin again.\r\n"
@@ -581,10 +583,10 @@ def test_long_names_are_accepted_until_the_memory_is_full() -> None:
     assert done_after(robot, "F(0.2,50)\n") == LINE
 
 
-@pytest.mark.parametrize("what", ["F(1,50);", "A", " ", "(", "9", "\x01", "~", "é", "/", "SI|"])
-def test_a_line_of_10000_bytes_is_discarded(what: str) -> None:
+@pytest.mark.parametrize("pattern", ["F(1,50);", "A", " ", "(", "9", "\x01", "~", "é", "/", "SI|"])
+def test_a_line_of_10000_bytes_is_discarded(pattern: str) -> None:
     robot = switched_on()
-    data = (what * 10_000).encode()[:10_000]
+    data = (pattern * 10_000).encode()[:10_000]
     for offset in range(0, len(data), 20):  # one step for each turn
         robot.step(data[offset : offset + 20])
     robot.step(b"\n")

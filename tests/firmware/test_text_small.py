@@ -112,8 +112,8 @@ def test_a_complete_line_ends_the_running_program() -> None:
 ])  # fmt: skip
 def test_a_wrong_line_that_needed_the_room_reports_the_lost_program(line: str) -> None:
     robot, session = robot_with_program("SB|B(30, 60)", saves=False)
-    first, *more = type_text(robot, line + "\n", 1500)
-    assert first.startswith("// ") and more.count(LOST) == 1
+    first, *other_answers = type_text(robot, line + "\n", 1500)
+    assert first.startswith("// ") and other_answers.count(LOST) == 1
     assert status(robot, session).saved == SAVED_NOTHING
     robot.wait(4000)
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]

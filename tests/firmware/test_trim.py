@@ -53,8 +53,8 @@ def test_every_trim_gives_the_expected_level_for_every_power(robot: HostFirmware
     assert level_of(100) == 255
     for balance, least in product(range(-MOST, MOST + 1), (0, 1, 19, MOST)):
         wheels = (balance + least) % 8
-        ours = (True, levels(wheels, balance, least))
-        assert robot.levels(trim_of(wheels, balance, least)) == ours, (wheels, balance, least)
+        expected = (True, levels(wheels, balance, least))
+        assert robot.levels(trim_of(wheels, balance, least)) == expected, (wheels, balance, least)
 
 
 def test_out_of_range_trims_are_invalid(robot: HostFirmware) -> None:

@@ -217,10 +217,10 @@ def test_with_a_low_supply_undo_changes_nothing(count: int) -> None:
     robot.supply(is_low=False)
     robot.talk(session, 1500)
     assert read_saved_state(robot, session) == "STORED"
-    for now in (text, PROGRAM_B if text == PROGRAM_A else PROGRAM_A):
-        assert fetch_image(robot, session) == bytes_of(now)
-        assert program_after_power_off(robot) == bytes_of(now)
-        if now == text:
+    for current_text in (text, PROGRAM_B if text == PROGRAM_A else PROGRAM_A):
+        assert fetch_image(robot, session) == bytes_of(current_text)
+        assert program_after_power_off(robot) == bytes_of(current_text)
+        if current_text == text:
             assert undo(robot, session) == OK
             wait_until_saved(robot, session)
 
@@ -249,8 +249,8 @@ def test_a_power_cut_during_undo_leaves_one_of_the_programs(cut_ms: int) -> None
     memory = robot.memory()
     programs = []
     for nonce in (5, 6):
-        restarted_robot, other = switched_on(memory), computer(nonce)
-        programs.append(fetch_image(restarted_robot, other))
+        restarted_robot, other_session = switched_on(memory), computer(nonce)
+        programs.append(fetch_image(restarted_robot, other_session))
         memory = restarted_robot.memory()
     assert programs[0] == programs[1]
     assert programs[0] in (bytes_of(PROGRAM_A), bytes_of(PROGRAM_B))
@@ -278,24 +278,24 @@ def test_programs_undos_and_power_offs_work_in_any_order() -> None:
     draw = random.Random(11)
     texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [PROGRAM_B]
     robot, session = switched_on(), computer()
-    now, text_before = "", ""
+    current_text, text_before = "", ""
     for step in range(120):
-        what = draw.choice(("send", "undo", "undo", "off"))
-        if what == "send":
+        action = draw.choice(("send", "undo", "undo", "off"))
+        if action == "send":
             text = draw.choice(texts)
             send(robot, session, text)
             wait_until_saved(robot, session)
-            if text != now:
-                now, text_before = text, now
-        elif what == "undo":
+            if text != current_text:
+                current_text, text_before = text, current_text
+        elif action == "undo":
             assert undo(robot, session) == (OK if text_before else NO_PREVIOUS), step
             if text_before:
                 wait_until_saved(robot, session, 500)  # eight bytes, and not the program
-                now, text_before = text_before, now
+                current_text, text_before = text_before, current_text
         else:
             robot, session = switched_on(robot.memory()), computer(step)
-        if now:
-            assert fetch_image(robot, session) == bytes_of(now), step
+        if current_text:
+            assert fetch_image(robot, session) == bytes_of(current_text), step
 
 
 # -- in every state of the firmware ---------------------------------------------------------------
@@ -326,8 +326,8 @@ def after_power_off(table: Table) -> bytes:
     memory, programs = table.robot.memory(), []
     for nonce in (31, 32):
         robot = switched_on(memory, seed=nonce)
-        asks = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
-        programs.append(fetch_image(robot, asks))
+        session_after = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
+        programs.append(fetch_image(robot, session_after))
         memory = robot.memory()
     assert programs[0] == programs[1]
     return programs[0]
@@ -357,19 +357,19 @@ def test_undo_works_in_every_state(state: str, has_draft: bool) -> None:
     robot.did.clear()
     status = undo(robot, session)
     assert status == (OK if previous else NO_PREVIOUS)
-    now = program_of(previous or EARLIER_POWER)
-    assert fetch_image(robot, session) == now
+    current_program = program_of(previous or EARLIER_POWER)
+    assert fetch_image(robot, session) == current_program
     assert robot.is_latched, "what runs ends"
     robot.talk(session, 1500)
     moves = {line for line in actions_of(robot) if line.startswith("MOTORS")}
     assert moves == ({"MOTORS 0 0"} if was_running else set()), "nothing starts"
     wait_until_saved(robot, session)
-    assert after_power_off(table) == now
+    assert after_power_off(table) == current_program
     assert undo(robot, session) == (OK if previous else NO_PREVIOUS)
     wait_until_saved(robot, session)
-    other = fetch_image(robot, session)
-    assert after_power_off(table) == other
-    assert (other != now) == bool(previous), "a second one brings another"
+    fetched_image = fetch_image(robot, session)
+    assert after_power_off(table) == fetched_image
+    assert (fetched_image != current_program) == bool(previous), "a second one brings another"
 
 
 @pytest.mark.parametrize("state", STATES)

@@ -78,9 +78,9 @@ def driving_uno(uno: Uno) -> Wired:
     return wired_uno
 
 
-def frames_since(uno: Uno, since: int) -> list[Frame]:
+def frames_since(uno: Uno, since_cycle: int) -> list[Frame]:
     """Return the frames that the robot has sent since a cycle."""
-    sent_bytes = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since)
+    sent_bytes = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since_cycle)
     return [frame for part in sent_bytes.split(b"\0") if (frame := decode_frame(part)) is not None]
 
 
@@ -163,6 +163,6 @@ def test_a_message_is_received_wherever_the_main_loop_is(uno: Uno) -> None:
     for turn in range(PHASES):
         uno.run_to(uno.cycle + turn % 2 + 1)
         # A request of another length.
-        other = wired_uno.session.hello if turn % 2 else wired_uno.session.ping
-        assert wired_uno.until(other()) == OK
+        make_request = wired_uno.session.hello if turn % 2 else wired_uno.session.ping
+        assert wired_uno.until(make_request()) == OK
     assert read_counters(wired_uno) == (0, 0, 0, 0)

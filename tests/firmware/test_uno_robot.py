@@ -200,10 +200,10 @@ def test_a_missing_radio_ends_nothing_but_a_second_of_silence_does(uno: Uno) -> 
     send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(300)
     assert states(uno) == FORWARD
-    last = max(byte.cycle for byte in uno.received_bytes)
+    last_cycle = max(byte.cycle for byte in uno.received_bytes)
     uno.run_ms(1500)
     assert states(uno) == OFF
-    assert max(uno.pins[name].cycle for name in MOTORS) - last <= 1050 * CYCLES_PER_MS
+    assert max(uno.pins[name].cycle for name in MOTORS) - last_cycle <= 1050 * CYCLES_PER_MS
 
 
 @pytest.mark.parametrize("starts", ["detached", "button"])

@@ -41,14 +41,14 @@ def test_saving_works_from_four_volts_on(robot: Uno, volts: float, millivolts: i
     assert wait_until_saved(wired_uno) == millivolts
 
 
-def marks(uno: Uno, since: int) -> list[int]:
+def marks(uno: Uno, since_cycle: int) -> list[int]:
     """Return the times at which validating bytes of the program's first slots were written."""
     places = (129, 130, 131, 577, 578, 579)
     return [
         event.cycle
         for event in uno.events
         if event.kind == "eeprom" and event["address"] in places and event["value"] not in (0, 255)
-        if event.cycle >= since
+        if event.cycle >= since_cycle
     ]
 
 
@@ -87,7 +87,7 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
                   if event.name == "SHOW"]  # fmt: skip
     assert len(shown_values) > 50
     assert set(shown_values) == {200_000, 800_000}
-    assert all(one != other for one, other in pairwise(shown_values))
+    assert all(first != second for first, second in pairwise(shown_values))
     assert wait_until_saved(wired_uno) == (STORED if volts > 4 else LOW)
 
 
@@ -161,7 +161,7 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
     distances = [value for value in shown_values if value not in (200_000, 800_000)]
     assert len(distances) > 10
     # an edge waits for up to two other interrupts: 20 us, and for a step of the robot's clock
-    wrong = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
-    assert not wrong
+    wrong_values = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
+    assert not wrong_values
     assert {200_000, 800_000} < set(shown_values)
     assert min(b - a for a, b in pairwise(outputs) if a > start_cycle) >= 30 * CYCLES_PER_MS

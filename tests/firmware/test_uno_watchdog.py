@@ -80,8 +80,8 @@ def test_a_hanging_main_loop_is_reset(hang: str, limit_ms: int, board: str, tmp_
             assert states(uno) == OFF
             hello_reply = hello_of(computer(uno, 3 + 2 * number))
             assert hello_reply.reset == WATCHDOG
-            what = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
-            assert what == (STALL, image_of(text).checksum, MOVE_AT[text])
+            fault_facts = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
+            assert fault_facts == (STALL, image_of(text).checksum, MOVE_AT[text])
             uno.run_ms(500)
             assert states(uno) == OFF
             uno.reset()
@@ -122,13 +122,13 @@ def test_a_hang_without_a_program_is_not_a_program_fault(tmp_path: Path) -> None
         uno.press("button")
         uno.run_ms(600)
         hello_reply = hello_of(computer(uno))
-        what = (
+        fault_facts = (
             hello_reply.reset,
             hello_reply.fault,
             hello_reply.fault_program,
             hello_reply.fault_at,
         )
-        assert what == (WATCHDOG, STALL, 0, 0)
+        assert fault_facts == (WATCHDOG, STALL, 0, 0)
 
 
 def test_a_reset_without_a_hang_is_not_a_fault(uno: Uno) -> None:

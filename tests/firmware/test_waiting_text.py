@@ -120,18 +120,18 @@ class Trials:
 
     def frames(self, image: bytes) -> list[bytes]:
         """Return a program as a line of live, in one frame, or in pieces."""
-        how, mode = self.rng.randrange(4), RUN | self.rng.choice((0, 0, SAVE))
+        kind, mode = self.rng.randrange(4), RUN | self.rng.choice((0, 0, SAVE))
         code, body = image[HEADER_BYTES:], image[BODY_OFFSET:]
-        if how < 2:
+        if kind < 2:
             return [self.frame("LIVE", bytes([RUN]) + code)]
-        if how == 2:
+        if kind == 2:
             return [self.frame("PROGRAM", bytes([mode]) + code)]
         pieces = [
             self.frame("DATA", offset.to_bytes(2, "little") + body[offset : offset + 9])
             for offset in range(0, len(body), 9)
         ]
-        begin = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
-        return [begin, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]
+        begin_frame = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
+        return [begin_frame, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]
 
     def trial(self) -> None:
         rng = self.rng
@@ -144,13 +144,13 @@ class Trials:
         for frame in self.frames(image):
             is_quiet = rng.random() < SILENCE_PROBABILITY
             bytes_before, codes = self.text(is_quiet)
-            later_text, more = self.text()
-            may_run.update(codes + more)
+            later_text, more_text = self.text()
+            may_run.update(codes + more_text)
             data = bytes_before + frame
-            most = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
+            most_bytes = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
             if is_quiet:
                 self.put(b"", 1100)  # from here on the robot reads text again
-            cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
+            cut = len(data) - rng.choice((rng.randrange(1, most_bytes), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1, 20 * is_quiet)))
             self.put(data[cut:] + rng.choice((b"", later_text)), rng.choice((1, 4, 20)))
             if rng.random() < REPEAT_PROBABILITY:

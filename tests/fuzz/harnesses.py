@@ -100,9 +100,9 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
         count = DONE_LINE.search(output)
         assert count, output[-2000:]
         return Found(int(count[1]), "", b"")
-    wrong = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", output)
+    errors = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", output)
     data = crash.read_bytes() if crash.exists() else b""
-    return Found(0, "; ".join(wrong[:3]) or output[-2000:], data)
+    return Found(0, "; ".join(errors[:3]) or output[-2000:], data)
 
 
 # -- the first inputs -----------------------------------------------------------------------------
@@ -178,9 +178,9 @@ def main() -> int:
     parser.add_argument("runs", type=int)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    why = missing()
-    if why:
-        print(why)
+    reason = missing()
+    if reason:
+        print(reason)
         return 2
     with tempfile.TemporaryDirectory() as folder:
         inputs = first_inputs(options.name, Path(folder))

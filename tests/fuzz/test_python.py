@@ -65,8 +65,8 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
     edit = st.tuples(
         st.floats(0, 1), st.integers(0, 40), st.one_of(st.sampled_from(PIECES), st.text(max_size=9))
     )
-    near = st.builds(change, st.sampled_from(_texts(pattern)), st.lists(edit, max_size=6))
-    return st.one_of(near, st.text(max_size=300))
+    changed = st.builds(change, st.sampled_from(_texts(pattern)), st.lists(edit, max_size=6))
+    return st.one_of(changed, st.text(max_size=300))
 
 
 # -- laws ------------------------------------------------------------------------------------------

@@ -103,10 +103,10 @@ def test_no_language_depends_on_another(language: str, tmp_path: Path) -> None:
     package = tmp_path / "tiniscript"
     link_copy(FOLDER.parent, package, "*.texts", "__pycache__", "page", "ready")
     shutil.rmtree(package / "languages" / language)
-    others = [code for code in languages.languages() if code != language]
+    other_languages = [code for code in languages.languages() if code != language]
     commands = [
-        [*words, "--lang", other]
-        for other in others
+        [*words, "--lang", other_language]
+        for other_language in other_languages
         for words in (
             ("check", "-e", "F(2 80)"), ("check", "--explain", "TS017"), ("lesson",), ("complie",),
             ("lesson", "show", "1", "--teacher"), ("firmware", "--wiring", "--robot", "liner"),
@@ -116,7 +116,7 @@ def test_no_language_depends_on_another(language: str, tmp_path: Path) -> None:
     commands.append(["check", "-e", "W(1)", "--lang", language])
     *outputs, (code, refused_text) = _outputs_of_package(tmp_path, commands)
     assert outputs == _outputs_of_package(FOLDER.parent.parent, commands)[:-1]
-    assert code == 2 and all(other in refused_text for other in others)
+    assert code == 2 and all(other_language in refused_text for other_language in other_languages)
 
 
 def _outputs_of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
@@ -250,10 +250,12 @@ def test_texts_that_are_longer_keep_to_80_columns(
             monkeypatch.setenv("LC_ALL", language)
             rows[language] = tsc(*words).out.splitlines()
         assert [row for row in rows[longer] if len(row) > 80] == [], words
-        same = {
+        equal_texts = {
             row for row in {*rows[SOURCE_LANGUAGE]} & {*rows[longer]} if "$(" not in row
         }  # no code
-        assert [row for row in same if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], words
+        assert [row for row in equal_texts if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], (
+            words
+        )
 
 
 # Phrases that no native speaker uses: brackets that keep, a DEF or a part that is "made", a task

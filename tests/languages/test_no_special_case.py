@@ -55,14 +55,14 @@ def _words(language: str) -> set[str]:
 
 def test_words_of_a_language_are_in_its_folder() -> None:
     """Patterns of characters have some that are said for signs: `punto y coma`."""
-    theirs = set().union(*map(_words, languages())) - _words(SOURCE_LANGUAGE) - {*WORDS}
+    foreign_words = set().union(*map(_words, languages())) - _words(SOURCE_LANGUAGE) - {*WORDS}
     words_in_code = set()
     for path in sorted((ROOT / "compiler/tiniscript").rglob("*.py")):
         if "page" in path.parts:
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                words_here = theirs.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
+                words_here = foreign_words.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
                 if " " not in node.value.strip() or node.value.isupper():
                     words_in_code |= {f"{path.name}: {word}" for word in words_here}
     assert words_in_code == set()

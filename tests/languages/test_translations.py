@@ -97,7 +97,7 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
 # -- mistakes
 
 
-@pytest.mark.parametrize(("row", "line", "why"), [
+@pytest.mark.parametrize(("row", "line", "reason"), [
     ('a = "Lee {fila}."', 2, "a: {file} is missing"),
     ('a = "Lee {file} {x}."', 2, "a: {x} is no gap of the English text"),
     ('a = "Lee {file}}."', 2, "a: a brace { or } has no other half"),
@@ -123,10 +123,10 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
     ('n.one = "{n} byte"\nn.other = "{m} bytes"', 2, "n: {n} is missing"),
 ])  # fmt: skip
 def test_an_invalid_row_is_dropped_and_reported_with_its_line(
-    row: str, line: int, why: str, place: Path
+    row: str, line: int, reason: str, place: Path
 ) -> None:
     rows = problems(open_translation(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
-    assert rows[0][:2] == ("some.toml", line) and rows[0][2].startswith(why)
+    assert rows[0][:2] == ("some.toml", line) and rows[0][2].startswith(reason)
     assert text_of("b") == "Alto." and text_of("more/2") == "Quítalo."
     if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
         assert text_of("a") == "Read {file}."
@@ -166,23 +166,23 @@ def test_changes_that_an_editor_makes_to_a_file_are_allowed(place: Path) -> None
     assert text_of("b") == "Alto." and text_of("a") == "Lee\n{file}."
 
 
-@pytest.mark.parametrize(("row", "line", "why"), [
+@pytest.mark.parametrize(("row", "line", "reason"), [
     ("some b", 1, "this is no file, key and hash: some b"),
     ("some b 123", 1, "this is no file, key and hash: some b 123"),
     ("# note\n\nsome b 00000000\nsome b 00000000", 4, "some b is there twice"),
 ])  # fmt: skip
 def test_an_invalid_hash_is_reported_with_its_line_and_kept(
-    row: str, line: int, why: str, place: Path
+    row: str, line: int, reason: str, place: Path
 ) -> None:
     write(place / "xx" / SEEN_FILE, row)
     translation = open_translation(place, OWN)
-    assert problems(translation) == [(SEEN_FILE, line, why)]
+    assert problems(translation) == [(SEEN_FILE, line, reason)]
     translation.note_seen(["*"])
     translation.write()
     assert (place / "xx" / SEEN_FILE).read_text() == row
 
 
-@pytest.mark.parametrize(("row", "line", "why"), [
+@pytest.mark.parametrize(("row", "line", "reason"), [
     ('name = 5', 1, "name: it is no text"),
     ('\nforms = "one"', 2, "forms: it is no list"),
     ('forms = ["one", "some"]', 1, "forms: it is no list of some of zero, one, two, few, many, "),
@@ -197,11 +197,11 @@ def test_an_invalid_hash_is_reported_with_its_line_and_kept(
     ('name = "X', 1, "this is no TOML: Illegal character"),
 ])  # fmt: skip
 def test_invalid_language_settings_fall_back_to_english(
-    row: str, line: int, why: str, place: Path
+    row: str, line: int, reason: str, place: Path
 ) -> None:
     write(place / "xx" / ABOUT_FILE, row + "\n")
     ((name, line_number, problem),) = problems(open_translation(place, OWN))
-    assert (name, line_number) == (ABOUT_FILE, line) and problem.startswith(why)
+    assert (name, line_number) == (ABOUT_FILE, line) and problem.startswith(reason)
     languages.forget_languages()
     assert languages.language_info("xx").forms == ("one", "other")
     assert text_of("b") == "Alto."
@@ -278,14 +278,16 @@ def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(("language", "many", "one"), [
+@pytest.mark.parametrize(("language", "plural_text", "singular_text"), [
     ("en", "{n} checks", "1 check"), ("es", "{n} pruebas", "1 prueba"),
 ])  # fmt: skip
-def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: str) -> None:
-    sentence = Sentence(many)
+def test_a_sentence_has_the_form_of_its_number(
+    language: str, plural_text: str, singular_text: str
+) -> None:
+    sentence = Sentence(plural_text)
     sentence.language = language
-    assert sentence.format(n="1") == one
-    assert sentence.format(n=0) != f"0 {one[2:]}"
+    assert sentence.format(n="1") == singular_text
+    assert sentence.format(n=0) != f"0 {singular_text[2:]}"
 
 
 def test_a_stale_text_is_shown_in_english_until_reviewed(
@@ -338,8 +340,8 @@ def test_a_text_inserted_in_front_loses_no_translation(place: Path, has_run: boo
 def test_a_new_list_item_does_not_take_a_moved_translation(place: Path) -> None:
     open_translation(place, 'more = ["", "Quítalo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
-    ((_, line, why),) = problems(open_translation(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
-    assert line == 1 and why.startswith("more: its English texts have other places now")
+    ((_, line, reason),) = problems(open_translation(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
+    assert line == 1 and reason.startswith("more: its English texts have other places now")
     assert text_of("more/2") == "New."
 
 
@@ -432,8 +434,8 @@ def test_written_rows_are_read_back_unchanged(key: str, texts: list[str]) -> Non
     forms = [{"": text} if text else {} for text in texts]
     rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
-    parsed_rows, _, wrong = catalogue_source.parse_rows(rows + plural)
-    assert wrong == []
+    parsed_rows, _, parse_errors = catalogue_source.parse_rows(rows + plural)
+    assert parse_errors == []
     assert {row.key: row.value for row in parsed_rows} == {
         key: texts, f"{key}.": texts[0] or "x", f"{key}..": {"one": texts[0], "few": texts[1]},
     }  # fmt: skip
@@ -452,7 +454,7 @@ def test_texts_too_long_for_a_robot_and_unknown_lexicon_rows_are_reported(
 ) -> None:
     entries = [Entry("a", "Stop.", "", {"": text}) for text in ("x" * 41, "Arrêt", "Halte")]
     catalogue = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
-    assert [why for _, why in check_robot(catalogue)] == [
+    assert [reason for _, reason in check_robot(catalogue)] == [
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
@@ -466,7 +468,7 @@ def test_texts_too_long_for_a_robot_and_unknown_lexicon_rows_are_reported(
 
 
 @pytest.fixture
-def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
+def prepare_language(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """The tool, with all English texts and no language."""
     shutil.rmtree(place)
     shutil.copytree(FOLDER / SOURCE_LANGUAGE, place / SOURCE_LANGUAGE)
@@ -490,9 +492,9 @@ def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
 ])  # fmt: skip
 def test_a_new_language_starts_with_unicode_data(
     code: str, name: str, english_name: str, forms: str, of_1_0_2_5_11: str, place: Path,
-    whole: Callable[..., int], capsys: pytest.CaptureFixture[str],
+    prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    assert whole(code) == 0
+    assert prepare_language(code) == 0
     language = read_language(place / code / ABOUT_FILE)
     assert language.problems == []
     assert (language.name, language.english_name, " ".join(language.forms)) == (
@@ -503,14 +505,14 @@ def test_a_new_language_starts_with_unicode_data(
     assert "".join(language.form_digits[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
     assert f"{code}: 0 of " in capsys.readouterr().out
     files_before = {path: path.read_bytes() for path in (place / code).iterdir()}
-    assert whole() == 0
+    assert prepare_language() == 0
     assert {path: path.read_bytes() for path in (place / code).iterdir()} == files_before
 
 
 def test_a_stranger_adds_a_language_text_by_text(
-    place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    place: Path, prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole("fr")
+    prepare_language("fr")
     own_path = place / "fr" / "command.toml"
     write(own_path, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
     languages.forget_languages()
@@ -521,15 +523,15 @@ def test_a_stranger_adds_a_language_text_by_text(
     )
     assert languages.text("command", "no_verb", "fr").startswith("tsc : la commande")
     capsys.readouterr()
-    assert whole("--check") == 0
+    assert prepare_language("--check") == 0
     out = capsys.readouterr().out
     assert "fr: 1 texts are new. Note of which English texts they are:" in out
-    assert whole("--seen", "fr") == 0
+    assert prepare_language("--seen", "fr") == 0
     assert "fr: 1 of " in (out := capsys.readouterr().out) and "new" not in out
     (row,) = (place / "fr" / SEEN_FILE).read_text(encoding="utf-8").splitlines()[1:]
     assert row.startswith("command no_verb ")
     write(own_path, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
-    assert whole("--check") == whole() == 1
+    assert prepare_language("--check") == prepare_language() == 1
     out = capsys.readouterr().out
     assert "languages/fr/command.toml:1: no_verb: {found} is missing\n" in out
     assert "languages/fr/command.toml:2: no_verbe: there is no such English text\n" in out
@@ -541,30 +543,30 @@ def test_missing_texts_are_named_with_the_line_to_insert_after() -> None:
     rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
             Entry("c", "C", line=99), Entry("d", "D", translation=translated, line=3),
             Entry("e", "E")]  # fmt: skip
-    missing = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
+    missing = [(line, row_text.partition(" ")[0]) for line, row_text in tool.missing_rows(rows)]
     assert missing == [(1, "a"), (7, "c"), (3, "e")]
 
 
 @pytest.mark.parametrize("name", ["messages", "robot", "command"])
 def test_a_file_that_is_missing_is_named(
-    name: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    name: str, place: Path, prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole("fr")
+    prepare_language("fr")
     write(place / "fr" / f"{name}.toml", "")
     (place / SOURCE_LANGUAGE / f"{name}.toml").unlink()
     (place / "fr" / ABOUT_FILE).unlink()
     capsys.readouterr()
-    assert whole("--check") == 1
+    assert prepare_language("--check") == 1
     out = capsys.readouterr().out
     assert f"languages/fr/{name}.toml:1: there is no en/{name}.toml\n" in out
     assert "languages/fr/language.toml:1: this cannot be read: No such file" in out
 
 
 def test_an_unknown_language_is_not_created(
-    place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    place: Path, prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     for words in (["../x"], ["X"], ["--check", "fr"], ["--seen", "fr"], ["--po", "fr"]):
-        assert whole(*words) == 1
+        assert prepare_language(*words) == 1
     assert [path.name for path in place.iterdir()] == [SOURCE_LANGUAGE]
     out = capsys.readouterr().out
     assert out.count("no such language. Try:  python -m tools.languages fr") == 3
@@ -572,15 +574,18 @@ def test_an_unknown_language_is_not_created(
 
 @pytest.mark.parametrize("spoilt", ["x = ", 'x = "{"', f'x = "{"y" * 41}"'])
 def test_a_wrong_english_text_goes_into_no_language(
-    spoilt: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    spoilt: str,
+    place: Path,
+    prepare_language: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    whole("fr")
+    prepare_language("fr")
     write(place / "fr" / "robot.toml", 'gone = "Ô"\n')
     write(place / "fr" / SEEN_FILE, "robot gone 00000000\n")
     source = place / SOURCE_LANGUAGE / "robot.toml"
     write(source, f"{spoilt}\n{source.read_text(encoding='utf-8')}")
     capsys.readouterr()
-    assert whole() == 1
+    assert prepare_language() == 1
     assert capsys.readouterr().out.startswith("languages/en/robot.toml:1: ")
     assert (place / "fr" / "robot.toml").is_file()
 
@@ -678,15 +683,15 @@ def test_a_clone_on_a_full_disk_has_its_texts(package: Path) -> None:
     assert list(package.glob(f"languages/*/*{languages.CACHE_ENDING}*")) == []
 
 
-@pytest.mark.sampled("spoil", "why")
-@pytest.mark.parametrize(("spoil", "why"), [
+@pytest.mark.sampled("spoil", "reason")
+@pytest.mark.parametrize(("spoil", "reason"), [
     (lambda path: path.unlink(missing_ok=True), "1: this cannot be read: No such file"),
     (lambda path: path.write_text('[tsc]\nstopped = "S\n'), "2: this is no TOML: Illegal"),
     (lambda path: path.write_text('[tsc]\na = "S"\na = "S"\n'), "3: a: it is there twice"),
     (lambda path: path.write_bytes(b"[tsc]\n\na = '\xff'\n"), "3: this is no UTF-8"),
 ])  # fmt: skip
 def test_invalid_english_texts_are_reported_without_catalogue_texts(
-    spoil: Callable[[Path], object], why: str, package: Path, tmp_path: Path
+    spoil: Callable[[Path], object], reason: str, package: Path, tmp_path: Path
 ) -> None:
     package_folder = tmp_path / "tiniscript"
     shutil.copytree(package, package_folder)
@@ -701,7 +706,7 @@ def test_invalid_english_texts_are_reported_without_catalogue_texts(
         spoil(path)
         code, output = command(package_folder, *words)
         assert code == 2 and output == output.splitlines()[0] + "\n"
-        assert output.startswith(f"tsc: {path}:{why}")
+        assert output.startswith(f"tsc: {path}:{reason}")
 
 
 # -- translators' tools
@@ -782,20 +787,20 @@ def test_a_language_is_exported_and_imported_completely(
     assert translators.read_file(Path("out.po"), Translation(language, english)) == 0
     translation_after = Translation(language, english)
     for name in english:
-        old, new = (
+        old_catalogue, new_catalogue = (
             translation.merge(name) for translation in (translation_before, translation_after)
         )
-        assert new.problems == []
-        for key, entry in old.entries.items():
+        assert new_catalogue.problems == []
+        for key, entry in old_catalogue.entries.items():
             is_asked = not entry.is_same
-            assert new.entries[key].translation == entry.translation or not is_asked, key
-            assert new.entries[key].seen_hash == entry.seen_hash or not is_asked, key
+            assert new_catalogue.entries[key].translation == entry.translation or not is_asked, key
+            assert new_catalogue.entries[key].seen_hash == entry.seen_hash or not is_asked, key
 
 
 HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'
 
 
-@pytest.mark.parametrize(("data", "why"), [
+@pytest.mark.parametrize(("data", "reason"), [
     (b"msgid 'x'\n", "xx.po:1: this is no row of a catalogue: "),
     (HEAD.encode() + b'msgid "a"\nmsgstr "\xff"\n', "xx.po: this cannot be read: "),
     (None, "xx.po: this cannot be read: "),
@@ -805,13 +810,17 @@ HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'
      "xx.po:4: there is no English text with the context of nothing"),
 ])  # fmt: skip
 def test_an_invalid_po_file_is_reported_with_its_line_and_changes_nothing(
-    data: bytes | None, why: str, own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
+    data: bytes | None,
+    reason: str,
+    own: Translation,
+    place: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     if data is not None:
         Path("xx.po").write_bytes(data)
     files_before = {path: path.read_bytes() for path in place.glob("*/*.t*")}
     assert translators.exchange("xx.po", own.english) == 1
-    assert capsys.readouterr().out.startswith(why)
+    assert capsys.readouterr().out.startswith(reason)
     assert {path: path.read_bytes() for path in place.glob("*/*.t*")} == files_before
     assert translators.exchange("zz", own.english) == 1
     assert "zz: no such language. Try:  python -m tools.languages zz" in capsys.readouterr().out

@@ -66,11 +66,11 @@ def test_each_step_has_something_to_do(language: str, form: str) -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", LESSONS)
 def test_both_forms_have_the_same_programs_and_hints(number: int, language: str) -> None:
-    both = [page_lessons.steps(number, language, form) for form in (TEXT, BLOCKS)]
+    both_forms = [page_lessons.steps(number, language, form) for form in (TEXT, BLOCKS)]
     kinds = [
         [([block for block in step["blocks"] if block["kind"] == "program"], bool(step["hint"]))
          for step in steps]
-        for steps in both
+        for steps in both_forms
     ]  # fmt: skip
     assert kinds[0] == kinds[1]
 
@@ -100,6 +100,6 @@ def test_block_users_get_findings_about_blocks(language: str) -> None:
 
 
 def test_an_alternative_is_shown_in_one_form_only() -> None:
-    both = "Write [[a line|a block]] here[[ and there|]], `A`."
-    assert sentences_in_form(both, TEXT) == "Write a line here and there, `A`."
-    assert sentences_in_form(both, BLOCKS) == "Write a block here, `A`."
+    both_forms = "Write [[a line|a block]] here[[ and there|]], `A`."
+    assert sentences_in_form(both_forms, TEXT) == "Write a line here and there, `A`."
+    assert sentences_in_form(both_forms, BLOCKS) == "Write a block here, `A`."

@@ -36,8 +36,8 @@ points = [[20, 100], [110, 100]]
 """
 
 
-def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", more: str = "") -> Lesson:
-    text = HEAD.format(robot=robot, more=more) + criteria
+def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", settings: str = "") -> Lesson:
+    text = HEAD.format(robot=robot, more=settings) + criteria
     (folder / "lesson.toml").write_text(text, encoding="utf-8")
     (folder / "world.toml").write_text(WORLD, encoding="utf-8")
     return catalogue.load(folder)
@@ -155,13 +155,13 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("criterion", "right", "wrong", "sentence"), CASES)
+@pytest.mark.parametrize(("criterion", "right_text", "wrong_text", "sentence"), CASES)
 def test_a_criterion_is_met_or_missed(
-    tmp_path: Path, criterion: str, right: str, wrong: str, sentence: str
+    tmp_path: Path, criterion: str, right_text: str, wrong_text: str, sentence: str
 ) -> None:
     lesson = lesson_of(tmp_path, f"[[criteria]]\n{criterion}\n")
-    assert sentences_on(lesson, right) == []
-    (missing,) = findings_of(wrong, lesson, range(1, 2))
+    assert sentences_on(lesson, right_text) == []
+    (missing,) = findings_of(wrong_text, lesson, range(1, 2))
     texts_of_both, spanish = (words_for(missing, language) for language in ("en", "es"))
     assert sentence in texts_of_both
     assert spanish != texts_of_both
@@ -239,16 +239,16 @@ def test_an_undriven_robot_stands_still(tmp_path: Path, text: str, seconds: str)
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
     lesson = lesson_of(
-        tmp_path, OBEYS_CRITERION.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2"
+        tmp_path, OBEYS_CRITERION.format(key="KEY_LEFT"), settings="mirror = true\nworlds = 2"
     )
     assert [press.key for seed in (1, 2) for press in presses_of(lesson, seed)] == [
         "KEY_LEFT",
         "KEY_RIGHT",
     ]
-    both = answer_to_key("LEFT", "L(0.1, 60)").replace(
+    program = answer_to_key("LEFT", "L(0.1, 60)").replace(
         "W(", "IF(KEY_RIGHT); R(0.1, 60); END_IF; W("
     )
-    assert findings_of(both, lesson, range(1, 3)) == []
+    assert findings_of(program, lesson, range(1, 3)) == []
     assert findings_of(answer_to_key("LEFT", "L(0.1, 60)"), lesson, range(1, 3))
 
 
@@ -281,7 +281,7 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "sentence"),
+    ("program", "sentence"),
     [
         ("M(50, 50);LED(TRUE);W(1);LED(FALSE);W(0.1);LED(TRUE);W(0.1);S", ""),
         ("M(50, 50);LED(TRUE);W(1);LED(TRUE);W(0.1);S", "LED was switched on 1 of 2 times"),
@@ -295,10 +295,10 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:
+def test_a_lamp_blinks_on_the_way(tmp_path: Path, program: str, sentence: str) -> None:
     """A lamp that is set again without having been off has not blinked."""
     lamp = '[[criteria]]\nkind = "blinks"\nwhat = "LED"\ntimes = 2\n'
-    lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), more)
+    lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), program)
     assert [sentence in line for line in lines_told] == ([True] if sentence else [])
 
 
@@ -376,9 +376,9 @@ def test_a_program_that_never_waits_is_ended(tmp_path: Path, body: str, ending: 
 
 
 def test_the_same_seed_gives_the_same_world(tmp_path: Path) -> None:
-    more = "worlds = 3\nnoise_percent = 2\nmirror = true"
+    settings = "worlds = 3\nnoise_percent = 2\nmirror = true"
     varies = '[[criteria]]\nkind = "never_touches"\n[[varies]]\npart = "boxes[1]"\ny_cm = [5, 30]\n'
-    lesson = lesson_of(tmp_path, varies, more=more)
+    lesson = lesson_of(tmp_path, varies, settings=settings)
     assert vary(lesson, 3) == vary(lesson, 3) != vary(lesson, 5)
     box = lesson.variations[0].place
     assert 105 <= point_of(box, vary(lesson, 1), False).y <= 130

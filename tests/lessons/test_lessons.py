@@ -67,13 +67,13 @@ def test_a_wrong_answer_gets_a_helpful_message(folder: Path, answer: Answer) -> 
 
 @each_lesson
 def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
-    right, wrong = catalogue.answers(folder)
-    assert len(right) >= 2
-    assert len(wrong) >= 3
+    right_answers, wrong_answers = catalogue.answers(folder)
+    assert len(right_answers) >= 2
+    assert len(wrong_answers) >= 3
     if (
         catalogue.load(folder).world_count > 1 and folder.name[:2] != "08"
     ):  # the other one is "always to the left"
-        assert any(BY_HEART_LABEL in answer.label_by_language["en"] for answer in wrong)
+        assert any(BY_HEART_LABEL in answer.label_by_language["en"] for answer in wrong_answers)
 
 
 @each_lesson
@@ -124,16 +124,16 @@ def test_a_worksheet_draws_its_contents(folder: Path, language: str) -> None:
 
 @each_lesson
 @in_both
-@pytest.mark.parametrize("who", [catalogue.PUPIL, catalogue.TEACHER])
-def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> None:
+@pytest.mark.parametrize("role", [catalogue.PUPIL, catalogue.TEACHER])
+def test_programs_on_pages_compile(folder: Path, language: str, role: str) -> None:
     lesson = catalogue.load(folder)
     robot = robots.load(lesson.robot)
     programs = [
         "\n".join(row for (row,) in block.rows)
-        for block in blocks(catalogue.page(folder, who, language))
+        for block in blocks(catalogue.page(folder, role, language))
         if block.kind == "program"
     ]
-    assert programs or who == catalogue.TEACHER
+    assert programs or role == catalogue.TEACHER
     for program in programs:
         compilation = compile_source(program.encode(), robot, "page.ts", is_strict=True)
         assert compilation.is_right, (program, compilation.diagnostics)
@@ -141,9 +141,9 @@ def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> Non
 
 @each_lesson
 def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
-    for who in (catalogue.PUPIL, catalogue.TEACHER):
+    for role in (catalogue.PUPIL, catalogue.TEACHER):
         kinds = [
-            [(block.kind, len(block.rows)) for block in blocks(catalogue.page(folder, who, lang))]
+            [(block.kind, len(block.rows)) for block in blocks(catalogue.page(folder, role, lang))]
             for lang in LANGUAGES
         ]
         assert all(kind == kinds[0] for kind in kinds)
@@ -187,5 +187,7 @@ def test_spanish_texts_address_one_pupil() -> None:
 def test_the_line_fits_between_the_sensors_as_the_page_says() -> None:
     """In the middle both sensors see white, as in the first row of lesson 12's table."""
     lesson = catalogue.load(FOLDERS[11])
-    left, right = (robots.load(lesson.robot).body.places[name] for name in ("LINE_L", "LINE_R"))
-    assert left.y_cm - right.y_cm > max(line.width_cm for line in lesson.world.lines)
+    left, right_answers = (
+        robots.load(lesson.robot).body.places[name] for name in ("LINE_L", "LINE_R")
+    )
+    assert left.y_cm - right_answers.y_cm > max(line.width_cm for line in lesson.world.lines)

@@ -317,10 +317,10 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
     },
 }  # fmt: skip
 ALL_WRONG_ANSWERS = [
-    pytest.param(number, program, what, id=f"{number}-{group}-{k}")
+    pytest.param(number, program, expected_cause, id=f"{number}-{group}-{k}")
     for number, groups in PROGRAMS.items()
     for group, programs in groups.items()
-    for k, (program, what) in enumerate(programs.items(), 1)
+    for k, (program, expected_cause) in enumerate(programs.items(), 1)
 ]
 
 
@@ -337,15 +337,15 @@ def test_every_lesson_has_pupils_programs() -> None:
     assert all(groups.get("right") for groups in PROGRAMS.values())
 
 
-@pytest.mark.sampled("number", "program", "what", keep=len(ALL_WRONG_ANSWERS) // 8)
-@pytest.mark.parametrize(("number", "program", "what"), ALL_WRONG_ANSWERS)
-def test_pupils_programs_are_marked_fairly(number: int, program: str, what: str) -> None:
+@pytest.mark.sampled("number", "program", "expected_cause", keep=len(ALL_WRONG_ANSWERS) // 8)
+@pytest.mark.parametrize(("number", "program", "expected_cause"), ALL_WRONG_ANSWERS)
+def test_pupils_programs_are_marked_fairly(number: int, program: str, expected_cause: str) -> None:
     """In all worlds of the task: right programs get no finding, and others the right cause."""
     lesson = lesson_of(number)
     findings = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.world_count + 1))
-    assert bool(findings) is bool(what)
-    if what:
-        assert what in sentence(findings[0], "en")
+    assert bool(findings) is bool(expected_cause)
+    if expected_cause:
+        assert expected_cause in sentence(findings[0], "en")
 
 
 @pytest.mark.sampled("number", "seed", "program", keep=len(RIGHT_ANSWERS) // 16)

@@ -98,7 +98,7 @@ def test_answers_are_read_strictly(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("says", "message"),
+    ("message_table", "message"),
     [
         ("", "wrong[1].says.key is missing"),
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
@@ -108,9 +108,9 @@ def test_answers_are_read_strictly(folder: Path) -> None:
     ],
 )  # fmt: skip
 def test_a_wrong_answers_message_exists_in_the_checker(
-    folder: Path, says: str, message: str
+    folder: Path, message_table: str, message: str
 ) -> None:
-    rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {says} }}\n"
+    rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {message_table} }}\n"
     (folder / "answers.toml").write_text(rows, encoding="utf-8")
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.answers(folder)

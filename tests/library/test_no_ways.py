@@ -35,7 +35,7 @@ def profile_without(key: str, text: str) -> str:
 
 
 @pytest.fixture
-def slow(tmp_path: Path) -> Path:
+def slow_profile(tmp_path: Path) -> Path:
     """The profile of a robot with unmeasured speeds."""
     path = tmp_path / "slow.toml"
     text = profile_without("turn", profile_without("speed", PROFILE.read_text(encoding="utf-8")))
@@ -43,13 +43,15 @@ def slow(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_path: Path) -> None:
+def test_a_robot_without_speeds_refuses_an_image(
+    program: Path, slow_profile: Path, tmp_path: Path
+) -> None:
     image = tmp_path / "way.bin"
     assert "0.741 s" in run_in_process("compile", program, "-o", image).out, (
         "the receipt says how long"
     )
     assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
-    result = run_in_process("upload", image, "--robot", slow, "--lang", "es")
+    result = run_in_process("upload", image, "--robot", slow_profile, "--lang", "es")
     assert result.code == 1 and "no puede avanzar por centímetros" in result.err
     assert "tsc run" in result.err
     assert run_in_process("run", image).out.endswith("741 DONE\n")
@@ -105,6 +107,6 @@ def test_a_profile_may_leave_a_speed_out(key: str) -> None:
     assert kit.fingerprint == robots.load("tinibot").kit.fingerprint
     half = read(text.replace(line, f"{key} = 0.5\n"), "mine").kit
     assert getattr(half, key) == 500
-    for wrong in ("0", "-1", "20000", '"fast"', "0.0001"):
+    for wrong_speed in ("0", "-1", "20000", '"fast"', "0.0001"):
         with pytest.raises(ProfileRefused):
-            read(text.replace(line, f"{key} = {wrong}\n"), "mine")
+            read(text.replace(line, f"{key} = {wrong_speed}\n"), "mine")

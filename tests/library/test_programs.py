@@ -170,11 +170,11 @@ def test_a_damaged_image_is_refused() -> None:
 def test_messages_about_bytes_name_no_absent_robot(
     language: Literal["en", "es"],
 ) -> None:
-    whole = tiniscript.compile(PROGRAM).image
+    whole_image = tiniscript.compile(PROGRAM).image
     for image, reason in {
         b"xx": "NOT_AN_IMAGE", b"": "NOT_AN_IMAGE",
-        whole[:-1]: "TRUNCATED", whole + b"?": "TRAILING",
-        b"TS\xff" + whole[3:]: "OTHER_VERSION", pack("SI", 0, b"\xff"): "",
+        whole_image[:-1]: "TRUNCATED", whole_image + b"?": "TRAILING",
+        b"TS\xff" + whole_image[3:]: "OTHER_VERSION", pack("SI", 0, b"\xff"): "",
     }.items():  # fmt: skip
         with pytest.raises(tiniscript.ProgramError) as error_info:
             tiniscript.show(image, language=language)

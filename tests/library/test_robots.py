@@ -163,14 +163,14 @@ def test_a_virtual_robot_refuses_invalid_settings(
 def test_wrong_use_of_a_connection_raises_an_error(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
-    for reason, wrong in (
+    for reason, wrong_call in (
         ("nothing_started", lambda: virtual.wait()),
         ("live_button", lambda: virtual.live("SB|F(1, 50)")),
         ("ping_program", lambda: virtual.upload("PING|check_connection")),
         ("bad_number", lambda: list(virtual.events(-1))),
     ):
         with raises_error(tiniscript.UsageError, reason):
-            wrong()
+            wrong_call()
     with pytest.raises(tiniscript.ProgramError, match="TS"):
         virtual.live("F(1 50)")
     with pytest.raises(tiniscript.ProgramError) as too_long:
@@ -353,11 +353,11 @@ def test_earlier_end_events_do_not_end_a_run() -> None:
     assert follower.follow(stopped_event, "P")
     assert follower.end(stopped_event) == End("STOPPED")
     assert follower.end(DoneEvent(5)) == End("DONE")
-    for last, reason in (
+    for last_event, reason in (
         (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
     ):  # fmt: skip
         with raises_error(tiniscript.RobotError, reason):
-            follower.follow(last, "P")
+            follower.follow(last_event, "P")
 
 
 def test_a_reset_during_a_run_does_not_count_as_an_end(pty_robot: PtyRobot) -> None:
@@ -478,8 +478,10 @@ def test_a_run_of_another_command_continues_after_the_connection_is_left(
     """A thread holds the port until the other has ended.."""
     robot = tiniscript.connect(pty_robot.port)
     robot.upload(FOREVER)
-    other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port)
-    other.until("running")
+    other_command = Command(
+        "upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port
+    )
+    other_command.until("running")
     pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.actions, "it does the other's")
     if watches:
         with raises_error(tiniscript.RobotError, "replaced"):
@@ -489,11 +491,11 @@ def test_a_run_of_another_command_continues_after_the_connection_is_left(
     robot.close()  # no effect
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2000, "it goes on")
-    assert pty_robot.moves and other.process.poll() is None
+    assert pty_robot.moves and other_command.process.poll() is None
     with tiniscript.connect(pty_robot.port) as second_robot:  # through the holder of the port
         assert second_robot.info.port == pty_robot.port
         second_robot.stop()
-    assert other.wait_for_result().code == 3
+    assert other_command.wait_for_result().code == 3
     until(
         lambda: not any(thread.name == "holder" for thread in threading.enumerate()), "it lets go"
     )
@@ -501,12 +503,12 @@ def test_a_run_of_another_command_continues_after_the_connection_is_left(
 
 
 def test_ctrl_c_stops_a_run_of_another_command_through_this_one(pty_robot: PtyRobot) -> None:
-    other: Command | None = None
+    other_command: Command | None = None
     with pytest.raises(KeyboardInterrupt), tiniscript.connect(pty_robot.port):
-        other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-        other.until("running")
+        other_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+        other_command.until("running")
         raise KeyboardInterrupt
-    assert other is not None and other.wait_for_result().code == 3
+    assert other_command is not None and other_command.wait_for_result().code == 3
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
@@ -515,12 +517,12 @@ def test_a_replaced_client_stops_nothing_through_the_holder(
 ) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER)
-        other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-        other.until("running")
+        other_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+        other_command.until("running")
         with raises_error(tiniscript.RobotError, "replaced"):
             robot.wait()
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 1500, "it goes on")
-    assert pty_robot.moves and other.process.poll() is None
-    other.kill()
+    assert pty_robot.moves and other_command.process.poll() is None
+    other_command.kill()
     assert link.process.poll() is None

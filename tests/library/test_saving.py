@@ -71,9 +71,9 @@ def test_supply_dips_do_not_end_a_save_in_progress(clock: Clock, seed: int) -> N
         story.append((min(at_s, done_s), SAVED_LOW_SUPPLY if is_low else SAVED_SAVING))
         is_low = not is_low
     story.append((SAVE_TIMEOUT_S * 9, SAVED_STORED))
-    first = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
+    first_state = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
     clock.now_s = rng.choice((0.0, 5.0, 1e6))
-    saving = Saving(receipt(first))
+    saving = Saving(receipt(first_state))
     wait_for_saving(clock, saving, story)
     assert (saving.is_over, saving.reason) == (True, ""), story
 

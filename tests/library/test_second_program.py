@@ -94,15 +94,15 @@ Story = tuple[str, str, bool]
 
 
 def play_story(robot: RobotConnection, line: Line, story: Story) -> str:
-    how, end, looks = story
-    if how.startswith("upload"):
-        robot.upload(f"SI|F({line.run + 1}, 50)", save=how == "upload for good")
-    elif how == "live":
+    kind, end, looks = story
+    if kind.startswith("upload"):
+        robot.upload(f"SI|F({line.run + 1}, 50)", save=kind == "upload for good")
+    elif kind == "live":
         robot.live("F(2, 50)")
-    elif how == "undo":
+    elif kind == "undo":
         robot.undo()
     else:
-        robot.start(detached=how == "start detached")
+        robot.start(detached=kind == "start detached")
     events = [StartedEvent(line.run, line.program), *END_ACTIONS[end](line)]
     line.events += [(int(monotonic() * 1000), event) for event in events]
     if not looks:
@@ -135,9 +135,9 @@ def test_leaving_concerns_only_the_last_program(
     monkeypatch: pytest.MonkeyPatch, seed: int, kind: type[BaseException] | None
 ) -> None:
     rng = random.Random(seed)
-    last = STORIES[seed]
+    last_story = STORIES[seed]
     robot, line = connect_client(monkeypatch)
-    outcome = play_story(robot, line, last)
+    outcome = play_story(robot, line, last_story)
     fresh = leave_robot(robot, line, kind)
     for _ in range(8):
         robot, line = connect_client(monkeypatch)
@@ -146,8 +146,8 @@ def test_leaving_concerns_only_the_last_program(
             play_story(robot, line, story)
             line.events.clear()
             line.unsaved_looks = 0
-        assert play_story(robot, line, last) == outcome, earlier_stories
-        assert leave_robot(robot, line, kind) == fresh, (earlier_stories, last)
+        assert play_story(robot, line, last_story) == outcome, earlier_stories
+        assert leave_robot(robot, line, kind) == fresh, (earlier_stories, last_story)
 
 
 def test_a_program_that_keeps_running_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,8 +163,8 @@ def test_a_program_that_keeps_running_is_stopped(monkeypatch: pytest.MonkeyPatch
         for kind in (None, KeyboardInterrupt):
             robot, line = connect_client(monkeypatch)
             play_story(robot, line, story)
-            did = leave_robot(robot, line, kind)
-            assert did == calls if kind is None else did[0] == "stop", (story, kind)
+            outcome = leave_robot(robot, line, kind)
+            assert outcome == calls if kind is None else outcome[0] == "stop", (story, kind)
 
 
 def test_late_values_belong_to_the_text_of_their_program(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,11 +177,11 @@ def test_late_values_belong_to_the_text_of_their_program(monkeypatch: pytest.Mon
         line.program = program
         robot.upload(compilation.source.text, save=False)
         offset = rows(compilation.code)[-1].offset
-        late: list[Event] = [
+        late_events: list[Event] = [
             ShownEvent(1000, 0, line.run, program, offset),
             FaultEvent(line.run, 1, offset, program),
         ]
-        line.events += [(int(monotonic() * 1000), event) for event in late]
+        line.events += [(int(monotonic() * 1000), event) for event in late_events]
     events = list(robot.events(0.2))
     assert [(event.values.get("name"), event.values["line"]) for event in events] == [
         ("NEAR / 0", 1), (None, 1), ("FAR / 0", 2), (None, 2),

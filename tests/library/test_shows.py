@@ -97,16 +97,16 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("cache")
 def test_a_program_is_found_by_checksum_only() -> None:
-    mine, theirs = compile_right_text("SHOW(DISTANCE)"), compile_right_text("SHOW(LIGHT_R)")
-    offset = rows(mine.code)[-1].offset
-    finder = ShowFinder({checksum(mine.image): make_source_map(mine)})
-    assert finder.show_of(event(checksum(mine.image), offset)) == Show("DISTANCE", 1, 1)
-    other = event(checksum(theirs.image), offset, run=2)
-    assert finder.show_of(other) is None, "nobody here has it"
-    source_map.remember(theirs.image, make_source_map(theirs))
-    assert finder.show_of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
-    assert finder.show_of(event(checksum(mine.image), offset, run=3)) == Show("DISTANCE", 1, 1)
-    assert finder.show_of(event(checksum(mine.image), -1)) is None
+    first, second = compile_right_text("SHOW(DISTANCE)"), compile_right_text("SHOW(LIGHT_R)")
+    offset = rows(first.code)[-1].offset
+    finder = ShowFinder({checksum(first.image): make_source_map(first)})
+    assert finder.show_of(event(checksum(first.image), offset)) == Show("DISTANCE", 1, 1)
+    second_event = event(checksum(second.image), offset, run=2)
+    assert finder.show_of(second_event) is None, "nobody here has it"
+    source_map.remember(second.image, make_source_map(second))
+    assert finder.show_of(second_event) == Show("LIGHT_R", 1, 1), "it came into the cache later"
+    assert finder.show_of(event(checksum(first.image), offset, run=3)) == Show("DISTANCE", 1, 1)
+    assert finder.show_of(event(checksum(first.image), -1)) is None
     assert ShowFinder().show_of(ShownEvent(1000, 0)) is None, "of an older robot"
 
 

@@ -99,7 +99,7 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
     assert offsets == sorted(set(offsets)) and offsets[0] == 0
     assert set(offsets) <= {row.offset for row in rows(compilation.code)}
     spans = [place.span for place in compilation.locations]
-    assert all(one != other for one, other in itertools.pairwise(spans))
+    assert all(first != second for first, second in itertools.pairwise(spans))
 
 
 # -- the map of a program -------------------------------------------------------------------------
@@ -162,8 +162,11 @@ def test_a_variables_type_is_known_at_its_show() -> None:
             show_program = compile_text(f"{text}\nSHOW({name})", kit)
             if show_program.is_right:  # otherwise it is a value of a DEF
                 assert show_program.program
-                last = show_program.program.body[-1]
-                assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)
+                last_statement = show_program.program.body[-1]
+                assert isinstance(last_statement, Show) and last_statement.is_yes_no == is_yes_no, (
+                    seed,
+                    name,
+                )
                 kinds.add(is_yes_no)
     assert kinds == {True, False}
     compilation = compile_right_text(

@@ -137,9 +137,9 @@ class Esp32Robot(HostFirmware):
         """Make LEDC ignore all further commands."""
         self.ask(b"L", b"")
 
-    def radio(self, what: str, data: bytes = b"") -> bytes:
+    def radio(self, command: str, data: bytes = b"") -> bytes:
         """Cause an event on the other side of a radio: `answer_radio` of `main.cpp`."""
-        return self.ask(b"R", what.encode() + data)
+        return self.ask(b"R", command.encode() + data)
 
     def measure_motor_delay(self) -> tuple[int, float]:
         """Return the turns of the main loop, and the microseconds of this computer, before a motor
@@ -197,8 +197,8 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
         is_own = path.parent.name in ("boards", "esp32", "src")
         return (*usual, *of_boards) if is_own else usual
 
-    used = {path: text for path, text in files.items() if not is_extra_source(path)}
-    objects = objects_of("g++", BUILD_CACHE, used, flags)
+    used_files = {path: text for path, text in files.items() if not is_extra_source(path)}
+    objects = objects_of("g++", BUILD_CACHE, used_files, flags)
     return compile_once(
         "g++", BUILD_CACHE, "", usual, [name.encode() for name in objects], [*objects, *TLS]
     )

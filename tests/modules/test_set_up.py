@@ -93,9 +93,9 @@ class Odd:
 def test_an_echoing_or_slow_module_is_set_up_alike(kind: str, late_ms: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, echoes=True, late_ms=late_ms))
-    plain = find_only_module(SimulatedWire(KINDS[kind]()))
+    plain_module = find_only_module(SimulatedWire(KINDS[kind]()))
     module = set_up_everything(wire, end, "Tini-7F3A", 9600)
-    assert (module.dialect.name, module.version[:2]) == (kind, plain.version[:2])
+    assert (module.dialect.name, module.version[:2]) == (kind, plain_module.version[:2])
 
 
 @pytest.mark.parametrize("kind", ["HC-05", "HC-06"])
@@ -339,10 +339,10 @@ def test_earlier_bytes_are_not_part_of_a_command(kind: str, seed: int) -> None:
     chance = random.Random(f"{kind} {seed}")
     end: Simulated = KINDS[kind](*([chance.choice(BAUDS)] if not kind.startswith("HC-05") else []))
     wire = SimulatedWire(end, end.baud)
-    plain = find_only_module(
+    plain_module = find_only_module(
         SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else [])))
     )
     command = chance.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
     wire.send(command.encode())
     wire.receive(chance.choice([1, 10, 100, 900]))
-    assert find_only_module(wire) == plain
+    assert find_only_module(wire) == plain_module

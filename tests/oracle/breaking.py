@@ -20,19 +20,19 @@ def break_text(rng: random.Random, text: str) -> str:
     pieces = _PIECES.findall(text)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
         index = rng.randrange(len(pieces) + 1)
-        what = rng.randrange(7)
-        if what == 0 or index == len(pieces):
+        kind = rng.randrange(7)
+        if kind == 0 or index == len(pieces):
             pieces.insert(index, rng.choice(_NOISE))
-        elif what == 1:
+        elif kind == 1:
             del pieces[index]
-        elif what == 2:
+        elif kind == 2:
             pieces.insert(index, pieces[index])
-        elif what == 3:
-            other = rng.randrange(len(pieces))
-            pieces[index], pieces[other] = pieces[other], pieces[index]
-        elif what == 4:
+        elif kind == 3:
+            other_index = rng.randrange(len(pieces))
+            pieces[index], pieces[other_index] = pieces[other_index], pieces[index]
+        elif kind == 4:
             pieces[index] = rng.choice(_WORDS)
-        elif what == 5:
+        elif kind == 5:
             pieces.insert(index, rng.choice(_WORDS))
         else:
             cut = rng.randrange(len(pieces[index]) + 1)

@@ -53,8 +53,8 @@ class ExpressionParser:
     def token(self) -> Token:
         return self.tokens[self.at]
 
-    def fail(self, why: str) -> NoReturn:
-        raise Mistake(f"line {self.token.line}: {why}")
+    def fail(self, message: str) -> NoReturn:
+        raise Mistake(f"line {self.token.line}: {message}")
 
     def next_is(self, *texts: str) -> bool:
         """Return whether the next token is one of these words or signs."""

@@ -63,9 +63,9 @@ def refusal(data: bytes) -> str:
     head = HEADER.parse(data)
     if head.header_length < HEADER.sizeof() or head.code_length > MOST_BYTES:
         return "BAD_HEADER"
-    whole = head.header_length + head.code_length
-    if len(data) != whole:
-        return "TRUNCATED" if len(data) < whole else "TRAILING"
+    whole_length = head.header_length + head.code_length
+    if len(data) != whole_length:
+        return "TRUNCATED" if len(data) < whole_length else "TRAILING"
     reasons = {
         "DAMAGED": zlib.crc32(data[:10] + data[14:]) != head.checksum,
         "UNKNOWN_NEEDS": head.needs & ~NEEDS,

@@ -28,14 +28,14 @@ class Text:
         self.sensors = yes_no_sensors
         self.around: list[Def] = []
         self.defs: dict[str, Def] = {}
-        now = NOWHERE
+        current_def = NOWHERE
         for index, token in enumerate(tokens):
             if token.text == "DEF" and index + 1 < len(tokens):
-                now = Def(tokens[index + 1].text, self.names_after(index + 2))
-                self.defs.setdefault(now.name, now)
-            self.around.append(now)
+                current_def = Def(tokens[index + 1].text, self.names_after(index + 2))
+                self.defs.setdefault(current_def.name, current_def)
+            self.around.append(current_def)
             if token.text in ("END_DEF", "ENDDEF"):
-                now = NOWHERE
+                current_def = NOWHERE
 
     def names_after(self, index: int) -> tuple[str, ...]:
         """The names in the brackets that begin here, none if there are none."""
@@ -129,12 +129,12 @@ class Text:
 
     def arguments(self, index: int) -> list[tuple[int, int]]:
         """Return the ranges of the values in the brackets that begin here."""
-        last, spans, depth = self.closes(index), [], 0
+        end, spans, depth = self.closes(index), [], 0
         start = index + 1
-        for place in range(index + 1, last):
+        for place in range(index + 1, end):
             text = self.tokens[place].text
             depth += {"(": 1, ")": -1}.get(text, 0)
             if text == "," and depth == 0:
                 spans.append((start, place))
                 start = place + 1
-        return [*spans, (start, last)] if start < last else spans
+        return [*spans, (start, end)] if start < end else spans

@@ -83,8 +83,8 @@ class Instruction(NamedTuple):
 def rows(name: str) -> list[list[str]]:
     """Return the cells of a generated table, without the backquotes around them."""
     text = SPEC.read_text(encoding="utf-8")
-    begin, end = f"<!-- begin generated: {name} -->", f"<!-- end generated: {name} -->"
-    lines = text[text.index(begin) : text.index(end)].splitlines()[3:]
+    begin_mark, end_mark = f"<!-- begin generated: {name} -->", f"<!-- end generated: {name} -->"
+    lines = text[text.index(begin_mark) : text.index(end_mark)].splitlines()[3:]
     return [
         [cell.strip().strip("`") for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines
     ]
@@ -115,9 +115,9 @@ def instructions() -> dict[int, Instruction]:
         op_operands = tuple(
             Operand(*halves, *kinds[halves[1]]) for halves in map(_label_and_kind, operands)
         )
-        short = re.fullmatch(r"(.+)_(\d+)", name)
-        stem = short[1] if short else name.removesuffix("_FAR")
-        implied = ((kind_of.get(stem, "u8"), int(short[2])),) if short else ()
+        short_match = re.fullmatch(r"(.+)_(\d+)", name)
+        stem = short_match[1] if short_match else name.removesuffix("_FAR")
+        implied = ((kind_of.get(stem, "u8"), int(short_match[2])),) if short_match else ()
         role = role_of[name]
         bytes_ = 2 if code > 0xFF else 1
         table[code] = Instruction(name, stem, op_operands, implied, takes, leaves, role, bytes_)

@@ -24,8 +24,8 @@ BATCH = 50
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH))
 def test_random_programs(first: int) -> None:
-    ends = Counter(compare_task_program(seed) for seed in range(first, first + BATCH))
-    assert set(ends) == {"DONE", "LIMIT"}
+    end_counts = Counter(compare_task_program(seed) for seed in range(first, first + BATCH))
+    assert set(end_counts) == {"DONE", "LIMIT"}
 
 
 @each_row(

@@ -52,8 +52,8 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
             ours = python_verdict(code, sensors, actuators, needs)
             assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
     if not missing():
-        theirs = host().verdicts(codes, sensors, actuators)
-        for code, verdict, (rule, offset) in zip(codes, without, theirs, strict=True):
+        cpp_verdicts = host().verdicts(codes, sensors, actuators)
+        for code, verdict, (rule, offset) in zip(codes, without, cpp_verdicts, strict=True):
             ours = rule, offset if rule else 0  # for accepted code, the offset is its length
             assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
     return {rule for rule, _ in own_verdicts}
@@ -159,10 +159,14 @@ def test_code_may_be_as_long_as_the_limit() -> None:
 def test_no_device_has_a_number_above_31() -> None:
     """A kit with more is refused before code runs: a machine keeps 32 readings."""
     codes = {name: code for code, row in spec_tables.instructions().items() for name in [row.name]}
-    for many in (32, 33, 255):
+    for device_count in (32, 33, 255):
         for name, number in (("READ", 31), ("READ", 32), ("PUSH_SENSOR", 32), ("PUSH_READ", 255)):
             code = bytes([codes[name], number])
-            rules = compare([code + bytes([codes["SHOW"]]) if name != "READ" else code], many, many)
+            rules = compare(
+                [code + bytes([codes["SHOW"]]) if name != "READ" else code],
+                device_count,
+                device_count,
+            )
             assert rules == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 

@@ -29,9 +29,9 @@ needs_chip = pytest.mark.skipif(
 def test_a_wrong_value_raises_an_error(work: Workload) -> None:
     expected = expected_values(work)
     check("some machine", work, expected)
-    for other in ((*expected[:-1], expected[-1] + 1), expected[:-1]):
+    for wrong_values in ((*expected[:-1], expected[-1] + 1), expected[:-1]):
         with pytest.raises(WrongResult, match=f"some machine, work {work.name}"):
-            check("some machine", work, other)
+            check("some machine", work, wrong_values)
 
 
 @needs_chip

@@ -87,12 +87,12 @@ def test_build_features_are_chosen_in_few_headers(path: Path) -> None:
     conditions = [k for k, row in enumerate(rows) if CONDITION.match(row)]
     if not conditions:
         return
-    first, last = conditions[0], conditions[-1]
-    inside = [row for row in rows[first:last] if not CONDITION.match(row)]
+    first_condition, last_condition = conditions[0], conditions[-1]
+    inside = [row for row in rows[first_condition:last_condition] if not CONDITION.match(row)]
     if all(row.startswith("#include") for row in inside):
         return
-    assert conditions == [first, len(rows) - 1], [rows[k] for k in conditions]
-    assert all(row.startswith("#include") for row in rows[:first])
+    assert conditions == [first_condition, len(rows) - 1], [rows[k] for k in conditions]
+    assert all(row.startswith("#include") for row in rows[:first_condition])
 
 
 @each_row("path", sorted(VM.glob("*.S")))
@@ -218,6 +218,6 @@ def test_no_program_is_run_that_another_user_can_have_built(
     link.symlink_to(folder)
     monkeypatch.setattr(host, "USER", 12345)
     monkeypatch.setattr(os, "getuid", lambda: 12345)
-    for other in (folder, link):
+    for path in (folder, link):
         with pytest.raises(PermissionError):
-            host.make_private_folder(other)
+            host.make_private_folder(path)

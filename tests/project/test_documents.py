@@ -139,13 +139,13 @@ def test_a_translation_links_to_documents_of_its_language(
     language: str, name: str, english: str
 ) -> None:
     page = ROOT / name
-    wrong = []
+    errors = []
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
         led = (page.parent / target).resolve().relative_to(ROOT).as_posix()
         own_name = name_in(language, led)
         if led not in (english, own_name) and (ROOT / own_name).is_file():
-            wrong.append(f"{target}: there is {own_name}")
-    assert not wrong, "\n".join(wrong)
+            errors.append(f"{target}: there is {own_name}")
+    assert not errors, "\n".join(errors)
 
 
 # -- names of files, folders and modules ----------------------------------------------------------
@@ -199,29 +199,29 @@ def test_mentioned_files_exist(document: Path) -> None:
         "robot_mega.wasm",
         "robot_esp32.wasm",
     }
-    wrong = []
+    errors = []
     for span in spans_of(document):
         is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
         is_path = is_path or bool(re.fullmatch(r"(?:\w+/)+(?:" + FILE_NAME + ")?", span))
         if is_path and "NAME" not in span and not exists(span):
-            wrong.append(span)
+            errors.append(span)
         if document.parent == ROOT and re.fullmatch(FILE_NAME, span) and "NAME" not in span:
-            wrong += [] if span in known_names else [span]
+            errors += [] if span in known_names else [span]
     if document.name != "CHANGELOG.md":  # the changelog also describes the past
-        assert not wrong, "\n".join(wrong)
+        assert not errors, "\n".join(errors)
 
 
 def test_paths_in_sources_exist() -> None:
     """A path that a docstring or a comment names, as in a document."""
     names = {path.name for path in SOURCES} | {"serial.py"}  # a test writes this file
-    wrong = []
+    errors = []
     for source in SOURCES:
         for span in spans_of(source):
             is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
             is_wrong = is_path and "NAME" not in span and not exists(span)
             if is_wrong or (re.fullmatch(r"\w+\.py", span) and span not in names):
-                wrong.append(f"{source.relative_to(ROOT)}: {span}")
-    assert not wrong, "\n".join(wrong)
+                errors.append(f"{source.relative_to(ROOT)}: {span}")
+    assert not errors, "\n".join(errors)
 
 
 # `stop_run` and `end_run` (`firmware/run.cpp`), `Link::turn` in `link/link.cpp`

@@ -88,19 +88,19 @@ def test_the_last_row_of_an_unos_history_is_its_current_size() -> None:
         if page.cells(row)[0] == "`tinibot`, Uno"
     )
     history = page.PAGE.read_text(encoding="utf-8").partition("\n| added | bytes | firmware |")[2]
-    *_, last = history.partition("\n\n")[0].split("\n")
-    _, _, firmware, left = page.cells(last)
+    *_, last_row = history.partition("\n\n")[0].split("\n")
+    _, _, firmware, bytes_left = page.cells(last_row)
     assert firmware == flash
-    assert int(left) == int(holds.replace(",", "")) - int(flash.replace(",", ""))
+    assert int(bytes_left) == int(holds.replace(",", "")) - int(flash.replace(",", ""))
 
 
 def test_no_other_row_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     name = "text"
-    row, other = (page.cells(row) for row in page.tables(name)[0].rows)
-    page.show(name, [other, ["`SI|F(2,80)`", "1.00 ms", "2.00 ms"]])
+    row, other_row = (page.cells(row) for row in page.tables(name)[0].rows)
+    page.show(name, [other_row, ["`SI|F(2,80)`", "1.00 ms", "2.00 ms"]])
     head, rule, first, second, _ = capsys.readouterr().out.split("\n", 4)
     assert (head, rule) == page.tables(name)[0][:2]
-    assert (first, page.cells(second)) == (r"| `SI\|F(2,80)` | 1.00 ms | 2.00 ms |", other)
+    assert (first, page.cells(second)) == (r"| `SI\|F(2,80)` | 1.00 ms | 2.00 ms |", other_row)
     with pytest.raises(LookupError, match="no row a robot"):
         page.show(name, [["a robot", "1 ms", "2 ms"]])
     with pytest.raises(ValueError, match="other columns"):

@@ -38,9 +38,9 @@ def test_tests_that_name_a_file_are_first_and_long_ones_last() -> None:
 
 
 def test_equivalent_mutants_match_existing_code() -> None:
-    for file, old, _ in equivalent_mutants():
+    for file, old_code, _ in equivalent_mutants():
         lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
-        assert old in {line.strip() for line in lines}, f"{file}: {old}"
+        assert old_code in {line.strip() for line in lines}, f"{file}: {old_code}"
 
 
 def make_try(known_mutant: Known) -> Try:

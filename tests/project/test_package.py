@@ -169,7 +169,7 @@ def test_a_wheel_states_its_licence_and_its_description_has_absolute_links(
         assert f"\n{row}\n" in f"{head}\n"
     links = re.findall(r"(!?)\[[^]]*\]\(([^)]+)\)", shown_text)
     assert len(links) > 30
-    ours = 0
+    own_count = 0
     for is_picture, link in links:
         assert link.startswith(("https://", "#")), link
         if link.startswith(URL):
@@ -177,14 +177,14 @@ def test_a_wheel_states_its_licence_and_its_description_has_absolute_links(
             assert kind == ("raw" if is_picture else "blob")
             assert tag == f"v{facts.version(ROOT)}"
             assert (repo / path).exists(), path
-            ours += 1
-    assert ours > 30
+            own_count += 1
+    assert own_count > 30
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
-    variables, why = prepare()
-    need(why)
+    variables, reason = prepare()
+    need(reason)
     words = ("-m", "tiniscript", "firmware", "--build", "--yes", "--robot", "liner")
     completed = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
     assert completed.returncode == 0, completed.stderr
@@ -218,20 +218,22 @@ def test_a_wheel_reports_missing_parts(source_folder: Path, tmp_path: Path, page
     stand_in.parent.mkdir(parents=True)
     stand_in.write_text(PAGE_BUILD_SCRIPT)
     stand_in.chmod(0o755)
-    ours, theirs = os.openpty()
+    own_end, other_end = os.openpty()
     packages: list[bytes] = []
-    reader = Thread(target=lambda: packages.extend(iter(lambda: rest_of(ours), b"")), daemon=True)
+    reader = Thread(
+        target=lambda: packages.extend(iter(lambda: rest_of(own_end), b"")), daemon=True
+    )
     reader.start()
     command = [sys.executable, "-c", BUILD_CODE.format("build_wheel"), str(tmp_path)]
     stdin, stderr = (
-        (theirs, theirs) if page == "asked for" else (subprocess.DEVNULL, subprocess.PIPE)
+        (other_end, other_end) if page == "asked for" else (subprocess.DEVNULL, subprocess.PIPE)
     )
     completed = subprocess.run(
         command, cwd=folder, stdin=stdin, stdout=subprocess.PIPE, stderr=stderr, text=True
     )
-    os.close(theirs)
+    os.close(other_end)
     reader.join(HANG_LIMIT_S)
-    os.close(ours)
+    os.close(own_end)
     output = completed.stderr or b"".join(packages).decode()
     assert completed.returncode == 0, output
     assert "made without" in output and FIRMWARE_MISSING in output and CASES_MISSING in output
@@ -285,12 +287,12 @@ def test_a_source_package_is_the_same_from_any_folder(
     repo: Path, source_folder: Path, tmp_path: Path
 ) -> None:
     """Twice in a row, of files with other times, in a folder with another name."""
-    first = next(source_folder.parent.parent.glob("*.tar.gz"))
-    other = tmp_path / "another place"
-    shutil.copytree(repo, other, copy_function=shutil.copy,
+    first_archive = next(source_folder.parent.parent.glob("*.tar.gz"))
+    other_folder = tmp_path / "another place"
+    shutil.copytree(repo, other_folder, copy_function=shutil.copy,
                     ignore=shutil.ignore_patterns("*.egg-info", "build"))  # fmt: skip
-    second = build_package(other, "build_sdist", tmp_path / "made")
-    assert first.read_bytes() == second.read_bytes()
+    second_archive = build_package(other_folder, "build_sdist", tmp_path / "made")
+    assert first_archive.read_bytes() == second_archive.read_bytes()
 
 
 def test_a_registry_accepts_both_packages(wheel: Path, source_folder: Path) -> None:

@@ -25,19 +25,19 @@ def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
 
 
 def test_no_picture_is_cut_off(drawing: ElementTree.Element) -> None:
-    right = front.PADDING + front.LEFT_WIDTH - 16
+    right_edge = front.PADDING + front.LEFT_WIDTH - 16
     for text in drawing.iter(f"{SVG}text"):
         if "Mono" in text.get("font-family", ""):
             shown_text = "".join(text.itertext())
             end = float(text.get("x", "")) + len(shown_text) * SIGN * float(
                 text.get("font-size", "")
             )
-            assert end <= right, shown_text
+            assert end <= right_edge, shown_text
         assert float(text.get("y", "")) <= front.HEIGHT - 16
     for shape in (*drawing.iter(f"{SVG}polygon"), *drawing.iter(f"{SVG}polyline")):
         for point in shape.get("points", "").split():
             x, y = (float(part) for part in point.split(","))
-            assert right < x < front.WIDTH
+            assert right_edge < x < front.WIDTH
             assert 0 < y < front.HEIGHT
 
 

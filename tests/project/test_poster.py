@@ -67,10 +67,13 @@ def test_the_pdf_is_complete(language: str) -> None:
     for number, offset in enumerate(offsets, 1):
         assert data[offset:].startswith(b"%d 0 obj\n" % number)
     length = int(re.search(rb"/Length (\d+)", data)[1])  # type: ignore[index]
-    begin = data.index(b"stream\n") + 7
-    assert data[begin + length :].startswith(b"\nendstream")
+    stream_start = data.index(b"stream\n") + 7
+    assert data[stream_start + length :].startswith(b"\nendstream")
     wanted_texts = [paper._pdf_text(line.text) for line in lines_of(language)]
-    assert re.findall(r"(\(.*\)) Tj ET", data[begin : begin + length].decode()) == wanted_texts
+    assert (
+        re.findall(r"(\(.*\)) Tj ET", data[stream_start : stream_start + length].decode())
+        == wanted_texts
+    )
 
 
 @in_both

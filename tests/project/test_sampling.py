@@ -81,10 +81,10 @@ class Plugin:
         self, config: pytest.Config, items: list[pytest.Item]
     ) -> None:
         for config.option.sample in self.commits:
-            left = list(items)
-            sampling.leave_out(config, left)
+            items_left = list(items)
+            sampling.leave_out(config, items_left)
             letters = sampling.sample_of(config, "letters", "abcd", 2)
-            names = [item.name for item in left]
+            names = [item.name for item in items_left]
             self.drawn.append(([*names, *letters], sampling.how_to_repeat(config)))
 
 
@@ -153,8 +153,8 @@ def test_some_files_run_whole_and_each_does_eventually(tmp_path: Path) -> None:
         counts.update(names)
     assert len(counts) == 3 * len(SIDES)
     assert collections[7] == collections[20]
-    left = f"{tmp_path / 'test_left.py'}"
-    for collected_names, _ in collect_tests(tmp_path, left, of=None, commits=commits):
+    left_path = f"{tmp_path / 'test_left.py'}"
+    for collected_names, _ in collect_tests(tmp_path, left_path, of=None, commits=commits):
         assert "test_more_of_left" in collected_names  # named on the command line
     ((collected_names, _),) = collect_tests(tmp_path, "--whole", of=None)
     assert sum(side in name for name in collected_names for side in SIDES) == 3 * len(SIDES)
@@ -188,10 +188,10 @@ def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:
             raise KeyError(name)
 
     assert list(inspect.signature(test).parameters) == ["lang"]
-    with pytest.raises(AssertionError) as why:
+    with pytest.raises(AssertionError) as error_info:
         test(lang="en")
     assert lines == ["aen", "ben", "cen", "den"]
-    first, second = str(why.value).split("\n\n")
+    first, second = str(error_info.value).split("\n\n")
     assert first.startswith("('b', 2): AssertionError: two")
     assert second == "third: KeyError: 'c'"
     with pytest.raises(AssertionError, match="no rows"):

@@ -356,9 +356,9 @@ def test_windows_has_its_interpreter_and_its_line_elsewhere() -> None:
 
     assert environment.python_of(Path("x"), "nt") == Path("x/Scripts/python.exe")
     assert environment.python_of(Path("x"), "posix") == Path("x/bin/python")
-    first = load_first_command()
-    assert first.activation("nt") == r".venv\Scripts\Activate.ps1"
-    assert first.activation("posix") == ". .venv/bin/activate"
+    first_command = load_first_command()
+    assert first_command.activation("nt") == r".venv\Scripts\Activate.ps1"
+    assert first_command.activation("posix") == ". .venv/bin/activate"
 
 
 def test_an_old_python_names_the_source_of_a_new_one(
@@ -410,8 +410,8 @@ def test_the_first_command_drives_the_virtual_robot(
     assert (ROOT / "way.png").is_file()
     if not exists_before:
         (ROOT / "way.png").unlink()
-    first = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
-    assert capture_result.out.startswith(first)  # without its notes, in English
+    program_start = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
+    assert capture_result.out.startswith(program_start)  # without its notes, in English
     assert "way.png" in capture_result.err
     assert "Ahora el tuyo" in capture_result.err
     assert "Aviso" not in capture_result.err

@@ -305,13 +305,13 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
     for name in ("only_windows", "only_old"):
         wheel(tmp_path, name)
     needs = ["only_windows; sys_platform == 'win32'", "only_old; python_version < '3.11'"]
-    ours = wheel(tmp_path, "robot", needs)
+    own_wheel = wheel(tmp_path, "robot", needs)
     for system, python, wanted_names in (
         ("windows", "3.10", {"only_windows", "only_old"}),
         ("windows", "3.12", {"only_windows"}),
         ("mac-apple", "3.10", {"only_old"}),
     ):
-        names = fetch_packages(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
+        names = fetch_packages(tmp_path, tmp_path / f"{system}{python}", system, python, own_wheel)
         assert {name.split("-")[0] for name in names} == {"robot", *wanted_names}
 
 
@@ -323,16 +323,16 @@ def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
 
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
-    old = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
+    old_wheel = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
     metadata = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
     files = {"thing/__init__.py": "", "thing/fast.cpython-311-x86_64-linux-gnu.so": "x",
              "thing-1.dist-info/WHEEL": metadata, "thing-1.dist-info/RECORD": ""}  # fmt: skip
-    with zipfile.ZipFile(old, "w") as wheel:
+    with zipfile.ZipFile(old_wheel, "w") as wheel:
         for name, text in files.items():
             wheel.writestr(zipfile.ZipInfo(name, (2020, 1, 2, 3, 4, 6)), text)
-    with zipfile.ZipFile(old) as wheel:
+    with zipfile.ZipFile(old_wheel) as wheel:
         when = wheel.infolist()[0].date_time
-    path = stick_wheels.without_parts_in_c(old, tmp_path)
+    path = stick_wheels.without_parts_in_c(old_wheel, tmp_path)
     assert path.name == "thing-1-py3-none-any.whl"
     with zipfile.ZipFile(path) as wheel:
         assert {row.date_time for row in wheel.infolist()} == {when}, "another time, other bytes"

@@ -116,11 +116,11 @@ def test_a_program_of_notepad_is_the_same_program(
 ) -> None:
     """With CR LF and a byte order mark; mistakes have the same message."""
     monkeypatch.chdir(tmp_path)
-    wrong = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
+    wrong_text = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
     outputs = set()
-    for name, begin, end in (("a", "", "\n"), ("b", "\ufeff", "\r\n")):
-        for kind, program in (("right", PROGRAM + "B(1, 50)\n"), ("wrong", wrong)):
-            text = begin + program.replace("\n", end)
+    for name, bom, end in (("a", "", "\n"), ("b", "\ufeff", "\r\n")):
+        for kind, program in (("right", PROGRAM + "B(1, 50)\n"), ("wrong", wrong_text)):
+            text = bom + program.replace("\n", end)
             Path(f"{kind}_{name}.ts").write_bytes(text.encode())
         assert tsc("compile", f"right_{name}.ts").code == 0
         result = tsc("check", f"wrong_{name}.ts")

@@ -115,9 +115,9 @@ def test_commands_run_by_a_workflow_exist() -> None:
 
 
 def test_tsc_lines_of_workflows_work() -> None:
-    ours = [words for words in commands() if words[0] == "tsc"]
-    assert len(ours) == 2
-    for words in ours:
+    tsc_commands = [words for words in commands() if words[0] == "tsc"]
+    assert len(tsc_commands) == 2
+    for words in tsc_commands:
         result = process(*words[1:])
         assert result.code == 0, result.err
     assert "drove" in result.out + result.err

@@ -46,5 +46,5 @@ def test_a_repair_that_contains_a_mistake_is_not_offered() -> None:
     (missing,) = check("F(2 80)")
     edits = [Edit(Span(3, 3), ",,,"), Edit(Span(5, 6), "")]
     for start, is_repair in ((2, True), (3, False), (5, False), (6, True)):
-        other = missing._replace(span=Span(start, 9))
-        assert is_better([other], [missing], edits) == is_repair
+        other_diagnostic = missing._replace(span=Span(start, 9))
+        assert is_better([other_diagnostic], [missing], edits) == is_repair

@@ -87,10 +87,16 @@ def codes_with_wrong_offers(text: str) -> list[str]:
         together += its if not edits_overlap(its, together) else []
     bad = []
     for diagnostic in diagnostics:
-        others = [other for other in diagnostics if other is not diagnostic]
-        other_words = {text[slice(*other.span)].upper() for other in others} - {""}
-        other_codes = {other.code.number for other in others}
-        other_codes |= OF_BLOCKS if others or not edits_of(diagnostic) else set()
+        other_diagnostics = [
+            other_diagnostic
+            for other_diagnostic in diagnostics
+            if other_diagnostic is not diagnostic
+        ]
+        other_words = {
+            text[slice(*other_diagnostic.span)].upper() for other_diagnostic in other_diagnostics
+        } - {""}
+        other_codes = {other_diagnostic.code.number for other_diagnostic in other_diagnostics}
+        other_codes |= OF_BLOCKS if other_diagnostics or not edits_of(diagnostic) else set()
         tried_edits = ways(diagnostic, text)
         if set(edits_of(diagnostic) or ()) <= set(together) and edits_of(diagnostic):
             tried_edits.append(together)

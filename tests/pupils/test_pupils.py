@@ -80,12 +80,12 @@ def test_a_new_program_is_tested_until_the_next_choice(
     written_path = tmp_path / "cover.txt"
     monkeypatch.setattr(cover, "LIST", written_path)
     written_path.write_text(head(0, 5, ["S", "F"]) + "\n")
-    new = "B\nS"
-    add([new], ["S", "F", new])
-    row = f"{cover.name_of(new)} B"
-    assert written_path.read_text().splitlines() == [head(1, 5, ["S", "F", new]), row]
+    new_text = "B\nS"
+    add([new_text], ["S", "F", new_text])
+    row = f"{cover.name_of(new_text)} B"
+    assert written_path.read_text().splitlines() == [head(1, 5, ["S", "F", new_text]), row]
     add(["L"], ["S", "L"])
-    assert not why_stale(written_path.read_text(), head(1, 5, ["S", "F", new])), (
+    assert not why_stale(written_path.read_text(), head(1, 5, ["S", "F", new_text])), (
         "others have gone, too"
     )
 
@@ -104,10 +104,16 @@ def test_the_corpus_is_unchanged(
     if request.config.getoption("--accept"):
         write(entries)
         pairs = zip(programs, entries, strict=True)
-        new = [now.program for old_entry, now in pairs if now.messages and not old_entry.messages]
-        add(new, [entry.program for entry in programs])
+        new_programs = [
+            now.program for old_entry, now in pairs if now.messages and not old_entry.messages
+        ]
+        add(new_programs, [entry.program for entry in programs])
         return
-    changed_entries = [(old, new) for old, new in zip(programs, entries, strict=True) if old != new]
+    changed_entries = [
+        (old, new_programs)
+        for old, new_programs in zip(programs, entries, strict=True)
+        if old != new_programs
+    ]
     assert not changed_entries, (
         f"{len(changed_entries)} of {len(entries)}, the first: {changed_entries[0]}"
     )

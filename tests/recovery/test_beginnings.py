@@ -51,9 +51,9 @@ def test_si_before_a_question_is_a_condition(words: str) -> None:
 
 @pytest.mark.parametrize("signs", SPOKEN)
 def test_named_symbols_are_replaced_by_the_symbols(signs: tuple[str, ...]) -> None:
-    opened_text, closed_text, comma, separator, bar, forward, right = signs
+    opened_text, closed_text, comma, separator, bar, forward, right_symbol = signs
     call = f"{forward} {opened_text} 2 {comma} 80 {closed_text}".strip()
-    turn = f"{right} {opened_text} 1 {comma} 50 {closed_text}".strip()
+    turn = f"{right_symbol} {opened_text} 1 {comma} 50 {closed_text}".strip()
     meant = {f"{call} {separator} {turn}": "F(2, 80);R(1, 50)", call: "F(2, 80)"}
     for (words, line), place in product(
         meant.items(), ("{}", "W(1)\n{}\nS", "IF(DISTANCE < 9)\n{}\nENDIF")
@@ -70,17 +70,18 @@ def test_named_symbols_are_replaced_by_the_symbols(signs: tuple[str, ...]) -> No
 @pytest.mark.parametrize("kind", ["int ", "float ", "let ", "const int ", "variable "])
 @pytest.mark.parametrize("head", ["SI|", "SB|", "si |"])
 def test_a_typed_variable_before_si_is_moved_after_it(kind: str, head: str) -> None:
-    for end, note, more in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
-        wrong = f"{kind}vel = 70{end}{note}\n{more}{head}F(2, vel)"
+    for end, note, declaration in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
+        wrong_text = f"{kind}vel = 70{end}{note}\n{declaration}{head}F(2, vel)"
         begun_text = "".join(head.split()).upper()
-        right = f"{begun_text}vel = 70{end}{note}\n{more.replace('int ', '')}F(2, vel)"
+        right_text = f"{begun_text}vel = 70{end}{note}\n{declaration.replace('int ', '')}F(2, vel)"
         assert (
             apply_edits(
-                wrong, [it for diagnostic in check(wrong) for it in edits_of(diagnostic) or []]
+                wrong_text,
+                [it for diagnostic in check(wrong_text) for it in edits_of(diagnostic) or []],
             )
-            == right
+            == right_text
         )
-        assert repair_program(wrong, check).text == right
+        assert repair_program(wrong_text, check).text == right_text
 
 
 @pytest.mark.parametrize(
@@ -152,21 +153,21 @@ BODIES = ("F(1, 80);", "SI|F(1, 80);", "SI\nF(1, 80)", "F(1, 80); // }", "SB", "
 @pytest.mark.parametrize("body", BODIES)
 def test_the_setup_of_a_sketch_begins_the_program(body: str, frame: str) -> None:
     begun_text, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
-    right = f"{begun_text}|{bare.lstrip('|').lstrip()}"
+    right_text = f"{begun_text}|{bare.lstrip('|').lstrip()}"
     rests = {"": "", "void loop() {\n  R(1, 60);\n}": "LOOP(FOREVER);\n  R(1, 60);\nEND_LOOP"}
     gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
     for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
         text = f"{frame}{brace}{gap}{body}{gap.rstrip(' ') or ' '}}}\n{rest}"
         repaired_text = apply_edits(text, edits_of(check(text)[0]) or [])
         repaired_text = repair_program(repaired_text, check).text
-        assert compile(repaired_text).code == compile(f"{right}\n{loop}").code, text
+        assert compile(repaired_text).code == compile(f"{right_text}\n{loop}").code, text
         assert repaired_text.startswith(f"{begun_text}|"), text
 
 
 @pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])
 @pytest.mark.parametrize("line", ["SB|F(2, 80)", "SI|F(2, 80);S", "F(2, 80)"])
 def test_a_quoted_line_is_suggested_with_its_start(line: str, marks: str) -> None:
-    wrong = f"{marks[0]}{line}{marks[1]}"
-    (diagnostic,) = check(wrong)
-    assert diagnostic.values["fix"] == line, wrong
-    assert repair_program(wrong, check).text.replace(" ", "") == line.replace(" ", "")
+    wrong_text = f"{marks[0]}{line}{marks[1]}"
+    (diagnostic,) = check(wrong_text)
+    assert diagnostic.values["fix"] == line, wrong_text
+    assert repair_program(wrong_text, check).text.replace(" ", "") == line.replace(" ", "")

@@ -77,8 +77,8 @@ def test_the_inner_block_lacks_its_end_if_the_outer_one_has_its_own(
 @pytest.mark.parametrize("tail", ["", ";F(8, 50)"])
 def test_an_endless_loop_in_a_task_ends_with_the_task(body: tuple[str, ...], tail: str) -> None:
     text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + tail
-    last = body[-1]
-    assert code_and_fix(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
+    last_line = body[-1]
+    assert code_and_fix(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last_line}")
     assert repair_program(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")
 
 

@@ -28,17 +28,19 @@ SAID = {"en": "is an example", "es": "es solo un ejemplo", "pt": "é só um exem
 @pytest.mark.parametrize("word", ["F", "B", "L", "R"])
 def test_a_missing_power_is_copied_from_other_moves(word: str, place: str) -> None:
     for power in ("50", "35"):
-        wrong = place.format(f"{word}(1)", p=power)
-        diagnostic = next(diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake)
-        assert diagnostic.values["fix"] == f"{word}(1, {power})", wrong
-        assert not diagnostic.values.get("sample"), wrong
+        wrong_text = place.format(f"{word}(1)", p=power)
+        diagnostic = next(diagnostic for diagnostic in check(wrong_text) if diagnostic.is_mistake)
+        assert diagnostic.values["fix"] == f"{word}(1, {power})", wrong_text
+        assert not diagnostic.values.get("sample"), wrong_text
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_with_several_other_powers_an_example_is_used(place: str) -> None:
-    wrong = place.format("R(1)", p="50") + ";L(1, 30)"
-    diagnostic = next(diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake)
-    assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), wrong
+    wrong_text = place.format("R(1)", p="50") + ";L(1, 30)"
+    diagnostic = next(diagnostic for diagnostic in check(wrong_text) if diagnostic.is_mistake)
+    assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), (
+        wrong_text
+    )
 
 
 @pytest.mark.parametrize("place", SURROUNDINGS)

@@ -45,10 +45,10 @@ def test_a_paraphrased_key_becomes_its_reading_in_any_condition(key_text: str, s
 
 
 @pytest.mark.parametrize("key", ["KEY", "TECLA", "FLECHA", "SETA"])
-@pytest.mark.parametrize("other", [" = SPACE", "", " = 1", " == ENTER", "_ESPACIO", " = Z"])
-def test_an_unknown_key_is_reported_with_all_keys(key: str, other: str) -> None:
+@pytest.mark.parametrize("suffix", [" = SPACE", "", " = 1", " == ENTER", "_ESPACIO", " = Z"])
+def test_an_unknown_key_is_reported_with_all_keys(key: str, suffix: str) -> None:
     for place in PLACES:
-        text = place.replace("{}", key + other, 1).replace("{}", "KEY_A")
+        text = place.replace("{}", key + suffix, 1).replace("{}", "KEY_A")
         (diagnostic,) = check(text)
         key_text = message(diagnostic, Source(text), "en").message
         assert diagnostic.code.number == "TS103" and all(key in key_text for key in KEYS), text
@@ -61,10 +61,10 @@ def test_an_unknown_key_is_reported_with_all_keys(key: str, other: str) -> None:
 def test_an_instruction_for_a_key_gets_its_condition(side: str, order: str, sign: str) -> None:
     for key, word in product((*OF_KEYS, "KEY_"), SIDES[side]):
         text = f"KEY_{side}" if key == "KEY_" else f"{key} {word}"
-        wrong = f"SI|{text}{sign}{order}\nW(3)"
-        (diagnostic,) = check(wrong)
-        right = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
-        assert apply_edits(wrong, edits_of(diagnostic) or []) == right
+        wrong_text = f"SI|{text}{sign}{order}\nW(3)"
+        (diagnostic,) = check(wrong_text)
+        right_text = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
+        assert apply_edits(wrong_text, edits_of(diagnostic) or []) == right_text
         inside = f"SI|LOOP(FOREVER);{text}{sign}{order};END_LOOP"
         (diagnostic,) = check(inside)
         assert diagnostic.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
@@ -78,18 +78,18 @@ STICK = {"UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0", "LEFT": "PAD_X < 0", "RIGHT": "
 def test_a_side_of_the_stick_is_shown_as_its_number_and_as_an_arrow(stick: str, side: str) -> None:
     forms = ("{k} {s}", "{k}_{s}", "{k} = {s}", "{s} {k}", "{k}({s})", "{k} {s} = TRUE")
     for place, form, word in product(PLACES, forms, SIDES[side]):
-        wrong = place.replace("{}", form.format(k=stick, s=word), 1).replace("{}", "KEY_A")
-        (diagnostic,) = check(wrong)
+        wrong_text = place.replace("{}", form.format(k=stick, s=word), 1).replace("{}", "KEY_A")
+        (diagnostic,) = check(wrong_text)
         values = {"fix": STICK[side], "arrow": f"KEY_{side}"}
-        assert {name: diagnostic.values.get(name) for name in values} == values, wrong
-        assert repair_program(wrong, check).text == wrong
+        assert {name: diagnostic.values.get(name) for name in values} == values, wrong_text
+        assert repair_program(wrong_text, check).text == wrong_text
 
 
 @pytest.mark.parametrize("side", STICK)
 def test_an_axis_with_a_side_becomes_a_comparison(side: str) -> None:
     for place, form in product(PLACES, ("PAD_X {}", "PAD_X = {}", "STICK_X_{}", "PAD_Y == {}")):
-        wrong = place.replace("{}", form.replace("{}", side), 1).replace("{}", "KEY_A")
-        (diagnostic,) = check(wrong)
+        wrong_text = place.replace("{}", form.replace("{}", side), 1).replace("{}", "KEY_A")
+        (diagnostic,) = check(wrong_text)
         assert (diagnostic.values["fix"], diagnostic.values["arrow"]) == (STICK[side], "")
 
 

@@ -48,11 +48,14 @@ def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
 ) -> None:
     lines = ["SI|S", outer[0], inner[0], "F(1, 60)", "{}", *rest.split(";"), "{}", "BEEP(1, 440)"]
     text = separator.join(lines)
-    wrong, right = text.format(outer[1], inner[1]), text.format(inner[1], outer[1])
-    assert not any(diagnostic.is_mistake for diagnostic in check(right))
-    (diagnostic,) = check(wrong)
+    wrong_text, right_text = text.format(outer[1], inner[1]), text.format(inner[1], outer[1])
+    assert not any(diagnostic.is_mistake for diagnostic in check(right_text))
+    (diagnostic,) = check(wrong_text)
     assert diagnostic.code.number == "TS026" and diagnostic.values["swapped"] == inner[1]
-    assert apply_fix(wrong, diagnostic) == right and repair_program(wrong, check).text == wrong
+    assert (
+        apply_fix(wrong_text, diagnostic) == right_text
+        and repair_program(wrong_text, check).text == wrong_text
+    )
 
 
 def test_crossed_ends_are_reported_beside_other_mistakes() -> None:
@@ -81,9 +84,9 @@ def test_an_unmatched_end_or_one_across_a_branch_is_not_swapped() -> None:
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{}", "SI|LOOP(2)\n{}\nEND_LOOP", "{};W(1)"])
 def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, template: str) -> None:
     asked_text = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
-    wrong = template.format(f"{word}({asked_text})")
-    right = template.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
-    assert apply_fix(wrong, check(wrong)[0]).replace("; ", ";") == right
+    wrong_text = template.format(f"{word}({asked_text})")
+    right_text = template.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
+    assert apply_fix(wrong_text, check(wrong_text)[0]).replace("; ", ";") == right_text
 
 
 def test_text_after_the_closing_bracket_is_outside_the_branch() -> None:
@@ -98,9 +101,11 @@ def test_text_after_the_closing_bracket_is_outside_the_branch() -> None:
 @pytest.mark.parametrize("value", ["40", "V + 1", "DISTANCE"])
 def test_a_def_with_one_value_that_is_assigned_is_called(separator: str, value: str) -> None:
     lines = ["SI|DEF PASSO(N)", "F(N CM, 60)", "END_DEF", "V = 3", f"PASSO = {value}", "S"]
-    wrong = separator.join(lines)
-    assert codes_and_fixes(wrong)[0] == ("TS110", f"PASSO({value})")
-    assert apply_fix(wrong, check(wrong)[0]) == wrong.replace(f"PASSO = {value}", f"PASSO({value})")
+    wrong_text = separator.join(lines)
+    assert codes_and_fixes(wrong_text)[0] == ("TS110", f"PASSO({value})")
+    assert apply_fix(wrong_text, check(wrong_text)[0]) == wrong_text.replace(
+        f"PASSO = {value}", f"PASSO({value})"
+    )
 
 
 def test_a_variable_named_like_a_def_is_renamed() -> None:
@@ -150,10 +155,10 @@ def test_a_variable_x_is_only_shown_as_a_sign() -> None:
 def test_a_unit_stays_with_its_number_and_the_alternative_is_shown(
     word: str, unit: str, template: str, power: str, way: str
 ) -> None:
-    wrong = template.format(f"{word}({power}, {way} {unit})")
+    wrong_text = template.format(f"{word}({power}, {way} {unit})")
     own_reading, other_reading = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
-    assert codes_and_fixes(wrong) == [("TS076", f"{own_reading} or {other_reading}")]
-    assert repair_program(wrong, check).text == wrong
+    assert codes_and_fixes(wrong_text) == [("TS076", f"{own_reading} or {other_reading}")]
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
@@ -162,10 +167,13 @@ def test_a_unit_stays_with_its_number_and_the_alternative_is_shown(
 def test_a_tiny_value_is_not_the_power_if_another_number_fits(
     word: str, unit: str, template: str, little: str, power: str
 ) -> None:
-    wrong = template.format(f"{word}({little}, {power} {unit})")
-    first, other = f"{word}({little} {unit}, {power})", f"{word}({power} {unit}, {little})"
-    assert codes_and_fixes(wrong) == [("TS076", f"{first} or {other}")]
-    assert repair_program(wrong, check).text == wrong
+    wrong_text = template.format(f"{word}({little}, {power} {unit})")
+    first_reading, other_reading = (
+        f"{word}({little} {unit}, {power})",
+        f"{word}({power} {unit}, {little})",
+    )
+    assert codes_and_fixes(wrong_text) == [("TS076", f"{first_reading} or {other_reading}")]
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 def test_each_of_several_moves_has_both_readings() -> None:
@@ -273,14 +281,16 @@ def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(separator: str)
 
 
 @pytest.mark.parametrize(
-    ("call", "right"),
+    ("call", "right_text"),
     [("LADO(pot=60, lar=20)", "LADO(20, 60)"), ("LADO(20, pot = 60)", "LADO(20, 60)"),
      ("LADO(pot=60, 20)", "LADO(20, 60)"), ("LADO(LAR=V + 1, POT=60)", "LADO(V + 1, 60)")],
 )  # fmt: skip
 @pytest.mark.parametrize("separator", SEPARATORS)
-def test_named_values_of_a_def_are_put_in_its_order(call: str, right: str, separator: str) -> None:
+def test_named_values_of_a_def_are_put_in_its_order(
+    call: str, right_text: str, separator: str
+) -> None:
     lines = ["SI|DEF LADO(LAR, POT)", "F(LAR CM, POT)", "END_DEF", "V = 4", call]
-    assert codes_and_fixes(separator.join(lines)) == [("TS052", right)]
+    assert codes_and_fixes(separator.join(lines)) == [("TS052", right_text)]
     assert not check("DEF A(Q);IF(Q);S;ENDIF;END_DEF;X = 3;A(X = 3)")
 
 
@@ -328,8 +338,8 @@ def test_the_question_after_until_is_shown(asked_text: str, next_move: str) -> N
     "other_statement", ["W(9) UNTIL(DISTANCE < {})", "IF(DISTANCE < {});S;ENDIF"]
 )
 def test_an_example_uses_the_number_of_the_program(number: str, other_statement: str) -> None:
-    other = other_statement.format(number)
-    for text in (f"SI|F(FOREVER, 50);{other}", f"SI|{other}\nB(FOREVER, 50)"):
+    other_line = other_statement.format(number)
+    for text in (f"SI|F(FOREVER, 50);{other_line}", f"SI|{other_line}\nB(FOREVER, 50)"):
         assert codes_and_fixes(text)[0][1].endswith(f"UNTIL(DISTANCE < {number})")
     assert codes_and_fixes("SI|F(FOREVER, 50)")[0][1].startswith(
         "F(FOREVER, 50) UNTIL(DISTANCE < 10)"
@@ -352,12 +362,12 @@ CONDITION_TEMPLATES = [
 @pytest.mark.parametrize("place", ["SI|{}", "SI|W(1);{}", "SI|W(1)\n{}"])
 @pytest.mark.parametrize("text", CONDITION_TEMPLATES)
 def test_a_yes_no_may_replace_any_comparison(text: str, place: str) -> None:
-    wrong = place.format(text)
-    compared = [fix for _, fix in codes_and_fixes(wrong.format(COMPARISON))]
+    wrong_text = place.format(text)
+    compared = [fix for _, fix in codes_and_fixes(wrong_text.format(COMPARISON))]
     assert compared and COMPARISON in compared[0]
     for question in ("KEY_A", "NOT KEY_LEFT", "KEY_UP AND KEY_B"):
         as_compared = [fix.replace(COMPARISON, question) for fix in compared]
-        assert [fix for _, fix in codes_and_fixes(wrong.format(question))] == as_compared
+        assert [fix for _, fix in codes_and_fixes(wrong_text.format(question))] == as_compared
 
 
 @pytest.mark.sampled("order", keep=2)

@@ -55,9 +55,11 @@ def add_labels(label: str, program: tuple[str, ...]) -> list[str]:
 @pytest.mark.parametrize("label", LABELS)
 def test_a_label_is_removed_anywhere(label: str) -> None:
     for program, (begun_text, separator) in product(PROGRAMS, PLACES):
-        wrong = begun_text + separator.join(add_labels(label, program))
-        assert {diagnostic.code.number for diagnostic in check(wrong)} == {"TS054"}, wrong
-        assert repair_program(wrong, check).text == begun_text + separator.join(program), wrong
+        wrong_text = begun_text + separator.join(add_labels(label, program))
+        assert {diagnostic.code.number for diagnostic in check(wrong_text)} == {"TS054"}, wrong_text
+        assert repair_program(wrong_text, check).text == begun_text + separator.join(program), (
+            wrong_text
+        )
 
 
 @pytest.mark.parametrize("label", LABELS)

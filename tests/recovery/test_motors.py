@@ -29,10 +29,12 @@ POWERS = (("60", "60"), ("-30", "45"))
 def test_a_pair_of_motor_commands_becomes_one_m(pair: tuple[str, str], place: str) -> None:
     for separator, (left, right), is_turned in product(SEPARATORS, POWERS, (False, True)):
         calls = (f"{pair[0]}({left})", f"{pair[1]}({right})")
-        wrong = place.format(separator.join(calls[::-1] if is_turned else calls))
-        edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
-        assert apply_edits(wrong, edits) == place.format(f"M({left}, {right})"), wrong
-        assert repair_program(wrong, check).text == wrong  # elsewhere its power is not a percentage
+        wrong_text = place.format(separator.join(calls[::-1] if is_turned else calls))
+        edits = [edit for diagnostic in check(wrong_text) for edit in edits_of(diagnostic) or []]
+        assert apply_edits(wrong_text, edits) == place.format(f"M({left}, {right})"), wrong_text
+        assert (
+            repair_program(wrong_text, check).text == wrong_text
+        )  # elsewhere its power is not a percentage
 
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
@@ -66,9 +68,9 @@ OFF = ("stop()", "mBot.stop()", "S", "parar()")
 @pytest.mark.parametrize("off", OFF)
 def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:
     for separator, (on, word), (wait, time) in product(SEPARATORS, ON.items(), WAITS.items()):
-        wrong = place.format(separator.join((f"{on}(50)", wait, off)))
-        edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
-        assert apply_edits(wrong, edits) == place.format(f"{word}({time}, 50)"), wrong
+        wrong_text = place.format(separator.join((f"{on}(50)", wait, off)))
+        edits = [edit for diagnostic in check(wrong_text) for edit in edits_of(diagnostic) or []]
+        assert apply_edits(wrong_text, edits) == place.format(f"{word}({time}, 50)"), wrong_text
         twice = place.format(separator.join((f"{on}(50)", wait, "left(40)", wait, off)))
         edits = [edit for diagnostic in check(twice) for edit in edits_of(diagnostic) or []]
         assert apply_edits(twice, edits) == place.format(f"{word}({time}, 50);L({time}, 40)"), twice
@@ -82,5 +84,5 @@ def test_no_move_is_made_without_power_wait_and_end(text: str) -> None:
 
 
 def test_a_word_defined_by_the_program_switches_no_motor() -> None:
-    wrong = "DEF GO(X);F(X, 60);END_DEF;GO(50);W(2);S;F(2 80)"
-    assert [diagnostic.values.get("fix") for diagnostic in check(wrong)] == ["F(2, 80)"]
+    wrong_text = "DEF GO(X);F(X, 60);END_DEF;GO(50);W(2);S;F(2 80)"
+    assert [diagnostic.values.get("fix") for diagnostic in check(wrong_text)] == ["F(2, 80)"]

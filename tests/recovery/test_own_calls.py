@@ -33,11 +33,13 @@ def program(head: str, call: str, count: int) -> str:
 @each_row("count, joint, other", product(ARGUMENT_COUNTS, JOINTS, JOINTS))
 def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other: str) -> None:
     names, numbers = NAMES[:count], NUMBERS[:count]
-    right = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
+    right_text = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
     bare = {"head": f" {joint.join(names)}", "call": f" {other.join(numbers)}"}
     for lacks in ({"head"}, {"call"}, {"head", "call"}):
-        wrong = program(count=count, **{**right, **{it: bare[it] for it in lacks}})
-        assert repair_program(wrong, check).text == program(count=count, **right), wrong
+        wrong_text = program(count=count, **{**right_text, **{it: bare[it] for it in lacks}})
+        assert repair_program(wrong_text, check).text == program(count=count, **right_text), (
+            wrong_text
+        )
 
 
 CALL_SLIPS = (
@@ -142,27 +144,27 @@ def test_wrong_text_after_a_defs_name_is_reported_with_the_right_header(
 ) -> None:
     """Default values of Python for calls without any. All names are known below."""
     names = NAMES[:count]
-    right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
+    right_text = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for place in range(count):
-        wrong = right.replace(names[place], names[place] + extra, 1)
-        (diagnostic,) = check(wrong)
-        assert diagnostic.code.number == "TS091", wrong
-        assert diagnostic.values["fix"] == right.split("\n")[0], wrong
+        wrong_text = right_text.replace(names[place], names[place] + extra, 1)
+        (diagnostic,) = check(wrong_text)
+        assert diagnostic.code.number == "TS091", wrong_text
+        assert diagnostic.values["fix"] == right_text.split("\n")[0], wrong_text
 
 
 @pytest.mark.parametrize("count", range(2, PARAMETERS + 1))
 def test_a_missing_comma_in_a_def_is_shown_in_its_header(count: int) -> None:
     names = NAMES[:count]
-    right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
+    right_text = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for bits in range(1, 1 << (count - 1)):
         joints = [" " if bits >> k & 1 else ", " for k in range(count - 1)]
         head = "".join(map("".join, zip(names, [*joints, ""], strict=True)))
-        wrong = right.replace(", ".join(names), head, 1)
-        (diagnostic,) = check(wrong)
+        wrong_text = right_text.replace(", ".join(names), head, 1)
+        (diagnostic,) = check(wrong_text)
         assert (diagnostic.code.number, diagnostic.values["fix"]) == (
             "TS017",
-            right.split("\n")[0],
-        ), wrong
+            right_text.split("\n")[0],
+        ), wrong_text
 
 
 @pytest.mark.parametrize("word", sorted(word for word in WORDS if WORDS[word].is_call))
@@ -175,10 +177,10 @@ def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, co
     call = f"({', '.join(NUMBERS[:count])})" if count else ""
     inside = f"F({NAMES[0]} CM, 60)" if count else "F(30 CM, 60)"
     program = f"DEF {{0}}{head}\n{inside}\nEND_DEF\nW(1)\n{{0}}{call}\n{{0}}{call}"
-    wrong = program.format(word)
-    (diagnostic,) = check(wrong)
+    wrong_text = program.format(word)
+    (diagnostic,) = check(wrong_text)
     assert diagnostic.code.number == "TS105"
-    repaired_text = apply_edits(wrong, edits_of(diagnostic) or [])
+    repaired_text = apply_edits(wrong_text, edits_of(diagnostic) or [])
     assert repaired_text == program.format(f"{word}_1")
     assert not [diagnostic for diagnostic in check(repaired_text) if diagnostic.is_mistake]
 
@@ -193,18 +195,20 @@ def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> No
     known_calls = ("F(2, 80)", "W(1)", "BEEP(1, 440)")
     for one, word, gap in product(known_calls, UNKNOWN_WORDS, (" ", "  ", "")):
         calls = (one, f"{word}(1, 60)", known_calls[0])
-        wrong = place.format(gap.join(calls))
-        first, *others = check(wrong)
-        assert first.code.number == "TS013", wrong
-        assert apply_edits(wrong, edits_of(first) or []) == place.format(";".join(calls)), wrong
-        assert [other.values.get("found") for other in others] == [word], wrong
+        wrong_text = place.format(gap.join(calls))
+        first, *others = check(wrong_text)
+        assert first.code.number == "TS013", wrong_text
+        assert apply_edits(wrong_text, edits_of(first) or []) == place.format(";".join(calls)), (
+            wrong_text
+        )
+        assert [diagnostic.values.get("found") for diagnostic in others] == [word], wrong_text
 
 
 @pytest.mark.parametrize("point", [". ", " . ", ".  "])
 @pytest.mark.parametrize(
-    "right", ["F(2, 80)", "B(1, 60)", "L(0.5, 60)", "BEEP(1, 440)", "M(50, -30)"]
+    "right_text", ["F(2, 80)", "B(1, 60)", "L(0.5, 60)", "BEEP(1, 440)", "M(50, -30)"]
 )
-def test_a_point_before_a_space_is_read_as_a_comma(right: str, point: str) -> None:
+def test_a_point_before_a_space_is_read_as_a_comma(right_text: str, point: str) -> None:
     for place in ("{}", "SI|{}", "W(1);{};S", "S\n{}\nS"):
-        wrong = place.format(right.replace(", ", point))
-        assert repair_program(wrong, check).text == place.format(right), wrong
+        wrong_text = place.format(right_text.replace(", ", point))
+        assert repair_program(wrong_text, check).text == place.format(right_text), wrong_text

@@ -70,7 +70,7 @@ def test_a_word_after_a_number_lacks_no_comma() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"),
+    ("wrong_text", "right_text"),
     [
         ("R(HALF TURN, 60)", "R(180 DEG, 60)"),
         ("SI|W(1); L(UNA VUELTA, 60)", "L(360 DEG, 60)"),
@@ -79,10 +79,10 @@ def test_a_word_after_a_number_lacks_no_comma() -> None:
         ("R(3/4 vuelta, 60)", "R(270 DEG, 60)"),
     ],
 )
-def test_a_fraction_of_a_turn_becomes_degrees(wrong: str, right: str) -> None:
-    (diagnostic,) = check(wrong)
-    assert diagnostic.values["fix"] == right
-    assert repair_program(wrong, check).text == wrong
+def test_a_fraction_of_a_turn_becomes_degrees(wrong_text: str, right_text: str) -> None:
+    (diagnostic,) = check(wrong_text)
+    assert diagnostic.values["fix"] == right_text
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 RENAMED = [
@@ -148,7 +148,7 @@ def test_sensors_that_no_kit_has_are_not_suggested(word: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "fix"),
+    ("wrong_text", "fix"),
     [
         ("F(2;80) R(1;50)", "F(2, 80);R(1, 50)"),  # `80)` is no number of a list
         ("IF RANDOM(1,2) = 1\nS\nENDIF", "IF(RANDOM(1, 2) = 1)"),
@@ -160,21 +160,23 @@ def test_sensors_that_no_kit_has_are_not_suggested(word: str) -> None:
         ("M(50, 80, 2 seg)", "M(50, 80);W(2);S"),
     ],
 )
-def test_suggestions_keep_everything_that_was_written(wrong: str, fix: str) -> None:
-    values = check(wrong)[0].values
+def test_suggestions_keep_everything_that_was_written(wrong_text: str, fix: str) -> None:
+    values = check(wrong_text)[0].values
     assert values.get("fix", values.get("example")) == fix
 
 
 @pytest.mark.parametrize(
-    ("wrong", "question"),
+    ("wrong_text", "question"),
     [
         ("IF(DISTANCE < 37 OR DARK);S;ENDIF", "DISTANCE < 37 OR LIGHT_L < 500"),
         ("IF(hay luz y DISTANCE < 37);S;ENDIF", "LIGHT_L > 500 AND DISTANCE < 37"),
         ("F(5, 60) UNTIL(DISTANCE < 37 o mucha luz)", "DISTANCE < 37 OR LIGHT_L > 500"),
     ],
 )
-def test_words_beside_a_comparison_become_conditions_beside_it(wrong: str, question: str) -> None:
-    (diagnostic,) = check(wrong)
+def test_words_beside_a_comparison_become_conditions_beside_it(
+    wrong_text: str, question: str
+) -> None:
+    (diagnostic,) = check(wrong_text)
     assert (diagnostic.code.number, diagnostic.values["question"]) == ("TS135", question)
 
 
@@ -196,7 +198,7 @@ def test_a_bare_end_closes_its_block() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "expected"),
+    ("wrong_text", "expected"),
     [
         ("F(5, 60) HASTA NEGRO", {"question": "LIGHT_L < 500", "another": "LIGHT_R < 500"}),
         ("F(5, 60) hasta la pared", {"question": "DISTANCE < 10"}),
@@ -206,13 +208,15 @@ def test_a_bare_end_closes_its_block() -> None:
         ("IF(COLOR = 37);S;ENDIF", {"question": None}),
     ],
 )
-def test_words_in_conditions_refer_to_their_sensor(wrong: str, expected: dict[str, str]) -> None:
-    values = check(wrong)[0].values
+def test_words_in_conditions_refer_to_their_sensor(
+    wrong_text: str, expected: dict[str, str]
+) -> None:
+    values = check(wrong_text)[0].values
     assert {name: values.get(name) for name in expected} == expected
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"),
+    ("wrong_text", "right_text"),
     [
         ("IF(SENSOR_LUZ_DERECHA > 37);S;ENDIF", "IF(LIGHT_R > 37);S;ENDIF"),
         ("IF(DISTANCE IS 37);S;ENDIF", "IF(DISTANCE = 37);S;ENDIF"),
@@ -235,12 +239,12 @@ def test_words_in_conditions_refer_to_their_sensor(wrong: str, expected: dict[st
         ("VARIAVEL X = 5\nF(X, 50)", "X = 5\nF(X, 50)"),
     ],
 )
-def test_unambiguous_repairs_are_applied(wrong: str, right: str) -> None:
-    assert repair_program(wrong, check).text == right
+def test_unambiguous_repairs_are_applied(wrong_text: str, right_text: str) -> None:
+    assert repair_program(wrong_text, check).text == right_text
 
 
 @pytest.mark.parametrize(
-    ("wrong", "expected"),
+    ("wrong_text", "expected"),
     [
         ("SPIN 360", {"to_left": "L(360 DEG, 60)", "to_right": "R(360 DEG, 60)"}),
         ("gira 2 vueltas", {"to_right": "R(720 DEG, 80)"}),
@@ -299,8 +303,10 @@ def test_unambiguous_repairs_are_applied(wrong: str, right: str) -> None:
         ),
     ],
 )
-def test_no_unintended_number_or_word_is_reported(wrong: str, expected: dict[str, str]) -> None:
-    diagnostics = check(wrong)
+def test_no_unintended_number_or_word_is_reported(
+    wrong_text: str, expected: dict[str, str]
+) -> None:
+    diagnostics = check(wrong_text)
     assert any(
         {name: it.values.get(name) for name in expected} == expected for it in diagnostics
     ), diagnostics

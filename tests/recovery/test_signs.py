@@ -40,14 +40,14 @@ def test_a_plus_before_a_number_is_removed(part: int) -> None:
                 continue
             if token.kind is not NUMBER or is_set:
                 continue
-            wrong = f"{text[: token.start]}+{text[token.start :]}"
-            diagnostics = check(wrong)
+            wrong_text = f"{text[: token.start]}+{text[token.start :]}"
+            diagnostics = check(wrong_text)
             assert [(diagnostic.code, diagnostic.span.start) for diagnostic in diagnostics] == [
                 (codes.EXTRA_WORD, token.start)
-            ], wrong
+            ], wrong_text
             assert (
-                apply_edits(wrong, edits_of(diagnostics[0]) or [])
-                == repair_program(wrong, check).text
+                apply_edits(wrong_text, edits_of(diagnostics[0]) or [])
+                == repair_program(wrong_text, check).text
                 == text
             )
             count += 1

@@ -34,12 +34,12 @@ def git(root: Path, *words: str) -> None:
     subprocess.run(["git", "-C", root, *identity_options, *words], check=True, capture_output=True)
 
 
-def replace_in_file(name: str, old: str, new: str) -> Callable[[Path], None]:
+def replace_in_file(name: str, old_text: str, new_text: str) -> Callable[[Path], None]:
     def change(root: Path) -> None:
         path = root / name
         text = path.read_text(encoding="utf-8")
-        assert old in text, (name, old)
-        path.write_text(text.replace(old, new), encoding="utf-8")
+        assert old_text in text, (name, old_text)
+        path.write_text(text.replace(old_text, new_text), encoding="utf-8")
 
     return change
 
@@ -108,12 +108,12 @@ WRONG_CHANGES: dict[str, Callable[[Path], object]] = {
 
 
 def test_each_release_problem_has_a_message(clone: Path) -> None:
-    for why, change in WRONG_CHANGES.items():
+    for problem, change in WRONG_CHANGES.items():
         change(clone)
         commit(clone)
         complaints = list(facts.release_problems(clone))
-        assert len(complaints) == 1 and why in complaints[0] and len(complaints[0]) < 200, (
-            why,
+        assert len(complaints) == 1 and problem in complaints[0] and len(complaints[0]) < 200, (
+            problem,
             complaints,
         )
         git(clone, "reset", "-q", "--hard", "HEAD~")

@@ -25,10 +25,10 @@ def folder(place: Path, names: list[str], when: int) -> Path:
 def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
     names = ["b.sh", "a/ñ.txt", "a/b.txt"]
     one = folder(tmp_path / "one", names, EPOCH + 1)
-    other = folder(tmp_path / "other place", names[::-1], 10_000)
+    other_folder = folder(tmp_path / "other place", names[::-1], 10_000)
     first = pack_folder(one, tmp_path / "x-1.zip", EPOCH)
     (tmp_path / "again").mkdir()
-    second = pack_folder(other, tmp_path / "again" / "x-1.zip", EPOCH)
+    second = pack_folder(other_folder, tmp_path / "again" / "x-1.zip", EPOCH)
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as zip_file:
         assert zip_file.namelist() == ["x-1/a/b.txt", "x-1/a/ñ.txt", "x-1/b.sh"]

@@ -64,10 +64,10 @@ def test_a_driver_without_sketch_support_is_named() -> None:
     for driver in DEVICES:
         robot = robot_with("l298n", [driver])
         board = robot.board
-        new = Wiring("new", {"left": 5}, {})
+        new_wiring = Wiring("new", {"left": 5}, {})
         board = board._replace(
-            sensors=(new,) * len(board.sensors),
-            actuators=(new,) * len(board.actuators),
+            sensors=(new_wiring,) * len(board.sensors),
+            actuators=(new_wiring,) * len(board.actuators),
         )
         with pytest.raises(LookupError, match="robots/drivers has no driver new"):
             firmware.header([robot._replace(board=board)], "a test.")

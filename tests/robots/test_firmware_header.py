@@ -79,9 +79,9 @@ def test_every_pin_of_the_profile_check_has_its_registers(board: str) -> None:
 
 def read_changed_profile(board: str, name: str = "tinibot", *changes: tuple[str, str]) -> Robot:
     text = re.sub(r'^chip *= *"\w+"', f'chip = "{board}"', TEXTS[name], flags=re.M)
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
+    for old_text, new_text in changes:
+        assert old_text in text
+        text = text.replace(old_text, new_text)
     return read(text, name)
 
 
@@ -109,8 +109,8 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
 
 def test_another_board_with_an_unos_chip_is_not_an_uno(monkeypatch: pytest.MonkeyPatch) -> None:
     """The liner's battery is on a pin that an Uno lacks, whatever other device uses that pin."""
-    other = CHIPS["nano"]._replace(name="promini")
-    monkeypatch.setitem(CHIPS, "promini", other)
+    other_chip = CHIPS["nano"]._replace(name="promini")
+    monkeypatch.setitem(CHIPS, "promini", other_chip)
     monkeypatch.setitem(AVRS, "promini", AVRS["nano"])
     header = firmware.header(
         [read_changed_profile(board, "liner") for board in ("nano", "promini")], "a test."
@@ -186,8 +186,10 @@ def test_two_echoes_share_their_interrupt_vectors() -> None:
     second = '[[kit.sensors]]\nname = "BEHIND"\nkind = "number"\nunit = "cm"\nrange = [0, 400]\n\n'
     text = TEXTS["tinibot"].replace("[board]\n", f"{second}[board]\n", 1)
     for echo, vectors in ((7, "each(PCINT2_vect)"), (12, "each(PCINT2_vect) each(PCINT0_vect)")):
-        more = f'[board.sensors.BEHIND]\ndriver = "hc_sr04"\ntrigger = "A3"\necho = {echo}\n\n'
-        changed_text = text.replace("[body]\n", f"{more}[body]\n", 1)
+        second_sonar = (
+            f'[board.sensors.BEHIND]\ndriver = "hc_sr04"\ntrigger = "A3"\necho = {echo}\n\n'
+        )
+        changed_text = text.replace("[body]\n", f"{second_sonar}[body]\n", 1)
         changed_text = changed_text.replace("left_forward = 7", 'left_forward = "A4"')
         changed_text = changed_text.replace("bluetooth_state = 12", 'bluetooth_state = "A5"')
         header = firmware.header([read(changed_text, "two")], "a test.")

@@ -96,12 +96,12 @@ def test_thinned_out_corners_keep_the_shape() -> None:
     way = Way(BODY)
     for k in range(1000):
         way.set_motors(k, 100, 100 - k % 2)
-    pose, last = way.pose(1000), way.corners[-1]
+    pose, last_corner = way.pose(1000), way.corners[-1]
     way.thin_out(800)
     assert len(way.corners) < 800
     assert way.corners[0] == START
-    assert way.corners[-1] == last
+    assert way.corners[-1] == last_corner
     assert way.pose(1000) == pose
     way.thin_out(10)
     assert len(way.corners) == 10
-    assert way.corners[-1] == last
+    assert way.corners[-1] == last_corner

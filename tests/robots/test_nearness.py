@@ -37,11 +37,13 @@ def test_common_parts_count_before_differing_ones() -> None:
     text = text.replace('BATTERY = "battery voltage"\n', "")
     nearest = nearest_to(read(text, "mine"))
     assert nearest == ("liner", False, ("LINE_L", "LINE_R", "BUTTON", "LED"), ("BATTERY",), ())
-    other = TEXTS["tinibot"].replace('"LIGHT_R"', '"LIGHT_B"', 1)
+    other_text = TEXTS["tinibot"].replace('"LIGHT_R"', '"LIGHT_B"', 1)
     for table in ("board.sensors.", "body.sensors."):
-        other = other.replace(f"[{table}LIGHT_R]", f"[{table}LIGHT_B]")
-    other = other.replace("\nLIGHT_R = {", "\nLIGHT_B = {").replace('LIGHT_R = "', 'LIGHT_B = "')
-    nearest = nearest_to(read(other, "mine"))
+        other_text = other_text.replace(f"[{table}LIGHT_R]", f"[{table}LIGHT_B]")
+    other_text = other_text.replace("\nLIGHT_R = {", "\nLIGHT_B = {").replace(
+        'LIGHT_R = "', 'LIGHT_B = "'
+    )
+    nearest = nearest_to(read(other_text, "mine"))
     assert nearest == ("tinibot", False, ("LIGHT_L", "DISTANCE"), ("LIGHT_R",), ("LIGHT_B",))
     range_of = TEXTS["grabber"].replace("range = [0, 180]", "range = [0, 90]")
     nearest = nearest_to(read(range_of, "mine"))

@@ -186,7 +186,7 @@ def test_timer_conflicts_of_an_uno_are_refused(
     assert f"which {first} uses." in sentence
 
 
-@pytest.mark.parametrize(("name", "old", "pin", "code"), [
+@pytest.mark.parametrize(("name", "old_text", "pin", "code"), [
     *(("tinibot32", "right_backward = 21", pin, "pin_at_boot") for pin in (0, 5, 12, 14, 15)),
     ("tinibot32", "left_pwm = 25", 12, "pin_at_boot"),
     ("tinibot32", "start_button = 4", 0, "pin_of_reset"),
@@ -205,13 +205,15 @@ def test_timer_conflicts_of_an_uno_are_refused(
     ("tinibotc3", "start_button = 8", 9, "pin_of_reset"),
     ("tinibotc3", "start_button = 8", 2, ""),
 ])  # fmt: skip
-def test_unsuitable_pins_of_esp32s_are_refused(name: str, old: str, pin: int, code: str) -> None:
+def test_unsuitable_pins_of_esp32s_are_refused(
+    name: str, old_text: str, pin: int, code: str
+) -> None:
     """A pin with a reset pulse starts no motor; flash, link, inputs and ADC2 are checked."""
-    key, _, left = old.partition(" = ")
-    text, count = re.subn(rf"(?m)^{old}\b", f"{key} = {pin}", TEXTS[name])
+    key, _, value_text = old_text.partition(" = ")
+    text, count = re.subn(rf"(?m)^{old_text}\b", f"{key} = {pin}", TEXTS[name])
     assert count == 1
     if (name, pin) == ("tinibotc3", 2):
-        text = text.replace("trigger = 2", f"trigger = {left}")
+        text = text.replace("trigger = 2", f"trigger = {value_text}")
     if not code:
         assert read(text, "test").board.chip.startswith("esp32")
         return
@@ -230,9 +232,12 @@ def test_too_many_pwm_pins_of_an_esp32_c3_are_refused() -> None:
     refusals = refusal(text)
     assert codes(refusals) == ["timers_used_up"]
     assert describe(refusals, "en")[0].startswith("board.actuators.FAN.pin is pin 9: its PWM needs")
-    for old, new in (("two_wire", "l298n"), ("left_forward = 3", "left_pwm = 3\nleft_forward = 6"),
-                     ("right_forward = 5", "right_pwm = 5\nright_forward = 2")):  # fmt: skip
-        text = text.replace(old, new)
+    for old_text, new_text in (
+        ("two_wire", "l298n"),
+        ("left_forward = 3", "left_pwm = 3\nleft_forward = 6"),
+        ("right_forward = 5", "right_pwm = 5\nright_forward = 2"),
+    ):
+        text = text.replace(old_text, new_text)
     assert "pin_at_boot" in codes(refusal(text)), "direction pins need no timer"
     dev = TEXTS["tinibot32"].partition("[board.sensors.LIGHT_R]")
     assert read(dev[0] + FAN.format(pin=22) + dev[1] + dev[2], "test").board.actuators
@@ -293,7 +298,7 @@ def test_a_refusal_names_the_next_step() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "old", "new", "sentences"),
+    ("name", "old_text", "new_text", "sentences"),
     [
         ("tinibot", "[board]", "[bord]", ["Did you mean board?"]),
         ("tinibot", "length_cm", "lenght_cm", ["Did you mean length_cm?"]),
@@ -307,8 +312,10 @@ def test_a_refusal_names_the_next_step() -> None:
          ["echo is missing", "Did you mean trigger?"]),
     ],
 )  # fmt: skip
-def test_one_mistake_is_one_complaint(name: str, old: str, new: str, sentences: list[str]) -> None:
-    complaints = describe(refusal(edit_profile(name, old, new)), "en")
+def test_one_mistake_is_one_complaint(
+    name: str, old_text: str, new_text: str, sentences: list[str]
+) -> None:
+    complaints = describe(refusal(edit_profile(name, old_text, new_text)), "en")
     assert len(complaints) == len(sentences), complaints
     for sentence, complaint in zip(sentences, complaints, strict=True):
         assert sentence in complaint
@@ -387,17 +394,17 @@ def mutate(text: str, chance: random.Random) -> str:
     for _ in range(chance.choice((1, 1, 2, 5, 20))):
         index = chance.randrange(len(lines))
         key, equals, _ = lines[index].partition("=")
-        how = chance.randrange(6)
-        if how == 0:
+        kind = chance.randrange(6)
+        if kind == 0:
             del lines[index]
-        elif how == 1:
+        elif kind == 1:
             lines.insert(chance.randrange(len(lines)), lines[index])
-        elif how == 2 and lines[index]:
+        elif kind == 2 and lines[index]:
             cut = chance.randrange(len(lines[index]))
             lines[index] = (
                 lines[index][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[index][cut + 1 :]
             )
-        elif how == 3:
+        elif kind == 3:
             lines[index] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[index])
         elif equals:
             lines[index] = f"{key}= {chance.choice(ODD_NUMBERS)}"

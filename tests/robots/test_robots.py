@@ -72,7 +72,7 @@ def test_a_shipped_robot_needs_no_toml() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old_text", "new_text"),
     [
         ('robot = "Grabber"', 'robot = "Big hand"'),
         ('LED = "lamp"', ""),
@@ -84,12 +84,17 @@ def test_a_shipped_robot_needs_no_toml() -> None:
         ("range = [-40, 125]", "range = [-40.000, 125.0]"),
     ],
 )
-def test_the_fingerprint_ignores_parts_that_programs_do_not_use(old: str, new: str) -> None:
-    assert read(edit_profile("grabber", old, new), "x").kit.fingerprint == FINGERPRINTS["grabber"]
+def test_the_fingerprint_ignores_parts_that_programs_do_not_use(
+    old_text: str, new_text: str
+) -> None:
+    assert (
+        read(edit_profile("grabber", old_text, new_text), "x").kit.fingerprint
+        == FINGERPRINTS["grabber"]
+    )
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old_text", "new_text"),
     [
         ('unit = "cm"', 'unit = "mm"'),
         ('unit = "cm"', ""),
@@ -99,8 +104,11 @@ def test_the_fingerprint_ignores_parts_that_programs_do_not_use(old: str, new: s
         ("range = [0, 180]", "range = [0, 181]"),
     ],
 )
-def test_the_fingerprint_covers_ranges_and_units(old: str, new: str) -> None:
-    assert read(edit_profile("grabber", old, new), "x").kit.fingerprint != FINGERPRINTS["grabber"]
+def test_the_fingerprint_covers_ranges_and_units(old_text: str, new_text: str) -> None:
+    assert (
+        read(edit_profile("grabber", old_text, new_text), "x").kit.fingerprint
+        != FINGERPRINTS["grabber"]
+    )
 
 
 def test_the_fingerprint_covers_names_kinds_and_order() -> None:

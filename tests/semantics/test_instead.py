@@ -38,8 +38,8 @@ def test_a_number_for_a_driven_distance_is_centimetres(
     (diagnostic,) = check(text)
     assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
-    right = template.format(f"{word}({value} CM, 60){separator}S")
-    assert apply_edits(text, diagnostic.repair.edits) == right and not mistakes(right)
+    right_text = template.format(f"{word}({value} CM, 60){separator}S")
+    assert apply_edits(text, diagnostic.repair.edits) == right_text and not mistakes(right_text)
 
 
 def test_each_use_up_to_the_next_assignment_is_rewritten() -> None:
@@ -90,12 +90,12 @@ def test_instructions_after_a_break_move_into_the_other_branch(
 ) -> None:
     text = template.format(separator.join([head, *inside, "BREAK", "ENDIF", *rest]))
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
-    right = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
-    assert diagnostic.values["fix"] == ";".join(right)
+    right_text = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
+    assert diagnostic.values["fix"] == ";".join(right_text)
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
     joined_text = text_after.replace("\n", ";").replace("; ", ";")
-    assert joined_text == template.format(";".join(right)).replace("; ", ";")
+    assert joined_text == template.format(";".join(right_text)).replace("; ", ";")
     assert not mistakes(text_after)
 
 
@@ -110,8 +110,8 @@ def test_comments_around_a_break_are_kept(
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
-    last = " // it ends" if inside else "S // it ends"
-    lines = [head, *inside, last, "ELSE // if", *rest, "ENDIF"]
+    last_comment = " // it ends" if inside else "S // it ends"
+    lines = [head, *inside, last_comment, "ELSE // if", *rest, "ENDIF"]
     assert text_after == template.format("\n".join(lines))
     assert not mistakes(text_after)
     plain = [line.partition(" //")[0] for line in (*(inside or ["S"]), "ELSE", *rest)]
@@ -195,8 +195,8 @@ def test_a_number_in_a_def_is_also_named_in_its_body(
     fix = fix_of(text, lang)
     assert inside.format(name).split(";")[0] in fix and f"DEF SIDE({name})" in fix
     assert "SIDE(40)" in fix
-    right = text.replace("DEF SIDE(40)", f"DEF SIDE({name})")
-    assert not mistakes(right.replace(inside.format("40"), inside.format(name)))
+    right_text = text.replace("DEF SIDE(40)", f"DEF SIDE({name})")
+    assert not mistakes(right_text.replace(inside.format("40"), inside.format(name)))
 
 
 def test_another_number_of_the_body_is_not_named() -> None:
@@ -209,9 +209,11 @@ def test_another_number_of_the_body_is_not_named() -> None:
 
 
 @pytest.mark.parametrize("place", ["SI|{}", "W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"])
-@pytest.mark.parametrize("other", ["D(1, 50)", "I(1, 50)", "d(2, 30)"])
-def test_the_letter_a_beside_another_initial_means_forward(place: str, other: str) -> None:
-    for first, second in (("A(2, 70)", other), (other, "a(2, 70)")):
+@pytest.mark.parametrize("other_statement", ["D(1, 50)", "I(1, 50)", "d(2, 30)"])
+def test_the_letter_a_beside_another_initial_means_forward(
+    place: str, other_statement: str
+) -> None:
+    for first, second in (("A(2, 70)", other_statement), (other_statement, "a(2, 70)")):
         text = place.format(f"{first};{second}")
         near = {it.values["found"]: it.values.get("near") for it in check(text)}
         assert near["A"] == "F", text

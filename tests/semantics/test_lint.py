@@ -160,10 +160,15 @@ def test_a_kit_without_speeds_uses_a_usual_speed() -> None:
 
 
 def test_warnings_are_for_right_programs_only() -> None:
-    wrong = check_text("X = 5;S = 5", KIT)
-    assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]
-    assert wrong.program is not None
-    assert lint(wrong.program, KIT, wrong.source, scan(wrong.source.text))
+    wrong_compilation = check_text("X = 5;S = 5", KIT)
+    assert [diagnostic.is_mistake for diagnostic in wrong_compilation.diagnostics] == [True]
+    assert wrong_compilation.program is not None
+    assert lint(
+        wrong_compilation.program,
+        KIT,
+        wrong_compilation.source,
+        scan(wrong_compilation.source.text),
+    )
 
 
 @each_row(
@@ -216,8 +221,8 @@ def test_a_while_that_its_moves_never_end_is_inverted(word: str, sign: str) -> N
         ]
         assert bool(diagnostics) is is_turned, text
         for diagnostic in diagnostics:
-            right = text.replace(f"WHILE(DISTANCE {sign} 20)", diagnostic.values["fix"])
-            assert "TS824" not in warnings_of(right), right
+            right_text = text.replace(f"WHILE(DISTANCE {sign} 20)", diagnostic.values["fix"])
+            assert "TS824" not in warnings_of(right_text), right_text
         for other in (f"{move};R(0.2, 60)", f"IF(LIGHT_L > 9);S;ENDIF;{move}", f"{move};BREAK"):
             assert "TS824" not in warnings_of(f"WHILE(DISTANCE {sign} 20);{other};END_WHILE"), other
         assert "TS824" not in warnings_of(f"IF(DISTANCE < 50);{text};ENDIF")
@@ -281,10 +286,12 @@ def test_a_past_time_is_reported_with_later_instructions(past: str, limit: int) 
 def test_an_else_between_two_bounds_is_reachable(
     signs: str, value: str, first: int, second: int
 ) -> None:
-    one, other = signs.split()
-    arms = f"IF({value} {one} {first});F(1, 60);ELSEIF({value} {other} {second});L(1, 60)"
+    first_sign, second_sign = signs.split()
+    arms = (
+        f"IF({value} {first_sign} {first});F(1, 60);ELSEIF({value} {second_sign} {second});L(1, 60)"
+    )
     text = f"LOOP(3);D = DISTANCE;{arms};ELSE;R(1, 60);ENDIF;END_LOOP;SHOW(D)"
-    is_exact = first == second and {one, other} == {"<", ">"}
+    is_exact = first == second and {first_sign, second_sign} == {"<", ">"}
     assert ("TS825" in warnings_of(text)) is is_exact, text
     assert "TS825" not in warnings_of(text.replace(";ELSE;R(1, 60)", ""))
 

@@ -56,13 +56,17 @@ def test_a_program_without_remote_readings_has_an_unchanged_image(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Byte for byte that of a robot without a remote control."""
-    texts = [old for old in released_programs() if not re.search("(?i)KEY_|PAD_", old.text)]
+    texts = [
+        released
+        for released in released_programs()
+        if not re.search("(?i)KEY_|PAD_", released.text)
+    ]
     assert len(texts) > 300
 
     def images() -> list[tuple[bytes, bytes]]:
         image_pairs = []
-        for old in texts:
-            compilation = compile_text(old.text, robots.load(old.robot).kit)
+        for released in texts:
+            compilation = compile_text(released.text, robots.load(released.robot).kit)
             plain = b"" if compilation.program is None else plain_code(compilation.program).code
             image_pairs.append((compilation.image, plain if compilation.is_right else b""))
         return image_pairs
@@ -146,9 +150,9 @@ def test_a_word_of_the_profile_keeps_its_meaning(is_actuator: bool) -> None:
     assert compilation.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
     wanted_code = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
     assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted_code.number]
-    other = compile_text("SHOW(KEY_B)", kit)
-    assert other.verdict is not None
-    assert other.verdict.uses == (("sensor", 5 if is_actuator else 6),)
+    other_compilation = compile_text("SHOW(KEY_B)", kit)
+    assert other_compilation.verdict is not None
+    assert other_compilation.verdict.uses == (("sensor", 5 if is_actuator else 6),)
 
 
 def test_an_image_whose_numbers_have_other_meanings_is_refused() -> None:

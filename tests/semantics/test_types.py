@@ -18,9 +18,9 @@ def list_offers(text: str) -> list[object]:
 @pytest.mark.parametrize(("length", "fix"), [(78, "X = 6"), (80, "X = 6"), (81, None), (82, None)])
 def test_a_shortened_condition_is_completed_for_the_second_number(length: int, fix: object) -> None:
     digits = "1" if length % 2 else "11"
-    left = "X = " + "1+" * ((length - 5) // 2) + digits
-    assert len(left) == length
-    assert list_offers(f"X = 1; IF({left} OR 6); S; ENDIF") == [fix]
+    left_side = "X = " + "1+" * ((length - 5) // 2) + digits
+    assert len(left_side) == length
+    assert list_offers(f"X = 1; IF({left_side} OR 6); S; ENDIF") == [fix]
 
 
 def test_the_position_of_a_condition_does_not_matter() -> None:

@@ -64,8 +64,8 @@ def test_another_word_with_the_row_of_beep_is_checked_alike() -> None:
     texts += ["SI|X = DISTANCE;" + place.format(call) for place, call in product(PLACES, calls)]
     codes = set()
     for text in texts:
-        theirs = codes_in(text)
-        assert codes_in(re.sub(r"\bBEEP\b", TOOT.text, text)) == theirs, text
+        beep_codes = codes_in(text)
+        assert codes_in(re.sub(r"\bBEEP\b", TOOT.text, text)) == beep_codes, text
         codes |= codes_of(text)
     assert len(codes) > 15, codes
 

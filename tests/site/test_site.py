@@ -73,9 +73,9 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
     context = browser.new_context(service_workers="block")
     opened_page = context.new_page()
     questions: list[str] = []
-    wrong: list[str] = []
+    errors: list[str] = []
     opened_page.on("request", lambda request: questions.append(request.url))
-    opened_page.on("pageerror", lambda failure: wrong.append(str(failure)))
+    opened_page.on("pageerror", lambda failure: errors.append(str(failure)))
     yield opened_page
     context.close()
     assert questions
@@ -84,7 +84,7 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
         for address_asked in questions
         if not address_asked.startswith((address, "data:"))
     ] == []
-    assert wrong == []
+    assert errors == []
 
 
 def test_every_document_is_on_the_site_in_a_section(site_folder: Path) -> None:
@@ -126,11 +126,11 @@ def test_a_broken_internal_link_fails_the_build(
         site.build(clone, tmp_path / "site", has_studio=False)
     # Files that Sphinx reads itself.
     store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
-    with pytest.raises(CannotMake) as why:
+    with pytest.raises(CannotMake) as error_info:
         site.build(clone, tmp_path / "site", has_studio=False)
-    assert "elsewhere" in str(why.value)
-    assert "strange" in str(why.value)
-    assert len(str(why.value).splitlines()) <= 4, why.value
+    assert "elsewhere" in str(error_info.value)
+    assert "strange" in str(error_info.value)
+    assert len(str(error_info.value).splitlines()) <= 4, error_info.value
     assert not (tmp_path / "site").exists()
 
 

@@ -72,8 +72,10 @@ def test_unused_helpers_are_not_written() -> None:
 def test_a_final_loop_becomes_the_loop_function() -> None:
     text = sketch("SI|W(1);LOOP(FOREVER);F(1, 80);END_LOOP")
     assert part(text, "void loop()") == ["  forward(1, 80);"]
-    left = sketch("SI|LOOP(FOREVER);F(1, 80);BREAK;END_LOOP")
-    assert part(left, "void loop()") == [] and "  while (true) {" in part(left, "void setup()")
+    broken_sketch = sketch("SI|LOOP(FOREVER);F(1, 80);BREAK;END_LOOP")
+    assert part(broken_sketch, "void loop()") == [] and "  while (true) {" in part(
+        broken_sketch, "void setup()"
+    )
 
 
 def test_a_while_takes_its_reading_in_its_condition() -> None:

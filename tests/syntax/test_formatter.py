@@ -229,9 +229,11 @@ def with_other_layout(rng: random.Random, text: str) -> str:
     brackets, text_before = 0, ""
     for kind, written_text in code_of(text):
         if kind == ";":
-            ends = [rng.choice((";", line_end(), line_end()))]
-            ends += [rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)]
-            out += ends
+            line_ends = [rng.choice((";", line_end(), line_end()))]
+            line_ends += [
+                rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)
+            ]
+            out += line_ends
         else:
             if (text_before[-1:].isalnum() or text_before[-1:] == "_") and written_text[
                 0

@@ -131,8 +131,8 @@ def test_operands_to_7_are_part_of_the_code() -> None:
 
 def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:
     text = "IF(FALSE); C = 1; ENDIF; DEF D; A = 2; END_DEF; E = 3; SHOW(A); SHOW(C)"
-    last = disassemble(plain_of(text).code).splitlines()[-6:]
-    assert [row[25:] for row in last] == [
+    last_rows = disassemble(plain_of(text).code).splitlines()[-6:]
+    assert [row[25:] for row in last_rows] == [
         "PUSH_NUM_3", "SET_VAR_2", "PUSH_VAR_1", "SHOW", "PUSH_VAR_0", "SHOW"
     ]  # fmt: skip
 

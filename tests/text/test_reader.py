@@ -43,9 +43,9 @@ def add_checksum(line: bytes) -> bytes:
 # -- lines --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("end", [b"\n", b"\r", b"\r\n"])
-def test_all_line_ends_are_accepted(end: bytes) -> None:
-    answers = read_lines(KIT, end.join([b"F(2, 80)", b"SB|S", b""]))
+@pytest.mark.parametrize("closing", [b"\n", b"\r", b"\r\n"])
+def test_all_line_ends_are_accepted(closing: bytes) -> None:
+    answers = read_lines(KIT, closing.join([b"F(2, 80)", b"SB|S", b""]))
     assert [answer.start for answer in answers] == ["SI", "SB"]
 
 
@@ -275,8 +275,10 @@ def test_a_reader_without_defs_reads_everything_else() -> None:
     for text in (*texts, *PROBLEM_BY_LINE, *cases):
         answer, words = small.read(text.encode()), {token.text for token in scan(text).tokens}
         if text in texts or not (lacks | UNREAD_WORDS) & words:
-            other = large.read(text.encode())  # on this robot, FOREVER waits for tasks
-            assert answer == other or (answer.problem == "FOREVER_HERE" and other.problem), text
+            other_answer = large.read(text.encode())  # on this robot, FOREVER waits for tasks
+            assert answer == other_answer or (
+                answer.problem == "FOREVER_HERE" and other_answer.problem
+            ), text
         else:
             assert answer.problem, text
     small.close()
@@ -311,7 +313,7 @@ def chain(calls: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("right", "wrong"),
+    ("right_text", "wrong_text"),
     [
         (";".join(f"V{k}=1" for k in range(32)), ";".join(f"V{k}=1" for k in range(33))),
         (blocks(16), blocks(17)),
@@ -340,17 +342,17 @@ def chain(calls: int) -> str:
          "DEF A(P,Q,T,U);END_DEF;A(1,2,3," + "(1+" * 13 + "1" + ")" * 13 + ")"),
     ],
 )  # fmt: skip
-def test_limits_of_the_language_are_kept(right: str, wrong: str) -> None:
-    assert answer_to(right).is_program
-    assert answer_to(wrong).problem == "LIMIT"
+def test_limits_of_the_language_are_kept(right_text: str, wrong_text: str) -> None:
+    assert answer_to(right_text).is_program
+    assert answer_to(wrong_text).problem == "LIMIT"
 
 
 def test_a_name_may_begin_in_the_deepest_block() -> None:
     """All that waits makes room for it: 16 blocks that count, and a DEF."""
-    begin, end = "DEF A;" + "LOOP(2);" * 16, "END_LOOP;" * 16 + "END_DEF;A"
+    opening, closing = "DEF A;" + "LOOP(2);" * 16, "END_LOOP;" * 16 + "END_DEF;A"
     early, late = (
-        [row.split()[0] for row in code_of(text + end)]
-        for text in (f"V=1;{begin}S;", f"{begin}V=1;S;")
+        [row.split()[0] for row in code_of(text + closing)]
+        for text in (f"V=1;{opening}S;", f"{opening}V=1;S;")
     )
     opened_count = 2 + 1 + 2 * 16
     assert late == early[2:opened_count] + early[:2] + early[opened_count:]
@@ -472,11 +474,12 @@ def test_the_values_of_a_call_are_set_one_after_the_other() -> None:
 
 
 def test_tasks_may_have_different_defs_with_values() -> None:
-    begin = "DEF A(X);END_DEF;DEF C(X);A(X);END_DEF;DEF G(X);END_DEF;"
-    assert answer_to(begin + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
-    assert answer_to(begin + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
+    opening = "DEF A(X);END_DEF;DEF C(X);A(X);END_DEF;DEF G(X);END_DEF;"
+    assert answer_to(opening + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
+    assert answer_to(opening + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
     assert (
-        answer_to(begin + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem == "ONE_TASK"
+        answer_to(opening + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem
+        == "ONE_TASK"
     )
 
 

@@ -132,8 +132,8 @@ def test_random_tokens(first: int) -> None:
 def test_every_byte_and_pair_of_bytes(text: bytes) -> None:
     for byte in range(256):
         check_bytes(text % bytes((byte,)), KITS[1][1])
-        for other in b"\x00\x02\x80\x93\xa0\xbf\xc2\xe2 /=9A":
-            check_bytes(text % bytes((byte, other)), KITS[1][1])
+        for other_byte in b"\x00\x02\x80\x93\xa0\xbf\xc2\xe2 /=9A":
+            check_bytes(text % bytes((byte, other_byte)), KITS[1][1])
 
 
 @pytest.mark.parametrize(

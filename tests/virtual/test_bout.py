@@ -85,17 +85,17 @@ def test_observers_change_nothing(seed: int) -> None:
         powers(draw),
         robots.load(draw.choice(robots.names())).body,
     )
-    ends = []
+    end_states = []
     for look_count in (0, 3, 40):
         driving, watch = driving_in(body, world), random.Random(seed + look_count)
         for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
             driving.set_motors(ms, left, right)
             for at_ms in sorted(watch.sample(range(ms, until), min(look_count, until - ms))):
                 driving.pose_at(at_ms) if watch.random() < 0.5 else driving.advance_to(at_ms)
-        ends.append(
+        end_states.append(
             (driving.advance_to(9000), rivals_of(driving), driving.bumps, driving.has_fallen)
         )
-    assert ends[0] == ends[1] == ends[2]
+    assert end_states[0] == end_states[1] == end_states[2]
 
 
 @pytest.mark.sampled("name", keep=3)
@@ -103,14 +103,16 @@ def test_observers_change_nothing(seed: int) -> None:
 def test_a_program_among_rivals_is_reproducible(name: str) -> None:
     """For every robot, in the shipped world and from its own sensors."""
     image = compile("SI|LOOP(40);M(80,60);W(0.1);M(-20,90);W(0.05);END_LOOP", name).image
-    ends = []
+    end_states = []
     for pauses in ([7000], [13] * 500 + [500]):
         simulation = Simulation(name, worlds.load("sumo"), image)
         for pause in pauses:
             simulation.advance(pause)
         state = simulation.state()
-        ends.append({key: state[key] for key in ("now_ms", "pose", "rivals", "score", "readings")})
-    assert ends[0] == ends[1]
+        end_states.append(
+            {key: state[key] for key in ("now_ms", "pose", "rivals", "score", "readings")}
+        )
+    assert end_states[0] == end_states[1]
 
 
 # -- bodies ----------------------------------------------------------------------------------------

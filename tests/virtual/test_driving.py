@@ -85,10 +85,10 @@ def test_without_obstacles_the_path_follows_the_wheels() -> None:
     pose = Pose(1000, 1000, 0)
     now_ms = 0.0
     ways = ((80, 80, 1000), (60, -60, 500), (100, 30, 2500), (-50, 20, 700))
-    for left, right, duration_ms in ways:
-        drive.set_motors(now_ms, left, right)
+    for black_on_left, right, duration_ms in ways:
+        drive.set_motors(now_ms, black_on_left, right)
         now_ms += duration_ms
-        pose = move_pose(TINIBOT.body, pose, left, right, duration_ms)
+        pose = move_pose(TINIBOT.body, pose, black_on_left, right, duration_ms)
         assert drive.advance_to(now_ms) == pytest.approx(pose, abs=1e-6)
     assert drive.bumps == 0
 
@@ -162,7 +162,7 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
 
 def test_looking_changes_nothing() -> None:
     """A picture of it may be drawn whenever one likes."""
-    ends = []
+    end_poses = []
     for look_times_ms in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
         drive = make_driving(
             floor("[[boxes]]\nx_cm=150\ny_cm=95\nlength_cm=20\nwidth_cm=20\nheading=20")
@@ -170,8 +170,8 @@ def test_looking_changes_nothing() -> None:
         drive.set_motors(0, 90, 80)
         for now_ms in look_times_ms:
             drive.pose_at(now_ms)
-        ends.append(drive.advance_to(8000))
-    assert ends[0] == ends[1] == ends[2]
+        end_poses.append(drive.advance_to(8000))
+    assert end_poses[0] == end_poses[1] == end_poses[2]
 
 
 def test_the_path_has_no_gaps_and_few_corners() -> None:
@@ -242,9 +242,9 @@ def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:
 
 def test_a_line_sensor_is_over_a_line_or_not() -> None:
     line = floor("[[lines]]\npoints = [[107.5, 20], [107.5, 180]]\nwidth_cm = 2\n")
-    left = 0
+    black_on_left = 0
     for x, y, is_black in ((100, 100, 1), (101, 100, 1), (101.1, 100, 0), (100, 190, 0)):
-        assert read(line, left, Pose(x, y, 0), LINER) * ONE == is_black
+        assert read(line, black_on_left, Pose(x, y, 0), LINER) * ONE == is_black
 
 
 def test_a_bumper_notices_an_obstacle_in_front() -> None:

@@ -165,19 +165,23 @@ def test_a_robot_that_does_not_fit_is_refused() -> None:
 
 @pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
 def test_files_that_are_not_worlds_are_refused(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
-    binary, large, wrong = tmp_path / "b.toml", tmp_path / "l.toml", tmp_path / "w.toml"
-    binary.write_bytes(bytes(range(256)))
-    large.write_bytes(b"#" * 70_000)
-    wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
+    binary_file, large_file, wrong_file = (
+        tmp_path / "b.toml",
+        tmp_path / "l.toml",
+        tmp_path / "w.toml",
+    )
+    binary_file.write_bytes(bytes(range(256)))
+    large_file.write_bytes(b"#" * 70_000)
+    wrong_file.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, expected in (
         ("obstacle", "Did you mean obstacles?"),
         ("nowhere", f"Choose one of these, or give a .toml file: {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),
-        (str(binary), "is not UTF-8"),
-        (str(large), "Check that it is a world"),
-        (str(wrong), "w.toml has mistakes:\n  lamps[1].x_cm is missing"),
+        (str(binary_file), "is not UTF-8"),
+        (str(large_file), "Check that it is a world"),
+        (str(wrong_file), "w.toml has mistakes:\n  lamps[1].x_cm is missing"),
         ("a\0b.toml", "cannot be read"),
     ):
         for language in ("en", "es"):

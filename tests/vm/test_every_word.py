@@ -162,8 +162,8 @@ def header(word: str) -> str:
 
 def begin_of(end: str) -> str:
     """Return the header of the block that ends so, in one of its spellings."""
-    ends = {ALIASES.get(end, end)}
-    return header(next(begin for begin, its in BLOCK_ENDS.items() if its in ends))
+    end_words = {ALIASES.get(end, end)}
+    return header(next(begin_word for begin_word, its in BLOCK_ENDS.items() if its in end_words))
 
 
 USES = [(name, use) for name, word in WORDS.items() for use in uses_of(word)]

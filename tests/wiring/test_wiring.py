@@ -445,12 +445,12 @@ def test_the_longest_names_stay_in_the_finished_drawing() -> None:
     parts = tuple(part._replace(title=long, label=long) for part in plan.parts)
     svg = finished_of(plan._replace(parts=parts))
     tree = Tree.fromstring(svg)
-    right = float(tree.attrib["viewBox"].split()[2])
+    right_edge = float(tree.attrib["viewBox"].split()[2])
     for element in tree.iter(f"{SVG}text"):
         x, anchor = float(element.attrib["x"]), element.attrib["text-anchor"]
         wide = _width(element.text or "", float(element.get("font-size", 14)))
-        begin = x - wide * {"start": 0, "middle": 0.5, "end": 1}[anchor]
-        assert begin >= 0 and begin + wide <= right, element.text
+        text_start = x - wide * {"start": 0, "middle": 0.5, "end": 1}[anchor]
+        assert text_start >= 0 and text_start + wide <= right_edge, element.text
 
 
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:
