@@ -31,7 +31,7 @@ from tiniscript.robots.ports import AVRS
 
 @pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", sorted(DRIVERS))
-def test_states_of_the_motor_pins(name: str) -> None:
+def test_motor_pins_follow_the_powers(name: str) -> None:
     board = start_board(robot_with_driver(name), MOVES).run_for(START + OFF + 50)
     states = tuple(board.motors(START + ms) for ms in (FORWARD, BACKWARD, TURN, OFF))
     assert states == DRIVERS[name][1]
@@ -39,7 +39,7 @@ def test_states_of_the_motor_pins(name: str) -> None:
 
 
 @pytest.mark.parametrize(("powers", "pin"), [("80, 0", 0), ("0, 80", 3)])
-def test_one_motor_drives_alone(powers: str, pin: int) -> None:
+def test_a_single_motor_can_run_alone(powers: str, pin: int) -> None:
     board = start_board(robot_with_driver("tb6612"), f"SI|M({powers});W(1)").run_for(START + 60)
     state = board.motors(START + 50)
     assert (state[pin], state[-1]) == ("pwm 204", "high")
@@ -81,7 +81,7 @@ def test_a_button_that_is_down_after_a_reset_starts_nothing() -> None:
 LATE_US = 6  # a pulse ends when no other interrupt is at work
 
 
-def test_servos_turn_and_stand_for_a_second() -> None:
+def test_servo_motors_turn_and_rest_for_a_second() -> None:
     board = start_board(robot_with(SERVOS), "SI|F(0.2, 80);M(0, 100);W(0.2)").run_for(START + 2000)
     left, right = (pulses(board, pin) for pin in board.motor_pins())
     assert left[0][0] >= START and right[0][0] >= START
@@ -117,12 +117,14 @@ def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -
     board.press(500, 600)
     board.press(700, 800)
     board.run_for(850)
-    off = ("low",) * len(board.motor_pins())
-    assert board.motors(START + 50) != off  # the left one turns round, and may be off just then
+    off_levels = ("low",) * len(board.motor_pins())
+    assert (
+        board.motors(START + 50) != off_levels
+    )  # the left one turns round, and may be off just then
     stop_cycle = [cycle for cycle in board.list_motor_changes() if cycle < 790 * MS][-1] / MS
     assert 0 < (stop_cycle - START - 50.123) * 1000 < STOP_US or stop_cycle < START + 50.123
     for ms in (START + 50.123 + STOP_US / 1000, START + 51, 450, 650, 799):
-        assert board.motors(ms) == off
+        assert board.motors(ms) == off_levels
     assert board.list_motor_changes()[-1] > 800 * MS  # the button releases the latch
 
 
@@ -141,9 +143,9 @@ def test_a_stop_at_any_cycle_stops(chip: str, lamp: str, stop_pin: int, group: i
     changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired_text))
     robot = on_board("tinibot", chip, *changes)
     bit = AVRS[chip].interrupt_by_pin[stop_pin].bit
-    more = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
-    more = more.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
-    board = start_board(robot, STOPPING, more)
+    extra_code = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
+    extra_code = extra_code.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
+    board = start_board(robot, STOPPING, extra_code)
     board.sweep(1, SWEPT_CYCLES, STOP_US, stop_pin)  # before the program drives again
     board.run_for(START + 2)
     edges = [cycle for cycle in board.edges(7) if cycle > (START + 1) * MS]

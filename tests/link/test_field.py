@@ -178,7 +178,7 @@ CHECKS = (check_never_silent, check_no_other_program, check_both_are_heard)
 
 
 @pytest.mark.parametrize("holds", CHECKS, ids=lambda holds: holds.__name__)
-def test_a_law_of_the_wire(holds: object) -> None:
+def test_each_law_of_the_wire_holds(holds: object) -> None:
     for seed in range(SEEDS):
         holds(cpp_link(), seed)  # type: ignore[operator]
 

@@ -68,7 +68,7 @@ def line_of(number: int) -> bytes:
     return b"".join(bytes((move, 1, digit)) for digit in digits)
 
 
-def test_live_lines_over_a_bad_radio() -> None:
+def test_live_lines_survive_a_bad_radio() -> None:
     """None is executed twice, however many times its answer is lost."""
     counts = send_live_lines(cpp_link(), LIVES, SEED)
     assert counts["OK"] > LIVES * 0.8 and counts["sent again"] > LIVES * 0.1, counts

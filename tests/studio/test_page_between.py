@@ -379,7 +379,7 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
               f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
 
 
-def test_a_sample_of_what_is_pressed_keeps_the_laws(
+def test_a_sample_of_button_presses_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
     chance = Random(sampling.seed(request.config))
@@ -390,7 +390,7 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
 
 
 @pytest.mark.long
-def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
+def test_a_sample_of_button_presses_in_a_class_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
     chance = Random(sampling.seed(request.config))

@@ -69,7 +69,7 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     pages.wrong.clear()  # a browser complains of each lost request
 
 
-def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobot) -> None:
+def test_a_lost_stop_is_delivered_with_the_next_heartbeat(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):
         start_drive(page, robot)
@@ -82,7 +82,7 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
 
 
 @drawn
-def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
+def test_a_transport_error_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
     torn = tear_requests(page, "beat", refuse, times=2)
@@ -96,7 +96,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
 
 @pytest.mark.sampled("tear")
 @pytest.mark.parametrize("tear", [lose_answer, refuse, lambda route: route.abort()])
-def test_a_connect_that_is_lost_comes_again(
+def test_a_lost_connect_is_retried(
     page: Page, robot: PtyRobot, tear: Callable[[Route], None]
 ) -> None:
     torn = tear_requests(page, "connect", tear)
@@ -106,9 +106,7 @@ def test_a_connect_that_is_lost_comes_again(
 
 
 @drawn
-def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_a_connect_after_lost_ones_takes_over_their_connection(page: Page, robot: PtyRobot) -> None:
     tear_requests(page, "connect", lose_answer, times=3)
     page.click("#side_real")
     page.click("#link_look")
@@ -155,9 +153,7 @@ class Mute:
 
 @pytest.mark.sampled("way")
 @pytest.mark.parametrize("way", ["button", "hidden"])
-def test_a_stop_is_said_once_and_only_what_has_become_of_it(
-    page: Page, robot: PtyRobot, way: str
-) -> None:
+def test_only_the_outcome_of_a_stop_is_reported_once(page: Page, robot: PtyRobot, way: str) -> None:
     connect(page, robot)
     start_drive(page, robot)
     page.evaluate(LISTENING_SCRIPT)
@@ -187,7 +183,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
 
 
 @drawn
-def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
+def test_two_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
         start_drive(page, robot)
@@ -205,9 +201,7 @@ def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None
 
 
 @drawn
-def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_five_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
     start_drive(page, robot)
@@ -224,7 +218,7 @@ def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
     assert robot.moves
 
 
-def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot(
+def test_a_page_reloaded_before_its_stop_is_answered_stops_its_robot(
     page: Page, robot: PtyRobot
 ) -> None:
     for has_come in (False, True):
@@ -241,7 +235,7 @@ def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot
         page.click("#side_real")
 
 
-def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
+def test_a_silent_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
     robot.switch_off()
@@ -253,7 +247,7 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
 
 
 @drawn
-def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
+def test_a_lost_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     """Its requests and the link end. A slow page, which is not heard for a while, first stops the
     run under way, and reports that, too.
     """
@@ -270,9 +264,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
 
 
 @drawn
-def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_a_request_to_a_silent_robot_is_reported_as_waiting(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     Mute(page, "LOST")
     robot.switch_off()
@@ -283,7 +275,7 @@ def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
 
 
 @drawn
-def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
+def test_a_timed_out_page_gets_the_reason_for_its_disconnection(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
@@ -295,7 +287,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
 
 
 @drawn
-def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
+def test_a_disconnection_before_confirmation_reports_an_unconfirmed_stop(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)

@@ -91,7 +91,7 @@ def show_program_on_both(two: tuple[Page, Page]) -> None:
         wait_for_lines(page, *ROWS)
 
 
-def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> None:
+def test_two_pupils_typing_at_once_get_the_same_program(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     go_to_line(ana, "F(1, 80)")
@@ -112,7 +112,7 @@ def test_both_type_at_once_and_have_the_same_program(two: tuple[Page, Page]) -> 
 
 
 @drawn
-def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(two: tuple[Page, Page]) -> None:
+def test_a_half_typed_value_stays_local_and_unchanged(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     go_to_line(ana, "B(1, 40)")
@@ -129,7 +129,7 @@ def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(two: tuple[Page
 
 
 @drawn
-def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> None:
+def test_undo_reverts_only_local_changes(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     go_to_line(ana, "S;")
@@ -146,7 +146,7 @@ def test_undo_takes_back_what_the_own_page_has_typed(two: tuple[Page, Page]) -> 
 
 
 @drawn
-def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) -> None:
+def test_undo_keeps_later_changes_of_others(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     for page, text in ((ana, "95)\n"), (luz, "70)\n")):
@@ -176,7 +176,7 @@ def test_undo_leaves_what_another_one_has_changed_since(two: tuple[Page, Page]) 
 
 
 @drawn
-def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
+def test_each_pupil_sees_the_others_cursor(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     go_to_line(ana, "B(1, 40)")
@@ -188,7 +188,7 @@ def test_each_sees_where_the_other_is(two: tuple[Page, Page]) -> None:
 
 
 @drawn
-def test_whoever_loads_the_page_again_is_in_the_group_with_all(two: tuple[Page, Page]) -> None:
+def test_a_reloaded_page_is_still_in_the_group(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     go_to_line(luz, "F(1, 80)")
@@ -226,7 +226,7 @@ def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
         )
 
 
-def test_each_drives_and_each_stops_the_robot_of_the_group(
+def test_each_member_drives_and_stops_the_robot_of_the_group(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
@@ -252,7 +252,7 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
             page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
-def test_all_of_a_group_see_what_its_robot_does(
+def test_all_members_see_the_actions_of_the_groups_robot(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
@@ -294,7 +294,7 @@ def test_all_of_a_group_see_what_its_robot_does(
             wait_for_nothing_running(page)
 
 
-def test_another_program_is_the_group_s_only_if_somebody_wants_that(
+def test_another_program_becomes_the_groups_only_on_request(
     two: tuple[Page, Page],
 ) -> None:
     ana, luz = two
@@ -348,9 +348,7 @@ def test_returned_work_goes_to_my_programs_if_the_pupil_keeps_it_out_of_the_grou
     luz.click("#programs_close")
 
 
-def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
-    two: tuple[Page, Page], shared_class: Class
-) -> None:
+def test_an_outdated_change_is_reported(two: tuple[Page, Page], shared_class: Class) -> None:
     ana, luz = two
     show_program_on_both(two)
     ana.context.set_offline(True)
@@ -371,7 +369,7 @@ def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
         )
 
 
-def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_seconds(
+def test_remote_changes_wait_up_to_two_seconds_for_a_composition(
     two: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = two
@@ -397,7 +395,7 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
 
 
 @drawn
-def test_whoever_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Page]) -> None:
+def test_a_leaving_pupil_keeps_the_program_without_further_changes(two: tuple[Page, Page]) -> None:
     ana, luz = two
     show_program_on_both(two)
     luz.click("#side_class")  # the page was reloaded
@@ -417,7 +415,7 @@ def test_whoever_leaves_keeps_the_program_and_hears_no_more(two: tuple[Page, Pag
 
 
 @drawn
-def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
+def test_the_teacher_sees_a_group_as_one_tile_with_its_history(
     two: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = two
@@ -441,7 +439,7 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     teacher_pages.close()
 
 
-def test_the_teacher_takes_part_and_leaves(
+def test_the_teacher_joins_and_leaves_a_group(
     two: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = two

@@ -91,7 +91,7 @@ def two() -> Two:
     return Two()
 
 
-def test_a_delete_spares_what_its_author_has_not_seen(two: Two) -> None:
+def test_a_delete_spares_changes_unseen_by_its_author(two: Two) -> None:
     loop = two.find("LOOP(3)")
     two.inserts(two.ana, loop, two.find("B(1, 40)"))
     apply_edits(two.luz, [Delete(tuple(two.luz.view.subtree_ids(loop)))])
@@ -100,7 +100,7 @@ def test_a_delete_spares_what_its_author_has_not_seen(two: Two) -> None:
     assert "  BEEP(1, 440);" in two.luz.lines
 
 
-def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
+def test_a_branch_is_deleted_with_all_its_contents_or_not_at_all(two: Two) -> None:
     two.inserts(two.ana, two.find("IF(X < 1)"), two.find("ELSE"))
     rows = [row for row in two.luz.lines if "ELSE" not in row and "W(1)" not in row]
     two.luz.type(rows, 0)
@@ -109,26 +109,26 @@ def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
     assert two.luz.refusals[-1][1] == HAS_NEW
 
 
-def test_a_block_goes_around_what_was_put_between(two: Two) -> None:
+def test_a_new_block_encloses_instructions_inserted_meanwhile(two: Two) -> None:
     first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
     two.inserts(two.ana, two.find("LOOP(3)"), first)
     apply_edits(two.luz, [Wrap((first, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
 
 
-def test_a_place_whose_neighbour_has_gone_is_where_that_stood(two: Two) -> None:
+def test_a_place_whose_neighbour_was_deleted_is_kept(two: Two) -> None:
     apply_edits(two.ana, [Delete((two.find("R(1, 40)"),))])
     two.inserts(two.luz, two.find("LOOP(3)"), two.find("R(1, 40)"))
     assert "B(1, 40); BEEP(1, 440); END_LOOP" in two.meet()
 
 
-def test_the_first_place_of_a_block_that_was_taken_away_stays(two: Two) -> None:
+def test_the_first_place_of_a_removed_block_is_kept(two: Two) -> None:
     apply_edits(two.ana, [Unwrap(two.find("LOOP(3)"))])
     two.inserts(two.luz, two.find("LOOP(3)"), "")
     assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in two.meet()
 
 
-def test_two_blocks_that_go_into_each_other_make_no_circle(two: Two) -> None:
+def test_two_blocks_moved_into_each_other_form_no_cycle(two: Two) -> None:
     loop, branch = two.find("LOOP(3)"), two.find("IF(X < 1)")
     apply_edits(two.ana, [Move((loop,), Place(branch, ""))])
     apply_edits(two.luz, [Move((branch,), Place(loop, ""))])
@@ -136,7 +136,7 @@ def test_two_blocks_that_go_into_each_other_make_no_circle(two: Two) -> None:
     assert two.luz.refusals[-1][1] == CIRCLE
 
 
-def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(two: Two) -> None:
+def test_the_later_of_two_values_wins_and_undo_restores_the_other(two: Two) -> None:
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.luz, "F(1, 80)", "F(1, 99)")
     assert "F(1, 99)" in two.meet()
@@ -148,7 +148,7 @@ def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(two: T
     assert "F(1, 80)" in two.meet()
 
 
-def test_an_undo_that_comes_after_anothers_change_is_refused(two: Two) -> None:
+def test_an_undo_after_another_pupils_change_is_refused(two: Two) -> None:
     two.types(two.luz, "F(1, 80)", "F(1, 99)")
     two.meet()
     two.types(two.ana, "F(1, 99)", "F(5, 99)")
@@ -157,7 +157,7 @@ def test_an_undo_that_comes_after_anothers_change_is_refused(two: Two) -> None:
     assert two.luz.refusals[-1][1] == CHANGED
 
 
-def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
+def test_undo_restores_deleted_blocks_with_their_ids(two: Two) -> None:
     loop = two.find("LOOP(3)")
     before = text_of(two.program.tree)
     apply_edits(two.ana, [Delete(tuple(two.ana.view.subtree_ids(loop)))])
@@ -168,7 +168,7 @@ def test_undo_brings_back_what_was_deleted_with_its_ids(two: Two) -> None:
     assert loop in two.program.tree
 
 
-def test_a_line_that_two_have_cut_and_pasted_is_there_once(two: Two) -> None:
+def test_a_line_cut_and_pasted_by_two_exists_once(two: Two) -> None:
     for page in (two.ana, two.luz):
         page.type([row for row in page.lines if "L(1, 60)" not in row], 0)
         page.flush()
@@ -187,7 +187,7 @@ def test_a_page_makes_no_change_that_leaves_no_program() -> None:
     assert not page.pending_changes
 
 
-def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(two: Two) -> None:
+def test_a_line_being_typed_is_deleted_only_with_its_instruction(two: Two) -> None:
     two.types(two.ana, "B(1, 40);", "B(1, 4", is_hot=True)
     assert not two.ana.pending_changes
     apply_edits(two.luz, [Move((two.find("B(1, 40)"),), Place(ROOT, two.find("L(1, 60)")))])
@@ -205,7 +205,7 @@ def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(
     assert "i.3" in two.program.tree  # the same instruction
 
 
-def test_a_half_typed_value_is_not_a_change_though_it_parses(two: Two) -> None:
+def test_a_half_typed_value_is_not_a_change_even_if_it_parses(two: Two) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
         old = next(row for row in two.ana.lines if "L(1" in row)
         two.types(two.ana, old, shown, is_hot=True)
@@ -215,7 +215,7 @@ def test_a_half_typed_value_is_not_a_change_though_it_parses(two: Two) -> None:
     assert sum("L(1, 9" in str(change) for change in two.program.taken_changes) == 1
 
 
-def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(two: Two) -> None:
+def test_only_the_last_of_successively_typed_lines_waits(two: Two) -> None:
     k = two.ana.lines.index("L(1, 60);")
     for row in ("W(2)", "f(3,70)", "LOOP(2)", "BEEP(1, 440)", "END_LOOP"):
         rows = two.ana.lines[:]
@@ -250,7 +250,7 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
     assert "i.4" in two.program.tree
 
 
-def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
+def test_a_reloaded_page_continues(two: Two) -> None:
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
     two.types(two.ana, "W(1);", "W(9)", is_hot=True)
     stored_data = json.loads(json.dumps(two.ana.store_data()))
@@ -267,7 +267,7 @@ def test_a_page_that_is_loaded_again_goes_on(two: Two) -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(seed: int) -> None:
+def test_undone_changes_can_be_redone_after_a_reload(seed: int) -> None:
     """The reload comes before the computer has heard of the undo."""
     chance, two = Random(seed), Two()
     for k in range(chance.randint(1, 3)):
@@ -284,7 +284,7 @@ def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(see
     assert f"F({last}, 80)" in two.meet()
 
 
-def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Two) -> None:
+def test_a_renamed_page_loses_and_duplicates_nothing(two: Two) -> None:
     two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
     two.program.submit(two.ana.pending_changes)  # and the answer is lost
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
@@ -297,7 +297,7 @@ def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(two: Tw
     assert all(change in two.meet() for change in ("F(2, 80)", "L(4, 60)", "W(4)"))
 
 
-def test_a_copy_of_a_page_goes_its_own_way(two: Two) -> None:
+def test_a_copy_of_a_page_is_independent(two: Two) -> None:
     before: list[Any] = [two.ana.lines[:], data(two.ana)]
     copy = two.ana.copy()
     two.types(two.ana, "F(1, 80)", "F(2, 80)")
@@ -363,12 +363,12 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) -> None:
+def test_a_copy_continues_like_the_page_without_its_messages(seed: int) -> None:
     assert list_shown_pages(seed, makes_copies=True) == list_shown_pages(seed, makes_copies=False)
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> None:
+def test_text_typed_before_and_after_a_reload_is_in_the_program(seed: int) -> None:
     """Whichever messages were sent, received or lost then, no text is refused, lost or
     duplicated."""
     chance, two = Random(seed), Two(FLAT_PROGRAM)
@@ -393,7 +393,7 @@ def data(page: Page) -> Any:
     return [page.store_data(), list(map(data_of_change, page.pending_changes))]
 
 
-def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
+def test_a_page_with_a_different_tree_requests_the_whole_program(two: Two) -> None:
     two.ana.base.node_by_id[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
     two.hears(two.ana)
     assert two.ana.is_astray
@@ -402,7 +402,7 @@ def test_a_page_whose_tree_is_another_one_asks_for_the_whole(two: Two) -> None:
     assert "SI|F(1, 80);" in two.ana.lines
 
 
-def test_a_redo_takes_back_an_undo_until_something_else_is_done(two: Two) -> None:
+def test_a_redo_reverts_an_undo_until_the_next_change(two: Two) -> None:
     two.types(two.ana, "B(1, 40)", "B(9, 40)")
     two.types(two.luz, "R(1, 40)", "R(5, 40)")
     before = two.meet()
@@ -420,7 +420,7 @@ def test_a_redo_takes_back_an_undo_until_something_else_is_done(two: Two) -> Non
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_as_many_redos_as_undos_bring_all_back(seed: int) -> None:
+def test_as_many_redos_as_undos_restore_everything(seed: int) -> None:
     chance, two = Random(seed), Two(FLAT_PROGRAM)
     texts = [two.meet()]
     for number in range(1, 6):
