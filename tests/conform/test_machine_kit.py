@@ -224,7 +224,7 @@ def test_each_instruction_runs() -> None:
         runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
             status = runs.tick(robot.now_ms, 1)
-            opcodes.add([*code, 0][runs.at])
+            opcodes.add([*code, 0][runs.offset])
             robot.now_ms = max(runs.wake_ms, robot.now_ms)
             if status in (DONE, FAULT) or robot.now_ms > case.until_ms:
                 break

@@ -192,7 +192,7 @@ def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], Non
         while at < uno.cycle + CYCLES_PER_MS:
             level = not level
             for number, pin in enumerate(pins(ROBOT)):
-                uno.drive(f"D{pin}", level, at=at + number * half // 3)
+                uno.drive(f"D{pin}", level, at_cycle=at + number * half // 3)
             at += half
         run_ms(1)
 

@@ -61,7 +61,7 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
         if any(event.name in END_EVENTS for event in events):
             break
         for event in halts:
-            assert event.at in statements
+            assert event.offset in statements
             halted_in += 1
             it.go(RESUME_STEP if how == "steps" or rng.random() < 0.3 else RESUME_GO)
             lines_there.append("HALT")
@@ -152,7 +152,7 @@ def list_next_run(it: Debugged, places: list[int]) -> list[str]:
         is_halted = False
         for event in it.talk(4):
             if event.name in ("SHOW", "HALTED", *END_EVENTS):
-                what = getattr(event, "value", getattr(event, "at", ""))
+                what = getattr(event, "value", getattr(event, "offset", ""))
                 lines.append(f"{event.name} {what}")
                 is_halted = event.name == "HALTED"
         if is_halted:

@@ -147,8 +147,8 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
 def disconnect_for(uno: Uno, ms: float) -> None:
     """Disconnect for so long, according to the HC-05's STATE pin."""
     at = uno.cycle + CYCLES_PER_MS
-    uno.drive("radio", False, at=at)
-    uno.drive("radio", True, at=at + round(ms * CYCLES_PER_MS))
+    uno.drive("radio", False, at_cycle=at)
+    uno.drive("radio", True, at_cycle=at + round(ms * CYCLES_PER_MS))
 
 
 def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: Uno) -> None:

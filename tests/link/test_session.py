@@ -633,7 +633,7 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
         reply = Frame(2, sent_frame.seq, 10, b"\0" + payload, is_reply=True)
         session.receive(b"\0" + encode_frame(reply), now_ms + 1)
     return [
-        (place_event.run, place_event.at)
+        (place_event.run, place_event.offset)
         for place_event in session.events()
         if isinstance(place_event, PlaceEvent)
     ]

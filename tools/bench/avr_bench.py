@@ -65,7 +65,7 @@ def build(name: str, sources: Path = SOURCES, *extra_flags: str, chip: str = CHI
         return program.read_bytes()
 
 
-def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) -> list[str]:
+def run(program: bytes, request: bytes, chip: str = CHIP, timeout_s: int = 120) -> list[str]:
     """Return the lines that a built program says about a request. Raises TimeoutExpired."""
     offset = program.index(REQUEST_MARK)
     assert len(request) <= REQUEST_BYTES, len(request)
@@ -75,7 +75,7 @@ def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) ->
         completed = subprocess.run(
             ["simavr", "-m", chip, "-f", "16000000", str(path)],
             capture_output=True,
-            timeout=limit_s,
+            timeout=timeout_s,
         )
     outputs = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
     lines = [line.decode() for line in outputs]

@@ -236,7 +236,7 @@ class LinkConnection:
         """Wait for the outcome of a request, and call `look` periodically."""
         raise NotImplementedError
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         """Return the next event and its arrival time (ms), or None after the time limit."""
         raise NotImplementedError
 

@@ -35,7 +35,7 @@ class ShownEvent(NamedTuple):
     is_yes_no: int
     run: int = 0
     program: int = 0
-    at: int = -1
+    offset: int = -1
     name: Literal["SHOW"] = "SHOW"
 
 
@@ -87,7 +87,7 @@ class PlaceEvent(NamedTuple):
 
     run: int
     program: int
-    at: int
+    offset: int
     name: Literal["PLACE"] = "PLACE"
 
 

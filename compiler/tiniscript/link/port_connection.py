@@ -96,9 +96,9 @@ class PortConnection(LinkConnection):
             if look is not None:
                 look()
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> TimedEvent | None:
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> TimedEvent | None:
         if not self._events and self._end_reason is None:
-            self._bell.wait(limit_s)
+            self._bell.wait(timeout_s)
         with self._session_lock:
             if self._events:
                 return self._events.take_event()

@@ -843,7 +843,7 @@ class Session(Requester):
         unless that would have to wait.
         """
         event = self._state.to_shown_event(show)
-        self._events.append(show if event.at < 0 else event)
+        self._events.append(show if event.offset < 0 else event)
         is_free = not self._queue and (self._pending is None or self._pending.is_own)
         if not (is_free and self._handshake.is_open and self._has_places):
             return

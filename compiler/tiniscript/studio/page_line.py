@@ -94,7 +94,7 @@ class PageLine(LinkConnection):
     def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         return make(self.session)
 
-    def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = 0) -> tuple[int, Event] | None:
         return self._events.take_event() if self._events else None
 
     def enable_place_events(self) -> None:

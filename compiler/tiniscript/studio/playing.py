@@ -263,7 +263,9 @@ class PlayedRun(Simulation):
     ) -> None:
         at_ms = min(row.ms for row in (recorded_row, virtual_row) if row is not None)
         offset = (
-            virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.offset
+            virtual_row.offset
+            if virtual_row is not None and virtual_row.offset >= 0
+            else self.robot.offset
         )
         location = self.playable.program_map.location_at(offset) if offset is not None else None
         line = location.line if location is not None else 0

@@ -155,7 +155,7 @@ class RobotLink:
         """Stop the robot, whoever started its program."""
         self._connection.stop()
 
-    def news(self, limit_s: float = 0) -> list[Json]:
+    def news(self, timeout_s: float = 0) -> list[Json]:
         """Return answers and events since the last call; wait that long for one.
 
         Raises ConnectionLost.
@@ -163,7 +163,7 @@ class RobotLink:
         news, self._answers = self._answers, []
         news += self._outcomes()
         for _ in range(MOST_EVENTS):
-            event = self._connection.event(0 if news else limit_s)
+            event = self._connection.event(0 if news else timeout_s)
             news += self._outcomes()  # an answer is there before the events that follow from it
             if event is None:
                 break
@@ -259,8 +259,8 @@ class RobotLink:
             variables = [value / ONE for (value,) in iter_unpack("<i", values.values)]
             return {"ok": True, "variables": variables}
         if isinstance(values, ReadTasksReply):
-            tasks = [[TASK_STATES[state][0], at]
-                     for state, at, _ in iter_unpack("<BHI", values.tasks)]  # fmt: skip
+            tasks = [[TASK_STATES[state][0], offset]
+                     for state, offset, _ in iter_unpack("<BHI", values.tasks)]  # fmt: skip
             return {"ok": True, "tasks": tasks}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
@@ -286,17 +286,17 @@ class RobotLink:
         data: Json = {"event": event.name}
         if event.name == "SHOW":
             data["value"] = value_text(event.value, bool(event.is_yes_no))
-            if event.at >= 0:
-                data |= {"at": event.at, "program": f"{event.program:08x}"}
+            if event.offset >= 0:
+                data |= {"at": event.offset, "program": f"{event.program:08x}"}
         elif event.name == "FAULT":
-            data |= {"fault": fault_name(event.fault), "at": event.at,
+            data |= {"fault": fault_name(event.fault), "at": event.offset,
                       "program": f"{event.program:08x}"}  # fmt: skip
         elif event.name == "STOPPED":
             data["cause"] = cause_name(event.cause)
         elif event.name == "PLACE":
-            data |= {"at": event.at, "program": f"{event.program:08x}"}
+            data |= {"at": event.offset, "program": f"{event.program:08x}"}
         elif event.name == "HALTED":
-            data |= {"at": event.at, "task": event.task,
+            data |= {"at": event.offset, "task": event.task,
                       "is_program": self._known_run(event.run) == self._program_run}  # fmt: skip
         elif event.name == "MISSED":
             data["count"] = event.count
