@@ -120,12 +120,14 @@ def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch
     """This holds for whichever instruction is the newest, at any position."""
     for op in (op for op in OPS if not op.needs):
         others = b"".join(
-            other.opcode + bytes(other.size - 1) for other in OPS if not other.needs | other.since
+            other.opcode + bytes(other.size - 1)
+            for other in OPS
+            if not other.needs | other.since_minor
         )
         code = others + op.opcode + bytes(op.size - 1) + others
-        assert pack("SI", 0, code)[3] == op.since
+        assert pack("SI", 0, code)[3] == op.since_minor
         with monkeypatch.context() as patch:
-            later = [op._replace(since=9) if other == op else other for other in BY_CODE]
+            later = [op._replace(since_minor=9) if other == op else other for other in BY_CODE]
             patch.setattr(opcodes, "BY_CODE", later)
             assert pack("SI", 0, code)[3] == 9
 
@@ -274,6 +276,6 @@ def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
         assert expected == (refusal(image) if expected else "")
         if not expected:
             parsed, unpacked = second_reader.IMAGE.parse(image), unpack(image)
-            assert (parsed.later, parsed.code) == (unpacked.later, unpacked.code)
+            assert (parsed.later, parsed.code) == (unpacked.later_fields, unpacked.code)
             assert (parsed.devices, parsed.checksum) == (unpacked.devices, unpacked.checksum)
     assert met == {*REFUSALS, ""} - {"OTHER_KIT"}

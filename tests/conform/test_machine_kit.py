@@ -119,13 +119,13 @@ def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refu
     cases = [case for case in machine_cases() if case.needs][:4]
     answers = iter([f"REFUSED {refusal}"])
     judged = list(verdicts(cases, lambda request, most: [next(answers)]))
-    assert [verdict.what for verdict in judged] == [LACKS] * 4
+    assert [verdict.outcome for verdict in judged] == [LACKS] * 4
     last = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
     judged = list(verdicts(cases, lambda request, most: next(last)))
-    assert [verdict.what for verdict in judged] == [AGREES] * 3 + [DIFFERS]
+    assert [verdict.outcome for verdict in judged] == [AGREES] * 3 + [DIFFERS]
     other = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
     judged = list(verdicts(cases, lambda request, most: next(other)))
-    assert [verdict.what for verdict in judged] == [DIFFERS] + [AGREES] * 3
+    assert [verdict.outcome for verdict in judged] == [DIFFERS] + [AGREES] * 3
 
 
 # A file of `tests/oracle`, its text, the replacement, and a case that must be named.
@@ -209,7 +209,7 @@ def test_a_broken_machine_is_told(file: str, old: str, new: str, named_text: str
         except LookupError:  # the machine has crashed
             return []
 
-    assert any(verdict.what == DIFFERS for verdict in verdicts(cases, answer_request))
+    assert any(verdict.outcome == DIFFERS for verdict in verdicts(cases, answer_request))
 
 
 def test_each_instruction_runs() -> None:

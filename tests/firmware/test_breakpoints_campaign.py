@@ -135,7 +135,7 @@ def halts_before(it: Debugged, rng: random.Random) -> None:
                 it.go(how)
         if rng.random() < 0.5:
             # Sent while a stop is on its way.
-            it.session.resume(how=rng.choice((RESUME_GO, RESUME_STEP)))
+            it.session.resume(extent=rng.choice((RESUME_GO, RESUME_STEP)))
             it.talk(rng.choice((0, 1, 2, 3)))
         STOPS[rng.choice([*STOPS])](it)
         it.talk(rng.choice((300, 700)))

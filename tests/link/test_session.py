@@ -365,7 +365,7 @@ def test_what_does_not_fit_is_not_sent() -> None:
         (image._replace(isa=(ISA_MAJOR - 1, 0)), STATUSES["OTHER_MACHINE"], ISA),
         (image._replace(isa=(ISA_MAJOR, ISA_MINOR + 1)), STATUSES["OTHER_MACHINE"], ISA),
         (image._replace(code=bytes(390)), STATUSES["TOO_LARGE"], 389),
-        (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
+        (image._replace(code=bytes(389), later_fields=b"x"), STATUSES["TOO_LARGE"], 389),
     ]
     session = greet()
     for too_large, status, detail in cases:

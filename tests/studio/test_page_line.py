@@ -113,7 +113,7 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     page.robot.let_go()
     assert claimed == {"id": 2, "ok": True}
     kept_bytes = page.file.encode()
-    assert [key.which for key in keys.decode_keys(kept_bytes)] == [OWNER]
+    assert [key.kind for key in keys.decode_keys(kept_bytes)] == [OWNER]
     page.advance(3000)  # until the program is saved
     memory = page.robot.memory
 

@@ -43,7 +43,7 @@ class Robot:
             start=lambda: PendingRequest[Any](), live=lambda *_: PendingRequest[Any]()
         )
         self.pending = make(cast(Requester, session))
-        self.pending.starts = True
+        self.pending.starts_program = True
         return self.pending
 
     def event(self, timeout_s: float) -> tuple[int, Event] | None:

@@ -61,7 +61,7 @@ def test_the_room_of_an_uno_is_that_of_its_firmware() -> None:
 
 def test_levels_lack_words_of_the_language_alone() -> None:
     for level in LEVELS.values():
-        assert level.lacks <= set(WORDS)
+        assert level.missing_words <= set(WORDS)
 
 
 def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:

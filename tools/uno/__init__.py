@@ -198,8 +198,10 @@ class Uno:
         """Connect a pin to ground for a while, as a button does; it stays so while time passes."""
         self.drive(pin, False, at_cycle)
         cycle_count = round(ms * CYCLES_PER_MS)
-        begin = f"after {cycle_count} " if at_cycle is None else f"at {at_cycle + cycle_count} "
-        self._send_lines(begin + f"pin {self.pins.number(pin)} none")
+        time_words = (
+            f"after {cycle_count} " if at_cycle is None else f"at {at_cycle + cycle_count} "
+        )
+        self._send_lines(time_words + f"pin {self.pins.number(pin)} none")
 
     def analog(self, pin: str, count: int) -> None:
         """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""

@@ -164,12 +164,12 @@ class Client:
         )
 
     def begin_request(
-        self, begin: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
+        self, make_request: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
     ) -> PendingRequest[T]:
         """Begin a request with a timeout."""
 
         def with_limit(session: Requester) -> PendingRequest[T]:
-            request = begin(session)
+            request = make_request(session)
             request.limit_ms = limit_ms or REQUEST_TIMEOUT_MS
             return request
 
@@ -228,7 +228,7 @@ class Client:
     def stop(self, timeout_s: float | None = None) -> bool:
         """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
 
-        The default of `limit_s` is CONFIRM_TIMEOUT_S. Events from before the call do not count.
+        The default of `timeout_s` is CONFIRM_TIMEOUT_S. Events from before the call do not count.
         """
         end_s = monotonic() + (opening.CONFIRM_TIMEOUT_S if timeout_s is None else timeout_s)
         stop_ms = self.connection.stop()

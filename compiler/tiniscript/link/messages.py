@@ -178,7 +178,7 @@ FEATURES = (
 REMOTE_KEYS = ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
 MOST_PAD = 100
 HOLD_MS = 500
-# The keys of a robot: `which` of CLAIM and AUTHENTICATE.
+# The keys of a robot: `kind` of CLAIM and AUTHENTICATE.
 KEYS = (
     (
         "OWNER",
@@ -291,9 +291,9 @@ MESSAGES = (
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
              "Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. Answers OK as NAME does."),
-    _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot the key number `which` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
-    _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
+    _message(16, "CLAIM", True, f"kind:u8 key:rest=0..{KEY_BYTES}", "",
+             "Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
+    _message(17, "AUTHENTICATE", True, f"kind:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
              "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,

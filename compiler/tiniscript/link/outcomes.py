@@ -26,9 +26,9 @@ POLL_INTERVAL_S = 0.1  # between two checks for events: Windows handles Ctrl-C o
 
 
 class ShownEvent(NamedTuple):
-    """A program has shown a value, with the SHOW at byte `at` of its code.
+    """A program has shown a value, with the SHOW at byte `offset` of its code.
 
-    `program` is the checksum of its image; `at` is -1 if that is not known.
+    `program` is the checksum of its image; `offset` is -1 if that is not known.
     """
 
     value: int
@@ -80,7 +80,7 @@ class StartedEvent(NamedTuple):
 
 
 class PlaceEvent(NamedTuple):
-    """The program is at another place: byte `at` of its code, or -1 after the end of the run.
+    """The program is at another place: byte `offset` of its code, or -1 after the end of the run.
 
     `program` is the checksum of its image.
     """

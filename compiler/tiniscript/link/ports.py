@@ -76,7 +76,7 @@ def resolve(port: str) -> str:
 
 
 def open_port(port: str, baud: int, timeout_s: float = OPEN_S) -> Port:
-    """Open a port for exclusive use. Raises PortError, at the latest after `limit_s`.
+    """Open a port for exclusive use. Raises PortError, at the latest after `timeout_s`.
 
     A connection by Bluetooth LE has limits of its own.
     """

@@ -66,7 +66,7 @@ class BadRecording(Exception):
 
 
 class Row(NamedTuple):
-    """An event at `ms`; `at` is the place of a SHOW in the code, if known."""
+    """An event at `ms`; `offset` is the place of a SHOW in the code, if known."""
 
     ms: int
     event: str

@@ -119,7 +119,7 @@ class Simulator:
         return self.robot.unread_bytes + self.to_robot.byte_count
 
     def turn(self, timeout_s: float = IDLE_S) -> None:
-        """Wait for bytes, at most `limit_s`; then advance the robot to the present."""
+        """Wait for bytes, at most `timeout_s`; then advance the robot to the present."""
         is_full = self.waiting_bytes >= MOST_WAITING_BYTES
         self.transports.wait(min(timeout_s, self._pause_s()), is_full)
         wall_s = monotonic()

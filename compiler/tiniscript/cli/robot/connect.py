@@ -264,10 +264,10 @@ class Connection(Client):
         print(self.text(key, **values))
 
     def request_or_raise(
-        self, begin: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
+        self, make_request: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
         """Make a request; these refusals have the sentence `key`. Raises CommandError."""
-        reply = self.request(begin, [STATUSES[status] for status in statuses])
+        reply = self.request(make_request, [STATUSES[status] for status in statuses])
         if reply.status:
             raise CommandError(3, key, robot=self.name)
         return reply

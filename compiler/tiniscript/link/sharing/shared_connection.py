@@ -72,8 +72,8 @@ class SharedConnection(LinkConnection):
     def has_ended(self) -> bool:
         return self._end is not None
 
-    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        request = make(self._requests)
+    def begin(self, make_request: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        request = make_request(self._requests)
         assert isinstance(request, ClientRequest)
         self._request_count += 1
         self._pending_requests[self._request_count] = request

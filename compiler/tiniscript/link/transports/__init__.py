@@ -32,5 +32,5 @@ class Transport(Protocol):
         ...
 
     def open_port(self, port: str, baud: int, timeout_s: float) -> Port:
-        """Open a port for exclusive use. `limit_s` is for those without limits of their own."""
+        """Open a port for exclusive use. `timeout_s` is for those without limits of their own."""
         ...

@@ -90,7 +90,7 @@ def list_robots() -> list[search.SeenDevice]:
 def open_port(port: str, baud: int, timeout_s: float) -> BluetoothPort:
     """Connect to a device. Raises PortError, at the latest after a search and QUEUE_S.
 
-    `baud` is the speed of the UART behind an HM-10. Radios take longer than `limit_s`.
+    `baud` is the speed of the UART behind an HM-10. Radios take longer than `timeout_s`.
     """
     address = name_in(port)
     if address not in _found_devices:

@@ -83,7 +83,7 @@ def resolve(port: str) -> str:
 def open_port(
     port: str, baud: int, timeout_s: float, is_exclusive: bool = True
 ) -> serial.SerialBase:
-    """Open a port, at the latest after `limit_s`. Raises PortError.
+    """Open a port, at the latest after `timeout_s`. Raises PortError.
 
     Some drivers block in `open` forever, so a daemon thread opens the port.
     """
