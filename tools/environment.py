@@ -84,8 +84,8 @@ def in_language(sentences: tuple[str, ...], **values: str) -> str:
 
 def say(line: str) -> None:
     """Print a line of our own, in bold where a terminal of Unix shows it."""
-    bold = ("\033[1m", "\033[0m") if os.name != "nt" and sys.stderr.isatty() else ("", "")
-    print(f"{bold[0]}{line}{bold[1]}", file=sys.stderr, flush=True)
+    bold_codes = ("\033[1m", "\033[0m") if os.name != "nt" and sys.stderr.isatty() else ("", "")
+    print(f"{bold_codes[0]}{line}{bold_codes[1]}", file=sys.stderr, flush=True)
 
 
 def make(extras: str, root: Path = ROOT) -> Path:

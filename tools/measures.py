@@ -167,9 +167,9 @@ def _reachable(graph: Graph, start: str) -> set[str]:
     reached_names: set[str] = set()
     names_left = [start]
     while names_left:
-        new = graph[names_left.pop()] - reached_names
-        reached_names |= new
-        names_left += new
+        new_names = graph[names_left.pop()] - reached_names
+        reached_names |= new_names
+        names_left += new_names
     return reached_names
 
 

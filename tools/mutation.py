@@ -194,13 +194,16 @@ def python_edits(text: str) -> Iterator[Edit]:
 
 
 def _line_edits(
-    tokens: list[tokenize.TokenInfo], begins: Sequence[int], *, is_inside: bool
+    tokens: list[tokenize.TokenInfo], line_starts: Sequence[int], *, is_inside: bool
 ) -> Iterator[Edit]:
-    spans = [(begins[t.start[0] - 1] + t.start[1], begins[t.end[0] - 1] + t.end[1]) for t in tokens]
+    spans = [
+        (line_starts[t.start[0] - 1] + t.start[1], line_starts[t.end[0] - 1] + t.end[1])
+        for t in tokens
+    ]
     words = [token.string for token in tokens]
     is_annotated = len(words) > 2 and words[1] == ":"
-    begin = words.index("=") if is_annotated and "=" in words else len(words) * is_annotated
-    for index in range(begin, len(words)):
+    value_start = words.index("=") if is_annotated and "=" in words else len(words) * is_annotated
+    for index in range(value_start, len(words)):
         start, end = spans[index]
         previous_token = tokens[index - 1] if index else None
         follows_value = previous_token is not None and (
@@ -238,9 +241,9 @@ def equivalent_mutants() -> dict[tuple[str, str, str], str]:
     json_text = Path(__file__).with_name("equivalent_mutants.json").read_text("utf-8")
     rows: dict[str, list[tuple[str, str, str]]] = json.loads(json_text)
     return {
-        (file, old, becomes): reason
+        (file, old_text, new_text): reason
         for reason, row_of_reason in rows.items()
-        for file, old, becomes in row_of_reason
+        for file, old_text, new_text in row_of_reason
     }
 
 

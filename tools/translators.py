@@ -127,8 +127,10 @@ def _take_text(message: Message, forms: Forms, translation: Translation) -> str:
     if key not in translation.groups.get(name, {}):
         return f"there is no English text with the context {message.context or 'of nothing'}"
     group = translation.pair_texts(name, key)
-    expected = (english, "".join(plural))
-    entry = next((entry for entry in group if (entry.english, entry.plural) == expected), None)
+    expected_texts = (english, "".join(plural))
+    entry = next(
+        (entry for entry in group if (entry.english, entry.plural) == expected_texts), None
+    )
     if entry is None:
         return f"{message.context}: its English text is not this one now: {english[:40]}"
     old_translation, old_seen = entry.translation, entry.seen_hash
@@ -149,9 +151,11 @@ def language_facts(code: str) -> tuple[str, str, list[str], str]:
     name, english_name = (locale.get_display_name(language) or code for language in (code, "en"))
     count, rule = get_plural(code)
     known_rules = (*SIMPLE_FORMS, (_cldr_categories(count, rule, locale.plural_form), rule))
-    expected = [locale.plural_form(number) for number in range(NUMBERS_TRIED)]
+    expected_forms = [locale.plural_form(number) for number in range(NUMBERS_TRIED)]
     fitting_forms = (
-        language for language in known_rules if language[0] and _forms_by(*language) == expected
+        language
+        for language in known_rules
+        if language[0] and _forms_by(*language) == expected_forms
     )
     return name, english_name, *next(fitting_forms, SIMPLE_FORMS[0])
 

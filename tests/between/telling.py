@@ -90,9 +90,9 @@ class Teller(Terminal):
         os.close(self._ours)
         return self.process.wait()
 
-    def wait(self, limit_s: float) -> bool:
+    def wait(self, timeout_s: float) -> bool:
         """Wait until it has ended; return whether it has."""
-        end_s = CLOCK.now_s + limit_s
+        end_s = CLOCK.now_s + timeout_s
         while self.ended_s is None and CLOCK.now_s < end_s:
             time.sleep(STEP_S)
         return self.ended_s is not None

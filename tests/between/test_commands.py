@@ -182,11 +182,11 @@ def _play_fault(
     """
     fault = line.fault
     is_slow = fault.rate or fault.lost or fault.late_ms
-    limit_s = (
+    timeout_s = (
         LONGEST_SLOW_END_S if is_slow else LONGEST_END_S + fault.held_ms % 10**9 / 1000
     ) + words.takes_s
-    end_s = CLOCK.now_s + limit_s
-    leaves_s = chance.choice((1.0, 6.0, 15.0)) if words.stays else limit_s
+    end_s = CLOCK.now_s + timeout_s
+    leaves_s = chance.choice((1.0, 6.0, 15.0)) if words.stays else timeout_s
     has_begun = teller.has_socket if words.is_client else lambda: line.is_used
     while not has_begun() and teller.ended_s is None and CLOCK.now_s < end_s:
         CLOCK.wait(0.01)

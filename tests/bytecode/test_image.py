@@ -123,13 +123,13 @@ def test_each_instruction_can_raise_the_version(monkeypatch: pytest.MonkeyPatch)
         others = b"".join(
             other_op.opcode + bytes(other_op.size - 1)
             for other_op in OPS
-            if not other_op.needs | other_op.since
+            if not other_op.needs | other_op.since_minor
         )
         code = others + op.opcode + bytes(op.size - 1) + others
-        assert pack("SI", 0, code)[3] == op.since
+        assert pack("SI", 0, code)[3] == op.since_minor
         with monkeypatch.context() as patch:
             later_ops = [
-                op._replace(since=9) if other_op == op else other_op for other_op in BY_CODE
+                op._replace(since_minor=9) if other_op == op else other_op for other_op in BY_CODE
             ]
             patch.setattr(opcodes, "BY_CODE", later_ops)
             assert pack("SI", 0, code)[3] == 9
@@ -281,6 +281,6 @@ def test_a_reader_made_from_the_specification_gives_the_same_reasons() -> None:
         assert expected == (refusal(image) if expected else "")
         if not expected:
             parsed, unpacked = second_reader.IMAGE.parse(image), unpack(image)
-            assert (parsed.later, parsed.code) == (unpacked.later, unpacked.code)
+            assert (parsed.later, parsed.code) == (unpacked.later_fields, unpacked.code)
             assert (parsed.devices, parsed.checksum) == (unpacked.devices, unpacked.checksum)
     assert met == {*REFUSALS, ""} - {"OTHER_KIT"}

@@ -246,7 +246,7 @@ def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None
         codes: set[int] = set()
         for first_name, _, last_name in (part.partition("-") for part in ranges.split()):
             codes.update(range(int(first_name, 16), int(last_name or first_name, 16) + 1))
-        newer_codes = {op.code for op in OPS if op.since == minor}
+        newer_codes = {op.code for op in OPS if op.since_minor == minor}
         newer_names = [op.name for op in OPS if op.code in newer_codes - codes]
         assert not newer_names, (
             f"give {newer_names} since={max(RELEASED) + 1}: {minor} has been released"
@@ -257,7 +257,7 @@ def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None
 def test_a_version_that_is_not_released_is_in_the_changelog() -> None:
     """After a release its codes are in RELEASED."""
     unreleased_text = (ROOT / "CHANGELOG.md").read_text("utf-8").partition("\n## ")[2]
-    for minor in {op.since for op in OPS} - {*RELEASED}:
+    for minor in {op.since_minor for op in OPS} - {*RELEASED}:
         assert f"bytecode {ISA_MAJOR}.{minor}" in unreleased_text.partition("\n## ")[0], minor
     assert max(RELEASED) <= ISA_MINOR <= max(RELEASED) + 1
 
@@ -265,14 +265,14 @@ def test_a_version_that_is_not_released_is_in_the_changelog() -> None:
 def test_a_robot_makes_the_version_of_the_same_instructions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    later_ops = [op._replace(since=9) if op.name == "BEEP" else op for op in OPS]
+    later_ops = [op._replace(since_minor=9) if op.name == "BEEP" else op for op in OPS]
     monkeypatch.setattr(opcodes, "OPS", later_ops)
     code = BY_NAME["BEEP"].code
     assert re.search(
         rf"minor_of_op\(uint8_t code\) {{ return .*code == 0x{code:02x} \? 9 : .*0; }}",
         cpp_header.header("a test"),
     )
-    escaped_ops = [op._replace(since=9) if op.name == "MOVE_F" else op for op in OPS]
+    escaped_ops = [op._replace(since_minor=9) if op.name == "MOVE_F" else op for op in OPS]
     monkeypatch.setattr(opcodes, "OPS", escaped_ops)
     with pytest.raises(AssertionError, match="after an escape"):
         cpp_header.header("a test")

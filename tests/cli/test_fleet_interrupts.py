@@ -172,9 +172,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_and_the_second_does_not(
                 + chance.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
             )
         room = Watched(monkeypatch, times[:presses])
-        limit_s = opening.CONFIRM_TIMEOUT_S + 1
+        timeout_s = opening.CONFIRM_TIMEOUT_S + 1
         if how == "stop":  # an unreadable output acts like a first Ctrl-C
-            room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
+            room.presses_s, timeout_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with interrupt_contained():
                 room.fleet.stop_robots()
@@ -186,5 +186,5 @@ def test_the_first_ctrl_c_waits_for_the_robots_and_the_second_does_not(
             "each is told"
         )
         assert len(room.stopped) == len(room.fleet.members)
-        end_s = times[1] if presses > 1 else times[0] + limit_s
+        end_s = times[1] if presses > 1 else times[0] + timeout_s
         assert end_s <= room.now_s <= end_s + 3 * POLL_INTERVAL_S

@@ -81,7 +81,7 @@ def test_known_seal_support_survives_a_list_without_it(
 
 def test_the_keys_of_one_robot_are_forgotten(tsc: Tsc) -> None:
     ring = KeyFile()
-    teacher = OWNER_KEY._replace(which=KEY_TEACHER)
+    teacher = OWNER_KEY._replace(kind=KEY_TEACHER)
     ring.add(
         [OWNER_KEY, teacher, OWNER_KEY._replace(id=7, name="A"), OWNER_KEY._replace(id=8, name="A")]
     )
@@ -146,7 +146,7 @@ def test_no_text_of_a_key_has_its_bytes() -> None:
 
 def test_the_command_lists_names_and_no_key(tsc: Tsc) -> None:
     assert "tsc set owner" in tsc("set", "owner", "--list").out
-    KeyFile().add([OWNER_KEY, OWNER_KEY._replace(which=KEY_TEACHER, key=b"\1" * 16)])
+    KeyFile().add([OWNER_KEY, OWNER_KEY._replace(kind=KEY_TEACHER, key=b"\1" * 16)])
     for language, word in (("en", "teacher"), ("es", "docente")):
         listed_result = tsc("set", "owner", "--list", "--lang", language).gives(
             0, out=(word, "12345678", "TINI")
@@ -214,13 +214,13 @@ def test_abandoned_claims_leave_few_keys() -> None:
     """Each key that is shown takes time: of pending ones the last two are kept, of each kind."""
     key_file = KeyFile()
     for _ in range(6):
-        key_file.create_pending_key(OWNER_KEY.id, OWNER_KEY.which, "TINI")
-        last = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.which, "TINI")
+        key_file.create_pending_key(OWNER_KEY.id, OWNER_KEY.kind, "TINI")
+        last = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.kind, "TINI")
     other = key_file.create_pending_key(7, 0, "")
     assert last and other
     key_file.mark_stale(last)
     robot_keys = key_file.keys_of_robot(OWNER_KEY.id)
-    assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
+    assert sorted(key.kind for key in robot_keys) == [0, 0, 1, 1]
     assert robot_keys[-1] == last._replace(is_stale=True) and key_file.keys_of_robot(7) == [other]
 
 
@@ -229,7 +229,7 @@ def test_abandoned_claims_leave_few_keys() -> None:
 def test_giving_up_a_robot_removes_one_key(key_file: KeyFile, which: int, status: int) -> None:
     """The other one it still has, and so has this computer; a refused one stays."""
     ring = [
-        OWNER_KEY._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
+        OWNER_KEY._replace(id=robot, kind=kind, key=bytes([robot % 256, kind] * 8))
         for robot in (OWNER_KEY.id, 7)
         for kind in (KEY_OWNER, KEY_TEACHER)
     ]
@@ -239,8 +239,8 @@ def test_giving_up_a_robot_removes_one_key(key_file: KeyFile, which: int, status
     next(exchange)
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
-    key_ids = {(key.id, key.which) for key in key_file.all()}
-    given_up_keys = {(key.id, key.which) for key in ring} - key_ids
+    key_ids = {(key.id, key.kind) for key in key_file.all()}
+    given_up_keys = {(key.id, key.kind) for key in ring} - key_ids
     assert given_up_keys == ({(OWNER_KEY.id, which)} if status == OK else set())
 
 

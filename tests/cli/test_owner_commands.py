@@ -147,7 +147,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     on(pty_robot, "start").gives(3, "teacher")
     become_another_computer(monkeypatch, tmp_path, "settings")
     assert on(pty_robot, "start").code == 0
-    assert {key.which for key in KeyFile().all()} == {KEY_TEACHER}
+    assert {key.kind for key in KeyFile().all()} == {KEY_TEACHER}
 
 
 def test_a_shared_port_has_authority_but_its_messages_no_key(
@@ -158,7 +158,7 @@ def test_a_shared_port_has_authority_but_its_messages_no_key(
     assert (
         claim_with_button(pty_robot).code == 0
     )  # the key is made by the command that holds the port
-    assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
+    assert [key.kind for key in KeyFile().all()] == [KEY_OWNER]
     become_another_computer(monkeypatch, tmp_path)  # removes the key from this command
     assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0
     assert ", yours" in on(pty_robot, "doctor").out
@@ -170,7 +170,7 @@ def test_a_shared_port_has_authority_but_its_messages_no_key(
     link.kill()
     client: Any = ClientRequests()
     for request in (client.claim(KEY_OWNER), client.disown(KEY_OWNER)):
-        assert set(request.message) == {"do", "which"}
+        assert set(request.message) == {"do", "kind"}
 
 
 def test_a_different_robot_at_a_known_address_is_refused_until_accepted(

@@ -358,7 +358,7 @@ def test_a_recording_ends_when_the_run_does(
     events = record(file, ("SHOW", "5"), began_s=10.0, end=event)
     assert events == (Row(200, "SHOW 5"), Row(60_000, wanted_text))
     compared_divergence = play(prepare(decode(file.read_bytes()))).divergence
-    assert compared_divergence is not None and compared_divergence.what == (
+    assert compared_divergence is not None and compared_divergence.outcome == (
         "same" if event else "virtual_more"
     )
 

@@ -223,6 +223,6 @@ def test_a_port_that_never_opens_is_given_up(
     hangs = threading.Event()
     monkeypatch.setattr(serial_transport, "_make_serial", lambda *_: hangs.wait(30))
     with pytest.raises(errors.PortError) as failure:
-        ports.open_port("COM5", 9600, limit_s=0.1)
+        ports.open_port("COM5", 9600, timeout_s=0.1)
     assert failure.value.reason == errors.SLOW
     hangs.set()

@@ -29,8 +29,8 @@ def list_answers() -> list[tuple[Run, list[str]]]:
 
 
 def pace_of(run: Run) -> Pace:
-    (times,) = {*run.slow.values()} or {(1, 0, 0)}
-    return Pace(run.schedule[1][0], tuple(run.slow), *times)
+    (times,) = {*run.slow_readings.values()} or {(1, 0, 0)}
+    return Pace(run.schedule[1][0], tuple(run.slow_readings), *times)
 
 
 # -- the machine in C++ -------------------------------------------------------------------------
@@ -77,7 +77,7 @@ def test_a_machine_in_cpp_agrees(name: str) -> None:
     machine, _, one_in = CPP[name]
     cases = [(run, answer) for run, answer in list_answers() if is_for(name, run, answer)]
     assert len(cases) > 800
-    assert any(run.slow and run.needs for run, _ in cases)
+    assert any(run.slow_readings and run.needs for run, _ in cases)
     for run, answer in cases[::one_in]:
         assert machine(run).splitlines() == answer, run.name
 
@@ -123,7 +123,7 @@ def predict_output(run: Run) -> str:
     """Return the output that the text interpreter predicts for a run."""
 
     def is_slow(sensor: str, now_ms: int) -> bool:
-        period_ms, from_ms, to_ms = run.slow.get(sensor, (1, 0, 0))
+        period_ms, from_ms, to_ms = run.slow_readings.get(sensor, (1, 0, 0))
         return from_ms <= now_ms % period_ms < to_ms
 
     readings, max_ms, max_steps, seed = run.senses

@@ -119,13 +119,13 @@ def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_tasks(ref
     cases = [case for case in machine_cases() if case.needs][:4]
     answers = iter([f"REFUSED {refusal}"])
     judged = list(verdicts(cases, lambda request, most: [next(answers)]))
-    assert [verdict.what for verdict in judged] == [LACKS] * 4
+    assert [verdict.outcome for verdict in judged] == [LACKS] * 4
     answers_with_late_refusal = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
     judged = list(verdicts(cases, lambda request, most: next(answers_with_late_refusal)))
-    assert [verdict.what for verdict in judged] == [AGREES] * 3 + [DIFFERS]
+    assert [verdict.outcome for verdict in judged] == [AGREES] * 3 + [DIFFERS]
     answers_with_other_refusal = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
     judged = list(verdicts(cases, lambda request, most: next(answers_with_other_refusal)))
-    assert [verdict.what for verdict in judged] == [DIFFERS] + [AGREES] * 3
+    assert [verdict.outcome for verdict in judged] == [DIFFERS] + [AGREES] * 3
 
 
 # A file of `tests/oracle`, its text, the replacement, and a case that must be named.
@@ -211,7 +211,7 @@ def test_a_broken_machine_is_reported(
         except LookupError:  # the machine has crashed
             return []
 
-    assert any(verdict.what == DIFFERS for verdict in verdicts(cases, answer_request))
+    assert any(verdict.outcome == DIFFERS for verdict in verdicts(cases, answer_request))
 
 
 def test_each_instruction_runs() -> None:
@@ -226,7 +226,7 @@ def test_each_instruction_runs() -> None:
         runs = machine_of(code, robot, len(kit.readings), case.seed)
         for _ in range(10_000):
             status = runs.tick(robot.now_ms, 1)
-            opcodes.add([*code, 0][runs.at])
+            opcodes.add([*code, 0][runs.offset])
             robot.now_ms = max(runs.wake_ms, robot.now_ms)
             if status in (DONE, FAULT) or robot.now_ms > case.until_ms:
                 break

@@ -144,11 +144,11 @@ def test_a_frame_changed_in_transit_is_named(change_name: str, pty_robot: PtyRob
     assert checks
     with open_changed_robot(pty_robot, lambda frame: frame) as robot:
         greet(robot)
-        assert {verdict.what for verdict in verdicts(robot, checks)} == {AGREES}
+        assert {verdict.outcome for verdict in verdicts(robot, checks)} == {AGREES}
     with open_changed_robot(pty_robot, change) as robot:
         greet(robot)
         judged = list(verdicts(robot, checks))
-    assert any(verdict.what != AGREES for verdict in judged), judged
+    assert any(verdict.outcome != AGREES for verdict in judged), judged
 
 
 def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
@@ -158,7 +158,7 @@ def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
         assert isinstance(robot.wire, ChangedWire)
         robot.wire.change = lambda frame: None
         judged = list(verdicts(robot, all_checks(link_test_suite())))
-    assert [(verdict.what, verdict.detail) for verdict in judged] == [("silent", "PING")] * 3
+    assert [(verdict.outcome, verdict.detail) for verdict in judged] == [("silent", "PING")] * 3
 
 
 def test_json_names_the_checks(pty_robot: PtyRobot) -> None:

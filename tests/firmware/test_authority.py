@@ -157,7 +157,7 @@ def test_no_challenge_can_serve_as_a_tag() -> None:
     [key] = keys.keys_of_robot(owner.robot.id)
     challenges = []
     for _ in range(2):
-        answer = table.ask_unsealed(owner, "AUTHENTICATE", bytes([key.which]))
+        answer = table.ask_unsealed(owner, "AUTHENTICATE", bytes([key.kind]))
         assert answer[0] == 0
         challenges.append(answer[3:])
     first, second = challenges

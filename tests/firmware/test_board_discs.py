@@ -190,7 +190,7 @@ def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], Non
         while cycle < uno.cycle + CYCLES_PER_MS:
             level = not level
             for number, pin in enumerate(pins(ROBOT)):
-                uno.drive(f"D{pin}", level, at=cycle + number * half // 3)
+                uno.drive(f"D{pin}", level, at_cycle=cycle + number * half // 3)
             cycle += half
         run_ms(1)
 

@@ -72,7 +72,7 @@ def test_a_step_is_a_statement() -> None:
         halt = it.halt()
         if halt is None:
             break
-        lines.append(halt.at)
+        lines.append(halt.offset)
     assert lines == [2, 5, 7, 10]
     assert it.robot.did[-1].endswith("FINISHED")
 
@@ -156,7 +156,7 @@ def test_a_place_is_reported_with_the_programs_checksum() -> None:
     assert it.halt()
     it.session.tells_places = True
     events = it.talk(1000)
-    assert [(e.program, e.at) for e in events if e.name == "PLACE"] == [
+    assert [(e.program, e.offset) for e in events if e.name == "PLACE"] == [
         (it.image.checksum, SECOND_MOVE_OFFSET)
     ]
 
@@ -378,7 +378,7 @@ def test_a_check_that_is_repeated_halts_once() -> None:
     it.start()
     halts = []
     while (halt := it.halt()) is not None:
-        halts.append(halt.at)
+        halts.append(halt.offset)
         it.go()
     assert halts == [check, check], "once for each move"
 

@@ -63,7 +63,7 @@ def run(image: Image, kit: Kit, seed: int, mode: str) -> list[str]:
         if any(event.name in END_EVENTS for event in events):
             break
         for event in halts:
-            assert event.at in statements
+            assert event.offset in statements
             halted_in += 1
             it.go(RESUME_STEP if mode == "steps" or rng.random() < 0.3 else RESUME_GO)
             lines_there.append("HALT")
@@ -137,7 +137,7 @@ def halts_before(it: Debugged, rng: random.Random) -> None:
                 it.go(resume_mode)
         if rng.random() < 0.5:
             # Sent while a stop is on its way.
-            it.session.resume(how=rng.choice((RESUME_GO, RESUME_STEP)))
+            it.session.resume(extent=rng.choice((RESUME_GO, RESUME_STEP)))
             it.talk(rng.choice((0, 1, 2, 3)))
         STOPS[rng.choice([*STOPS])](it)
         it.talk(rng.choice((300, 700)))
@@ -154,7 +154,7 @@ def list_next_run(it: Debugged, places: list[int]) -> list[str]:
         is_halted = False
         for event in it.talk(4):
             if event.name in ("SHOW", "HALTED", *END_EVENTS):
-                value = getattr(event, "value", getattr(event, "at", ""))
+                value = getattr(event, "value", getattr(event, "offset", ""))
                 lines.append(f"{event.name} {value}")
                 is_halted = event.name == "HALTED"
         if is_halted:

@@ -98,7 +98,7 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
             if event.name == "SHOW":
                 shows.append(value_text(event.value, bool(event.is_yes_no)))
             elif isinstance(event, HaltedEvent):
-                assert event.at in starts
+                assert event.offset in starts
                 halts += 1
                 wired_uno.complete(session.resume(RESUME_STEP))
             is_over = is_over or event.name in ("DONE", "FAULT")

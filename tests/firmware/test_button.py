@@ -87,8 +87,8 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
         for count in (2, 5):
             for k in range(count):
                 cycle = uno.cycle + (1 + k * spacing_ms) * CYCLES_PER_MS
-                uno.drive("button", False, at=cycle)
-                uno.drive("button", None, at=cycle + SPIKE_US * CYCLES_PER_MS // 1000)
+                uno.drive("button", False, at_cycle=cycle)
+                uno.drive("button", None, at_cycle=cycle + SPIKE_US * CYCLES_PER_MS // 1000)
             uno.run_ms(count * spacing_ms + 80)
             assert states(uno) == OFF, (spacing_ms, count)
     assert not [change for change in uno.pins.history("left") if change.state == "pwm"]
@@ -99,7 +99,7 @@ def test_the_first_edge_stops_a_running_uno(uno: Uno) -> None:
     send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(100)
     cycle = uno.cycle + CYCLES_PER_MS
-    uno.drive("button", False, at=cycle)
+    uno.drive("button", False, at_cycle=cycle)
     uno.run_ms(3)
     assert states(uno) == OFF
     off_cycle = max(uno.pins[name].cycle for name in OFF)

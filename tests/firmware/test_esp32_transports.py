@@ -434,7 +434,7 @@ def test_a_teachers_stop_holds_on_every_transport() -> None:
     teacher = Session(1, 115200, robot.robot.kit.fingerprint, keys=keys)
     pupil = session(2, robot)
     clients: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
-    claim_robot(robot, clients, teacher, which=1)
+    claim_robot(robot, clients, teacher, kind=1)
     assert wait_for_outcome(robot, clients, teacher.hold_back()) == "OK"
     talk(robot, clients[1:], AUTHORITY_MS + 100)
     assert wait_for_outcome(robot, clients[1:], pupil.clear()) == "HELD_BACK"

@@ -47,7 +47,7 @@ def places(image: Image, begun_ms: int, sensed: int) -> Iterator[int]:
     machine = Machine(image.code, robot, len(KIT.readings), now_ms=begun_ms)
     now_ms = begun_ms
     while machine.tick(now_ms, 1000) == "waiting":
-        yield machine.at
+        yield machine.offset
         now_ms += 1
 
 
@@ -98,8 +98,8 @@ def test_a_subscribed_session_gets_each_place_of_each_run_once() -> None:
     assert robot.until(session, session.start()) == OK
     events = events_after(robot, session, 3000)
     place_events = place_events_of(events)
-    assert [place_event.at for place_event in place_events] == sorted(
-        {event.at for event in place_events}
+    assert [place_event.offset for place_event in place_events] == sorted(
+        {event.offset for event in place_events}
     )
     assert len(place_events) == 3 and all(
         place_event[:2] == (2, image.checksum) for place_event in place_events

@@ -63,7 +63,7 @@ def test_unread_bytes_damage_a_message(tmp_path: Path) -> None:
         assert wired_uno.until(wired_uno.session.hello()) == OK
         assert read_counters(wired_uno) == (0, 0, 0, 0)
         ping = wired_uno.session.ping()
-        uno.press("button", at=uno.cycle + 2 * CYCLES_PER_MS)
+        uno.press("button", at_cycle=uno.cycle + 2 * CYCLES_PER_MS)
         assert wired_uno.until(ping) == OK  # sent again
         assert len(uno.lost_bytes) >= 3
         assert read_counters(wired_uno) == (1, 0, 0, 1)
@@ -149,7 +149,7 @@ def test_a_line_that_was_never_high_does_not_block_the_button(sketch: Path, memo
         while read_saved_state(wired_uno) != 3:
             wired_uno.run(50)
     with Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD) as uno:
-        uno.hold(False, 60 * BAUD, at=0)
+        uno.hold(False, 60 * BAUD, at_cycle=0)
         uno.run_ms(500)
         uno.press("button", ms=100)
         uno.run_ms(1000)

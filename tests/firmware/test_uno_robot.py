@@ -147,8 +147,8 @@ def test_a_live_line_reaches_the_motors_at_once(uno: Uno) -> None:
 def disconnect_for(uno: Uno, ms: float) -> None:
     """Disconnect for so long, according to the HC-05's STATE pin."""
     cycle = uno.cycle + CYCLES_PER_MS
-    uno.drive("radio", False, at=cycle)
-    uno.drive("radio", True, at=cycle + round(ms * CYCLES_PER_MS))
+    uno.drive("radio", False, at_cycle=cycle)
+    uno.drive("radio", True, at_cycle=cycle + round(ms * CYCLES_PER_MS))
 
 
 def test_a_radio_that_loses_its_client_ends_an_attached_run(uno: Uno) -> None:

@@ -87,8 +87,8 @@ def test_a_write_without_progress_is_ended(clock: Clock, seed: int) -> None:
     last_s = some[-1][0] if some else 0.0
     how, at_s = watch_parts(clock, some, RUN_TIMEOUT_S + 1)
     assert how and how.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
-    limit_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
-    assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
+    timeout_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
+    assert timeout_s - LOOK_S < at_s - last_s < timeout_s + 2 * LOOK_S
 
 
 @pytest.mark.parametrize("failed", range(4))

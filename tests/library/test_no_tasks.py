@@ -116,7 +116,7 @@ def test_an_image_with_tasks_sent_by_a_page_is_refused(do: str) -> None:
         boot=0,
         holder_verb="",
         enable_place_events=lambda: None,
-        event=lambda limit_s=0: None,
+        event=lambda timeout_s=0: None,
     )
     link = robot_link.RobotLink(connection, "en")
     data = tiniscript.compile(TEXT, ROBOT).image.hex()

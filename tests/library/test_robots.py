@@ -281,7 +281,7 @@ class ToldEvents:
         self.stops += 1
         return 5
 
-    def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = 0) -> tuple[int, Event] | None:
         return self.events.pop(0) if self.events else None
 
 

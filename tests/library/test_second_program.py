@@ -70,7 +70,7 @@ class Line:
         self.program, self.unsaved_looks = image.checksum, SAVING_LOOKS * saves
         return self.request(None)
 
-    def event(self, limit_s: float) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float) -> tuple[int, Event] | None:
         return self.events.pop(0) if self.events else None
 
     def stop(self) -> bool:

@@ -109,7 +109,7 @@ class Robot:
             return cast(Reply[T], end.value)
 
     def _reply(self, request: Request) -> Reply[Any]:
-        which = int(request.values["which"])
+        which = int(request.values["kind"])
         if request.name == "CLAIM":
             status = self._take(which, cast(bytes, request.values["key"]))
             return Reply(status, 0, EmptyReply())
@@ -165,5 +165,5 @@ def test_a_robot_stays_its_owners_whatever_claims_were_lost(
             assert reply is not None and reply.status == OK
             [own] = [key for key in ring.keys_of_robot(1) if key.key == right]
             sealing_keys |= {right} if robot.has_seals else set()
-            assert (own.which, own.is_pending, own.is_stale) == (which, False, False)
+            assert (own.kind, own.is_pending, own.is_stale) == (which, False, False)
             assert own.uses_seals == (right in sealing_keys)

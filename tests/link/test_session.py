@@ -365,7 +365,7 @@ def test_programs_that_do_not_fit_are_not_sent() -> None:
         (image._replace(isa=(ISA_MAJOR - 1, 0)), STATUSES["OTHER_MACHINE"], ISA),
         (image._replace(isa=(ISA_MAJOR, ISA_MINOR + 1)), STATUSES["OTHER_MACHINE"], ISA),
         (image._replace(code=bytes(390)), STATUSES["TOO_LARGE"], 389),
-        (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
+        (image._replace(code=bytes(389), later_fields=b"x"), STATUSES["TOO_LARGE"], 389),
     ]
     session = greet()
     for too_large, status, detail in cases:
@@ -635,7 +635,7 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
         reply = Frame(2, sent_frame.seq, 10, b"\0" + payload, is_reply=True)
         session.receive(b"\0" + encode_frame(reply), now_ms + 1)
     return [
-        (place_event.run, place_event.at)
+        (place_event.run, place_event.offset)
         for place_event in session.events()
         if isinstance(place_event, PlaceEvent)
     ]

@@ -98,7 +98,7 @@ def check_all_arrive(sender: TextSender, draw: random.Random) -> None:
             frame = random_frame(draw)
             data = sender.prepare_frames(encode_frame(frame), line.now_ms)
             assert line.put(data) == ([frame], [])
-    assert line.receiver.damaged == line.receiver.dropped == 0
+    assert line.receiver.damaged_count == line.receiver.dropped_count == 0
 
 
 def check_torn_lines_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:

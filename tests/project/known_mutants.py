@@ -28,7 +28,7 @@ KNOWN: tuple[Known, ...] = (
           "if (is_sound(trim)) tuning.trim = trim;", "tuning.trim = trim;",
           "tests/firmware/test_other_versions.py::test_a_trim_stored_by_other_firmware_is_ignored"),
     Known("a request of who has left", "compiler/tiniscript/link/sharing/server.py",
-          "self._connection.withdraw(request.pending)", "pass",
+          "self._connection.withdraw(request.pending_request)", "pass",
           "tests/sharing/test_run_owners.py::test_requests_of_a_leaving_client_are_withdrawn"),
     Known("the page that asked last", "compiler/tiniscript/studio/serving.py",
           "known_client = self._connections.pop(client, None)",

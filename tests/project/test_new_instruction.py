@@ -54,7 +54,7 @@ def cheep(machine: Drive, next_pc: int) -> Step:
 @pytest.fixture
 def tables(monkeypatch: pytest.MonkeyPatch) -> list[ModuleType]:
     """Add CHEEP to each of the tables; return the modules that have them."""
-    op = OP._replace(since=NEXT_MINOR)
+    op = OP._replace(since_minor=NEXT_MINOR)
     assert opcodes.BY_CODE[op.code] is None
     by_code = [op if code == op.code else other for code, other in enumerate(opcodes.BY_CODE)]
     act = oracle.ACTS["BEEP"]._replace(waits=False)

@@ -45,19 +45,19 @@ from tools.generate.paper import Line
 ROBOT = robots.load("tinibot")
 KIT = ROBOT.kit
 PROGRAM = "SI|LOOP(2);\n  HORN;\n  W(1);\nEND_LOOP;\n"
-EXPANDED_PROGRAM = PROGRAM.replace(HORN.text, HORN.stands_for)
+EXPANDED_PROGRAM = PROGRAM.replace(HORN.text, HORN.expansion)
 
 
 @pytest.fixture(autouse=True)
 def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    monkeypatch.setitem(FIXED_WORDS, HORN.text, ((), HORN.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, HORN.text, ((), HORN.expansion))
     monkeypatch.setitem(WORDS, WIGGLE.text, WIGGLE)
-    monkeypatch.setitem(FIXED_WORDS, WIGGLE.text, (("N",), WIGGLE.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, WIGGLE.text, (("N",), WIGGLE.expansion))
     monkeypatch.setitem(WORDS, DANCE.text, DANCE)
-    monkeypatch.setitem(FIXED_WORDS, DANCE.text, (("SECONDS", "N"), DANCE.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, DANCE.text, (("SECONDS", "N"), DANCE.expansion))
     monkeypatch.setitem(WORDS, SHAKE.text, SHAKE)
-    monkeypatch.setitem(FIXED_WORDS, SHAKE.text, (("BEATS", "POWER"), SHAKE.stands_for))
+    monkeypatch.setitem(FIXED_WORDS, SHAKE.text, (("BEATS", "POWER"), SHAKE.expansion))
 
 
 def test_the_new_word_does_the_same_as_its_expansion() -> None:
@@ -132,7 +132,7 @@ def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant_t
         )
         assert lacking == as_written
     sketch = sketch_of(compilation.source, compilation.program, ROBOT, "en")
-    assert "turnLeft(" in sketch and WIGGLE.stands_for not in sketch
+    assert "turnLeft(" in sketch and WIGGLE.expansion not in sketch
 
 
 def test_a_wrong_value_is_named() -> None:
@@ -148,12 +148,12 @@ def test_a_value_of_such_a_word_is_one_complete_value() -> None:
     as long as the program has run.
     """
     for word in WORDS.values():
-        for name in (its.name.upper() for its in word.arguments if word.stands_for):
+        for name in (its.name.upper() for its in word.arguments if word.expansion):
             pattern = rf"(?<!\w){name}(?!\w)"
             assert name not in WORDS, word
-            assert len(re.findall(pattern, word.stands_for)) == 1, word
+            assert len(re.findall(pattern, word.expansion)) == 1, word
             is_whole = rf"[(,] *{pattern} *[,)]|= *{pattern} *(?:;|$)"
-            assert re.search(is_whole, word.stands_for), word
+            assert re.search(is_whole, word.expansion), word
 
 
 def test_formatter_blocks_and_sketch_keep_the_new_word() -> None:
@@ -247,7 +247,7 @@ from tools.generate import documents, poster, text_tables
 form = read_blocks("SI|LAMP(50)", robots.load("tinibot").kit)
 lines = [line.text for line in poster.page("es") if isinstance(line, poster.Line)]
 print(json.dumps({
-    "lacked": [LAMP.text in level.lacks for level in LEVELS.values()],
+    "lacked": [LAMP.text in level.missing_words for level in LEVELS.values()],
     "tables": text_tables.words_tables("a test"),
     "block": [form.body[0].kind, format_blocks(form).text, block_kinds.BLOCK_TEXTS[LAMP.text]],
     "says": lines[lines.index(LAMP.example) + 1],
@@ -270,7 +270,9 @@ def test_a_word_with_its_own_role_needs_only_the_table(
     assert others and f"`LAMP(POWER)` {SAID['es']}" in others[0]
 
 
-@each_row("role", [role for role in ROLES.values() if role.is_instruction and not role.lasts])
+@each_row(
+    "role", [role for role in ROLES.values() if role.is_instruction and not role.has_duration]
+)
 def test_each_role_that_is_not_a_statement_of_its_own_has_an_instruction_and_a_helper(
     role: Role,
 ) -> None:
@@ -324,5 +326,5 @@ def test_the_new_word_is_in_the_references(document: str, language: str, says: s
     }  # fmt: skip
     assert match
     assert match[1] == " ".join(
-        f"`{usage}` = `{word.stands_for}`" for usage, word in with_values.items()
+        f"`{usage}` = `{word.expansion}`" for usage, word in with_values.items()
     )

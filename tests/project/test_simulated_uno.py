@@ -33,7 +33,7 @@ def test_a_run_ends_at_the_requested_cycle() -> None:
         for cycle in (1000, 1001, 54_321):
             uno.run_to(cycle)
             assert cycle <= uno.cycle <= cycle + 4  # the longest instruction
-        uno.send(b"U", at=80_000)
+        uno.send(b"U", at_cycle=80_000)
         change = uno.run_until("D7", "high", limit_ms=5)
         assert change.cycle <= uno.cycle <= change.cycle + 4
         with pytest.raises(AssertionError, match="D7 has not become pwm in 1 ms"):
@@ -62,7 +62,7 @@ def test_masked_interrupt_times_are_measured() -> None:
 
 def test_a_byte_has_ten_bits() -> None:
     with Uno(build_uno("echo", Baud=115200, Wait=1)) as uno:
-        uno.send(b"ab", at=20_000)
+        uno.send(b"ab", at_cycle=20_000)
         uno.run_ms(3)
     assert [byte.value for byte in uno.sent_bytes] == [*b"ab"]
     first, second = uno.received_bytes
@@ -76,7 +76,7 @@ def test_a_byte_has_ten_bits() -> None:
 def test_a_burst_overruns_the_buffer() -> None:
     """Two bytes are kept, and the last one; those between are overwritten as they come."""
     with Uno(build_uno("echo", Baud=115200, Wait=5)) as uno:
-        uno.send(b"abcde", at=CYCLES_PER_MS)
+        uno.send(b"abcde", at_cycle=CYCLES_PER_MS)
         uno.run_ms(4.9)
         assert [byte.value for byte in uno.received_bytes] == [*b"abcde"]
         uno.run_ms(2)

@@ -91,10 +91,10 @@ BAD_MESSAGES: tuple[dict[str, Any], ...] = (
         ("port", 0), ("address", "7f"), ("group", "a/b"),
     )),
     of("upload", IMAGE, start="XX"), of("upload", IMAGE, start="PING"),
-    of("upload", IMAGE, isa="02"), of("upload", IMAGE, later="1"),
+    of("upload", IMAGE, isa="02"), of("upload", IMAGE, later_fields="1"),
     of("upload", IMAGE, devices=-1), of("upload", IMAGE, devices=1 << 16),
     of("upload", IMAGE, checksum=1 << 32), of("upload", IMAGE, code="00" * 0x8000),
-    of("upload", IMAGE, later="00" * 241), of("upload", IMAGE, runs=1),
+    of("upload", IMAGE, later_fields="00" * 241), of("upload", IMAGE, runs=1),
     of("upload", IMAGE, kit=1 << 16), of("upload", IMAGE, kit=-1),
     of("upload", IMAGE, needs=1 << 8), of("upload", IMAGE, needs=-1),
 )  # fmt: skip

@@ -16,8 +16,8 @@ from tiniscript.link.sharing.shared_connection import join
 def list_events_until_done(connection: LinkConnection) -> list[Event]:
     """Return the events up to the end of a run."""
     events: list[Event] = []
-    limit_s = monotonic() + HANG_LIMIT_S
-    while monotonic() < limit_s:
+    end_s = monotonic() + HANG_LIMIT_S
+    while monotonic() < end_s:
         row = connection.event(0.2)
         if row is not None:
             events.append(row[1])
@@ -42,7 +42,7 @@ def test_only_subscribed_clients_get_places() -> None:
             if isinstance(place_event, PlaceEvent)
         ]
         assert len(places) == 2 and {place.program for place in places} == {image.checksum}
-        assert places[0].at < places[1].at < len(image.code)
+        assert places[0].offset < places[1].offset < len(image.code)
         for connection in (other, shared_port.line):
             assert "PLACE" not in {event.name for event in list_events_until_done(connection)}
         client.close()

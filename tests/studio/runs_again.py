@@ -75,7 +75,7 @@ def differs(number: int, is_held: bool = False) -> str | None:
     replayed_rows = [row for row in played_run.rows() if not row.is_input]
     parting = played_run.divergence
     played_run.close()
-    if parting is None or parting.what != "again" or parting.agreed != len(rows):
+    if parting is None or parting.outcome != "again" or parting.agreed != len(rows):
         return f"{parting}\n{data.decode()}"
     return None if replayed_rows[: len(rows)] == rows else f"{replayed_rows}\n{data.decode()}"
 

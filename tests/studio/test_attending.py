@@ -45,7 +45,7 @@ class Link:
             accepted += [request] * is_accepted
         return accepted
 
-    def news(self, limit_s: float = 0) -> list[Json]:
+    def news(self, timeout_s: float = 0) -> list[Json]:
         news, self._news = self._news, []
         return news
 

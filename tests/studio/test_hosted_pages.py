@@ -68,7 +68,7 @@ class FakeRobot:
         self.state = "parting" if self.state == "driving" else self.state
         self.lets_go = self.lets_go or is_letting_go
 
-    def join(self, limit_s: float) -> None:
+    def join(self, timeout_s: float) -> None:
         self.is_joined = True
 
 

@@ -46,10 +46,10 @@ class Page:
             self.news.append(item)
 
     def until(
-        self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = HANG_LIMIT_S
+        self, is_so: Callable[[dict[str, Any]], bool], timeout_s: float = HANG_LIMIT_S
     ) -> dict[str, Any]:
         """Wait for news, beating."""
-        end_s = time.monotonic() + limit_s
+        end_s = time.monotonic() + timeout_s
         while True:
             for item in self.news:
                 if is_so(item):

@@ -47,7 +47,7 @@ class CountedLink:
         self._does("run", request["stops"])
         self._news.append({"id": request["id"], "ok": True})
 
-    def news(self, limit_s: float = 0) -> list[Json]:
+    def news(self, timeout_s: float = 0) -> list[Json]:
         news, self._news = self._news, []
         return news
 

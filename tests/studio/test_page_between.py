@@ -222,8 +222,8 @@ class Scene:
         """Return the page with the button, and the element with its result."""
         return self.page, MESSAGE_PLACE
 
-    def _until(self, pattern: str, limit_s: float, page: Page | None = None) -> bool:
-        end_s, page = CLOCK.now_s + limit_s, page or self.page
+    def _until(self, pattern: str, timeout_s: float, page: Page | None = None) -> bool:
+        end_s, page = CLOCK.now_s + timeout_s, page or self.page
         while CLOCK.now_s < end_s:
             timed_messages = page.evaluate("window.told")
             if any(re.search(pattern, text) for _, text in timed_messages):

@@ -113,7 +113,7 @@ def test_only_the_owner_drives_a_claimed_robot_from_the_page(page: Page) -> None
     page.robot.let_go()
     assert claimed == {"id": 2, "ok": True}
     kept_bytes = page.file.encode()
-    assert [key.which for key in keys.decode_keys(kept_bytes)] == [OWNER]
+    assert [key.kind for key in keys.decode_keys(kept_bytes)] == [OWNER]
     page.advance(3000)  # until the program is saved
     memory = page.robot.memory
 

@@ -117,15 +117,15 @@ def test_a_saved_run_replays_alike_in_page_and_command_line(page: Page, tmp_path
     data = save_run(page, 0)
     recording = decode(data)
     assert any(row.remote_state is not None and row.remote_state.keys for row in recording.rows)
-    played_divergence = play(prepare(recording)).divergence
-    assert played_divergence is not None and (played_divergence.what, played_divergence.agreed) == (
+    divergence = play(prepare(recording)).divergence
+    assert divergence is not None and (divergence.outcome, divergence.agreed) == (
         "again", sum(not row.is_input for row in recording.rows))  # fmt: skip
     page.click("#runs_close")
     write(page, "SI|S")
     open_run(page, data, tmp_path / "run.tsr")
     wait_for_status(
         page,
-        f"The virtual robot did exactly the same again. Rows compared: {played_divergence.agreed}.",
+        f"The virtual robot did exactly the same again. Rows compared: {divergence.agreed}.",
     )
     run_names(page)
     assert decode(save_run(page, 0)).rows == recording.rows

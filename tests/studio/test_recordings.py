@@ -71,10 +71,10 @@ def test_no_divergence_is_marked_after_an_unrecorded_reading(value: str) -> None
     text = "SHOW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
     lines = [(20, "SHOW 1"), (40, f"SHOW {value}"), (60, "SHOW 2"), (61, "DONE")]
     divergence = parting(*lines, text=text)
-    assert (divergence.what, divergence.agreed) == ("unread", 1)
+    assert (divergence.outcome, divergence.agreed) == ("unread", 1)
     assert (divergence.line, divergence.sensor) == (2, "DISTANCE")
     wrong = parting((20, "SHOW 7"), *lines[1:], text=text)
-    assert wrong.what == "value"  # the value before it
+    assert wrong.outcome == "value"  # the value before it
 
 
 @pytest.mark.parametrize("value", ["TRUE", "FALSE"])
@@ -90,7 +90,7 @@ def test_a_recorded_reading_holds_from_its_time_on(value: str) -> None:
 
 def test_the_first_divergence_is_reported_with_its_line() -> None:
     divergence = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
-    assert (divergence.what, divergence.agreed, divergence.line) == ("value", 3, 5)
+    assert (divergence.outcome, divergence.agreed, divergence.line) == ("value", 3, 5)
     assert divergence.robot == Row(2060, "SHOW 9")
     assert divergence.virtual is not None and divergence.virtual.event == "SHOW 8"
     late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
@@ -124,7 +124,7 @@ def test_missed_events_end_the_comparison() -> None:
     assert parting(*LINES[:2], (2060, "MISSED")) == Divergence("missed", 2)
     assert parting((9, "MISSED")) == Divergence("missed", 0)
     assert recording_of(LINES[0], (1020, "SHOW 36"), (2060, "MISSED"))[0] == "value"
-    assert parting((9, "LOST")).what == parting().what == "empty"
+    assert parting((9, "LOST")).outcome == parting().outcome == "empty"
 
 
 @pytest.mark.parametrize("waited_ms", [0, 100, 7000])
@@ -136,13 +136,13 @@ def test_a_button_program_is_compared_from_its_first_event(
     lines = [(waited_ms, "SHOW 5"), (waited_ms + 2000, "SHOW 6"), (waited_ms + 2001, "DONE")]
     assert parting(*lines, text=text) == Divergence("same", 3)
     divergence = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
-    assert (divergence.what, divergence.agreed) == ("time", 1)
+    assert (divergence.outcome, divergence.agreed) == ("time", 1)
     assert divergence.virtual is not None and divergence.virtual.ms < 3100
     assert divergence.robot is not None and divergence.robot.ms == divergence.virtual.ms + 1000
     assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Divergence("same", 1)
     assert parting((0, "STOPPED"), text=text) == Divergence("same", 0)
     assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Divergence("same", 2)
-    assert parting((0, "SHOW 5"), text="SB|W(1)").what == "value"
+    assert parting((0, "SHOW 5"), text="SB|W(1)").outcome == "value"
 
 
 @pytest.mark.parametrize(
@@ -156,13 +156,13 @@ def test_the_virtual_robot_runs_only_as_long_as_compared(
     text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
     played_run = play(prepare(decode(file(*events, text=text, was_started_by_button=True))))
-    assert played_run.divergence is not None and played_run.divergence.what == "same"
+    assert played_run.divergence is not None and played_run.divergence.outcome == "same"
     assert played_run.robot.now_ms < 8700
 
 
 def test_an_impossible_reading_is_approximated() -> None:
     divergence = parting((1000, "SHOW 9999999"), text="W(1);SHOW(DISTANCE)")
-    assert divergence.what == "value" and divergence.virtual is not None
+    assert divergence.outcome == "value" and divergence.virtual is not None
     assert divergence.virtual.event == "SHOW 400"
 
 
@@ -291,7 +291,7 @@ def test_each_differing_row_is_reported() -> None:
             other = "\n".join((*lines[:at], *changed_lines, *lines[at + 1 :]))
             divergence = play(prepare(decode(other.encode()))).divergence
             assert divergence is not None
-            assert divergence.what == "otherwise" and divergence.agreed <= k
+            assert divergence.outcome == "otherwise" and divergence.agreed <= k
 
 
 @pytest.mark.parametrize("number", range(12))
@@ -324,18 +324,18 @@ def test_no_divergence_is_marked_after_an_unreported_reading(
     if is_known_again:
         rows.insert(4, (1030, "READ DISTANCE 8"))
     divergence = parting(*rows, text=UNTOLD_TEXT)
-    assert (divergence.what, divergence.agreed) == ("unread", 1)
+    assert (divergence.outcome, divergence.agreed) == ("unread", 1)
     assert (divergence.line, divergence.sensor) == (4, "DISTANCE")
     wrong = parting(*rows[:2], (20, "SHOW 7"), *rows[3:], text=UNTOLD_TEXT)
-    assert wrong.what == "value", "before it"
+    assert wrong.outcome == "value", "before it"
 
 
 def test_a_shown_sensor_value_is_known_despite_unreported_readings() -> None:
     rows = [(0, "READ DISTANCE 8"), (1, "UNREAD DISTANCE"), (1020, "SHOW 9"), (1040, "DONE")]
-    assert parting(*rows, text="X = DISTANCE + 0;W(1);\nSHOW(DISTANCE)").what == "same"
+    assert parting(*rows, text="X = DISTANCE + 0;W(1);\nSHOW(DISTANCE)").outcome == "same"
     text = "X = DISTANCE + 0;W(1);\nSHOW(DISTANCE);\nX = DISTANCE + 0;W(1)"
     divergence = parting(*rows[:-1], (2040, "DONE"), text=text)
-    assert (divergence.what, divergence.line) == ("unread", 3)
+    assert (divergence.outcome, divergence.line) == ("unread", 3)
 
 
 def test_a_reading_may_follow_later_rows() -> None:

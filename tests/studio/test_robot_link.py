@@ -43,10 +43,10 @@ class Robot:
             start=lambda: PendingRequest[Any](), live=lambda *_: PendingRequest[Any]()
         )
         self.pending = make(cast(Requester, session))
-        self.pending.starts = True
+        self.pending.starts_program = True
         return self.pending
 
-    def event(self, limit_s: float) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float) -> tuple[int, Event] | None:
         return (0, self.events.pop(0)) if self.events else None
 
     def ends(self, how: str) -> None:

@@ -155,8 +155,8 @@ class LateLink:
     def stop(self) -> None:
         self._confirms_ms = self.now_ms + self._late_ms
 
-    def news(self, limit_s: float = 0) -> list[dict[str, Any]]:
-        self.now_ms += round(1000 * limit_s)
+    def news(self, timeout_s: float = 0) -> list[dict[str, Any]]:
+        self.now_ms += round(1000 * timeout_s)
         if self.now_ms >= self._confirms_ms:
             self._confirms_ms = float("inf")
             self._news.append({"event": "STOPPED"})

@@ -18,7 +18,7 @@ from tiniscript.link.session import Session
 
 
 class Halt(NamedTuple):
-    at: int
+    offset: int
     task: int
 
 
@@ -60,7 +60,7 @@ class Debugged:
         event = self.until(
             lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
         )
-        return Halt(event.at, event.task) if isinstance(event, HaltedEvent) else None
+        return Halt(event.offset, event.task) if isinstance(event, HaltedEvent) else None
 
     def until(self, is_it: Callable[[Event], bool], limit_ms: int = 5000) -> Event | None:
         end_ms = self.robot.now_ms + limit_ms

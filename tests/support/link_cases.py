@@ -459,7 +459,10 @@ def packets_of(
             left = 0
     assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))
                <= most_bytes for row in rows if row[0] in "ft")  # fmt: skip
-    return [*rows, f"damaged {receiver.damaged % 256}, dropped {receiver.dropped % 256}"]
+    return [
+        *rows,
+        f"damaged {receiver.damaged_count % 256}, dropped {receiver.dropped_count % 256}",
+    ]
 
 
 def with_new_results(case: LinkCase, rows: list[str]) -> list[str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from tiniscript.base.languages import FOLDER
 from tiniscript.base.words import HERTZ, POWER, ROLES, SECONDS, Argument, Role, Word
 
-HORN = Word("HORN", ROLES["fixed"], stands_for="BEEP(0.5, 440)")
+HORN = Word("HORN", ROLES["fixed"], expansion="BEEP(0.5, 440)")
 SAID = {"en": "honks", "es": "toca la bocina"}
 TIMES = Argument("n", "", 1000, 9000, "3")
 WIGGLE = Word("WIGGLE", ROLES["fixed"], (TIMES,), "LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP")

@@ -15,7 +15,7 @@ from tiniscript.diagnostics import codes
 def expanded_word(word: re.Match[str]) -> str:
     """Return the meaning of a word with fixed values; others stay unchanged."""
     known_word = WORDS.get(word[0].upper())
-    return (known_word and known_word.stands_for) or word[0]
+    return (known_word and known_word.expansion) or word[0]
 
 
 def check_line(text: str, kit: Kit) -> None:

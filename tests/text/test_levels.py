@@ -61,7 +61,7 @@ def test_the_room_of_an_uno_is_that_of_its_firmware() -> None:
 
 def test_levels_lack_only_words_of_the_language() -> None:
     for level in LEVELS.values():
-        assert level.lacks <= set(WORDS)
+        assert level.missing_words <= set(WORDS)
 
 
 def test_a_word_missing_in_a_level_is_reported_at_each_place() -> None:

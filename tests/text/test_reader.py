@@ -261,7 +261,7 @@ def test_every_problem_has_its_test() -> None:
 def test_a_reader_without_defs_reads_everything_else() -> None:
     """It recognizes the words, so that they are no names, and reports the missing feature."""
     small, large = TextReader(KIT, flags=NO_DEFS), TextReader(KIT)
-    lacks = LEVELS["uno"].lacks
+    lacks = LEVELS["uno"].missing_words
     texts = [
         text % word
         for word in sorted(TASK_AND_EXTENT_WORDS)

@@ -150,7 +150,7 @@ def calls_of(word: Word) -> list[str]:
     uses = [word.example, word.text]
     for what in [f"20 {UNIT_OF[word.text]}"] if word.role.is_move else []:
         uses.append(f"{word.text}({what}, 80)")
-    if word.role.lasts:
+    if word.role.has_duration:
         forever = ", ".join(["FOREVER", *(argument.sample for argument in word.arguments[1:])])
         uses.append(f"{word.text}({forever})")
     return [*uses, *(f"{use} {UNTIL_CLAUSE}" for use in uses)]

@@ -273,7 +273,7 @@ def test_a_slow_robot_agrees_from_any_start_time(begin_ms: int, budget: int) -> 
         now_ms, calls = begin_ms, []
         for _ in range(200):
             status = machine.tick(now_ms, budget)
-            calls.append((status, now_ms, machine.wake_ms, machine.steps, machine.at))
+            calls.append((status, now_ms, machine.wake_ms, machine.steps, machine.offset))
             if status == WAITING:
                 machine.tick(machine.wake_ms - 1, budget)  # too early: that has no effect
                 now_ms = machine.wake_ms

@@ -55,32 +55,30 @@ def build(name: str, sources: Path = SOURCES, *extra_flags: str, chip: str = CHI
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         flags = f"-mmcu={chip}", *FLAGS[1:], *extra_flags, *WARNINGS
-        completed = subprocess.run(
+        result = subprocess.run(
             ["avr-g++", *flags, *map(str, source_paths), "-o", str(program)],
             capture_output=True,
             text=True,
         )
-        if completed.returncode != 0:
-            raise RuntimeError(f"avr-g++ refuses {name}.cpp:\n{completed.stderr[:4000]}")
+        if result.returncode != 0:
+            raise RuntimeError(f"avr-g++ refuses {name}.cpp:\n{result.stderr[:4000]}")
         return program.read_bytes()
 
 
-def run(program: bytes, request: bytes, chip: str = CHIP, limit_s: int = 120) -> list[str]:
+def run(program: bytes, request: bytes, chip: str = CHIP, timeout_s: int = 120) -> list[str]:
     """Return the lines that a built program says about a request. Raises TimeoutExpired."""
     offset = program.index(REQUEST_MARK)
     assert len(request) <= REQUEST_BYTES, len(request)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.elf"
         path.write_bytes(program[:offset] + request + program[offset + len(request) :])
-        completed = subprocess.run(
+        result = subprocess.run(
             ["simavr", "-m", chip, "-f", "16000000", str(path)],
             capture_output=True,
-            timeout=limit_s,
+            timeout=timeout_s,
         )
-    outputs = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", completed.stdout + completed.stderr)
+    outputs = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", result.stdout + result.stderr)
     lines = [line.decode() for line in outputs]
     if not lines or lines.pop() != "END":
-        raise RuntimeError(
-            f"the chip did not end: {(completed.stdout + completed.stderr)[-2000:]!r}"
-        )
+        raise RuntimeError(f"the chip did not end: {(result.stdout + result.stderr)[-2000:]!r}")
     return lines

@@ -73,7 +73,7 @@ def page_rows() -> list[str]:
 def measure(name: str, project: Path = PROJECT) -> Sketch:
     """Build one environment and return its sizes. Raises RuntimeError with the log."""
     command = [sys.executable, "-m", "tools.builds.platformio_offline", "--project", str(project)]
-    completed = subprocess.run(
+    result = subprocess.run(
         [*command, "pio", "run", "-e", name],
         cwd=ROOT,
         stdout=subprocess.PIPE,
@@ -81,10 +81,10 @@ def measure(name: str, project: Path = PROJECT) -> Sketch:
         text=True,
         check=False,
     )
-    rows = re.findall(r"(Flash|RAM): .*used (\d+) bytes from (\d+)", completed.stdout)
+    rows = re.findall(r"(Flash|RAM): .*used (\d+) bytes from (\d+)", result.stdout)
     sizes = {name: (int(bytes), int(capacity)) for name, bytes, capacity in rows}
-    if completed.returncode != 0 or len(sizes) != 2:
-        raise RuntimeError(completed.stdout[-4000:])
+    if result.returncode != 0 or len(sizes) != 2:
+        raise RuntimeError(result.stdout[-4000:])
     elf = project / ".pio" / "build" / name / "firmware.elf"
     return Sketch(*parts_of(name), *sizes["Flash"], sizes["RAM"][0], elf)
 

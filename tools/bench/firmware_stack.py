@@ -187,7 +187,7 @@ def drive_a_way(wired_uno: Wired, robot: Robot) -> None:
     for k in range(FLICKER_COUNT):
         cycle = begin_cycle + round((10 * k + SAMPLE_BITS) * bit_cycles) - k
         for number, name in enumerate(discs.pins.values()):
-            uno.drive(pin(robot, name), k % 2 == 0, at=cycle + number * IN_INTERRUPT_CYCLES)
+            uno.drive(pin(robot, name), k % 2 == 0, at_cycle=cycle + number * IN_INTERRUPT_CYCLES)
     wired_uno.run(1500)
 
 

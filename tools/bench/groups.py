@@ -120,11 +120,11 @@ def serve_class(pipe: Connection) -> None:
 
 @contextmanager
 def served_class() -> Iterator[tuple[str, str, Connection]]:
-    ours, theirs = multiprocessing.Pipe()
-    process = multiprocessing.get_context("spawn").Process(target=serve_class, args=(theirs,))
+    parent_pipe, child_pipe = multiprocessing.Pipe()
+    process = multiprocessing.get_context("spawn").Process(target=serve_class, args=(child_pipe,))
     process.start()
     try:
-        yield *ours.recv(), ours
+        yield *parent_pipe.recv(), parent_pipe
     finally:
         process.join(TIMEOUT_S)
 

@@ -260,10 +260,10 @@ def _build(part: Part, statement: str, chip: str) -> Size:
 
 
 def _run_checked(*command: str) -> str:
-    completed = subprocess.run(command, capture_output=True, text=True)
-    if completed.returncode != 0:
-        raise RuntimeError(f"{command[0]} fails:\n{completed.stderr[:4000]}")
-    return completed.stdout
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise RuntimeError(f"{command[0]} fails:\n{result.stderr[:4000]}")
+    return result.stdout
 
 
 def main() -> int:

@@ -125,13 +125,13 @@ class BusyRobot:
             chip.drive(
                 self._sonar,
                 not place.is_rise,
-                at=last_byte_cycle + place.echo_offset - pulse_cycles,
+                at_cycle=last_byte_cycle + place.echo_offset - pulse_cycles,
             )
-            chip.drive(self._sonar, place.is_rise, at=last_byte_cycle + place.echo_offset)
+            chip.drive(self._sonar, place.is_rise, at_cycle=last_byte_cycle + place.echo_offset)
         if place.edge_offset is not None:
             self._level = not self._level
             for name in self._discs:
-                chip.drive(name, self._level, at=last_byte_cycle + place.edge_offset)
+                chip.drive(name, self._level, at_cycle=last_byte_cycle + place.edge_offset)
         event_count = len(chip.events)
         chip.send(text + STOP, begin_cycle)
         chip.run_to(last_byte_cycle + round(BITS_PER_BYTE * BITS_PER_BYTE * bit_cycles))

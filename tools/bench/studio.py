@@ -327,10 +327,8 @@ def _lighthouse_scores(address: str) -> dict[str, float]:
                 "PATH": os.pathsep.join((node, os.environ["PATH"]))}  # fmt: skip
     reports: list[dict[str, Any]] = []
     for _ in range(RATING_COUNT):
-        completed = subprocess.run(
-            command, env=settings, capture_output=True, text=True, check=True
-        )
-        reports.append(json.loads(completed.stdout)["categories"])
+        result = subprocess.run(command, env=settings, capture_output=True, text=True, check=True)
+        reports.append(json.loads(result.stdout)["categories"])
     return {
         name: 100 * median(report[name]["score"] for report in reports) for name in RATED_CATEGORIES
     }

@@ -98,9 +98,9 @@ def offset_of(seed: int, slip: float, method: str) -> tuple[float, float, float]
     robot = Robot(seed, slip, method == "discs")
     if method == "time, calibrated":
         robot.calibrate(seed)
-    ahead, aside, _ = robot.drive(GO_PROGRAM)
+    ahead_cm, aside_cm, _ = robot.drive(GO_PROGRAM)
     _, _, turned_degrees = robot.drive(TURN_PROGRAM)
-    return abs(ahead - 100), abs(aside), abs(turned_degrees + 360)
+    return abs(ahead_cm - 100), abs(aside_cm), abs(turned_degrees + 360)
 
 
 def wanted_quantile(values: Sequence[float]) -> float:

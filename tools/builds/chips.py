@@ -161,8 +161,6 @@ def compile_one(chip: Chip, path: Path, object_file: str, flags: Sequence[str]) 
 
 
 def _command(words: Sequence[str]) -> str:
-    completed = subprocess.run(words, capture_output=True, text=True, check=False)
-    assert completed.returncode == 0, (
-        f"{words[0]} refuses the C++ machine:\n{completed.stderr[:4000]}"
-    )
-    return completed.stdout
+    result = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, f"{words[0]} refuses the C++ machine:\n{result.stderr[:4000]}"
+    return result.stdout

@@ -68,12 +68,12 @@ def pieces(linker_map: str) -> tuple[list[Piece], list[Section]]:
     sections = []
     code = linker_map[linker_map.index("Linker script and memory map") :]
     for name, begin_hex, size_hex in _SECTION.findall(code.replace("\n    ", " ")):
-        begin, size = int(begin_hex, 16), int(size_hex, 16)
+        start, size = int(begin_hex, 16), int(size_hex, 16)
         if not name.startswith(".text.") or size == 0:
             continue
         pattern = _ASSEMBLY.sub(".text.tiniscript_", _APPENDED_SUFFIX.sub("", name)) + "*"
         offset = sizes.setdefault(pattern, 0)
-        sections.append(Section(begin, begin + size, list(sizes).index(pattern), offset))
+        sections.append(Section(start, start + size, list(sizes).index(pattern), offset))
         sizes[pattern] = offset + size
     return [Piece(*piece) for piece in sizes.items()], sections
 
@@ -97,27 +97,27 @@ def calls(disassembly: str, sections: list[Section]) -> list[Call]:
 
 def count_far_calls(order: list[int], all_pieces: list[Piece], all_calls: list[Call]) -> int:
     """Return the number of far calls in an order."""
-    begin = [0] * len(all_pieces)
+    starts = [0] * len(all_pieces)
     address = 0
     for number in order:
-        begin[number] = address
+        starts[number] = address
         address += all_pieces[number].size
     return sum(
-        begin[target] + target_offset - begin[piece] - offset - 2 not in SHORT_CALL_RANGE
+        starts[target] + target_offset - starts[piece] - offset - 2 not in SHORT_CALL_RANGE
         for piece, offset, target, target_offset in all_calls
     )
 
 
-def rearranged(order: list[int], random_source: random.Random) -> list[int]:
+def rearrange(order: list[int], random_source: random.Random) -> list[int]:
     """Return an order in which some neighbours lie elsewhere, or the other way round."""
-    begin = random_source.randrange(len(order))
-    end = begin + random_source.choice((1, 1, 1, 2, 3, 5, 8, 12))
-    moved_pieces, other_pieces = order[begin:end], order[:begin] + order[end:]
+    start = random_source.randrange(len(order))
+    end = start + random_source.choice((1, 1, 1, 2, 3, 5, 8, 12))
+    moved_pieces, other_pieces = order[start:end], order[:start] + order[end:]
     if random_source.random() < 0.8:
-        begin = random_source.randrange(len(other_pieces) + 1)
+        start = random_source.randrange(len(other_pieces) + 1)
     else:
         moved_pieces.reverse()
-    return other_pieces[:begin] + moved_pieces + other_pieces[begin:]
+    return other_pieces[:start] + moved_pieces + other_pieces[start:]
 
 
 def best_order(
@@ -128,7 +128,7 @@ def best_order(
     far_count = least_far_count = count_far_calls(order, all_pieces, all_calls)
     for number in range(try_count):
         temperature = 3.0 * (1 - number / try_count) + 0.05
-        candidate = rearranged(order, random_source)
+        candidate = rearrange(order, random_source)
         count = count_far_calls(candidate, all_pieces, all_calls)
         if count <= far_count or random_source.random() < math.exp(
             (far_count - count) / temperature
@@ -147,16 +147,16 @@ def main() -> int:
         del os.environ["PLATFORMIO_BUILD_FLAGS"]
         all_pieces, sections = pieces(map_path.read_text(encoding="utf-8"))
     command = ["avr-objdump", "-d", str(sketch.firmware)]
-    completed = subprocess.run(command, capture_output=True, text=True, check=True)
-    all_calls = calls(completed.stdout, sections)
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    all_calls = calls(result.stdout, sections)
     order = best_order(all_pieces, all_calls, TRY_COUNT, random.Random(1))
     print(f"{sketch.flash:,} bytes before; calls that lead far: "
           f"{count_far_calls(list(range(len(all_pieces))), all_pieces, all_calls)} before, "
           f"{count_far_calls(order, all_pieces, all_calls)} then")  # fmt: skip
     text = SCRIPT.read_text(encoding="utf-8")
-    begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+    start, end = text.index(BEGIN) + len(BEGIN), text.index(END)
     rows = "".join(f"    *({all_pieces[number].pattern})\n" for number in order)
-    SCRIPT.write_text(text[:begin] + rows + text[end:], encoding="utf-8")
+    SCRIPT.write_text(text[:start] + rows + text[end:], encoding="utf-8")
     print(f"{firmware_size.measure(BOARD).flash:,} bytes with the new order")
     return 0
 

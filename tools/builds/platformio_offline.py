@@ -311,12 +311,12 @@ def add_boards(folder: Path) -> None:
 
 def install_scons(version: str, folder: Path) -> None:
     pip_command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    completed = subprocess.run(
+    result = subprocess.run(
         [*pip_command, "--no-deps", "--target", str(folder), f"SCons=={version}"],
         stdout=sys.stderr,
         check=False,
     )
-    if completed.returncode != 0:
+    if result.returncode != 0:
         raise CannotMake(f"pip could not install SCons {version}, the one that PlatformIO wants")
 
 

@@ -40,6 +40,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Take pictures of each screen of the studio.")
     parser.add_argument("folder", type=Path)
     options = parser.parse_args()
-    if why := studio.missing():
-        sys.exit(why)
+    if reason := studio.missing():
+        sys.exit(reason)
     main(options.folder)

@@ -153,11 +153,11 @@ def render(source_folder: Path, folder: Path, documents: list[Document], has_stu
              "-d", str(source_folder.parent / f"{language}.trees"),
              str(source_folder), str(folder)]  # fmt: skip
     paths = os.pathsep.join([str(ROOT), str(ROOT / "compiler")])
-    completed = subprocess.run(command, capture_output=True, text=True, errors="replace",
+    result = subprocess.run(command, capture_output=True, text=True, errors="replace",
                                env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
-    if completed.returncode:
+    if result.returncode:
         raise CannotMake(
-            (completed.stdout + completed.stderr).replace(f"{source_folder}{os.sep}", "").strip()
+            (result.stdout + result.stderr).replace(f"{source_folder}{os.sep}", "").strip()
         )
     if language != SOURCE_LANGUAGE:
         theme.translate(folder, language)

@@ -253,14 +253,15 @@ def cobs_folder() -> Path:
 def bundle(tools: Tools, target: Path) -> None:
     """Put the page's modules together: a file for the page, one for the worker, and the blocks,
     which the page fetches only when needed."""
-    common = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--log-level=warning",
-              "--legal-comments=none", "--external:node:*", "--external:ws",
-              "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
-              "--alias:blockly/core=./made/blockly/blockly.mjs",
-              "--external:./targets/stub_flasher/*",  # programs that the page does not use
-              f"--metafile={SOURCES / 'made' / INPUTS_FILE}")  # fmt: skip
+    common_options = ("--bundle", "--minify", "--format=esm", "--target=es2022",
+                      "--log-level=warning", "--legal-comments=none", "--external:node:*",
+                      "--external:ws", "--chunk-names=[name]-[hash]", "--splitting",
+                      f"--outdir={target}",
+                      "--alias:blockly/core=./made/blockly/blockly.mjs",
+                      "--external:./targets/stub_flasher/*",  # programs that the page does not use
+                      f"--metafile={SOURCES / 'made' / INPUTS_FILE}")  # fmt: skip
     esbuild = "node_modules/esbuild-wasm/bin/esbuild"
-    run(tools.node, esbuild, "src/main.js", "src/worker.js", *common)
+    run(tools.node, esbuild, "src/main.js", "src/worker.js", *common_options)
 
 
 def write_service_worker(target: Path) -> None:

@@ -110,7 +110,7 @@ def image_table() -> str:
 def version_table() -> str:
     rows = [(f"{opcodes.ISA_MAJOR}.0", "all other instructions", "none")]
     for minor in range(1, opcodes.ISA_MINOR + 1):
-        names = [f"`{op.name}`" for op in opcodes.OPS if op.since == minor]
+        names = [f"`{op.name}`" for op in opcodes.OPS if op.since_minor == minor]
         bits = [str(need) for need, since in opcodes.SINCE_OF_NEED.items() if since == minor]
         rows.append((f"{opcodes.ISA_MAJOR}.{minor}", ", ".join(names), ", ".join(bits) or "none"))
     return table(("version", "instructions", "bits of `needs`, by their value"), rows)

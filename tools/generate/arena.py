@@ -48,9 +48,9 @@ def drive_way(program: str, robot: str, world: World, duration_ms: int) -> Way:
         simulation.advance(SAMPLE_MS)
         poses.append(simulation.robot.pose)
     points = [(pose.x_cm, pose.y_cm) for pose in poses]
-    begin, end = ([(point.x, point.y) for point in hull.outline(poses[k])] for k in (0, -1))
+    start, end = ([(point.x, point.y) for point in hull.outline(poses[k])] for k in (0, -1))
     simulation.close()
-    return Way(simplified_path(points), begin, end)
+    return Way(simplified_path(points), start, end)
 
 
 def simplified_path(points: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -48,7 +48,7 @@ def _overview(language: str, table: Table) -> Iterator[str]:
         yield heading
         yield table(
             [_text(key, language) for key in ("command", "does")],
-            [(f"`{typed}`", summary) for typed, summary in rows],
+            [(f"`{command_text}`", summary) for command_text, summary in rows],
         )
     yield from (verb_text(note, language) for note in NOTES)
     yield _text("each", language)

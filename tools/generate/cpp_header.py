@@ -160,7 +160,9 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
 def minor_functions() -> str:
     """Return the code that computes an image's minor version from its instructions and `needs`."""
     since_of_code = {
-        op.code: op.since for op in opcodes.OPS if op.since > opcodes.SINCE_OF_NEED.get(op.needs, 0)
+        op.code: op.since_minor
+        for op in opcodes.OPS
+        if op.since_minor > opcodes.SINCE_OF_NEED.get(op.needs, 0)
     }
     assert not {*since_of_code} & {*opcodes.ESCAPED_OPS} and all(
         code <= 0xFF for code in since_of_code
@@ -169,8 +171,8 @@ def minor_functions() -> str:
     needs_by_since: dict[int, int] = {}
     for need, since in opcodes.SINCE_OF_NEED.items():
         needs_by_since[since] = needs_by_since.get(since, 0) | need
-    *later, first = sorted(needs_by_since.items(), reverse=True)
-    by_need = "".join(f"(needs & 0x{needs:02x}) != 0 ? {since} : " for since, needs in later)
+    *later_needs, first = sorted(needs_by_since.items(), reverse=True)
+    by_need = "".join(f"(needs & 0x{needs:02x}) != 0 ? {since} : " for since, needs in later_needs)
     by_need += f"needs != 0 ? {first[0]} : "
     return (
         "// The minor version that an instruction came with, beside what its `needs` says. An\n"

@@ -58,10 +58,14 @@ def link_document(document: str) -> str:
 def text_document() -> str:
     """Return `docs/develop/text.md` with the table of levels."""
     rows = [
-        (f"`{level.name}`", ", ".join(f"`{word}`" for word in sorted(level.lacks)) or "nothing",
-         level.room, min(CODE_BYTES, level.room))
+        (
+            f"`{level.name}`",
+            ", ".join(f"`{word}`" for word in sorted(level.missing_words)) or "nothing",
+            level.room,
+            min(CODE_BYTES, level.room),
+        )
         for level in LEVELS.values()
-    ]  # fmt: skip
+    ]
     levels_table = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
     return splice(_text("docs/develop/text.md"), "levels", levels_table)
 
@@ -104,12 +108,12 @@ def language_document(document: str, language: str) -> str:
     words = [word for word in WORDS.values() if word.role.is_instruction]
     rows = {
         "fixed": [
-            f"`{word.usage.upper()}` = `{word.stands_for}`" for word in words if word.stands_for
+            f"`{word.usage.upper()}` = `{word.expansion}`" for word in words if word.expansion
         ],
         "others": [
             f"`{word.usage.upper()}` {text_beside_block(word, language)}".rstrip()
             for word in words
-            if not word.stands_for and word.text not in words_by_hand
+            if not word.expansion and word.text not in words_by_hand
         ],
     }
     labels = {key: text("documents", f"language/{key}", language) for key in rows}

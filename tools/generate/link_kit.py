@@ -95,7 +95,7 @@ def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
             "code": code.hex(),
             "shows": shows,
             "fault": fault,
-            "at": machine.at if fault else 0,
+            "at": machine.offset if fault else 0,
             "takes_ms": robot.now_ms,
         }
 

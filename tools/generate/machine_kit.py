@@ -65,8 +65,8 @@ NO_OP_CODE = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
 
 
 class Run(NamedTuple):
-    """The input of a machine. `readings` are thousandths by the sensor's name. A sensor in `slow`
-    is not ready in a range of each period. `text` is the compiled text, if any.
+    """The input of a machine. `readings` are thousandths by the sensor's name. A sensor in
+    `slow_readings` is not ready in a range of each period. `text` is the compiled text, if any.
     """
 
     name: str
@@ -74,7 +74,7 @@ class Run(NamedTuple):
     image: bytes
     senses: Senses = Senses()
     schedule: Schedule = USUAL_SCHEDULE
-    slow: Mapping[str, tuple[int, int, int]] = {}
+    slow_readings: Mapping[str, tuple[int, int, int]] = {}
     text: str = ""
 
     def call_every(self, every_ms: int) -> Run:
@@ -85,7 +85,7 @@ class Run(NamedTuple):
         """Return this run at a pace, with some late readings."""
         slow_readings = dict.fromkeys(pace.slow, (pace.period_ms, pace.from_ms, pace.to_ms))
         name = f"{self.name} ({' and '.join(slow_readings)} late, called every {pace.every_ms} ms)"
-        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow=slow_readings)
+        return self._replace(name=name, schedule=(0, (pace.every_ms,)), slow_readings=slow_readings)
 
     @property
     def needs(self) -> int:
@@ -142,15 +142,15 @@ def lines_of(kit: Kit) -> list[str]:
 def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
     """Return a case as the file has it."""
     names = [device.name for device in run.kit.readings]
-    begin, every_ms = run.schedule
+    start_ms, every_ms = run.schedule
     return {
         "name": run.name,
         "kit": kit,
         "image": run.image.hex(),
         "readings": _by_number(names, run.senses.readings),
-        **({"slow": _by_number(names, run.slow)} if run.slow else {}),
+        **({"slow": _by_number(names, run.slow_readings)} if run.slow_readings else {}),
         "seed": run.senses.seed,
-        "begin": begin,
+        "begin": start_ms,
         "every": list(every_ms),
         "until": run.senses.max_ms,
         **({"needs": run.needs} if run.needs else {}),
@@ -167,11 +167,13 @@ class SlowRobot(TracedRobot):
 
     def __init__(self, run: Run) -> None:
         super().__init__(run.kit, lists_of(run.kit, run.senses))
-        self.slow = run.slow
+        self.slow_readings = run.slow_readings
         self.was_slow = False  # whether the current call was slow
 
     def read(self, sensor: int) -> int | None:
-        period_ms, from_ms, to_ms = self.slow.get(self.kit.readings[sensor].name, (1, 0, 0))
+        period_ms, from_ms, to_ms = self.slow_readings.get(
+            self.kit.readings[sensor].name, (1, 0, 0)
+        )
         if from_ms <= self.now_ms % period_ms < to_ms:
             self.was_slow = True
             return None
@@ -190,14 +192,14 @@ def answer_of(
         return [f"REFUSED {error.name} {error.offset}"]
     except ImageRefused as error:
         return [f"REFUSED {error.name}"]
-    begin, every_ms = run.schedule
+    start_ms, every_ms = run.schedule
     intervals_ms = chain(every_ms, repeat(every_ms[-1]))
     robot = SlowRobot(run)
-    machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, begin)
+    machine = machine_of(code, robot, len(run.kit.readings), run.senses.seed, start_ms)
     call_count = 0  # calls at the same time
     while call_count < MOST_CALLS:
         robot.was_slow = False
-        status = machine.tick(begin + robot.now_ms, MOST_STEPS)
+        status = machine.tick(start_ms + robot.now_ms, MOST_STEPS)
         if status == DONE:
             robot.record("DONE", (), "DONE")
         elif status == FAULT:
@@ -205,7 +207,7 @@ def answer_of(
         elif status == RUNNING and not robot.was_slow:
             return None
         else:
-            wake_ms = max(machine.wake_ms - begin, robot.now_ms + robot.was_slow)
+            wake_ms = max(machine.wake_ms - start_ms, robot.now_ms + robot.was_slow)
             interval_ms = next(intervals_ms)
             wake_ms = -(-wake_ms // interval_ms) * interval_ms
             if wake_ms <= run.senses.max_ms:

@@ -38,12 +38,12 @@ class PackedTexts(NamedTuple):
 def pack_texts(texts: Sequence[str]) -> PackedTexts:
     """Return the texts in as few bytes as are found."""
     rows = [[*text.encode("ascii"), END_CODE] for text in texts]
-    common = _most_common(rows)
+    common_codes = _most_common(rows)
     candidates = []
     for _ in range(ROUND_COUNT):
-        pairs, shorter = _pair_codes(rows, common)
-        candidates.append(PackedTexts(common, pairs, _split_halves(shorter, common)))
-        common = _most_common(shorter)
+        pairs, shorter = _pair_codes(rows, common_codes)
+        candidates.append(PackedTexts(common_codes, pairs, _split_halves(shorter, common_codes)))
+        common_codes = _most_common(shorter)
     return min(candidates, key=lambda packed_texts: packed_texts.size)
 
 
@@ -86,7 +86,7 @@ def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
 
 
 def _pair_codes(
-    rows: Sequence[Sequence[int]], common: Sequence[int]
+    rows: Sequence[Sequence[int]], common_codes: Sequence[int]
 ) -> tuple[list[Pair], list[list[int]]]:
     """Return pairs, and the texts with their codes."""
     new_rows = [list(row) for row in rows]
@@ -94,7 +94,7 @@ def _pair_codes(
     depths: dict[int, int] = {}
 
     def halves(code: int) -> int:
-        return 1 if code in common else 2
+        return 1 if code in common_codes else 2
 
     while len(pairs) < FIRST_LETTER - 1:
         uses = Counter(pair for row in new_rows for pair in _row_pairs(row) if END_CODE not in pair)
@@ -113,11 +113,13 @@ def _pair_codes(
     return pairs, new_rows
 
 
-def _split_halves(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
+def _split_halves(rows: Sequence[Sequence[int]], common_codes: Sequence[int]) -> bytes:
     """Return codes as bytes: the high half of each comes first."""
     halves: list[int] = []
     for code in (code for row in rows for code in row):
-        halves += [FIRST_COMMON + common.index(code)] if code in common else divmod(code, 16)
+        halves += (
+            [FIRST_COMMON + common_codes.index(code)] if code in common_codes else divmod(code, 16)
+        )
     if len(halves) % 2:
         halves.append(0)
     return bytes(16 * high + low for high, low in zip(halves[::2], halves[1::2], strict=True))

@@ -100,9 +100,9 @@ def _rows_with_fixed_forms(rows: Iterable[str], language: str) -> Iterator[tuple
             _poster_text(code, language),
         )
         for word in WORDS.values():
-            first_word = word.stands_for.partition("(")[0].rpartition(";")[2]  # the first call
+            first_word = word.expansion.partition("(")[0].rpartition(";")[2]  # the first call
             if first_word and f"{{{first_word}}}" in code:
-                yield word.example, text_beside_block(word, language) or f"= {word.stands_for}"
+                yield word.example, text_beside_block(word, language) or f"= {word.expansion}"
 
 
 def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
@@ -111,7 +111,7 @@ def _other_instructions(language: str) -> Iterator[tuple[str, str]]:
         word for _, rows in GROUPS for row in rows for word in re.findall(r"[A-Z_]+", row)
     }
     for word in WORDS.values():
-        if word.role.is_instruction and not word.stands_for and word.text not in shown_words:
+        if word.role.is_instruction and not word.expansion and word.text not in shown_words:
             yield word.example, text_beside_block(word, language)
 
 
@@ -171,7 +171,9 @@ def page(language: str) -> Page:
             )
             y += row_pt
         y += 2
-    missing = {word.text for word in WORDS.values() if word.role.is_offered} - set(shown_words)
-    assert not missing, f"the poster lacks {sorted(missing)}"
+    missing_words = {word.text for word in WORDS.values() if word.role.is_offered} - set(
+        shown_words
+    )
+    assert not missing_words, f"the poster lacks {sorted(missing_words)}"
     page.append(Line(LEFT_X, paper.HEIGHT - 16, 9, SANS_FONT, GREY, _poster_text("foot", language)))
     return page

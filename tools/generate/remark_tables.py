@@ -96,7 +96,7 @@ def _unused_remarks() -> set[tuple[str, str]]:
     keys, and with discs on its wheels it reads no text.
     """
     levels = {("remark", f"LEVEL_{name.upper()}") for name in LEVELS if name != SMALLEST_LEVEL}
-    assert "DEF" in LEVELS[SMALLEST_LEVEL].lacks
+    assert "DEF" in LEVELS[SMALLEST_LEVEL].missing_words
     words = {("problem", name) for name in DEF_PROBLEMS}
     faults = {("fault", name) for _, name, _ in FAULTS if name.startswith("STUCK")}
     return levels | words | faults | {("remark", "NO_KEYS")}

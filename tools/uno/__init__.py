@@ -189,17 +189,19 @@ class Uno:
 
     # -- its surroundings -------------------------------------------------------------------------
 
-    def drive(self, pin: str, level: bool | None, at: int | None = None) -> None:
+    def drive(self, pin: str, level: bool | None, at_cycle: int | None = None) -> None:
         """Drive a pin from outside, or release it; at a cycle, or at once."""
         word = {None: "none", False: "low", True: "high"}[level]
-        self._send_lines(_at_cycle(at) + f"pin {self.pins.number(pin)} {word}")
+        self._send_lines(_at_cycle(at_cycle) + f"pin {self.pins.number(pin)} {word}")
 
-    def press(self, pin: str, ms: float = 50.0, at: int | None = None) -> None:
+    def press(self, pin: str, ms: float = 50.0, at_cycle: int | None = None) -> None:
         """Connect a pin to ground for a while, as a button does; it stays so while time passes."""
-        self.drive(pin, False, at)
+        self.drive(pin, False, at_cycle)
         cycle_count = round(ms * CYCLES_PER_MS)
-        begin = f"after {cycle_count} " if at is None else f"at {at + cycle_count} "
-        self._send_lines(begin + f"pin {self.pins.number(pin)} none")
+        time_words = (
+            f"after {cycle_count} " if at_cycle is None else f"at {at_cycle + cycle_count} "
+        )
+        self._send_lines(time_words + f"pin {self.pins.number(pin)} none")
 
     def analog(self, pin: str, count: int) -> None:
         """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""
@@ -212,22 +214,26 @@ class Uno:
         self._send_lines(f"supply {round(volts * 1000)}")
 
     def sonar(
-        self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
+        self, trigger: str, echo: str, distance_cm: float | None, at_cycle: int | None = None
     ) -> None:
         """Put an HC-SR04 at two pins, or move its obstacle; None: no obstacle."""
         numbers = f"{self.pins.number(trigger)} {self.pins.number(echo)}"
-        self._send_lines(_at_cycle(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
+        self._send_lines(_at_cycle(at_cycle) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
 
     # -- its serial port ----------------------------------------------------------------------
 
-    def send(self, data: bytes, at: int | None = None, *, stop_bits_fail: bool = False) -> None:
+    def send(
+        self, data: bytes, at_cycle: int | None = None, *, stop_bits_fail: bool = False
+    ) -> None:
         """Send bytes to the chip one after the other; the first start bit at a cycle, or now."""
         if data:
-            self._send_lines(_at_cycle(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}")
+            self._send_lines(
+                _at_cycle(at_cycle) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}"
+            )
 
-    def hold(self, level: bool, bits: int, at: int | None = None) -> None:
+    def hold(self, level: bool, bits: int, at_cycle: int | None = None) -> None:
         """Hold the wire low (a break) or idle for so many bits, after the bytes sent."""
-        self._send_lines(_at_cycle(at) + f"hold {'high' if level else 'low'} {bits}")
+        self._send_lines(_at_cycle(at_cycle) + f"hold {'high' if level else 'low'} {bits}")
 
     @property
     def sent_bytes(self) -> list[Byte]:
@@ -248,9 +254,9 @@ class Uno:
 
     # -- resets -------------------------------------------------------------------------------
 
-    def reset(self, cause: str = "external", at: int | None = None) -> None:
+    def reset(self, cause: str = "external", at_cycle: int | None = None) -> None:
         """Reset it: `external` (button, DTR), `power-on` (a cut: RAM is lost), `brown-out`."""
-        self._send_lines(_at_cycle(at) + f"reset {cause}")
+        self._send_lines(_at_cycle(at_cycle) + f"reset {cause}")
 
     # -- memory -------------------------------------------------------------------------------
 

@@ -7,6 +7,6 @@ import sys
 
 from tools.uno.build import build, missing
 
-if why := missing():
-    sys.exit(f"uno: {why}")
+if reason := missing():
+    sys.exit(f"uno: {reason}")
 os.execv(build(), [str(build()), *sys.argv[1:]])

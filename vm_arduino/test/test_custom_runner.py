@@ -27,8 +27,8 @@ class CustomTestRunner(TestRunnerBase):  # type: ignore[misc] # PlatformIO has n
 
     def on_testing_line_output(self, line: str) -> None:
         click.echo(line, nl=False)
-        if found := ENDING.fullmatch(line.rstrip()):
-            self.test_suite.add_case(TestCase(found[2], TestStatus[found[1]]))
+        if ending := ENDING.fullmatch(line.rstrip()):
+            self.test_suite.add_case(TestCase(ending[2], TestStatus[ending[1]]))
         self.has_ended |= line.startswith(END)
 
     def stage_testing(self) -> None:

@@ -35,8 +35,8 @@ class Device(NamedTuple):
     @property
     def word(self) -> Word:
         """An actuator as a word that takes one value."""
-        middle = self.low + (self.high - self.low) // 2000 * 1000
-        sample = self.text(1 if self.is_yes_no else middle)
+        middle_value = self.low + (self.high - self.low) // 2000 * 1000
+        sample = self.text(1 if self.is_yes_no else middle_value)
         value = Argument("value", self.unit, self.low, self.high, sample)
         return Word(self.name, ROLES["actuator"], (value,))
 

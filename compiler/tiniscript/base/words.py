@@ -36,12 +36,12 @@ class Role(NamedTuple):
 
     name: str
     is_instruction: bool = False  # a robot does something at it
-    lasts: bool = False  # whether it lasts for a time, or until a condition is true
+    has_duration: bool = False  # whether it lasts for a time, or until a condition is true
     is_move: bool = False  # whether it has a power, and a time or a distance
     takes_time: bool = False  # the next instruction comes after the time among its values
     belongs_to_blocks: bool = False
     belongs_to_values: bool = False
-    begins: bool = True  # something in a line
+    can_start_item: bool = True  # whether it can be the start of something in a line
     is_offered: bool = True  # no other spelling, and no word of later versions
 
 
@@ -55,7 +55,7 @@ class Word(NamedTuple):
     text: str
     role: Role
     arguments: tuple[Argument, ...] = ()
-    stands_for: str = ""
+    expansion: str = ""
 
     @property
     def has_tone(self) -> bool:
@@ -82,14 +82,14 @@ class Word(NamedTuple):
 
 # fmt: off
 ROLES = {role.name: role for role in (
-    Role("move", is_instruction=True, lasts=True, is_move=True, takes_time=True),
-    Role("wait", is_instruction=True, lasts=True, takes_time=True),
+    Role("move", is_instruction=True, has_duration=True, is_move=True, takes_time=True),
+    Role("wait", is_instruction=True, has_duration=True, takes_time=True),
     Role("beep", is_instruction=True, takes_time=True),
     *(Role(name, is_instruction=True) for name in ("motors", "show", "stop", "fixed")),
     *(Role(name, belongs_to_blocks=True) for name in ("block", "arm", "end")),
-    *(Role(name, belongs_to_values=True, begins=False) for name in ("value", "operator", "function")),
+    *(Role(name, belongs_to_values=True, can_start_item=False) for name in ("value", "operator", "function")),
     *(Role(name, is_offered=False) for name in ("alias", "later")),
-    Role("setup", begins=False), *map(Role, ("start", "until", "forever", "break", "unit", "actuator")),
+    Role("setup", can_start_item=False), *map(Role, ("start", "until", "forever", "break", "unit", "actuator")),
 )}
 
 SECONDS = Argument("seconds", "s", 0)
@@ -107,8 +107,8 @@ A, B = Argument("a", "", sample="5"), Argument("b", "", sample="DISTANCE")
 LOW, HIGH = Argument("low", "", sample="1"), Argument("high", "", sample="6")
 
 
-def _row(text: str, role: str, arguments: tuple[Argument, ...] = (), stands_for: str = "") -> Word:
-    return Word(text, ROLES[role], arguments, stands_for)
+def _row(text: str, role: str, arguments: tuple[Argument, ...] = (), expansion: str = "") -> Word:
+    return Word(text, ROLES[role], arguments, expansion)
 
 
 WORDS = {word.text: word for word in (

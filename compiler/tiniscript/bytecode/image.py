@@ -78,7 +78,7 @@ _CHECKSUM_END = _CHECKSUM_OFFSET + 4
 
 
 class Image(NamedTuple):
-    """`devices` is the hash of those that the code uses; `later` are fields of later
+    """`devices` is the hash of those that the code uses; `later_fields` are those of later
     versions.
 
     `checksum` names the program wherever it goes.
@@ -89,7 +89,7 @@ class Image(NamedTuple):
     code: bytes
     checksum: int
     isa: tuple[int, int]
-    later: bytes = b""
+    later_fields: bytes = b""
     needs: int = 0
 
 
@@ -103,16 +103,16 @@ class ImageRefused(Exception):
         self.values = values
 
 
-def pack(start: str, devices: int, code: bytes, later: bytes = b"", needs: int = 0) -> bytes:
+def pack(start: str, devices: int, code: bytes, later_fields: bytes = b"", needs: int = 0) -> bytes:
     """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
 
-    `later` (0 to 240 bytes) are fields that this version does not know; `needs` is that of its
-    verdict.
+    `later_fields` (0 to 240 bytes) are fields that this version does not know; `needs` is that of
+    its verdict.
     """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, *isa_of(code, needs), STARTS.index(start), HEADER_BYTES + len(later),
+    values = (MAGIC, *isa_of(code, needs), STARTS.index(start), HEADER_BYTES + len(later_fields),
               devices, len(code), 0, needs)  # fmt: skip
-    return with_checksum(struct_pack(_LAYOUT, *values) + later + code)
+    return with_checksum(struct_pack(_LAYOUT, *values) + later_fields + code)
 
 
 def isa_of(code: bytes, needs: int) -> tuple[int, int]:
@@ -122,7 +122,7 @@ def isa_of(code: bytes, needs: int) -> tuple[int, int]:
     Instructions that need more than `needs` do not count: the reader of the image refuses them.
     """
     needed_since = (since for need, since in SINCE_OF_NEED.items() if needs & need)
-    had_since = (op.since for op in ops_in(code) if not op.needs & ~needs)
+    had_since = (op.since_minor for op in ops_in(code) if not op.needs & ~needs)
     return ISA_MAJOR, max((0, *needed_since, *had_since))
 
 
@@ -169,5 +169,5 @@ def unpack(data: bytes, capabilities: int = ALL_NEEDS) -> Image:
         raise ImageRefused("UNKNOWN_START", found=str(start))
     if STARTS[start] == "PING" and code_length:
         raise ImageRefused("PING_WITH_CODE")
-    later, code = data[HEADER_BYTES:header_length], data[header_length:]
-    return Image(STARTS[start], devices, code, stored_checksum, isa, later, needs)
+    later_fields, code = data[HEADER_BYTES:header_length], data[header_length:]
+    return Image(STARTS[start], devices, code, stored_checksum, isa, later_fields, needs)

@@ -65,7 +65,9 @@ class Op(NamedTuple):
     pushes: int
     implied: ImpliedOperand | None = None
     needs: int = 0  # the bit of `needs` without which no code has it
-    since: int = 0  # the minor version that it came with: a new one, once that has been released
+    since_minor: int = (
+        0  # the minor version that it came with: a new one, once that has been released
+    )
 
     @property
     def opcode(self) -> bytes:
@@ -77,8 +79,8 @@ class Op(NamedTuple):
         """The name of its action: MOVE of MOVE_F, IF of IF_FAR, PUSH_VAR of PUSH_VAR_3."""
         if 0x10 <= self.code <= 0x28:
             return "CALCULATE"
-        base, _, last = self.name.rpartition("_")
-        return base if last in _VARIANTS or last.isdigit() else self.name
+        base, _, suffix = self.name.rpartition("_")
+        return base if suffix in _VARIANTS or suffix.isdigit() else self.name
 
     @property
     def is_act(self) -> bool:
@@ -273,7 +275,7 @@ OPS = (
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, with a longer jump."),
     # tasks
-    *(op._replace(needs=NEEDS_TASKS, since=1) for op in (
+    *(op._replace(needs=NEEDS_TASKS, since_minor=1) for op in (
         _op(0x55, "LOOK",        "",                    "yes --",          "look",  "Continue if `yes`; otherwise look again after 20 ms."),
         _op(0x76, "END_TASK",    "",                    "--",              "end_task", "The task is finished."),
         _op(0x77, "END_WHEN",    "",                    "--",              "end_when", "Look again after 20 ms."),
@@ -282,9 +284,9 @@ OPS = (
     )),
     # centimetres and degrees
     *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {direction_word} by `way`, then turn the motors off.")
-      ._replace(needs=NEEDS_GO, since=1) for i, (d, direction_word) in enumerate(_MOVES)),
+      ._replace(needs=NEEDS_GO, since_minor=1) for i, (d, direction_word) in enumerate(_MOVES)),
     *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {direction_word} by `way`, or until a check is TRUE.")
-      ._replace(needs=NEEDS_GO, since=1) for i, (d, direction_word) in enumerate(_MOVES)),
+      ._replace(needs=NEEDS_GO, since_minor=1) for i, (d, direction_word) in enumerate(_MOVES)),
     # One-byte instructions.
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push the value of variable {}."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
@@ -327,10 +329,12 @@ FAULTING_OPS = {
 }
 # fmt: on
 
-ISA_MINOR = max(op.since for op in OPS)  # a machine runs images of its own and of earlier ones
+ISA_MINOR = max(
+    op.since_minor for op in OPS
+)  # a machine runs images of its own and of earlier ones
 # The minor version that each bit of `needs` came with.
 SINCE_OF_NEED = {
-    need: min(op.since for op in OPS if op.needs == need) for need in (NEEDS_TASKS, NEEDS_GO)
+    need: min(op.since_minor for op in OPS if op.needs == need) for need in (NEEDS_TASKS, NEEDS_GO)
 }
 UNO_OPS = tuple(op for op in OPS if not op.needs)  # an Uno has the features of every machine
 BY_NAME = {op.name: op for op in OPS}

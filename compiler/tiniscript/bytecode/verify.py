@@ -195,7 +195,7 @@ class _Verifier:
             if self.joins[-1].depth != self.depth:
                 self.refuse("STACK_NOT_EMPTY")
             self.joins.pop()
-        while self.innermost == _IF and self.blocks[-1].end <= self.at:
+        while self.innermost_kind == _IF and self.blocks[-1].end <= self.at:
             if self.blocks[-1].end != self.at or self.depth or self.joins or self.check:
                 self.refuse("MISSED_TARGET")
             self.blocks.pop()
@@ -268,7 +268,7 @@ class _Verifier:
     # -- blocks -------------------------------------------------------------------------------
 
     @property
-    def innermost(self) -> str:
+    def innermost_kind(self) -> str:
         """Return the kind of the innermost open block, or ""."""
         return self.blocks[-1].kind if self.blocks else ""
 
@@ -276,12 +276,12 @@ class _Verifier:
         """Open a block that ends at `end`, or 0: unknown yet."""
         if end > len(self.code):
             self.refuse("BAD_TARGET")
-        enclosing = self.blocks[-1] if self.blocks else None
-        if enclosing is not None and enclosing.end:
+        enclosing_block = self.blocks[-1] if self.blocks else None
+        if enclosing_block is not None and enclosing_block.end:
             # the end of a loop is after its closing instruction
-            if end > enclosing.end - (enclosing.kind != _IF):
+            if end > enclosing_block.end - (enclosing_block.kind != _IF):
                 self.refuse("BAD_TARGET")
-            if kind == _IF and end == enclosing.end:
+            if kind == _IF and end == enclosing_block.end:
                 return  # the loop shares the block around it
         if sum(_NEST_WORDS[block.kind] for block in self.blocks) + _NEST_WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
@@ -292,9 +292,9 @@ class _Verifier:
 
     def close(self, kind: str) -> None:
         """Close the innermost block: a loop."""
-        if self.innermost == _IF:
+        if self.innermost_kind == _IF:
             self.refuse("STILL_OPEN")
-        if self.innermost != kind:
+        if self.innermost_kind != kind:
             self.refuse("NOT_OPEN")
         loop = self.blocks[-1]
         if self.target != loop.start:
@@ -349,12 +349,12 @@ class _Verifier:
         self.check = ""
 
     def if_(self) -> None:
-        if self.innermost == _REPEAT and self.target == self.blocks[-1].end:
+        if self.innermost_kind == _REPEAT and self.target == self.blocks[-1].end:
             return  # the jump leaves the loop
         self.open(_IF, self.target)
 
     def else_(self) -> None:
-        if self.innermost != _IF or self.blocks[-1].end != self.next_offset:
+        if self.innermost_kind != _IF or self.blocks[-1].end != self.next_offset:
             self.refuse("NOT_OPEN")
         self.blocks.pop()
         self.open(_IF, self.target)

@@ -111,11 +111,11 @@ def upload(robot: Robot, port: str | None, options: Namespace, language: str) ->
 
 @contextmanager
 def _show_build(
-    robot: Robot, options: Namespace, language: str, **more: str
+    robot: Robot, options: Namespace, language: str, **other_values: str
 ) -> Iterator[Callable[[StepProgress], None]]:
     """Fetch the tools that build firmware, and show the progress. Raises CommandError for all that
     can fail then."""
-    values = {"robot": robot.name, "board": robot.board.chip, **more}
+    values = {"robot": robot.name, "board": robot.board.chip, **other_values}
     _fetch(robot, values, options, language)
     say_aside("flash_builds", language, **values)
     progress = Progress(language, 100)
@@ -137,11 +137,11 @@ def _show_build(
 
     try:
         yield show_progress
-    except building.CannotBuild as why:
-        raise _failure(why, values) from None
-    except OSError as why:
+    except building.CannotBuild as error:
+        raise _failure(error, values) from None
+    except OSError as error:
         folder = printable_name(str(ready.firmware_cache()))
-        raise CommandError(2, "flash_no_room", why=why, folder=folder) from None
+        raise CommandError(2, "flash_no_room", why=error, folder=folder) from None
     finally:
         progress.end()
 

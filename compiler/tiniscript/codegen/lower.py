@@ -160,18 +160,18 @@ class _Lowering:
     def act(self, act: ir.Act) -> None:
         """Add BEEP, or BEEP8 where all values are operands: by the name of the word's role."""
         name = act.word.role.name.upper()
-        short = BY_NAME.get(f"{name}8")
+        short_op = BY_NAME.get(f"{name}8")
         operands = (
             []
-            if short is None
+            if short_op is None
             else [
                 self.operand_of(value, argument.whole_limits, operand.kind.name)
-                for operand, (argument, value) in zip(short.operands, act.arguments, strict=True)
+                for operand, (argument, value) in zip(short_op.operands, act.arguments, strict=True)
             ]
         )
         whole_operands = [operand for operand in operands if operand is not None]
-        if short is not None and len(whole_operands) == len(operands):
-            self.emitter.add(short.name, *whole_operands)
+        if short_op is not None and len(whole_operands) == len(operands):
+            self.emitter.add(short_op.name, *whole_operands)
             return
         for value in act.values:
             add_value(self.emitter, value)

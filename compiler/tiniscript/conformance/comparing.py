@@ -21,14 +21,14 @@ MOST_SILENT = 20  # and first runs without an answer, after which the machine is
 
 
 class Verdict(NamedTuple):
-    """`what` is AGREES, DIFFERS, LACKS, hang, crash, flood or more. `line` counts from 1; `want`
-    and `got` are that line of the two answers, None after their ends."""
+    """`outcome` is AGREES, DIFFERS, LACKS, hang, crash, flood or more. `line` counts from 1;
+    `expected_line` and `actual_line` are that line of the two answers, None after their ends."""
 
     name: str
-    what: str
+    outcome: str
     line: int = 0
-    want: str | None = None
-    got: str | None = None
+    expected_line: str | None = None
+    actual_line: str | None = None
     detail: str = ""
 
 
@@ -62,7 +62,7 @@ def verdicts(cases: Iterable[MachineCase], answer_of: AskMachine) -> Iterator[Ve
             answer = answer_of(case.request(), sum(len(row) + 2 for row in case.answer))
         except Problem as error:
             verdict = compare(case.name, case.answer, error.rows)
-            yield verdict._replace(what=error.kind, detail=error.detail)
+            yield verdict._replace(outcome=error.kind, detail=error.detail)
             endless_count += error.kind in ("hang", "flood")
             silent_count += not answer_count
             if endless_count == MOST_ENDLESS or silent_count == MOST_SILENT:

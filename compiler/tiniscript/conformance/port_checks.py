@@ -167,9 +167,9 @@ def _program_check(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...
 
 def _run_events(robot: WireRobot, seconds: float) -> tuple[str, ...]:
     """Return the events of a run, up to its end."""
-    ends = ("DONE", "FAULT", "STOPPED")
+    end_events = ("DONE", "FAULT", "STOPPED")
     for _ in range(int(seconds / 0.05)):
-        if any(event.name in ends for event in robot.events):
+        if any(event.name in end_events for event in robot.events):
             break
         robot.wait(0.05)
     rows = []

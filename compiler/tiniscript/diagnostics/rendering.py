@@ -107,7 +107,9 @@ def as_json(messages: Iterable[Message]) -> list[dict[str, object]]:
 def as_text(message: Message, source: Source, language: str, color: bool = False) -> str:
     """Return a message with its line of the program above, as a terminal shows it."""
     is_warning = message.severity == "warning"
-    mark, dim, plain = (_YELLOW if is_warning else _RED, _DIM, _PLAIN) if color else ("", "", "")
+    mark, dim_code, plain_code = (
+        (_YELLOW if is_warning else _RED, _DIM, _PLAIN) if color else ("", "", "")
+    )
     rows = []
     if source.text:
         label = f"{_label('line', language)} {message.line}:  "
@@ -115,9 +117,9 @@ def as_text(message: Message, source: Source, language: str, color: bool = False
         end = message.end_column - 1 if message.end_line == message.line else len(line)
         line_shown, blank_count, caret_count = _line_window(line, message.column - 1, end)
         rows.append((label + line_shown).rstrip())
-        rows.append(" " * (len(label) + blank_count) + mark + "^" * caret_count + plain)
+        rows.append(" " * (len(label) + blank_count) + mark + "^" * caret_count + plain_code)
     text = f"{_label('warns', language)} {message.message}" if is_warning else message.message
-    code = f"   {dim}[{message.code}]{plain}"
+    code = f"   {dim_code}[{message.code}]{plain_code}"
     if not message.fix:
         return "\n".join((*rows, text + code))
     fix = f"{_label('try', language)}  {message.fix}"

@@ -70,7 +70,7 @@ class DoctorServices(NamedTuple):
     may_open: Callable[[str], bool]
     is_radio: Callable[[str], bool]
     share: Callable[[str], AbstractContextManager[LinkConnection]]
-    on_step: Callable[[str], None] = lambda what: None
+    on_step: Callable[[str], None] = lambda step: None
 
 
 class Question(NamedTuple):

@@ -82,7 +82,7 @@ class Restart(NamedTuple):
 
 def examine(
     robot: Robot, hello_reply: Reply[SentReply], expectations: Expectations, watch_ms: int = 0,
-    on_step: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda step: None,
 ) -> list[Finding]:  # fmt: skip
     """Return the faults of a robot whose answer to HELLO is `hello_reply`.
 

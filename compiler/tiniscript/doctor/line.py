@@ -84,7 +84,7 @@ class PortFacts(NamedTuple):
 
 def diagnose_line(
     wire: Wire, facts: PortFacts, expectations: Expectations,
-    on_step: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda step: None,
 ) -> list[Finding]:  # fmt: skip
     """Return the kind of device at the other end. `on_step` gets the short name of each next
     step.

@@ -116,20 +116,20 @@ def _count_reached(
     point = track_points[0]
     for count, number in enumerate(order):
         place = task.point(criterion, number)
-        origin, nearest = point, None
+        origin, nearest_point = point, None
         nearest_cm = math.inf
         for point in points:
             gap_cm = _gap_cm(criterion, task, number, point)
             if gap_cm < nearest_cm:
-                nearest, nearest_cm = point, gap_cm
+                nearest_point, nearest_cm = point, gap_cm
             if gap_cm <= within_cm:
                 break
         else:
             values = {"number": str(number + 1), "all": str(len(criterion.places))}
             values |= {"within": f"{within_cm:g}", "seconds": in_seconds(task.run.end_ms)}
-            if nearest is not None:
+            if nearest_point is not None:
                 values["cm"] = in_cm(nearest_cm, within_cm)
-            key = _missed_sentence(criterion, task, track_points, origin, place, nearest)
+            key = _missed_sentence(criterion, task, track_points, origin, place, nearest_point)
             if count and key in ("several", "time"):
                 past_cm = _overshoot_cm(criterion, task, order[count - 1], origin, track_points)
                 if past_cm > within_cm:
@@ -147,8 +147,8 @@ def _overshoot_cm(
     track_points: list[TrackPoint],
 ) -> float:
     """Return the distance from a reached place at which the robot first stopped."""
-    for previous, point in pairwise(track_points[track_points.index(origin) :]):
-        if point.driven_cm == previous.driven_cm:
+    for previous_point, point in pairwise(track_points[track_points.index(origin) :]):
+        if point.driven_cm == previous_point.driven_cm:
             return _gap_cm(criterion, task, number, point)
     return 0.0
 
@@ -170,7 +170,7 @@ def _missed_sentence(
     track_points: list[TrackPoint],
     origin: TrackPoint,
     place: Point,
-    nearest: TrackPoint | None,
+    nearest_point: TrackPoint | None,
 ) -> str:
     """Return the sentence for a place that the robot has missed.
 
@@ -184,18 +184,18 @@ def _missed_sentence(
         gap_cm = math.dist(place, (origin.x_cm, origin.y_cm))
         if run.ending == DONE and track_points[-1].driven_cm - origin.driven_cm < gap_cm / 2:
             return "ended"
-        was_coming = nearest is None or run.track[-1].ms - nearest.ms <= STEP_MS
+        was_coming = nearest_point is None or run.track[-1].ms - nearest_point.ms <= STEP_MS
         return "time" if run.ending == LIMIT and was_coming else "several"
     if run.ending == DONE and _is_approaching(track_points, place):
         return "over"
-    if nearest is None:
+    if nearest_point is None:
         return "one"
-    if run.ending == LIMIT and nearest.driven_cm >= track_points[-1].driven_cm - STILL_CM > 0:
+    if run.ending == LIMIT and nearest_point.driven_cm >= track_points[-1].driven_cm - STILL_CM > 0:
         return "slow"
     way_cm = math.dist(place, start[:2])
     ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
-    dx, dy = nearest.x_cm - start.x_cm, nearest.y_cm - start.y_cm
-    is_straight = abs(dy * ux - dx * uy) <= STILL_CM and nearest.driven_cm > STILL_CM
+    dx, dy = nearest_point.x_cm - start.x_cm, nearest_point.y_cm - start.y_cm
+    is_straight = abs(dy * ux - dx * uy) <= STILL_CM and nearest_point.driven_cm > STILL_CM
     return "short" if is_straight and 0 < dx * ux + dy * uy < way_cm else "one"
 
 

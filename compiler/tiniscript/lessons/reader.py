@@ -178,14 +178,14 @@ def _presses(tables: list[Table]) -> tuple[Press, ...]:
     return tuple(presses)
 
 
-def _span(table: Table, key: str, greatest: int) -> tuple[float, float]:
+def _span(table: Table, key: str, most: int) -> tuple[float, float]:
     """Return the start and end of a range; both are 0 if omitted."""
     low, high = table.pair(key, "") if table.check_for(key) else (0, 0)
     if low > high:
         table.complain("range_empty", key)
-    if max(abs(low), abs(high)) > greatest * ONE:
+    if max(abs(low), abs(high)) > most * ONE:
         table.complain("out_of_range", key, found=f"[{low / ONE:g}, {high / ONE:g}]",
-                       low=str(-greatest), high=str(greatest))  # fmt: skip
+                       low=str(-most), high=str(most))  # fmt: skip
     return low / ONE, high / ONE
 
 

@@ -170,8 +170,8 @@ def _uncalled_words(words: Sequence[str]) -> list[str]:
     """Return the DEFs that are called by none, or only by such a DEF."""
     words_by_def: dict[str, set[str]] = {name: set() for name in _def_names(words)}
     main_words, name = set[str](), ""
-    for previous, word in pairwise(["", *words]):
-        if previous == "DEF":
+    for previous_word, word in pairwise(["", *words]):
+        if previous_word == "DEF":
             name = word
         elif ALIASES.get(word, word) == BLOCK_ENDS["DEF"]:
             name = ""

@@ -80,12 +80,12 @@ def _move_part(world: World, variation: Variation, dx: float, dy: float, turn: f
     part, k = variation.place.part, variation.place.number - 1
 
     def shift(points: tuple[Point, ...]) -> tuple[Point, ...]:
-        middle = _center(points)
+        center = _center(points)
         cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
         return tuple(
             Point(
-                middle.x + dx + (x - middle.x) * cos - (y - middle.y) * sin,
-                middle.y + dy + (x - middle.x) * sin + (y - middle.y) * cos,
+                center.x + dx + (x - center.x) * cos - (y - center.y) * sin,
+                center.y + dy + (x - center.x) * sin + (y - center.y) * cos,
             )
             for x, y in points
         )

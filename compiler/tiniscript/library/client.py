@@ -53,7 +53,7 @@ class Client:
 
     def __init__(
         self, port: str, verb: str, profile: Robot, baud: int | None = None, language: str = "en",
-        limit_s: float = opening.OPEN_TIMEOUT_S, is_shared: bool = True,
+        timeout_s: float = opening.OPEN_TIMEOUT_S, is_shared: bool = True,
         is_latched: Callable[[], bool] = lambda: False, poll: Callable[[], None] = lambda: None,
     ) -> None:  # fmt: skip
         """Connect to a port through its server, or open it. Raises RobotError.
@@ -68,7 +68,7 @@ class Client:
         self.language = language
         speed = profile.board.baud if baud is None else baud
         kit = profile.kit.fingerprint
-        self.connection = opening.connection_to(port, verb, speed, kit, limit_s, baud, language)
+        self.connection = opening.connection_to(port, verb, speed, kit, timeout_s, baud, language)
         self.server: Server | None = None
         try:
             if is_shared and not self.connection.holder_verb:
@@ -164,12 +164,12 @@ class Client:
         )
 
     def begin_request(
-        self, begin: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
+        self, make_request: Callable[[Requester], PendingRequest[T]], limit_ms: int | None = None
     ) -> PendingRequest[T]:
         """Begin a request with a timeout."""
 
         def with_limit(session: Requester) -> PendingRequest[T]:
-            request = begin(session)
+            request = make_request(session)
             request.limit_ms = limit_ms or REQUEST_TIMEOUT_MS
             return request
 
@@ -199,11 +199,11 @@ class Client:
             raise self.error_for_reply(reply)
         return reply
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         """Return the time (ms) and the next event, or None if none arrives in time."""
         self._poll()
         with self._convert_loss():
-            return self.connection.event(limit_s)
+            return self.connection.event(timeout_s)
 
     def send_program(
         self, image: Image, runs: bool, saves: bool, is_detached: bool,
@@ -225,12 +225,12 @@ class Client:
         )
         return self.wait(request, lambda: on_progress(request.done_bytes))
 
-    def stop(self, limit_s: float | None = None) -> bool:
+    def stop(self, timeout_s: float | None = None) -> bool:
         """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
 
-        The default of `limit_s` is CONFIRM_TIMEOUT_S. Events from before the call do not count.
+        The default of `timeout_s` is CONFIRM_TIMEOUT_S. Events from before the call do not count.
         """
-        end_s = monotonic() + (opening.CONFIRM_TIMEOUT_S if limit_s is None else limit_s)
+        end_s = monotonic() + (opening.CONFIRM_TIMEOUT_S if timeout_s is None else timeout_s)
         stop_ms = self.connection.stop()
         try:
             while monotonic() < end_s:

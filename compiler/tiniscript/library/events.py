@@ -80,8 +80,8 @@ class EventReader:
 
     def _fault_values(self, event: FaultEvent) -> dict[str, Value]:
         program_map = self._shows.map_of(event.run, event.program)
-        fault = fault_of(fault_name(event.fault), event.at, program_map)
-        values: dict[str, Value] = {"fault": fault.name, "offset": event.at}
+        fault = fault_of(fault_name(event.fault), event.offset, program_map)
+        values: dict[str, Value] = {"fault": fault.name, "offset": event.offset}
         if fault.line is not None and fault.column is not None:
             values |= {"line": fault.line, "column": fault.column}
         return values

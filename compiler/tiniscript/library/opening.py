@@ -46,7 +46,7 @@ CONFIRM_TIMEOUT_S = 7.0  # timeout for the answer to a stop, a little longer tha
 
 
 def connection_to(
-    port: str, verb: str, baud: int, kit: int, limit_s: float = OPEN_TIMEOUT_S,
+    port: str, verb: str, baud: int, kit: int, timeout_s: float = OPEN_TIMEOUT_S,
     asked_baud: int | None = None, language: str = "en",
 ) -> LinkConnection:  # fmt: skip
     """Return the connection to a port. Raises RobotError if the port is busy or does not open.
@@ -71,7 +71,7 @@ def connection_to(
         try:
             lock = _claim(address, language)
             port_connection = _open_connection(
-                address, baud, kit, limit_s, lock, language, port, verb
+                address, baud, kit, timeout_s, lock, language, port, verb
             )
             for name in {port, address}:
                 registry.forget(name)  # the port is ours: its former owner has crashed
@@ -81,7 +81,9 @@ def connection_to(
             if error.reason != "port_busy" or (waited_s > BUSY_TIMEOUT_S and not is_stop):
                 raise
         if is_stop:
-            connection = _connect_past_holder(address, baud, kit, limit_s, language, port, waited_s)
+            connection = _connect_past_holder(
+                address, baud, kit, timeout_s, language, port, waited_s
+            )
             if connection is not None:
                 return connection
         sleep(RETRY_INTERVAL_S)
@@ -94,7 +96,7 @@ def _is_suspended(address: str) -> bool:
 
 
 def _connect_past_holder(
-    address: str, baud: int, kit: int, limit_s: float, language: str, port: str, waited_s: float
+    address: str, baud: int, kit: int, timeout_s: float, language: str, port: str, waited_s: float
 ) -> PortConnection | None:
     """Return a connection past the suspended holder of a busy port; None while a normal connection
     is possible.
@@ -110,7 +112,7 @@ def _connect_past_holder(
             speed = baud if registration is None else registration.baud
             with suppress(RobotError):
                 return _open_connection(
-                    address, speed, kit, limit_s, None, language, port, "stop", True
+                    address, speed, kit, timeout_s, None, language, port, "stop", True
                 )
         holder.wake()
     if waited_s <= STOP_BUSY_TIMEOUT_S:
@@ -122,7 +124,7 @@ def _connect_past_holder(
 
 
 def _open_connection(
-    address: str, baud: int, kit: int, limit_s: float, lock: IO[bytes] | None, language: str,
+    address: str, baud: int, kit: int, timeout_s: float, lock: IO[bytes] | None, language: str,
     port: str, verb: str = "", opens_past_lock: bool = False,
 ) -> PortConnection:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError.
@@ -140,7 +142,7 @@ def _open_connection(
             cleanup.callback(lock.close)
         open_function = open_past_lock if opens_past_lock else open_port
         try:
-            opened_port = open_function(address, baud, limit_s)
+            opened_port = open_function(address, baud, timeout_s)
         except PortError as error:
             raise port_error(port, error, language) from None
         cleanup.callback(opened_port.close)

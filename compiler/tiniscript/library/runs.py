@@ -142,7 +142,7 @@ def cpp_machine(image: Image, robot: Robot) -> MachineOf:
     from tiniscript.vm.wasm import WasmImage
 
     kit = robot.kit
-    data = pack(image.start, image.devices, image.code, image.later, image.needs)
+    data = pack(image.start, image.devices, image.code, image.later_fields, image.needs)
     try:
         return WasmImage(data, kit).machine
     except (ImageRefused, Refused) as error:

@@ -87,12 +87,12 @@ class ShowFinder:
         return program_map
 
     def show_of(self, event: ShownEvent) -> Show | None:
-        program_map = self.map_of(event.run, event.program) if event.at >= 0 else None
+        program_map = self.map_of(event.run, event.program) if event.offset >= 0 else None
         if program_map is None:
             return None
         if self._shows is None or self._shows[0] is not program_map:
             self._shows = program_map, Shows(program_map)
-        return self._shows[1].show_at(event.at)
+        return self._shows[1].show_at(event.offset)
 
 
 def expression_of(program_map: SourceMap, location: MapLocation) -> str:

@@ -25,13 +25,15 @@ def find_misfits(source: Source, program: Program, kit: Kit, level: Level) -> li
     parsed_program = parse(source)
     tokens = list(spell_out(parsed_program.scan.tokens))
     end_roles = ("end", "alias")  # the word that begins their block explains them
-    lacking_words = {word for word in level.lacks if WORDS[word].role.name not in end_roles}
+    lacking_words = {word for word in level.missing_words if WORDS[word].role.name not in end_roles}
     diagnostics = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in tokens
         if token.kind is WORD and (token.text in lacking_words or len(token.text) > LONGEST_WORD)
     ]
-    if "DEF" not in level.lacks and any(procedure.values for procedure in program.procedures):
+    if "DEF" not in level.missing_words and any(
+        procedure.values for procedure in program.procedures
+    ):
         diagnostics += _value_problems(program, kit, level)
     program_code = plain_code(program)
     limit = min(CODE_BYTES, level.room)

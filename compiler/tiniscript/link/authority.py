@@ -26,7 +26,7 @@ FREE, OWNED_BY_YOU, OWNED_BY_OTHER = "free", "yours", "other"
 
 
 class RobotKey(NamedTuple):
-    """A key of a robot. `which` is one of KEYS; `name` is the robot's.
+    """A key of a robot. `kind` is one of KEYS; `name` is the robot's.
 
     `is_pending`: it is not known whether the robot has taken it; `is_stale`: the robot has refused
     it, so it is shown only if something depends on it; `uses_seals`: the robot seals, so unsealed
@@ -34,7 +34,7 @@ class RobotKey(NamedTuple):
     """
 
     id: int
-    which: int
+    kind: int
     key: bytes
     name: str = ""
     is_pending: bool = False
@@ -44,10 +44,10 @@ class RobotKey(NamedTuple):
     @property
     def slot(self) -> tuple[int, int]:
         """A robot and a person, who share one key."""
-        return self.id, self.which
+        return self.id, self.kind
 
     def __repr__(self) -> str:  # a key is in no message
-        return f"RobotKey({self.id:08x}, {self.which})"
+        return f"RobotKey({self.id:08x}, {self.kind})"
 
 
 class KeyRing:
@@ -65,18 +65,22 @@ class KeyRing:
         """Return the keys of a robot, or of all."""
         return [key for key in self._stored_keys() if robot_id in (None, key.id)]
 
-    def create_pending_key(self, robot_id: int, which: int, name: str) -> RobotKey | None:
+    def create_pending_key(self, robot_id: int, kind: int, name: str) -> RobotKey | None:
         """Make a key and keep it as a pending one; None if it cannot be kept."""
-        key = RobotKey(robot_id, which, os.urandom(KEY_BYTES), name, is_pending=True)
+        key = RobotKey(robot_id, kind, os.urandom(KEY_BYTES), name, is_pending=True)
 
         def with_key_added(keys: list[RobotKey]) -> list[RobotKey]:
-            pending = [
+            pending_keys = [
                 robot_key
                 for robot_key in keys
                 if robot_key.is_pending and robot_key.slot == key.slot
             ]
             return [
-                *(robot_key for robot_key in keys if robot_key not in pending[:-MOST_PENDING_KEYS]),
+                *(
+                    robot_key
+                    for robot_key in keys
+                    if robot_key not in pending_keys[:-MOST_PENDING_KEYS]
+                ),
                 key,
             ]
 
@@ -150,10 +154,10 @@ def show_keys(
     robot: DeviceInfo,
     nonce: int,
     current_epoch: Callable[[], int],
-    which: int | None = None,
+    kind: int | None = None,
     is_needed: bool = True,
 ) -> Exchange[AuthenticateReply]:
-    """Show a robot its keys, the teacher's first, until one is right; `which` alone if it is given.
+    """Show a robot its keys, the teacher's first, until one is right; `kind` alone if it is given.
 
     Then it is known of a pending key whether the robot has taken it. A stale key is shown only if
     it `is_needed`, since showing it takes time.
@@ -161,7 +165,7 @@ def show_keys(
     reply: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.keys_of_robot(robot.id)
     for key in sorted(keys, key=_key_order):
-        if which not in (None, key.which) or (key.is_stale and not is_needed):
+        if kind not in (None, key.kind) or (key.is_stale and not is_needed):
             continue
         reply = yield from _show_key(key, robot, nonce, current_epoch)
         if reply.status == STALE:  # a stop or a fault came between: the tag was one of before
@@ -184,33 +188,33 @@ def _can_seal(robot: DeviceInfo) -> bool:
 
 
 def _key_order(key: RobotKey) -> tuple[bool, bool, bool]:
-    return key.is_stale, key.which != KEY_TEACHER, key.is_pending
+    return key.is_stale, key.kind != KEY_TEACHER, key.is_pending
 
 
 def _show_key(
     key: RobotKey, robot: DeviceInfo, nonce: int, current_epoch: Callable[[], int]
 ) -> Exchange[AuthenticateReply]:
-    challenge_request = Request("AUTHENTICATE", {"which": key.which, "tag": b""})
+    challenge_request = Request("AUTHENTICATE", {"kind": key.kind, "tag": b""})
     reply = yield from requests.retry_while_busy(challenge_request, AuthenticateReply)
     if reply.status != OK:
         return reply
     challenge = reply.values.challenge
-    message = challenge + nonce.to_bytes(4, "little") + bytes([current_epoch(), key.which])
+    message = challenge + nonce.to_bytes(4, "little") + bytes([current_epoch(), key.kind])
     seal = None
     if _can_seal(robot):
         robot_nonce = robot.values.nonce
-        seal = Seal(session_key(key.key, challenge, nonce, robot_nonce, current_epoch(), key.which))
+        seal = Seal(session_key(key.key, challenge, nonce, robot_nonce, current_epoch(), key.kind))
     tag = siphash(key.key, message)
-    tag_request = Request("AUTHENTICATE", {"which": key.which, "tag": tag}, seal=seal)
+    tag_request = Request("AUTHENTICATE", {"kind": key.kind, "tag": tag}, seal=seal)
     return (yield from requests.retry_while_busy(tag_request, AuthenticateReply))
 
 
-def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
+def claim(ring: KeyRing, robot: DeviceInfo, kind: int) -> Exchange[EmptyReply]:
     """Claim the robot with a new key, if its button was held during the request."""
-    key = ring.create_pending_key(robot.id, which, robot.name)
+    key = ring.create_pending_key(robot.id, kind, robot.name)
     if key is None:
         return Reply(UNKEPT)
-    request = Request("CLAIM", {"which": which, "key": key.key})
+    request = Request("CLAIM", {"kind": kind, "key": key.key})
     reply = yield from requests.save_and_confirm(request, EmptyReply)
     while reply.status == HOLD_BUTTON:
         reply = yield from requests.save_and_confirm(
@@ -223,12 +227,12 @@ def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
     return reply
 
 
-def disown(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
+def disown(ring: KeyRing, robot: DeviceInfo, kind: int) -> Exchange[EmptyReply]:
     """Take a key away from the robot."""
-    request = Request("CLAIM", {"which": which, "key": b""})
+    request = Request("CLAIM", {"kind": kind, "key": b""})
     reply = yield from requests.save_and_confirm(request, EmptyReply)
     if reply.status == OK:
         for key in ring.keys_of_robot(robot.id):
-            if key.which == which:
+            if key.kind == kind:
                 ring.drop_key(key)
     return reply

@@ -52,13 +52,13 @@ class PendingRequest(Generic[T]):
     """A request in progress: `outcome` is set when it is over.
 
     `limit_ms` is its timeout, from its first frame on, and anew from each progress unless
-    `is_limit_total`; `done_bytes` of a program have arrived; `starts`: a program runs when the
-    request is done.
+    `is_limit_total`; `done_bytes` of a program have arrived; `starts_program`: a program runs when
+    the request is done.
     """
 
     limit_ms = EXCHANGE_TIMEOUT_MS
     is_limit_total = False
-    starts = False
+    starts_program = False
     done_bytes = 0
     outcome: Reply[T] | None = None
 
@@ -68,7 +68,7 @@ class Requester:
     shared port has its server make them: both have `_ask` alone of their own."""
 
     def _ask(
-        self, name: str, reply_type: type[T], starts: bool = False, /, **arguments: object
+        self, name: str, reply_type: type[T], starts_program: bool = False, /, **arguments: object
     ) -> PendingRequest[T]:
         """Make the request of this name; its reply has the type `reply_type`."""
         raise NotImplementedError
@@ -99,8 +99,8 @@ class Requester:
     ) -> PendingRequest[ReceiptReply]:  # fmt: skip
         """`kit` is the kit that the image was verified for; None means the session's kit."""
         options = {"runs": runs, "saves": saves, "is_detached": is_detached, "kit": kit}
-        starts = runs and image.start == "SI"
-        return self._ask("upload", ReceiptReply, starts, image=image, **options)
+        starts_program = runs and image.start == "SI"
+        return self._ask("upload", ReceiptReply, starts_program, image=image, **options)
 
     def undo(self) -> PendingRequest[ReceiptReply]:
         """Restore the robot's previous program; a running program ends."""
@@ -132,9 +132,9 @@ class Requester:
         packed_bytes = b"".join(place.to_bytes(2, "little") for place in places)
         return self._ask("break_at", EmptyReply, places=packed_bytes)
 
-    def resume(self, how: int) -> PendingRequest[ResumeReply]:
-        """Resume a halted program: `how` is one of RESUMES."""
-        return self._ask("resume", ResumeReply, how=how)
+    def resume(self, extent: int) -> PendingRequest[ResumeReply]:
+        """Resume a halted program: `extent` is one of RESUMES."""
+        return self._ask("resume", ResumeReply, how=extent)
 
     def read_variables(self, first: int = 0) -> PendingRequest[ReadVariablesReply]:
         """Ask for the variables of the running program, from this number on: as many as fit into a
@@ -152,18 +152,18 @@ class Requester:
     def identify(self) -> PendingRequest[EmptyReply]:
         return self._ask("identify", EmptyReply)
 
-    def claim(self, which: int) -> PendingRequest[EmptyReply]:
-        """Claim the robot: `which` is one of KEYS. Waits until its button is held down.
+    def claim(self, kind: int) -> PendingRequest[EmptyReply]:
+        """Claim the robot: `kind` is one of KEYS. Waits until its button is held down.
 
         The process with the session makes the key and keeps it: no message between commands has
         one.
         """
-        pending = self._ask("claim", EmptyReply, which=which)
-        pending.limit_ms, pending.is_limit_total = CLAIM_TIMEOUT_MS, True
-        return pending
+        pending_request = self._ask("claim", EmptyReply, kind=kind)
+        pending_request.limit_ms, pending_request.is_limit_total = CLAIM_TIMEOUT_MS, True
+        return pending_request
 
-    def disown(self, which: int) -> PendingRequest[EmptyReply]:
-        return self._ask("disown", EmptyReply, which=which)
+    def disown(self, kind: int) -> PendingRequest[EmptyReply]:
+        return self._ask("disown", EmptyReply, kind=kind)
 
     def hold_back(self) -> PendingRequest[EmptyReply]:
         return self._ask("hold_back", EmptyReply)
@@ -228,7 +228,7 @@ class LinkConnection:
         """Whether the connection is gone."""
         return False
 
-    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def begin(self, make_request: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         """Start a request; return while it is in progress."""
         raise NotImplementedError
 
@@ -236,7 +236,7 @@ class LinkConnection:
         """Wait for the outcome of a request, and call `look` periodically."""
         raise NotImplementedError
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         """Return the next event and its arrival time (ms), or None after the time limit."""
         raise NotImplementedError
 

@@ -112,7 +112,7 @@ class Handshake:
                 return Reply(OK, 0, self.robot.values)
         return reply
 
-    def open_then(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
+    def open_then(self, make_exchange: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Open the session if needed, then make and run an exchange; anew, after a reset or a
         fault. Requests that a stop has cancelled are not repeated: the session ensures that.
         """
@@ -121,7 +121,7 @@ class Handshake:
             if hello.status != OK:
                 return as_refusal(hello)
         boot = self._boot
-        reply = yield from self.with_key(make)
+        reply = yield from self.with_key(make_exchange)
         if reply.status != STATUSES["STALE"]:
             return reply
         hello = yield from self.hello()
@@ -131,11 +131,11 @@ class Handshake:
         if hello.status != OK or self._state.state != resting_state:
             return reply
         # The frame arrived earlier, and was not carried out.
-        return (yield from self.with_key(make))
+        return (yield from self.with_key(make_exchange))
 
-    def with_key(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
+    def with_key(self, make_exchange: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Make and run an exchange; again, if the robot wants to be shown its key before."""
-        reply = yield from make()
+        reply = yield from make_exchange()
         if reply.status not in (NOT_OWNER, STATUSES["HELD_BACK"]) or self._keys is None:
             return reply
         if not self.is_open:
@@ -145,16 +145,16 @@ class Handshake:
         key_reply = yield from self.show_keys()
         if key_reply.status != OK:
             return as_refusal(reply if key_reply.status == NOT_OWNER else key_reply)
-        return (yield from make())
+        return (yield from make_exchange())
 
     def show_keys(
-        self, which: int | None = None, is_needed: bool = True
+        self, kind: int | None = None, is_needed: bool = True
     ) -> Exchange[AuthenticateReply]:
-        """Show the robot our keys of it; `which` alone if it is given. See `authority`."""
+        """Show the robot our keys of it; `kind` alone if it is given. See `authority`."""
         assert self.robot
         keys, robot, nonce = self._keys, self.robot, self._nonce
         reply = yield from authority.show_keys(
-            keys, robot, nonce, self._current_epoch, which, is_needed
+            keys, robot, nonce, self._current_epoch, kind, is_needed
         )
         if reply.status == OK:
             self._take_features(reply.values.features)
@@ -192,20 +192,20 @@ class Handshake:
                 return Reply(UNPROVEN)
         return reply
 
-    def claim(self, which: int) -> Exchange[EmptyReply]:
+    def claim(self, kind: int) -> Exchange[EmptyReply]:
         assert self.robot
         if not self.robot.values.features & OWNERS:
             return Reply(STATUSES["UNKNOWN_MESSAGE"])
         assert self._keys is not None
-        reply = yield from authority.claim(self._keys, self.robot, which)
+        reply = yield from authority.claim(self._keys, self.robot, kind)
         if reply.status == OK:
             yield from self.show_keys()
         return reply
 
-    def disown(self, which: int) -> Exchange[EmptyReply]:
+    def disown(self, kind: int) -> Exchange[EmptyReply]:
         assert self.robot and self._keys is not None
-        reply = yield from authority.disown(self._keys, self.robot, which)
-        if reply.status == OK and which != KEY_TEACHER:
+        reply = yield from authority.disown(self._keys, self.robot, kind)
+        if reply.status == OK and kind != KEY_TEACHER:
             self._take_features(self.robot.values.features & ~OWNED)
         return reply
 
@@ -275,8 +275,8 @@ class Handshake:
         return self.robot
 
 
-def ping(asks: bytes = b"") -> Exchange[PingReply]:
-    return requests.send_single(Request("PING", {"asks": asks}), PingReply)
+def ping(question: bytes = b"") -> Exchange[PingReply]:
+    return requests.send_single(Request("PING", {"asks": question}), PingReply)
 
 
 def status() -> Exchange[StatusReply]:

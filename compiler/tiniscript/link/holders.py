@@ -103,9 +103,9 @@ def _ps_column(pid: int, column: str) -> str:
     import subprocess  # a stop on Linux does without
 
     with suppress(OSError, subprocess.SubprocessError):
-        completed = subprocess.run(
+        result = subprocess.run(
             ["ps", "-o", f"{column}=", "-p", str(pid)],
             capture_output=True, text=True, timeout=PS_TIMEOUT_S, check=False,
         )  # fmt: skip
-        return completed.stdout.strip()
+        return result.stdout.strip()
     return ""

@@ -189,7 +189,7 @@ def encode_keys(keys: Iterable[RobotKey]) -> bytes:
         {
             "id": f"{key.id:08x}",
             "name": key.name,
-            "kind": _KEY_KINDS[key.which],
+            "kind": _KEY_KINDS[key.kind],
             "key": key.key.hex(),
             **{mark: True for mark, field in _MARK_FIELDS.items() if getattr(key, field)},
         }

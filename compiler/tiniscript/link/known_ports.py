@@ -44,8 +44,8 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with files.lock_file(path):  # other commands do the same
             known_ports = remembered_ports()
-            newest = next(iter(known_ports.name_by_port.items()), None)
-            if newest == (port, name) and (known_ports.last_port == port or not is_used):
+            newest_port = next(iter(known_ports.name_by_port.items()), None)
+            if newest_port == (port, name) and (known_ports.last_port == port or not is_used):
                 return
             other_names = {
                 value: name
@@ -58,11 +58,11 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
             files.replace(path, json.dumps(fields).encode())
 
 
-def _is_same(port: str, other: str) -> bool:
+def _is_same(port: str, other_port: str) -> bool:
     """Return whether two names always mean the same port; a link in /dev may change."""
-    if is_address(port) and is_address(other):
-        return canonical_port(port) == canonical_port(other)
-    return port == other
+    if is_address(port) and is_address(other_port):
+        return canonical_port(port) == canonical_port(other_port)
+    return port == other_port
 
 
 def _path() -> Path:

@@ -178,7 +178,7 @@ FEATURES = (
 REMOTE_KEYS = ("UP", "DOWN", "LEFT", "RIGHT", "A", "B")
 MOST_PAD = 100
 HOLD_MS = 500
-# The keys of a robot: `which` of CLAIM and AUTHENTICATE.
+# The keys of a robot: `kind` of CLAIM and AUTHENTICATE.
 KEYS = (
     (
         "OWNER",
@@ -291,9 +291,9 @@ MESSAGES = (
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
              "Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. Answers OK as NAME does."),
-    _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot the key number `which` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
-    _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
+    _message(16, "CLAIM", True, f"kind:u8 key:rest=0..{KEY_BYTES}", "",
+             "Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
+    _message(17, "AUTHENTICATE", True, f"kind:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
              "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,
@@ -312,18 +312,18 @@ MESSAGES = (
              "Continues a halted program; `how` says how far."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
              "Asks for the variables of the running program, starting with the variable `first`: 32 bits each."),
-    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 at:u16 tasks:rest=0..{TASKS_BYTES}",
+    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 offset:u16 tasks:rest=0..{TASKS_BYTES}",
              "Asks for the tasks of the running program, and where each of them is."),
     _message(29, "TELL_READINGS", True, "is_on:u8", "",
              "Sets whether the robot sends READING to this session."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", f"value:i32 is_yes_no:u8 place:rest=0..{SHOW_PLACE_BYTES}",
              "A value that a program shows. `place`: its run, and where its SHOW is."),
-    _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
+    _message(33, "FAULT", False, "", "run:u8 fault:u8 offset:u16 program:u32",
              "The program has ended with a fault."),
     _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped: it has a new epoch. Repeated: it is still stopped."),
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
-    _message(37, "HALTED", False, "", "run:u8 at:u16 task:u8",
+    _message(37, "HALTED", False, "", "run:u8 offset:u16 task:u8",
              "The program is halted before a statement. Repeated: it still is."),
     _message(38, "READING", False, "", "run:u8 sensor:u8 value:i32 ms:u16",
              "A reading has changed. `ms`: the low 16 bits of the time since the run's start."),

@@ -26,16 +26,16 @@ POLL_INTERVAL_S = 0.1  # between two checks for events: Windows handles Ctrl-C o
 
 
 class ShownEvent(NamedTuple):
-    """A program has shown a value, with the SHOW at byte `at` of its code.
+    """A program has shown a value, with the SHOW at byte `offset` of its code.
 
-    `program` is the checksum of its image; `at` is -1 if that is not known.
+    `program` is the checksum of its image; `offset` is -1 if that is not known.
     """
 
     value: int
     is_yes_no: int
     run: int = 0
     program: int = 0
-    at: int = -1
+    offset: int = -1
     name: Literal["SHOW"] = "SHOW"
 
 
@@ -80,14 +80,14 @@ class StartedEvent(NamedTuple):
 
 
 class PlaceEvent(NamedTuple):
-    """The program is at another place: byte `at` of its code, or -1 after the end of the run.
+    """The program is at another place: byte `offset` of its code, or -1 after the end of the run.
 
     `program` is the checksum of its image.
     """
 
     run: int
     program: int
-    at: int
+    offset: int
     name: Literal["PLACE"] = "PLACE"
 
 

@@ -136,7 +136,7 @@ class ReadTasksReply(NamedTuple):
     run: int
     is_halted: int
     task: int
-    at: int
+    offset: int
     tasks: bytes
 
 
@@ -154,7 +154,7 @@ class FaultEvent(NamedTuple):
 
     run: int
     fault: int
-    at: int
+    offset: int
     program: int
     name: Literal["FAULT"] = "FAULT"
 
@@ -177,7 +177,7 @@ class HaltedEvent(NamedTuple):
     """The program is halted before a statement. Repeated: it still is."""
 
     run: int
-    at: int
+    offset: int
     task: int
     name: Literal["HALTED"] = "HALTED"
 

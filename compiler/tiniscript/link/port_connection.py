@@ -78,9 +78,9 @@ class PortConnection(LinkConnection):
     def has_ended(self) -> bool:
         return self._end_reason is not None
 
-    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+    def begin(self, make_request: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
         with self._session_lock:
-            request = make(self.session)
+            request = make_request(self.session)
             self._pending_requests.append(request)
         self._wake()
         return request
@@ -96,9 +96,9 @@ class PortConnection(LinkConnection):
             if look is not None:
                 look()
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> TimedEvent | None:
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> TimedEvent | None:
         if not self._events and self._end_reason is None:
-            self._bell.wait(limit_s)
+            self._bell.wait(timeout_s)
         with self._session_lock:
             if self._events:
                 return self._events.take_event()
@@ -201,8 +201,8 @@ class PortConnection(LinkConnection):
         one."""
         data = bytes(self._port.read(1))
         with suppress(OSError):  # the port is lost: the next read reports it, after its last bytes
-            while 0 < len(data) < READ_BYTES and (more := self._port.in_waiting):
-                data += self._port.read(more)
+            while 0 < len(data) < READ_BYTES and (waiting_count := self._port.in_waiting):
+                data += self._port.read(waiting_count)
         return data
 
     def _write(self, data: bytes) -> None:

@@ -75,19 +75,19 @@ def resolve(port: str) -> str:
     return _transport(port).resolve(port)
 
 
-def open_port(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
-    """Open a port for exclusive use. Raises PortError, at the latest after `limit_s`.
+def open_port(port: str, baud: int, timeout_s: float = OPEN_S) -> Port:
+    """Open a port for exclusive use. Raises PortError, at the latest after `timeout_s`.
 
     A connection by Bluetooth LE has limits of its own.
     """
-    return _transport(port).open_port(port, baud, limit_s)
+    return _transport(port).open_port(port, baud, timeout_s)
 
 
-def open_past_lock(port: str, baud: int, limit_s: float = OPEN_S) -> Port:
+def open_past_lock(port: str, baud: int, timeout_s: float = OPEN_S) -> Port:
     """Open a serial port that another program has locked: both hear then. Raises PortError."""
     from tiniscript.link.transports import serial
 
-    return cast(Port, serial.open_port(port, baud, limit_s, is_exclusive=False))
+    return cast(Port, serial.open_port(port, baud, timeout_s, is_exclusive=False))
 
 
 def find_bluetooth_robots() -> list[SeenDevice]:

@@ -46,8 +46,8 @@ class Receiver:
     def __init__(self, most_bytes: int = LARGE_PACKET, window: int = 1) -> None:
         """A frame has `most_bytes` on the wire, without its 0x00; `window` of them may wait."""
         self.packet: Packet | None = None
-        self.damaged = 0  # packets that were cut, too long, or ended by silence
-        self.dropped = 0  # packets that arrived while one was waiting
+        self.damaged_count = 0  # packets that were cut, too long, or ended by silence
+        self.dropped_count = 0  # packets that arrived while one was waiting
         self._mode = Mode.TEXT
         self._zeros = StopSequence()
         self._keys = KeySequence()
@@ -119,11 +119,11 @@ class Receiver:
         self._add(byte)
         if self._length > self._most_bytes() and not self._is_dropping:
             self._is_dropping = True
-            self.damaged += 1
+            self.damaged_count += 1
 
     def _begin_packet(self) -> None:
         self._is_dropping = not self._has_place()
-        self.dropped += self._is_dropping
+        self.dropped_count += self._is_dropping
         self._data.clear()
 
     def _add(self, byte: int) -> None:
@@ -145,13 +145,13 @@ class Receiver:
         if self.packet is None:
             self.packet = packet
         elif is_text:  # it would overtake other text
-            self.dropped += 1
+            self.dropped_count += 1
         else:
             self._waiting_frames.append(packet)
 
     def _cut_packet(self) -> None:
         """End the open packet, if there is one, before its end."""
-        self.damaged += self._length > 0
+        self.damaged_count += self._length > 0
         self._length = 0
 
     def _has_place(self) -> bool:

@@ -236,10 +236,10 @@ def upload(
     is_its_kit = kit == robot.kit or not image.devices
     if image.isa[0] != robot.isa[0] or image.isa[1] > robot.isa[1]:
         return _other_machine_reply(robot)
-    if len(image.later) + len(image.code) > robot.room:
+    if len(image.later_fields) + len(image.code) > robot.room:
         return Reply(STATUSES["TOO_LARGE"], robot.room)
     room = min(short_bytes(robot), SHORT_BYTES)
-    is_short = len(image.code) <= room and image.isa == isa and not image.later
+    is_short = len(image.code) <= room and image.isa == isa and not image.later_fields
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
         reply = yield from _clear_then(is_latched, retry_while_busy(request, ReceiptReply))
@@ -259,12 +259,12 @@ def _upload_in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[Re
         "isa_major": image.isa[0],
         "isa_minor": image.isa[1],
         "start": STARTS.index(image.start),
-        "header_length": HEADER_BYTES + len(image.later),
+        "header_length": HEADER_BYTES + len(image.later_fields),
         "devices": image.devices,
         "code_length": len(image.code),
     }
     reply = yield from retry_while_busy(Request("BEGIN", header), NextReply)
-    data = bytes([image.needs]) + image.later + image.code  # the bytes after the checksum
+    data = bytes([image.needs]) + image.later_fields + image.code  # the bytes after the checksum
     if reply.status == OK:
         pieces = Pieces(data, piece_bytes, robot.values.window)
         reply = yield from send_single(Request("DATA", pieces=pieces), NextReply)

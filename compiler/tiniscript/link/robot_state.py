@@ -155,8 +155,8 @@ class RobotState:
         value, is_yes_no, place, _ = show.event
         if self._known_program is None or show._run != self._known_program[0]:
             return ShownEvent(value, is_yes_no)
-        run, at = _SHOW_PLACE.unpack(place)
-        return ShownEvent(value, is_yes_no, run, self._known_program[1], at)
+        run, offset = _SHOW_PLACE.unpack(place)
+        return ShownEvent(value, is_yes_no, run, self._known_program[1], offset)
 
     def has_ended(self, run: int | None) -> bool:
         """Return whether the end of a run is known: it is reported then, and only once."""
@@ -182,10 +182,10 @@ class RobotState:
             return []
         earlier_place, self._last_place = self._last_place, None
         if values.state == STATE_RUNNING and len(values.place) == PLACE_BYTES:
-            at, program = _PLACE.unpack(values.place)
-            self._last_place = PlaceEvent(values.run, program, at)
+            offset, program = _PLACE.unpack(values.place)
+            self._last_place = PlaceEvent(values.run, program, offset)
         elif earlier_place is not None:
-            return [earlier_place._replace(at=-1)]
+            return [earlier_place._replace(offset=-1)]
         return [self._last_place] if self._last_place and self._last_place != earlier_place else []
 
     def take_event(self, event: Event) -> None:

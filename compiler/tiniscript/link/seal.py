@@ -59,11 +59,11 @@ _BLOCK_BYTES = 8  # bytes that are covered at once
 
 
 def session_key(
-    key: bytes, challenge: bytes, nonce: int, robot_nonce: int, epoch: int, which: int
+    key: bytes, challenge: bytes, nonce: int, robot_nonce: int, epoch: int, kind: int
 ) -> bytes:
     """Derive the key of a seal from a key of the robot and the nonces of both sides: 16 bytes."""
     nonces = nonce.to_bytes(4, "little") + robot_nonce.to_bytes(4, "little")
-    origin = challenge + nonces + bytes([epoch, which])
+    origin = challenge + nonces + bytes([epoch, kind])
     return siphash(key, b"\1" + origin) + siphash(key, b"\2" + origin)
 
 

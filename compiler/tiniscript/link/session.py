@@ -127,13 +127,13 @@ class PendingExchange(PendingRequest[T]):
         self,
         exchange: Exchange[T],
         limit_ms: int = EXCHANGE_TIMEOUT_MS,
-        starts: bool = False,
+        starts_program: bool = False,
         is_own: bool = False,
         ends_runs: bool = False,
         ends_orphan: bool = False,
         presses_keys: bool = False,
     ) -> None:
-        self.limit_ms, self.starts, self.ends_runs = limit_ms, starts, ends_runs
+        self.limit_ms, self.starts_program, self.ends_runs = limit_ms, starts_program, ends_runs
         self.exchange = exchange
         self.deadline_ms = 0
         self.epoch: int | None = None  # epoch of the request
@@ -151,14 +151,18 @@ class PendingExchange(PendingRequest[T]):
     @property
     def target(self) -> PendingExchange[Any]:
         """The exchange itself, or the one that has to wait for another one."""
-        return self if self.interrupted_exchange is None else self.interrupted_exchange.pending
+        return (
+            self
+            if self.interrupted_exchange is None
+            else self.interrupted_exchange.pending_exchange
+        )
 
 
 class InterruptedExchange(NamedTuple):
     """An exchange whose request continues after a key is shown again, a run is ended, or keys are
     pressed."""
 
-    pending: PendingExchange[Any]
+    pending_exchange: PendingExchange[Any]
     transmission: Transmission
 
 
@@ -198,7 +202,7 @@ class Session(Requester):
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, lambda: self._epoch, place)
         self._events: list[Event | UnresolvedShow] = []
         self._queue: deque[PendingExchange[Any]] = deque()
-        self._pending: PendingExchange[Any] | None = None
+        self._pending_exchange: PendingExchange[Any] | None = None
         self._round_trips = RoundTrips(baud)
         self._transmission = Transmission(self._round_trips)
         self._orphan_run: int | None = None  # the run of a client that has left
@@ -249,14 +253,18 @@ class Session(Requester):
         A frame that may have started a run is under way until it is answered.
         """
         if request in self._queue:
-            self._queue = deque(pending for pending in self._queue if pending is not request)
-        elif self._pending is None or self._pending.target is not request:
+            self._queue = deque(
+                pending_exchange
+                for pending_exchange in self._queue
+                if pending_exchange is not request
+            )
+        elif self._pending_exchange is None or self._pending_exchange.target is not request:
             return
         elif self._may_start():
-            self._pending.target.is_void = True
+            self._pending_exchange.target.is_void = True
             return
         else:
-            self._pending = None
+            self._pending_exchange = None
             self._transmission.end()
         request.outcome = Reply(CANCELLED)
 
@@ -296,8 +304,8 @@ class Session(Requester):
             self._next_pending(now_ms)
         if not self._transmission.is_under_way:
             return b""
-        assert self._pending
-        if now_ms >= self._pending.deadline_ms:
+        assert self._pending_exchange
+        if now_ms >= self._pending_exchange.deadline_ms:
             self._give_up_request(now_ms)
             return b""
         if not self._transmission.is_due(now_ms):
@@ -318,7 +326,7 @@ class Session(Requester):
         ):
             self._unanswered_since_ms = now_ms
         if any(map(self._transmission.is_of, _ACTING_MESSAGES)):
-            self._pending.is_midway = True
+            self._pending_exchange.is_midway = True
         if seal is not None:
             self._sealing.sealed_ms = now_ms
         return self._transmission.bytes_to_send(now_ms, self._sender)
@@ -331,8 +339,8 @@ class Session(Requester):
             return self._talked_ms + SILENT_MS
         times = [self._remote.due_ms() if self._may_press() else None]
         if self._transmission.is_under_way:
-            assert self._pending
-            times += [self._transmission.due_ms, self._pending.deadline_ms]
+            assert self._pending_exchange
+            times += [self._transmission.due_ms, self._pending_exchange.deadline_ms]
         elif self._queue:
             return 0
         elif (heartbeat_ms := self._heartbeat_ms()) is not None:
@@ -363,17 +371,21 @@ class Session(Requester):
         """Return whether keys may be sent before the next frame, or instead of a heartbeat. They
         never overtake a frame under way, which would be out of order when repeated.
         """
-        pending = self._pending
-        if pending is None or self._is_heartbeat():
+        pending_exchange = self._pending_exchange
+        if pending_exchange is None or self._is_heartbeat():
             return not (self._queue and self._has_pressed)
-        if pending.interrupted_exchange is not None or pending.presses_keys:
+        if pending_exchange.interrupted_exchange is not None or pending_exchange.presses_keys:
             return False
         return not self._transmission.is_sent and not self._transmission.is_of("AUTHENTICATE")
 
     def _is_heartbeat(self) -> bool:
         """Return whether a heartbeat, or keys without a following request, are under way."""
-        pending = self._pending
-        is_alone = pending is not None and pending.is_own and pending.interrupted_exchange is None
+        pending_exchange = self._pending_exchange
+        is_alone = (
+            pending_exchange is not None
+            and pending_exchange.is_own
+            and pending_exchange.interrupted_exchange is None
+        )
         return is_alone and any(map(self._transmission.is_of, _HEARTBEAT_MESSAGES))
 
     def _press_next(self, now_ms: int) -> None:
@@ -386,9 +398,11 @@ class Session(Requester):
             return
         exchange = self._handshake.open_then(self._send_keys)
         press = PendingExchange(exchange, DEAF_MS, is_own=True, presses_keys=True)
-        if self._pending is not None and not self._is_heartbeat():
-            press.interrupted_exchange = InterruptedExchange(self._pending, self._transmission)
-        self._pending, self._has_pressed = press, True
+        if self._pending_exchange is not None and not self._is_heartbeat():
+            press.interrupted_exchange = InterruptedExchange(
+                self._pending_exchange, self._transmission
+            )
+        self._pending_exchange, self._has_pressed = press, True
         press.deadline_ms = self._loss_due_ms(now_ms)
         self._advance(None, now_ms)
 
@@ -401,8 +415,11 @@ class Session(Requester):
 
     def _end_press(self) -> None:
         """Resume the exchange that a key press has interrupted."""
-        assert self._pending
-        interrupted_exchange, self._pending = self._pending.interrupted_exchange, None
+        assert self._pending_exchange
+        interrupted_exchange, self._pending_exchange = (
+            self._pending_exchange.interrupted_exchange,
+            None,
+        )
         self._transmission.end()
         if interrupted_exchange is not None:
             self._go_on(interrupted_exchange)
@@ -417,14 +434,14 @@ class Session(Requester):
 
     def _next_pending(self, now_ms: int) -> None:
         if self._queue:
-            self._pending, self._has_pressed = self._queue.popleft(), False
+            self._pending_exchange, self._has_pressed = self._queue.popleft(), False
         else:
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._talked_ms + heartbeat_ms:
                 return
             limit_ms = self._loss_due_ms(now_ms) - now_ms
-            self._pending = PendingExchange(self._heartbeat(), limit_ms, is_own=True)
-        self._pending.deadline_ms = now_ms + self._pending.limit_ms
+            self._pending_exchange = PendingExchange(self._heartbeat(), limit_ms, is_own=True)
+        self._pending_exchange.deadline_ms = now_ms + self._pending_exchange.limit_ms
         self._advance(None, now_ms)
 
     def _heartbeat_ms(self) -> int | None:
@@ -436,39 +453,43 @@ class Session(Requester):
 
     def _advance(self, reply: Reply[SentReply] | None, now_ms: int) -> None:
         """Continue the exchange: give it the reply, and send its next request."""
-        pending = self._pending
-        assert pending
+        pending_exchange = self._pending_exchange
+        assert pending_exchange
         is_waiting = reply is not None and reply.status in _WAITING_STATUSES
-        pending.waiting_status = reply.status if reply is not None and is_waiting else 0
-        pending.answered_ms = now_ms
+        pending_exchange.waiting_status = reply.status if reply is not None and is_waiting else 0
+        pending_exchange.answered_ms = now_ms
         try:
-            request = next(pending.exchange) if reply is None else pending.exchange.send(reply)
+            request = (
+                next(pending_exchange.exchange)
+                if reply is None
+                else pending_exchange.exchange.send(reply)
+            )
         except StopIteration as finished_stop_iteration:
-            self._end_exchange(pending, finished_stop_iteration.value, now_ms)
+            self._end_exchange(pending_exchange, finished_stop_iteration.value, now_ms)
             return
         message = BY_NAME[request.name]
         is_action = message.number >= FIRST_ACTING and request.name not in UNSEALED_MESSAGES
-        if pending.is_void and is_action:
-            pending.exchange.close()
-            self._end_exchange(pending, Reply(_STALE_STATUS), now_ms)
+        if pending_exchange.is_void and is_action:
+            pending_exchange.exchange.close()
+            self._end_exchange(pending_exchange, Reply(_STALE_STATUS), now_ms)
             return
         self._begin_request(request, now_ms)
         self._end_orphan(now_ms)
 
     def _end_exchange(
-        self, pending: PendingExchange[Any], outcome: Reply[Any], now_ms: int
+        self, pending_exchange: PendingExchange[Any], outcome: Reply[Any], now_ms: int
     ) -> None:
-        self._pending = None
+        self._pending_exchange = None
         self._transmission.end()
-        if pending.presses_keys:
+        if pending_exchange.presses_keys:
             self._remote.take_answer(outcome)
-        if pending.interrupted_exchange is None:
-            self._finish_request(pending, outcome)
+        if pending_exchange.interrupted_exchange is None:
+            self._finish_request(pending_exchange, outcome)
             self._end_orphan(now_ms)
-        elif pending.ends_orphan or pending.presses_keys:
-            self._go_on(pending.interrupted_exchange)
+        elif pending_exchange.ends_orphan or pending_exchange.presses_keys:
+            self._go_on(pending_exchange.interrupted_exchange)
         else:
-            self._resume(pending.interrupted_exchange, outcome, now_ms)
+            self._resume(pending_exchange.interrupted_exchange, outcome, now_ms)
 
     def _begin_request(self, request: Request, now_ms: int) -> None:
         """Send a request, and repeat it until it is answered."""
@@ -501,30 +522,36 @@ class Session(Requester):
 
         It has the same number, so the robot does not repeat it.
         """
-        pending, transmission = self._pending, self._transmission
-        assert pending
+        pending_exchange, transmission = self._pending_exchange, self._transmission
+        assert pending_exchange
         self._sealing.seal = None
         if transmission.is_of("KEYS"):
             self._end_press()  # the press is not repeated: a key comes before the next word
             return
-        pending.key_showings += 1
+        pending_exchange.key_showings += 1
         self._transmission = Transmission(self._round_trips)
-        if pending.key_showings > MOST_KEY_SHOWINGS:  # its exchange is notified, and may repeat it
-            pending.exchange.close()
-            pending.outcome = Reply(NOT_OWNER)
-            self._pending = None
+        if (
+            pending_exchange.key_showings > MOST_KEY_SHOWINGS
+        ):  # its exchange is notified, and may repeat it
+            pending_exchange.exchange.close()
+            pending_exchange.outcome = Reply(NOT_OWNER)
+            self._pending_exchange = None
             return
-        self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
-        self._pending.interrupted_exchange = InterruptedExchange(pending, transmission)
-        self._pending.deadline_ms = pending.deadline_ms
+        self._pending_exchange = PendingExchange(
+            self._handshake.show_keys(), is_own=pending_exchange.is_own
+        )
+        self._pending_exchange.interrupted_exchange = InterruptedExchange(
+            pending_exchange, transmission
+        )
+        self._pending_exchange.deadline_ms = pending_exchange.deadline_ms
         self._advance(None, now_ms)
 
     def _resume(
         self, interrupted_exchange: InterruptedExchange, key_reply: Reply[Any], now_ms: int
     ) -> None:
-        self._pending, transmission = interrupted_exchange
+        self._pending_exchange, transmission = interrupted_exchange
         seal = self._sealing.seal
-        if self._pending.is_void:
+        if self._pending_exchange.is_void:
             self._advance(Reply(_STALE_STATUS), now_ms)
         elif key_reply.status == NOT_OWNER or (key_reply.status == OK and seal is None):
             self._transmission = transmission
@@ -542,10 +569,10 @@ class Session(Requester):
         if not self.is_running or self.run != self._orphan_run:
             self._orphan_run = None  # the run has ended
             return
-        pending, transmission = self._pending, self._transmission
-        if pending is not None and (
-            pending.interrupted_exchange is not None
-            or pending.ends_runs  # such a request ends runs itself
+        pending_exchange, transmission = self._pending_exchange, self._transmission
+        if pending_exchange is not None and (
+            pending_exchange.interrupted_exchange is not None
+            or pending_exchange.ends_runs  # such a request ends runs itself
             or transmission.is_sent
             or transmission.is_of("AUTHENTICATE")  # its tag is only valid in this epoch
         ):
@@ -553,17 +580,17 @@ class Session(Requester):
         self._orphan_run = None
         stop = send_single(Request("STOP"), EmptyReply)
         stop_exchange = PendingExchange(stop, DEAF_MS, is_own=True, ends_orphan=True)
-        if pending is None:
+        if pending_exchange is None:
             self._queue.appendleft(stop_exchange)
             return
-        stop_exchange.interrupted_exchange = InterruptedExchange(pending, transmission)
+        stop_exchange.interrupted_exchange = InterruptedExchange(pending_exchange, transmission)
         stop_exchange.deadline_ms = now_ms + stop_exchange.limit_ms
-        self._pending = stop_exchange
+        self._pending_exchange = stop_exchange
         self._advance(None, now_ms)
 
     def _go_on(self, interrupted_exchange: InterruptedExchange) -> None:
         """Resume an exchange whose request has not been sent yet, not even in part."""
-        self._pending, self._transmission = interrupted_exchange
+        self._pending_exchange, self._transmission = interrupted_exchange
         seal = None if self._transmission.is_of("HELLO") else self._sealing.seal
         self._transmission.renew(self._epoch, self._next_number(seal is not None))
         self._transmission.begin_again(self._transmission.due_ms, seal)
@@ -588,8 +615,8 @@ class Session(Requester):
     def _lose_seal(self, frame: Frame, now_ms: int) -> None:
         """The robot does not know our seal. Such an answer may be forged: it causes no
         repetition."""
-        if self._pending and not self._pending.presses_keys:
-            self._pending.target.may_be_done = True
+        if self._pending_exchange and not self._pending_exchange.presses_keys:
+            self._pending_exchange.target.may_be_done = True
         if frame.epoch == self._epoch:
             self._authenticate_again(now_ms)
             return
@@ -611,8 +638,8 @@ class Session(Requester):
         if reply is None:
             self.damaged += 1
             return
-        if self._pending and reply.status not in (OK, *ACCEPTING_STATUSES):
-            self._pending.is_midway = False  # the robot refused it
+        if self._pending_exchange and reply.status not in (OK, *ACCEPTING_STATUSES):
+            self._pending_exchange.is_midway = False  # the robot refused it
         self._transmission.learn_round_trip(frame, now_ms)
         self._unanswered_since_ms = None
         if not self.is_running:
@@ -639,7 +666,11 @@ class Session(Requester):
             is_other_epoch = self._handshake.is_in_doubt and not self._try_to_settle_epoch(values)
             if message.name == "CLEAR" and self._state.is_latched:  # a run goes on
                 self._state.forget_run()
-            if message.name == "STOP" and self._pending and self._pending.ends_orphan:
+            if (
+                message.name == "STOP"
+                and self._pending_exchange
+                and self._pending_exchange.ends_orphan
+            ):
                 self._tell_stop(StoppedEvent(_BY_MESSAGE))
             has_ended = self._state.take_reply(values, frame.epoch)
             if self.tells_places:
@@ -685,7 +716,7 @@ class Session(Requester):
                 return False
             is_stop = not self._is_one_fault(values.state, self._epoch)
         elif self._transmission.is_of("STOP"):
-            is_stop = not (self._pending and self._pending.ends_orphan)
+            is_stop = not (self._pending_exchange and self._pending_exchange.ends_orphan)
         else:
             return True  # a client that needs more sends HELLO
         self._handshake.doubted_epoch = None
@@ -701,8 +732,8 @@ class Session(Requester):
         self._epoch = frame.epoch
         if not is_same:
             self._told_stop_epoch = None  # epochs begin again
-        if is_same and self._pending and self._pending.target.may_be_done:
-            self._pending.target.is_void = True
+        if is_same and self._pending_exchange and self._pending_exchange.target.may_be_done:
+            self._pending_exchange.target.is_void = True
         if self._handshake.is_in_doubt:
             is_fault = self._is_one_fault(robot.state, frame.epoch)
             # HELLO is not sealed, so its contents may be forged where that matters.
@@ -718,9 +749,12 @@ class Session(Requester):
         `began_epoch` is the new epoch, if requests in it are known to be later.
         """
         self._remote.let_go()
-        for pending in (*self._queue, *([self._pending] if self._pending else [])):
-            if began_epoch is None or pending.target.epoch != began_epoch:
-                pending.target.is_void = True
+        for pending_exchange in (
+            *self._queue,
+            *([self._pending_exchange] if self._pending_exchange else []),
+        ):
+            if began_epoch is None or pending_exchange.target.epoch != began_epoch:
+                pending_exchange.target.is_void = True
 
     def _tell_stop(self, event: StoppedEvent) -> None:
         """Tell that STOP has stopped the robot, if its event has not."""
@@ -732,15 +766,15 @@ class Session(Requester):
         """Extend an exchange's time when it makes progress, so that only a stalled one is given up.
         An answer to DATA without anything new is no progress.
         """
-        pending = self._pending
-        if pending is None or pending.target.is_limit_total or reply.status != OK:
+        pending_exchange = self._pending_exchange
+        if pending_exchange is None or pending_exchange.target.is_limit_total or reply.status != OK:
             return
         if isinstance(reply.values, NextReply):
             is_data = isinstance(self._transmission, Window)
-            if is_data and reply.values.next <= pending.done_bytes:
+            if is_data and reply.values.next <= pending_exchange.done_bytes:
                 return
-            pending.done_bytes = reply.values.next
-        pending.deadline_ms = now_ms + pending.limit_ms
+            pending_exchange.done_bytes = reply.values.next
+        pending_exchange.deadline_ms = now_ms + pending_exchange.limit_ms
 
     def _take_data_reply(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
         """Take a reply to one of many DATA; return whether that was not the last one."""
@@ -749,7 +783,7 @@ class Session(Requester):
             return False
         next_offset = None  # STALE in this epoch: a frame with a later number arrived earlier
         if reply.status == OK:
-            assert isinstance(reply.values, NextReply) and self._pending
+            assert isinstance(reply.values, NextReply) and self._pending_exchange
             next_offset = reply.values.next
         return not self._transmission.take_reply(frame, next_offset, now_ms)
 
@@ -843,8 +877,10 @@ class Session(Requester):
         unless that would have to wait.
         """
         event = self._state.to_shown_event(show)
-        self._events.append(show if event.at < 0 else event)
-        is_free = not self._queue and (self._pending is None or self._pending.is_own)
+        self._events.append(show if event.offset < 0 else event)
+        is_free = not self._queue and (
+            self._pending_exchange is None or self._pending_exchange.is_own
+        )
         if not (is_free and self._handshake.is_open and self._has_places):
             return
         if self._state.claim_query(show):
@@ -869,7 +905,9 @@ class Session(Requester):
         """Take the event that announces another epoch."""
         self._doubt_epoch(frame)
         is_orphan_end = (
-            event == StoppedEvent(_BY_MESSAGE) and self._pending and self._pending.ends_orphan
+            event == StoppedEvent(_BY_MESSAGE)
+            and self._pending_exchange
+            and self._pending_exchange.ends_orphan
         )
         if isinstance(event, StoppedEvent):
             is_other_epoch = self._handshake.is_in_doubt and not self._is_next_epoch(frame.epoch)
@@ -881,8 +919,8 @@ class Session(Requester):
         elif self._is_one_fault(STATE_FAULTED, frame.epoch):
             self._handshake.doubted_epoch = None
             self._transmission.renew(self._epoch)
-            if self._pending and self._pending.interrupted_exchange:
-                self._pending.interrupted_exchange.transmission.renew(self._epoch)
+            if self._pending_exchange and self._pending_exchange.interrupted_exchange:
+                self._pending_exchange.interrupted_exchange.transmission.renew(self._epoch)
 
     def _ask_for_proof(self, event: StoppedEvent) -> None:
         """Ask the robot for a sealed confirmation of a stop that we sent."""
@@ -907,39 +945,41 @@ class Session(Requester):
         return self._remote.press(speaker, RemoteState(keys, x, y))
 
     def _ask(
-        self, name: str, reply_type: type[T], starts: bool = False, /, **arguments: object
+        self, name: str, reply_type: type[T], starts_program: bool = False, /, **arguments: object
     ) -> PendingExchange[T]:
-        make: Callable[[], Exchange[T]] = partial(
+        make_exchange: Callable[[], Exchange[T]] = partial(
             exchange_by_name(name), self._handshake, **arguments
         )
         if name == "hello":
-            exchange = make()
+            exchange = make_exchange()
         elif name in REQUESTS_WITHOUT_HELLO:
-            exchange = self._handshake.with_key(make)
+            exchange = self._handshake.with_key(make_exchange)
         else:
-            exchange = self._handshake.open_then(make)
-        return self._queue_exchange(exchange, starts, name in _RUN_ENDING_REQUESTS)
+            exchange = self._handshake.open_then(make_exchange)
+        return self._queue_exchange(exchange, starts_program, name in _RUN_ENDING_REQUESTS)
 
     def _queue_exchange(
-        self, exchange: Exchange[T], starts: bool = False, ends_runs: bool = False
+        self, exchange: Exchange[T], starts_program: bool = False, ends_runs: bool = False
     ) -> PendingExchange[T]:
-        pending = PendingExchange(exchange, starts=starts, ends_runs=ends_runs)
-        pending.epoch = self._epoch
-        self._queue.append(pending)
-        return pending
+        pending_exchange = PendingExchange(
+            exchange, starts_program=starts_program, ends_runs=ends_runs
+        )
+        pending_exchange.epoch = self._epoch
+        self._queue.append(pending_exchange)
+        return pending_exchange
 
     def _heartbeat(self) -> Exchange[PingReply]:
         """Ping, and ask for the program's place, if that is wanted and the robot reports it."""
-        asks = PLACE_QUESTION if self.tells_places and self._has_places else b""
-        return self._handshake.with_key(lambda: ping(asks))
+        question = PLACE_QUESTION if self.tells_places and self._has_places else b""
+        return self._handshake.with_key(lambda: ping(question))
 
-    def _finish_request(self, pending: PendingExchange[Any], outcome: Reply[Any]) -> None:
-        pending.outcome = outcome
-        if outcome.status == OK and pending.ends_runs:
+    def _finish_request(self, pending_exchange: PendingExchange[Any], outcome: Reply[Any]) -> None:
+        pending_exchange.outcome = outcome
+        if outcome.status == OK and pending_exchange.ends_runs:
             self._orphan_run = None
-            if not pending.starts:
+            if not pending_exchange.starts_program:
                 self._events += self._state.note_replaced()
-        if not pending.starts or outcome.status != OK:
+        if not pending_exchange.starts_program or outcome.status != OK:
             return
         receipt: ReceiptReply = outcome.values
         if self.tells_starts:
@@ -948,17 +988,19 @@ class Session(Requester):
 
     def _give_up_request(self, now_ms: int) -> None:
         """Give up the request: the robot does not answer, or is not ready."""
-        assert self._pending
-        pending, self._pending = self._pending.target, None
+        assert self._pending_exchange
+        pending_exchange, self._pending_exchange = self._pending_exchange.target, None
         # a robot that answers, but waits for too long, is not lost
-        is_there = pending.waiting_status and now_ms - pending.answered_ms <= DEAF_MS
-        if pending.waiting_status and not self._transmission.is_sent:
+        is_there = (
+            pending_exchange.waiting_status and now_ms - pending_exchange.answered_ms <= DEAF_MS
+        )
+        if pending_exchange.waiting_status and not self._transmission.is_sent:
             with suppress(StopIteration):  # no exchange is under way, so it just ends
-                pending.exchange.send(Reply(CANCELLED))
+                pending_exchange.exchange.send(Reply(CANCELLED))
         self._transmission.end()
         self._unanswered_since_ms = None
-        pending.outcome = Reply(pending.waiting_status if is_there else LOST)
-        if pending.is_own:
+        pending_exchange.outcome = Reply(pending_exchange.waiting_status if is_there else LOST)
+        if pending_exchange.is_own:
             self._end_connection()
 
     def _end_connection(self) -> None:
@@ -976,17 +1018,17 @@ class Session(Requester):
         self._events.append(LostEvent())
 
     def _cancel_requests(self, status: int) -> None:
-        if self._pending:
-            target = self._pending.target
+        if self._pending_exchange:
+            target = self._pending_exchange.target
             is_midway = status == CANCELLED and target.is_midway
             target.outcome = Reply(status, DETAIL_MIDWAY if is_midway else 0)
-        self._pending = self._orphan_run = self._handshake.doubted_epoch = None
+        self._pending_exchange = self._orphan_run = self._handshake.doubted_epoch = None
         self._transmission.end()
         self._unanswered_since_ms = None
         self._remote.let_go(status)
         self._cancel_waiting(status)
 
     def _cancel_waiting(self, status: int) -> None:
-        for pending in self._queue:
-            pending.outcome = Reply(status)
+        for pending_exchange in self._queue:
+            pending_exchange.outcome = Reply(status)
         self._queue.clear()

@@ -68,6 +68,8 @@ def _own_number(words: Sequence[str], unit: str) -> str:
     units = {lexicon_meaning(word, "unit")[0] for word in words if lexicon_meaning(word, "unit")}
     numbers = [(lexicon_meaning(word, "number") or (word,))[0] for word in words]
     fitting_numbers = [
-        it for it in numbers if it.replace(".", "", 1).isdecimal() and (units or it != "1")
+        number
+        for number in numbers
+        if number.replace(".", "", 1).isdecimal() and (units or number != "1")
     ]
     return fitting_numbers[0] if len(fitting_numbers) == 1 and units <= {unit} else ""

@@ -286,9 +286,11 @@ class Matching:
         if not self.open_blocks:
             if any(line.reading.items is None for line in self.lines):
                 return False
-            previous = self.line.reading.tokens[self.item.start - 1]
+            previous_token = self.line.reading.tokens[self.item.start - 1]
             follows_separator = (
-                not self.next_item.kind and previous.text == ";" and previous.source is not None
+                not self.next_item.kind
+                and previous_token.text == ";"
+                and previous_token.source is not None
             )
             is_only_item = len(self.line.reading.items or ()) == 1 or follows_separator
             self.is_sure = self.is_sure and is_only_item and len(self.items) > 2

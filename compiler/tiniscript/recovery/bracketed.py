@@ -106,4 +106,4 @@ def _innermost_question(text: str) -> str:
 def _rough_form(tokens: Sequence[Lexeme]) -> tuple[str, ...]:
     """Return a question in which the number itself may be on either side: `>` for `>=`."""
     signs = {">=": ">", "<=": "<", "=>": ">", "=<": "<"}
-    return tuple(signs.get(it, it) for it in texts(tokens) if it not in ("(", ")"))
+    return tuple(signs.get(text, text) for text in texts(tokens) if text not in ("(", ")"))

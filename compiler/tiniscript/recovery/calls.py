@@ -197,7 +197,7 @@ def _thousands_diagnostic(call: _Call) -> Diagnostic | None:
     arguments, number_match = call.word.arguments, _THOUSANDS.search(call.text)
     if number_match is None or len(call.values) <= len(arguments):
         return None
-    joined_text = _THOUSANDS.sub(lambda it: it[0].replace(",", ""), call.text)
+    joined_text = _THOUSANDS.sub(lambda match: match[0].replace(",", ""), call.text)
     arguments_text = joined_text.partition("(")[2].rpartition(")")[0]
     values = _split_values(arguments_text)
     is_time_joined = any(
@@ -298,4 +298,6 @@ def usage_of_number(word: str, number_text: str) -> str:
         return ""
     names = [argument.name for argument in word_row.arguments][1:]
     unit = f" {UNIT_OF[word]}" if is_long_time else ""
-    return f"{word}({', '.join((number_text + unit, *names))})" if word_row.role.lasts else ""
+    return (
+        f"{word}({', '.join((number_text + unit, *names))})" if word_row.role.has_duration else ""
+    )

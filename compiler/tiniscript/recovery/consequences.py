@@ -48,14 +48,15 @@ def _ends_of_a_misspelt_loop(diagnostics: Sequence[Diagnostic], _: Source) -> It
         if diagnostic.code is codes.NOT_OPEN
     ]
     if missing_headers == ["LOOP"] and any(
-        it.values.get("near", "")[:4] == "LOOP" for it in diagnostics
+        diagnostic.values.get("near", "")[:4] == "LOOP" for diagnostic in diagnostics
     ):
         yield from (diagnostic for diagnostic in diagnostics if diagnostic.code in _END_CODES)
 
 
 def _ends_of_an_unread_if(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
     is_unread = any(
-        it.code is codes.SPANISH_IF or it.values.get("right") == "ELSE" for it in diagnostics
+        diagnostic.code is codes.SPANISH_IF or diagnostic.values.get("right") == "ELSE"
+        for diagnostic in diagnostics
     )
     for diagnostic in diagnostics if is_unread else ():
         if diagnostic.code is codes.NOT_OPEN and diagnostic.values["right"] == "IF":
@@ -138,7 +139,7 @@ def _ends_of_a_question_after(
 
 def _calls_of_a_task(diagnostics: Sequence[Diagnostic], _: Source) -> Iterator[Diagnostic]:
     """Calls that were meant to start a named TASK, which is reported at the TASK."""
-    started_names = {it.values.get("started") for it in diagnostics} - {None, ""}
+    started_names = {diagnostic.values.get("started") for diagnostic in diagnostics} - {None, ""}
     for diagnostic in diagnostics if started_names else ():
         names = (diagnostic.values.get(key, "").upper() for key in ("name", "found"))
         if diagnostic.code in _UNTAUGHT_CODES and started_names & {*names}:

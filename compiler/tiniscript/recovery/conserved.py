@@ -209,13 +209,15 @@ def _losses_of_sure_repairs(
     sure_diagnostics: Sequence[Diagnostic], text: str, kit: Kit
 ) -> dict[int, Difference]:
     """Return the losses of certain repairs: of each alone, or of all together."""
-    edits = [it.repair.edits for it in sure_diagnostics if it.repair]
+    edits = [diagnostic.repair.edits for diagnostic in sure_diagnostics if diagnostic.repair]
     joint_edits = [edit for k in _layers(dict(enumerate(edits)))[0] for edit in edits[k]]
     if not joint_edits or not any(difference(text, apply_edits(text, joint_edits), kit)):
         return {}
     loss_of_diagnostic = {
-        id(it): loss
-        for it, loss in zip(sure_diagnostics, _losses(sure_diagnostics, text, kit), strict=True)
+        id(diagnostic): loss
+        for diagnostic, loss in zip(
+            sure_diagnostics, _losses(sure_diagnostics, text, kit), strict=True
+        )
     }
     is_only_joint = not any(
         any(difference) for difference in loss_of_diagnostic.values()
@@ -438,7 +440,10 @@ class _Statement:
             lone_fraction = rf"(?i)(?<![\d)] )(?<!\d){fraction}(?!\d)(?=\s*[a-z])"
             line = re.sub(lone_fraction, f"0{decimals}", line)
         return _GLUED_NUMBER.sub(
-            lambda it: it[0] if it[0].upper() in self.other_words else f"{it[1]} {it[2]} ", line
+            lambda match: (
+                match[0] if match[0].upper() in self.other_words else f"{match[1]} {match[2]} "
+            ),
+            line,
         )
 
     def _join_words(self, line: list[Lexeme]) -> list[Lexeme]:
@@ -492,16 +497,17 @@ class _Statement:
         units = self._units_at_tokens()
         k, open_brackets = 0, [False]  # whether each bracket is that of a call
         while k < len(self.tokens):
-            token, previous = self.tokens[k], self.tokens[k - 1] if k else _END
+            token, previous_token = self.tokens[k], self.tokens[k - 1] if k else _END
             if token.text == "(":
-                open_brackets.append(bool(self._possible_words(previous) & CALL_WORDS))
+                open_brackets.append(bool(self._possible_words(previous_token) & CALL_WORDS))
             elif token.text == ")":
                 open_brackets = open_brackets[:-1] or [False]
             elif token is _END:
                 open_brackets = [False]
             if (value := self._number_of(token)) is not None:
                 is_amount_word = (
-                    bool(lexicon_meaning(previous.text, "leaves", "by")) and previous.kind is WORD
+                    bool(lexicon_meaning(previous_token.text, "leaves", "by"))
+                    and previous_token.kind is WORD
                 )
                 k = (
                     k + 1
@@ -521,7 +527,7 @@ class _Statement:
         return is_alone and bool(self._possible_words(header) & ASKING_WORDS)
 
     def _count_word(self, k: int, is_in_brackets: bool) -> None:
-        token, previous, following_token = (
+        token, previous_token, following_token = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
             self._next_token(k),
@@ -532,18 +538,20 @@ class _Statement:
             )
             return
         word = self._sure_word(token)
-        neighbour_texts = {previous.text, following_token.text}
+        neighbour_texts = {previous_token.text, following_token.text}
         is_name_part = token.text in self._name_ends
         is_times_sign = (
-            token.text == "X" and previous.kind is NUMBER and following_token.kind in (NUMBER, WORD)
+            token.text == "X"
+            and previous_token.kind is NUMBER
+            and following_token.kind in (NUMBER, WORD)
         )
         is_joint = (
             word in ("AND", "OR")
             and not is_in_brackets
             and bool(self._possible_words(following_token) & _DRIVING_WORDS)
         )
-        is_repetition = (word == "IF" and previous.text in ("AND", "OR")) or (
-            word == "OR" and previous.text in _COMPARISON_SENSES
+        is_repetition = (word == "IF" and previous_token.text in ("AND", "OR")) or (
+            word == "OR" and previous_token.text in _COMPARISON_SENSES
         )
         is_repetition |= (
             following_token.text == "." and self._next_token(k + 1).kind is WORD
@@ -574,14 +582,19 @@ class _Statement:
     def _is_label(self, k: int) -> bool:
         """Return whether a word after an end names the block that ends."""
         position_before = k - 2 if k > 1 and self.tokens[k - 1].text in ("-", "_", ".") else k - 1
-        previous = self.tokens[position_before] if k else _END
-        is_end = previous.text in WORD_OF_END or bool(lexicon_meaning(previous.text, "end"))
+        previous_token = self.tokens[position_before] if k else _END
+        is_end = previous_token.text in WORD_OF_END or bool(
+            lexicon_meaning(previous_token.text, "end")
+        )
         token = self.tokens[k]
         is_block = token.text in self.names.defs or bool(
             self._possible_words(token) & BLOCK_ENDS.keys()
         )
         return (
-            is_end and is_block and previous.kind is WORD and self._next_token(k).text in (";", "(")
+            is_end
+            and is_block
+            and previous_token.kind is WORD
+            and self._next_token(k).text in (";", "(")
         )
 
     # -- numbers ---------------------------------------------------------------------------------
@@ -619,11 +632,16 @@ class _Statement:
 
     def _is_minus(self, k: int) -> bool:
         """Return whether a minus belongs to a number, not to a subtraction."""
-        sign, previous = self.tokens[k - 1] if k else _END, self.tokens[k - 2] if k > 1 else _END
+        sign, previous_token = (
+            self.tokens[k - 1] if k else _END,
+            self.tokens[k - 2] if k > 1 else _END,
+        )
         if sign.text != "-":
             return False
         is_value = (
-            previous.kind is NUMBER or previous.text == ")" or self.names.is_name(previous.text)
+            previous_token.kind is NUMBER
+            or previous_token.text == ")"
+            or self.names.is_name(previous_token.text)
         )
         is_evenly_spaced = self.is_right or bool(sign.space) == bool(self.tokens[k].space)
         return not (is_value and is_evenly_spaced)
@@ -643,14 +661,16 @@ class _Statement:
 
     def _is_loose_unit(self, k: int) -> bool:
         """Return whether a word is only a unit, without a number."""
-        token, previous, following_token = (
+        token, previous_token, following_token = (
             self.tokens[k],
             self.tokens[k - 1] if k else _END,
             self._next_token(k),
         )
         kinds = {item.kind for item in lexicon().get(token.text, ())}
         ends_argument = (
-            len(token.text) == 1 and following_token.text in (",", ")") and previous.kind is WORD
+            len(token.text) == 1
+            and following_token.text in (",", ")")
+            and previous_token.kind is WORD
         )
         is_only_unit = kinds == {"unit"} or (
             "unit" in kinds and (ends_argument or token.text in EXTENTS)
@@ -683,8 +703,8 @@ class _Statement:
                     left.text, ""
                 )
                 unit_of_token[k] = unit_of_token[k] or self.units.get(right.text, "")
-                previous = self.tokens[k - 1] if k else _END
-                is_assignment = sign.text == "=" and previous.text in ("|", ";", _END.text)
+                previous_token = self.tokens[k - 1] if k else _END
+                is_assignment = sign.text == "=" and previous_token.text in ("|", ";", _END.text)
                 is_stored = is_assignment and counts[left.text] == 1
                 unit_of_token[right_index] = unit_of_token[right_index] or (
                     _STORED_UNIT if is_stored else ""
@@ -720,9 +740,9 @@ class _Statement:
     def count_calls(self, name: str) -> int:
         """Return the number of calls of a DEF; its name after DEF or an end is no call."""
         count = 0
-        for k, (previous, token) in enumerate(pairwise([_END, *self.tokens])):
+        for k, (previous_token, token) in enumerate(pairwise([_END, *self.tokens])):
             count += token.text == name and not (
-                "DEF" in self._possible_words(previous) or self._is_label(k)
+                "DEF" in self._possible_words(previous_token) or self._is_label(k)
             )
         return count
 

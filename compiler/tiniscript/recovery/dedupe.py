@@ -32,9 +32,9 @@ def dedupe(diagnostics: Sequence[Diagnostic], source: Source) -> list[Diagnostic
     """Return diagnostics without those that follow from others, or say the same as one before."""
     diagnostics = without_consequences(diagnostics, source)
     words_meant = {
-        it.values.get("found")
-        for it in diagnostics
-        if it.values.get("near") or it.values.get("first")
+        diagnostic.values.get("found")
+        for diagnostic in diagnostics
+        if diagnostic.values.get("near") or diagnostic.values.get("first")
     }
     quote_indexes = {
         k for k, diagnostic in enumerate(diagnostics) if _removes_quotes(diagnostic, source)
@@ -125,6 +125,6 @@ def _merge_diagnostics(group: Sequence[Diagnostic], source: Source) -> Diagnosti
         edit for diagnostic in group if diagnostic.repair for edit in diagnostic.repair.edits
     )
     repair = first_diagnostic.repair and Repair(
-        edits, all(it.repair and it.repair.is_sure for it in group)
+        edits, all(diagnostic.repair and diagnostic.repair.is_sure for diagnostic in group)
     )
     return first_diagnostic._replace(values={**first_diagnostic.values, **gaps}, repair=repair)

@@ -249,7 +249,7 @@ class _Explainer:
     def explain_change(self, k: int, change: search.LineChange) -> None:
         old_text = "\n".join(self.lines[change.first_line : change.last_line + 1]).rstrip("\r")
         own_text, *ends = change.text.split("\n")
-        enclosing = self.open_blocks[-1] if self.open_blocks else None
+        enclosing_block = self.open_blocks[-1] if self.open_blocks else None
         old_tokens, new_tokens = tokens_of(old_text), tokens_of(own_text)
         closed_block = self.track_blocks(k, new_tokens)
         instructions_changed = (
@@ -277,7 +277,7 @@ class _Explainer:
                 closed_block or is_brace or is_arm
             )
             explanation = (
-                self.add_to_block_start(closed_block or enclosing, edit, (k, 1), new_tokens)
+                self.add_to_block_start(closed_block or enclosing_block, edit, (k, 1), new_tokens)
                 if has_added_end
                 else None
             )
@@ -465,7 +465,7 @@ class _Explainer:
             added_end_index(change.old_tokens, change.new_tokens),
         )
         end = (
-            next((it for it in new_texts if it in WORD_OF_END), "")
+            next((text for text in new_texts if text in WORD_OF_END), "")
             if end_index is None
             else new_texts[end_index]
         )
@@ -529,13 +529,13 @@ class _Explainer:
             )
         )
 
-    def earlier_end(self, block: _ExplainedBlock, last: int) -> search.LineChange | None:
+    def earlier_end(self, block: _ExplainedBlock, last_index: int) -> search.LineChange | None:
         """Return the line before an empty line in a block, or its first header.
 
         It may end there as well.
         """
         change_above = None
-        for change in self.changes[block.first_change + 1 : last + 1]:
+        for change in self.changes[block.first_change + 1 : last_index + 1]:
             words = texts(tokens_of(change.text))
             is_separate = not change.text.strip() or (words[:1] and words[0] in BLOCK_ENDS)
             if change_above and is_separate:

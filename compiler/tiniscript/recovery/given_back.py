@@ -71,9 +71,9 @@ def _value_calls(tokens: Sequence[Token], names: set[str]) -> Iterator[tuple[str
     for k, token in enumerate(tokens[:-1]):
         if token.kind is not WORD or token.text not in names or tokens[k + 1].kind != "(":
             continue
-        previous = tokens[k - 1] if k else None
-        if previous is None or previous.kind in (*_INSTRUCTION_ENDS, WORD, NUMBER, ")"):
-            if previous is None or previous.text not in _YES_NO_WORDS:
+        previous_token = tokens[k - 1] if k else None
+        if previous_token is None or previous_token.kind in (*_INSTRUCTION_ENDS, WORD, NUMBER, ")"):
+            if previous_token is None or previous_token.text not in _YES_NO_WORDS:
                 continue
         if any(following_token.kind == ")" for following_token in _until_end(tokens, k)):
             yield token.text, k

@@ -79,7 +79,8 @@ def spoken_instructions(words: Sequence[Lexeme], names: Names) -> list[SpokenIns
         )
     joins = "" if any(word.text == "(" for word in words) else ",."  # `gira(2, 80)` is one
     groups = groupby(
-        words, key=lambda it: it.text in (*joins,) or bool(lexicon_meaning(it.text, "then"))
+        words,
+        key=lambda token: token.text in (*joins,) or bool(lexicon_meaning(token.text, "then")),
     )
     for is_joint, group in groups:
         group_words = list(group)
@@ -255,7 +256,8 @@ def _parse_condition(
     values = (condition_values(words, names) if may_be_distance else None) or {}
     condition = values.get("asked") or values.get("question", "")
     has_other_question = any(
-        names.find_meaning(it.text) in _SIDEWAYS_MOVES or it.text in COMPARISONS for it in words
+        names.find_meaning(word.text) in _SIDEWAYS_MOVES or word.text in COMPARISONS
+        for word in words
     )
     if has_other_question or not condition.startswith("DISTANCE"):
         return "", ()

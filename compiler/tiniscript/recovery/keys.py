@@ -201,12 +201,12 @@ class _Instruction:
             key = self._find_key(k + 2)
             return key and key._replace(start=k)
         side_position = self._skip_while(
-            k, lambda it: it.isalpha() and _is_key_word(it, *_LINK_KINDS)
+            k, lambda word: word.isalpha() and _is_key_word(word, *_LINK_KINDS)
         )
         side = _side_of(self._word_at(side_position))
         key_index = (
             self._skip_while(
-                side_position + 1, lambda it: _is_key_word(it, "the", "of") or it == "_"
+                side_position + 1, lambda word: _is_key_word(word, "the", "of") or word == "_"
             )
             if side
             else side_position
@@ -219,11 +219,11 @@ class _Instruction:
         if not side:
             end_position = self._skip_while(
                 end,
-                lambda it: (
-                    it in _EQUAL_SIGNS
-                    or _is_key(it)
-                    or _is_key_word(it, *_LINK_KINDS)
-                    or bool(lexicon_meaning(it, "to"))
+                lambda word: (
+                    word in _EQUAL_SIGNS
+                    or _is_key(word)
+                    or _is_key_word(word, *_LINK_KINDS)
+                    or bool(lexicon_meaning(word, "to"))
                 ),
             )
             letters = (n for n in range(end, end_position + 1) if self._word_at(n) in ("A", "B"))
@@ -252,7 +252,7 @@ class _Instruction:
         while self._word_at(end) == "_" and self._word_at(end + 1).isalnum():
             end += 2  # a name is one thing
         end_after_words = self._skip_while(
-            end, lambda it: it in ('"', "'") or _is_key_word(it, "is", "the", "pressed")
+            end, lambda word: word in ('"', "'") or _is_key_word(word, "is", "the", "pressed")
         )
         end = (
             end_after_words
@@ -274,28 +274,30 @@ class _Instruction:
 
     def _find_stick(self, k: int) -> _Key | None:
         """Return the direction of the stick by the number it is compared with."""
-        start = self._skip_while(k, lambda it: _is_key_word(it, "the"))
+        start = self._skip_while(k, lambda word: _is_key_word(word, "the"))
         side = _side_of(self._word_at(start))
         stick_index = (
-            self._skip_while(start + 1, lambda it: it == "_" or _is_key_word(it, "the", "of"))
+            self._skip_while(start + 1, lambda word: word == "_" or _is_key_word(word, "the", "of"))
             if side
             else start
         )
         if not _is_stick(self._word_at(stick_index)):
             return None
-        axis_index = self._skip_while(stick_index + 1, lambda it: it in ("_", ".") or _is_stick(it))
+        axis_index = self._skip_while(
+            stick_index + 1, lambda word: word in ("_", ".") or _is_stick(word)
+        )
         has_axis = self._word_at(axis_index) in ("X", "Y")
         end = axis_index + 1 if has_axis else stick_index + 1
         is_negated = False
         if not side:
             end_position = self._skip_while(
-                end, lambda it: it in _EQUAL_SIGNS or bool(lexicon_meaning(it, *_LINK_KINDS))
+                end, lambda word: word in _EQUAL_SIGNS or bool(lexicon_meaning(word, *_LINK_KINDS))
             )
             side = _side_of(self._word_at(end_position))
             signs = {self._word_at(n) for n in range(end, end_position)}
             is_negated = bool(signs & {"<>", "!="})
             end = end_position + 1 if side else end
-            end_after_quotes = self._skip_while(end, lambda it: it in ('"', "'"))
+            end_after_quotes = self._skip_while(end, lambda word: word in ('"', "'"))
             end = end_after_quotes if signs & {'"', "'"} else end
             end += bool(side and "(" in signs and self._word_at(end) == ")")
         if not side:
@@ -306,7 +308,7 @@ class _Instruction:
             return (
                 _Key(k, end + 1, f"KEY_{self._word_at(end)}", is_sure=False) if is_button else None
             )
-        end = self._skip_while(end, lambda it: _is_key_word(it, "is", "pressed"))
+        end = self._skip_while(end, lambda word: _is_key_word(word, "is", "pressed"))
         is_asked_for_no, end = self._as_yes_no(end)
         negation, arrow = (
             "NOT " * (is_negated or is_asked_for_no),
@@ -326,7 +328,7 @@ class _Instruction:
         Left and right may refer to a line that a robot sees; `key_before` is the question before.
         """
         side = _side_of(self._word_at(k))
-        end = self._skip_while(k + 1, lambda it: _is_key_word(it, "is", "pressed"))
+        end = self._skip_while(k + 1, lambda word: _is_key_word(word, "is", "pressed"))
         is_negated, end = self._as_yes_no(end)
         stands_alone = (
             self._word_at(k - 1) in _TEXTS_LEFT_OF_KEY and self._word_at(end) in _TEXTS_RIGHT_OF_KEY
@@ -417,8 +419,8 @@ def _split_key(word: str, start: int) -> Iterator[_Piece]:
         )
         if side != word and (_side_of(side) or is_letter):
             parts = (key, side) if word.startswith(key) else (side, key)
-            middle = start + len(parts[0])
-            yield _Piece(parts[0], Span(start, middle))
-            yield _Piece(parts[1], Span(middle, start + len(word)))
+            split_index = start + len(parts[0])
+            yield _Piece(parts[0], Span(start, split_index))
+            yield _Piece(parts[1], Span(split_index, start + len(word)))
             return
     yield _Piece(word, Span(start, start + len(word)))

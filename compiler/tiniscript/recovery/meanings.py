@@ -277,14 +277,15 @@ def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
-    for next_index, (token, following) in enumerate(pairwise([*line, make_token(";")]), 2):
+    for next_index, (token, following_token) in enumerate(pairwise([*line, make_token(";")]), 2):
         depth += (token.text == "(") - (token.text == ")")
         if token.kind is not WORD:
             continue
         if depth > 0:
             names_found.in_brackets.add(token.text)
         elif (
-            following.text in ("=", "++", "--", "+=", "-=", ":=", "<-") and token.text not in WORDS
+            following_token.text in ("=", "++", "--", "+=", "-=", ":=", "<-")
+            and token.text not in WORDS
         ):
             names_found.variables.add(token.text)
         is_def = "DEF" in (token.text, lexicon_concept(token.text))
@@ -294,14 +295,14 @@ def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
         is_def = is_def or (
             token.text == "TO" and next_index == 2 and bool(_logo_names(line[next_index:]))
         )
-        if is_def and following.kind is WORD and following.text not in WORDS:
+        if is_def and following_token.kind is WORD and following_token.text not in WORDS:
             if (
-                not lexicon_meaning(following.text, "main")
-                and lexicon_concept(following.text) != "START"
+                not lexicon_meaning(following_token.text, "main")
+                and lexicon_concept(following_token.text) != "START"
             ):
-                names_found.defs.add(following.text)
+                names_found.defs.add(following_token.text)
                 if bare_values := _bare_values(line[next_index:]):
-                    names_found.names_with_values.add((following.text, *bare_values))
+                    names_found.names_with_values.add((following_token.text, *bare_values))
                 end = brackets_end(line, next_index)
                 names_given = (
                     texts(line[next_index + 1 : end - 1 : 2])
@@ -309,7 +310,7 @@ def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
                     else _logo_names(line[next_index:])
                 )
                 if all(name.isidentifier() and name not in WORDS for name in names_given):
-                    names_found.parameters[following.text] = names_given
+                    names_found.parameters[following_token.text] = names_given
     if len(head) > 2 and "DEF" in (head[0].text, lexicon_concept(head[0].text)):
         spaced_name, target = _name_in_words(head[1:], ";"), names_found.defs
     else:
@@ -362,16 +363,17 @@ def _compared_words(line: tuple[Lexeme, ...]) -> set[str]:
     windows = [*zip(line, line[1:], line[2:], line[3:], strict=False)]
     lone_words = {
         name.text
-        for head, previous, name, following in windows
-        if (previous.text, following.text) == ("(", ")") and name.kind is head.kind is WORD
+        for head, previous_token, name, following_token in windows
+        if (previous_token.text, following_token.text) == ("(", ")")
+        and name.kind is head.kind is WORD
         if name.text not in lexicon() and (lexicon_concept(head.text) or head.text) in ASKING_WORDS
     }
     return lone_words | {
         name.text
-        for previous, left, sign, right in windows
+        for previous_token, left, sign, right in windows
         for name, number in ((left, right), (right, left))
         if sign.text in COMPARISONS - {"="} and name.kind is WORD and number.kind is NUMBER
-        if previous.text not in SEPARATORS
+        if previous_token.text not in SEPARATORS
     }
 
 

@@ -75,7 +75,9 @@ def meant_diagnostics(
             )
         )
         explained_diagnostics = [
-            it for it, is_kept in zip(explained_diagnostics, kept_flags, strict=False) if is_kept
+            diagnostic
+            for diagnostic, is_kept in zip(explained_diagnostics, kept_flags, strict=False)
+            if is_kept
         ]
     other_explanations = [
         explanation

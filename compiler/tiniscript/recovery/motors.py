@@ -121,7 +121,11 @@ def _switches(text: str) -> Iterator[_Switch]:
             if match:
                 start = line_start + instruction.start() + instruction[0].index(match[0])
                 word = plain(match["name"].rpartition(".")[2])
-                concept = word if word in WORDS else next((it.concept for it in meanings(word)), "")
+                concept = (
+                    word
+                    if word in WORDS
+                    else next((meaning.concept for meaning in meanings(word)), "")
+                )
                 concept = "" if word in def_names else concept
                 span = Span(start, start + len(match[0]))
                 yield _Switch(concept, match["number"] or "", match["name"], span)
@@ -138,7 +142,7 @@ def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
             continue
         is_pair = next_motor and motor.side != next_motor.side
         if is_pair and not text[motor.span.end : next_motor.span.start].strip(_SEPARATORS):
-            powers = {it.side: it.power for it in (motor, next_motor)}
+            powers = {side_motor.side: side_motor.power for side_motor in (motor, next_motor)}
             fix = f"M({powers['left']}, {powers['right']})"
             whole_span = Span(motor.span.start, next_motor.span.end)
             edit = Edit(whole_span, fix)

@@ -63,7 +63,9 @@ def _reorder(text: str, is_at_start: bool) -> MovedProgram | None:
         if move is None:
             return first_move and first_move._replace(text=_join_pieces(pieces), is_guess=is_guess)
         start, end, target = move
-        name = next((it.name for it in pieces[start::-1] if it.word == "DEF"), pieces[0].name)
+        name = next(
+            (piece.name for piece in pieces[start::-1] if piece.word == "DEF"), pieces[0].name
+        )
         is_called = bool([*_call_indexes(pieces, name, 0, len(pieces))])
         is_guess = is_guess or bool(late_end and not swap) or not (swap or is_called)
         if first_move is None:
@@ -95,8 +97,8 @@ def _pieces(text: str) -> Iterator[_Piece]:
 def _join_pieces(pieces: list[_Piece]) -> str:
     """Return a program in which pieces of one line stay in it, where they are neighbours."""
     text = pieces[0].text.lstrip()
-    for previous, piece in pairwise(pieces):
-        is_near = previous.line == piece.line and "//" not in previous.text
+    for previous_piece, piece in pairwise(pieces):
+        is_near = previous_piece.line == piece.line and "//" not in previous_piece.text
         text += (";" if is_near else "\n") + piece.text
     return text
 

@@ -45,7 +45,7 @@ def _notes(text: str) -> Iterator[tuple[Span, str, tuple[Edit, ...]]]:
     line_start = 0
     for line in text.split("\n"):
         body = split_note(line)[0]
-        match = next((it for it in _NOTE_SIGN.finditer(body) if _is_note(body, it)), None)
+        match = next((match for match in _NOTE_SIGN.finditer(body) if _is_note(body, match)), None)
         if match is not None:
             end_match = _NOTE_END.search(line, match.end())
             sign_edit = Edit(Span(line_start + match.start(), line_start + match.end()), "// ")

@@ -438,7 +438,7 @@ def _converted_number(match: _Match) -> _Replacement:
 
 
 _FUNCTIONS: dict[str, Callable[[_Match], _Replacement]] = {
-    "not": lambda it: negate(it.captures[0]), "endof": _end_of, "dec": _decimal,
+    "not": lambda match: negate(match.captures[0]), "endof": _end_of, "dec": _decimal,
     "xn": _times_number,
     "cat": _joined_tens, "mmss": _seconds_of_minutes, "same": _equal_number, "label": _label,
     "ms": _seconds, "own": _converted_number,

@@ -353,7 +353,7 @@ class Recovery:
             for k, text in enumerate(self.lines)
             for rival in text.rivals
         ]
-        return sorted(costlier_readings, key=lambda it: it[0])
+        return sorted(costlier_readings, key=lambda costlier_reading: costlier_reading[0])
 
     def choices(self) -> Iterator[tuple[list[Reading], bool]]:
         """Yield the readings of each line; finally those without the program's blocks."""

@@ -179,13 +179,15 @@ def _start_in_words(words: Sequence[Lexeme], names: Names) -> tuple[str, int]:
         return "SI", 1
     first_words = words[:_MOST_START_WORDS]
     button_positions = [
-        k for k, it in enumerate(first_words) if lexicon_concept(it.text) == "BUTTON"
+        k for k, word in enumerate(first_words) if lexicon_concept(word.text) == "BUTTON"
     ]
-    press_positions = [k for k, it in enumerate(first_words) if lexicon_meaning(it.text, "pressed")]
+    press_positions = [
+        k for k, word in enumerate(first_words) if lexicon_meaning(word.text, "pressed")
+    ]
     if not button_positions or not press_positions or "BUTTON" in names.sensors:
         return "", 0
     word_count = max(button_positions[0], press_positions[0]) + 1
-    actions = {names.find_meaning(it.text) for it in first_words[:word_count]} & {
+    actions = {names.find_meaning(word.text) for word in first_words[:word_count]} & {
         *CALL_WORDS,
         "UNTIL",
         "S",
@@ -204,7 +206,7 @@ def _begins_instruction(text_after: str, sign: str, is_separate: bool) -> bool:
     if word_row is None:
         return bool(sign) and sign_after in ("=", "(")
     is_separate = is_separate and (sign_after is not None or word_row.is_call or word == "DEF")
-    return word_row.role.begins and (bool(sign) or sign_after == "(" or is_separate)
+    return word_row.role.can_start_item and (bool(sign) or sign_after == "(" or is_separate)
 
 
 def _assignments_before_setup(source: Source, kit: Kit) -> list[Diagnostic]:

@@ -66,22 +66,22 @@ def _shares_of(body: str, line_start: int, names: Names) -> Iterator[tuple[Diagn
         sensor = _sensor(sensor_word, names) if sensor_index >= 0 else None
         if sensor is None or sensor.low:
             continue
-        begin, end = ends[k] - len(token.source or ""), ends[k + percent_count]
+        start, end = ends[k] - len(token.source or ""), ends[k + percent_count]
         name_start = ends[sensor_index] - len(tokens[sensor_index].source or "")
         comparison = (
-            body[name_start:begin] if tokens[sensor_index].text in names.number_readings else ""
+            body[name_start:start] if tokens[sensor_index].text in names.number_readings else ""
         )
         share = number_text(round(sensor.high * float(token.text) / _HUNDRED_PERCENT, -3) / ONE)
         values = {
             "sensor": body[name_start : ends[sensor_index]],
             "low": "0",
             "high": f"{sensor.high / ONE:g}",
-            "found": body[begin:end],
+            "found": body[start:end],
             "number": token.text,
             "share": comparison + share,
             "kept": comparison + token.text,
         }
-        span = Span(line_start + begin, line_start + end)
+        span = Span(line_start + start, line_start + end)
         yield Diagnostic(codes.UNIT, span, values), Edit(span, share)
 
 

@@ -335,15 +335,15 @@ def _whole_sign(slip: Slip) -> Slip:
         and slip.step_tokens[k].space == ""
         and found_tokens[:1] == slip.step_tokens[k : k + 1]
     )
-    previous = slip.step_tokens[k - 1] if is_part else None
+    previous_token = slip.step_tokens[k - 1] if is_part else None
     if (
-        previous is None
-        or {previous.kind, found_tokens[0].kind} & {WORD, NUMBER}
-        or previous.text in "()"
+        previous_token is None
+        or {previous_token.kind, found_tokens[0].kind} & {WORD, NUMBER}
+        or previous_token.text in "()"
     ):
         return slip
     return slip._replace(
-        found_tokens=[previous, *found_tokens],
+        found_tokens=[previous_token, *found_tokens],
         right_tokens=[slip.step_result[k - 1], *right_tokens],
         start=k - 1,
     )

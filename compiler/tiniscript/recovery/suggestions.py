@@ -153,14 +153,14 @@ def find_suggestions(text: str, kit: Kit) -> list[Suggestion]:
         tokens = lexemes(body)
         is_right = lines.is_right(tokens, names)
         if "~" not in body and not is_right:
-            for trailing in islice(
+            for trailing_words in islice(
                 _trailing_words(
                     body, line_start, LineContext(text, names, depth, instructions_above)
                 ),
                 instructions_left,
             ):
                 instructions_left -= 1
-                suggestion = _suggestion_for(trailing)
+                suggestion = _suggestion_for(trailing_words)
                 if suggestion and not (
                     suggestions_of_line
                     and edits_overlap(
@@ -256,20 +256,26 @@ def matching_rows(subject: Subject) -> Iterator[tuple[SuggestionRow, Gaps]]:
                 yield row, gaps
 
 
-def _suggestion_for(trailing: _TrailingWords) -> Suggestion | None:
-    if len(trailing.row_tokens) > MOST_WORDS or not trailing.may_say_something():
+def _suggestion_for(trailing_words: _TrailingWords) -> Suggestion | None:
+    if len(trailing_words.row_tokens) > MOST_WORDS or not trailing_words.may_say_something():
         return None
-    for row, gaps in matching_rows(trailing):
-        is_aside = row.code in _SECONDARY_CODES and trailing.tokens and _is_read_surely(trailing)
+    for row, gaps in matching_rows(trailing_words):
+        is_aside = (
+            row.code in _SECONDARY_CODES
+            and trailing_words.tokens
+            and _is_read_surely(trailing_words)
+        )
         return None if is_aside else _suggestion(row, gaps)
     return None
 
 
-def _is_read_surely(trailing: TrailingTokens) -> bool:
+def _is_read_surely(trailing_tokens: TrailingTokens) -> bool:
     """Return whether a repair of the whole instruction is unambiguous."""
-    if trailing.command == "DEF":
+    if trailing_tokens.command == "DEF":
         return False  # the first word may be a name of its own
-    readings = lines.read([*trailing.tokens, *trailing.row_tokens], trailing.names, is_quick=True)
+    readings = lines.read(
+        [*trailing_tokens.tokens, *trailing_tokens.row_tokens], trailing_tokens.names, is_quick=True
+    )
     return bool(readings) and readings[0].is_sure and len(readings[0].items or ()) == 1
 
 
@@ -293,41 +299,44 @@ class _TrailingWords(TrailingTokens):
 
 
 def _suggestion(row: SuggestionRow, gaps: Gaps) -> Suggestion:
-    trailing, group_names, values = (
-        gaps.trailing,
+    trailing_tokens, group_names, values = (
+        gaps.trailing_tokens,
         row.pattern.label_pattern.groupindex,
         gaps.filled_values,
     )
-    fix_span = trailing.whole_span if values["fix"] else None
-    is_right = lines.is_right(trailing.tokens, trailing.names)
-    if fix_span and not is_right and values["fix"].startswith(trailing.call_text):
-        fix_span = trailing.words_span  # the call has a mistake of its own
-        values["fix"] = values["fix"][len(trailing.call_text) :].lstrip(" ")
-    start, end = gaps.span("s") if "s" in group_names else (1, len(trailing.spans))
-    span = Span(trailing.spans[start].start, trailing.spans[end - 1].end)
+    fix_span = trailing_tokens.whole_span if values["fix"] else None
+    is_right = lines.is_right(trailing_tokens.tokens, trailing_tokens.names)
+    if fix_span and not is_right and values["fix"].startswith(trailing_tokens.call_text):
+        fix_span = trailing_tokens.words_span  # the call has a mistake of its own
+        values["fix"] = values["fix"][len(trailing_tokens.call_text) :].lstrip(" ")
+    start, end = gaps.span("s") if "s" in group_names else (1, len(trailing_tokens.spans))
+    span = Span(trailing_tokens.spans[start].start, trailing_tokens.spans[end - 1].end)
     code = row.code
     assert code is not None
     has_other_values = any(values[gap] for gap in values if gap not in ("before", "words", "order"))
     has_note = "//" in values["fix"] or not has_other_values
-    if code in _NOTE_CODES and trailing.tokens and not has_note:
+    if code in _NOTE_CODES and trailing_tokens.tokens and not has_note:
         # A change without effect on movement comes first.
-        values = {**values, **_note_values(trailing)}
+        values = {**values, **_note_values(trailing_tokens)}
     if code is codes.OTHER_LANGUAGE and values["found"].upper() == values["right"]:
         code, values = codes.MISSING_OPEN, {**values, "word": values["right"], "words": ""}
     diagnostic = Diagnostic(code, span, values, fix_span)
     if "h" in group_names:
-        fix_span = Span(trailing.spans[gaps.span("h")[0]].start, trailing.words_span.end)
+        fix_span = Span(
+            trailing_tokens.spans[gaps.span("h")[0]].start, trailing_tokens.words_span.end
+        )
         condition = values.get("asked") or values.get("question") or "TRUE"
         return Suggestion(diagnostic, Edit(fix_span, f"{gaps['head']}({condition})"))
-    if trailing.is_spoken:
+    if trailing_tokens.is_spoken:
         return Suggestion(
-            diagnostic, Edit(trailing.whole_span, values["fix"] or trailing.call_text)
+            diagnostic, Edit(trailing_tokens.whole_span, values["fix"] or trailing_tokens.call_text)
         )
-    fix = "" if trailing.tokens else values["fix"]
+    fix = "" if trailing_tokens.tokens else values["fix"]
     return Suggestion(
         diagnostic,
         Edit(
-            trailing.words_span, fix or " " * (trailing.words_span.end - trailing.words_span.start)
+            trailing_tokens.words_span,
+            fix or " " * (trailing_tokens.words_span.end - trailing_tokens.words_span.start),
         ),
     )
 
@@ -364,7 +373,7 @@ class Gaps(dict[str, str]):
         self._match = match
 
     @property
-    def trailing(self) -> TrailingTokens:
+    def trailing_tokens(self) -> TrailingTokens:
         assert isinstance(self.subject, TrailingTokens)
         return self.subject
 
@@ -394,33 +403,33 @@ class Gaps(dict[str, str]):
 
     def tokens(self, name: str) -> Sequence[Lexeme]:
         start, end = self.span(name)
-        return self.trailing.row_tokens[start - 1 : end - 1]
+        return self.trailing_tokens.row_tokens[start - 1 : end - 1]
 
     def tokens_from(self, name: str) -> Sequence[Lexeme]:
         """Return the words from a capture on."""
-        return self.trailing.row_tokens[self.span(name)[0] - 1 :]
+        return self.trailing_tokens.row_tokens[self.span(name)[0] - 1 :]
 
     def meant_word(self, name: str) -> str:
         """Return the word of the language that a capture begins with."""
-        return self.trailing.means(self.tokens_from(name)[0].text)
+        return self.trailing_tokens.means(self.tokens_from(name)[0].text)
 
     def captured_text(self, name: str) -> str:
         start, end = self.span(name)
         if start == end:
             return ""
         if start == 0:
-            return self.trailing.call_text
+            return self.trailing_tokens.call_text
         if name == "n":
             return self.number_at(start - 1)
-        spans = self.trailing.spans
-        return self.trailing.text[spans[start].start : spans[end - 1].end]
+        spans = self.trailing_tokens.spans
+        return self.trailing_tokens.text[spans[start].start : spans[end - 1].end]
 
     def number_at(self, k: int) -> str:
         """Return the number at a place in the unit of an instruction: `0.5` for `500 ms`."""
-        number = self.trailing.number(k) or ""
+        number = self.trailing_tokens.number(k) or ""
         unit_meaning = (
-            lexicon_meaning(self.trailing.row_tokens[k + 1].text, "unit")
-            if k + 1 < len(self.trailing.row_tokens)
+            lexicon_meaning(self.trailing_tokens.row_tokens[k + 1].text, "unit")
+            if k + 1 < len(self.trailing_tokens.row_tokens)
             else ()
         )
         if unit_meaning[:1] == ("s",) and unit_meaning[1] != "1000":
@@ -430,18 +439,18 @@ class Gaps(dict[str, str]):
 
 def _loop_over_all(gaps: Gaps, times: str) -> str:
     """The loop that repeats everything before it that many times, or nothing if that is long."""
-    trailing, lines_before = (
-        gaps.trailing,
-        [line for line in gaps.trailing.instructions_before if line],
+    trailing_tokens, lines_before = (
+        gaps.trailing_tokens,
+        [line for line in gaps.trailing_tokens.instructions_before if line],
     )
     has_all_instructions = (
-        len(lines_before) == len(trailing.instructions_before) <= _MOST_LINES_BACK
+        len(lines_before) == len(trailing_tokens.instructions_before) <= _MOST_LINES_BACK
     )
-    if not has_all_instructions or trailing.is_in_block or times in ("", "0", "1"):
+    if not has_all_instructions or trailing_tokens.is_in_block or times in ("", "0", "1"):
         return ""
     instructions = [
         instruction.strip()
-        for line in (*lines_before, trailing.call_text)
+        for line in (*lines_before, trailing_tokens.call_text)
         for instruction in line.split(";")
     ]
     repeated_instructions = [
@@ -459,9 +468,9 @@ def _loop_over_all(gaps: Gaps, times: str) -> str:
 
 def _condition_gaps(gaps: Gaps) -> dict[str, str]:
     """Return the values of a condition in words."""
-    tokens, names = gaps.tokens("s"), gaps.trailing.names
+    tokens, names = gaps.tokens("s"), gaps.trailing_tokens.names
     is_bare = [token.text for token in gaps.tokens_from("s")[len(tokens) :][:1]] != [")"]
-    is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.trailing.tokens
+    is_for_instruction = is_bare and gaps["head"] == "UNTIL" and not gaps.trailing_tokens.tokens
     is_for_instruction |= is_bare and any("|@start|" in names.label(token) for token in tokens)
     has_other_reader = is_for_instruction or bool(_condition_tokens(gaps, "s"))
     values = None if has_other_reader else condition_values(tokens, names)
@@ -472,7 +481,7 @@ def _condition_gaps(gaps: Gaps) -> dict[str, str]:
 
 def _sensor(gaps: Gaps, k: int) -> str:
     """Return a sensor that a word may mean."""
-    return "".join(sensors_of(plain(gaps["l"]), gaps.trailing.names)[k : k + 1])
+    return "".join(sensors_of(plain(gaps["l"]), gaps.trailing_tokens.names)[k : k + 1])
 
 
 def _measured_condition(gaps: Gaps) -> str:
@@ -481,12 +490,16 @@ def _measured_condition(gaps: Gaps) -> str:
     has_word = any(
         word.kind is WORD and not lexicon_meaning(word.text, "unit", "in") for word in words
     )
-    return (condition_values(words, gaps.trailing.names) or {}).get("asked", "") if has_word else ""
+    return (
+        (condition_values(words, gaps.trailing_tokens.names) or {}).get("asked", "")
+        if has_word
+        else ""
+    )
 
 
 def _sensor_on_side(gaps: Gaps) -> str:
     """Return the sensor on the side of an L or R that is not a name."""
-    word, part = gaps["s"].upper(), gaps.trailing
+    word, part = gaps["s"].upper(), gaps.trailing_tokens
     return "" if word in words_set(part.text) else part.names.sensor_on_side(word)
 
 
@@ -498,7 +511,7 @@ def _lone_condition(gaps: Gaps) -> str:
 
 def _consequence(gaps: Gaps) -> str:
     """Return the consequence: the words from a capture on if correct, or their meaning."""
-    words, names = gaps.tokens_from("w"), gaps.trailing.names
+    words, names = gaps.tokens_from("w"), gaps.trailing_tokens.names
     return (
         _rest_of_words(gaps, "w")
         if lines.is_right(words, names)
@@ -508,7 +521,7 @@ def _consequence(gaps: Gaps) -> str:
 
 def _free_name(gaps: Gaps) -> str:
     """Return an unused name for the value before it."""
-    names, name = gaps.trailing.names, plain(gaps["x"])
+    names, name = gaps.trailing_tokens.names, plain(gaps["x"])
     is_name = all(token.kind is WORD for token in gaps.tokens("v"))
     is_taken = name in names.sensors or name in names.defs or name in names.actuators
     return "" if is_name or is_taken else name
@@ -516,16 +529,16 @@ def _free_name(gaps: Gaps) -> str:
 
 def _choice(gaps: Gaps, is_exact: bool = False) -> str:
     """An IF that asks RANDOM which of some instructions is done; `is_exact`: by no example."""
-    text = f"{gaps.trailing.call_text},{gaps['l']}".lstrip(",")
+    text = f"{gaps.trailing_tokens.call_text},{gaps['l']}".lstrip(",")
     spoken_instructions = []
     for match in map(_CHOICE_CALL.fullmatch, re.split(r",(?![^(]*\))", text)):
-        word = WORDS.get(gaps.trailing.means(plain(match[1]))) if match else None
+        word = WORDS.get(gaps.trailing_tokens.means(plain(match[1]))) if match else None
         if match is None or word is None or not word.role.is_instruction:
             return ""
         if is_exact and word.arguments and not match[2]:
             return ""
         spoken_instructions.append(word.text + match[2] if match[2] else word.example)
-    name, count = free_number_name(gaps.trailing.text), len(spoken_instructions)
+    name, count = free_number_name(gaps.trailing_tokens.text), len(spoken_instructions)
     draw, conditions = f"{name} = RANDOM(1, {count}); ", [f"{name} = {k}" for k in range(1, count)]
     if count == 2:
         draw, conditions = "", ["RANDOM(1, 2) = 1"]
@@ -539,7 +552,9 @@ def _choice(gaps: Gaps, is_exact: bool = False) -> str:
 def _loop(gaps: Gaps) -> str:
     number = gaps["n"]
     is_often = number.isdecimal() and number not in ("0", "1")
-    return f"LOOP({number});{gaps.trailing.call_text};{BLOCK_ENDS['LOOP']}" if is_often else ""
+    return (
+        f"LOOP({number});{gaps.trailing_tokens.call_text};{BLOCK_ENDS['LOOP']}" if is_often else ""
+    )
 
 
 def _with_value(gaps: Gaps, match: re.Match[str] | None, template: str) -> str:
@@ -547,25 +562,33 @@ def _with_value(gaps: Gaps, match: re.Match[str] | None, template: str) -> str:
     template = match.expand(template) if match else ""
     if match is None or match[1] == template:
         return ""
-    call_text = gaps.trailing.call_text
+    call_text = gaps.trailing_tokens.call_text
     return f"{call_text[: match.start(1)]}{template}{call_text[match.end(1) :]}"
 
 
 def _with_power(gaps: Gaps) -> str:
     """The call with another power."""
     number = gaps["n"]
-    return _with_value(gaps, gaps.trailing.power_match, number) if 9 < float(number) <= 100 else ""
+    return (
+        _with_value(gaps, gaps.trailing_tokens.power_match, number)
+        if 9 < float(number) <= 100
+        else ""
+    )
 
 
 def _condition_tokens(gaps: Gaps, name: str = "q") -> list[Lexeme]:
     """The condition that the words express, in the language; nothing if they express none."""
-    return [] if gaps.trailing.has_until else condition_in(gaps.tokens(name), gaps.trailing.names)
+    return (
+        []
+        if gaps.trailing_tokens.has_until
+        else condition_in(gaps.tokens(name), gaps.trailing_tokens.names)
+    )
 
 
 def _shown_word(gaps: Gaps) -> str:
     """Return a word to show, which is neither a letter nor similar to a name of the program."""
     word = gaps["s"]
-    names = gaps.trailing.names
+    names = gaps.trailing_tokens.names
     is_name = len(word) < _SHORTEST_WORD or nearest(plain(word), names.known_names.values)
     return "" if is_name or plain(word) in names.in_brackets else word
 
@@ -574,7 +597,9 @@ def _rest_of_words(gaps: Gaps, name: str) -> str:
     """The words from a capture on."""
     start, end = gaps.span(name)
     return (
-        gaps.trailing.text[gaps.trailing.spans[start].start : gaps.trailing.whole_span.end]
+        gaps.trailing_tokens.text[
+            gaps.trailing_tokens.spans[start].start : gaps.trailing_tokens.whole_span.end
+        ]
         if start < end
         else ""
     )
@@ -596,76 +621,83 @@ def _instructions_said(part: TrailingTokens) -> list[SpokenInstruction]:
 
 def _call_and_instructions(gaps: Gaps) -> str:
     """The instruction, and those that the words after it say."""
-    found_instructions = _instructions_said(gaps.trailing)
+    found_instructions = _instructions_said(gaps.trailing_tokens)
     return (
-        f"{gaps.trailing.call_text};{instructions_text(found_instructions)}"
+        f"{gaps.trailing_tokens.call_text};{instructions_text(found_instructions)}"
         if found_instructions
         else ""
     )
 
 
 def _call_with_note(gaps: Gaps) -> str:
-    trailing = gaps.trailing
+    trailing_tokens = gaps.trailing_tokens
     return (
-        f"{trailing.call_text} // {trailing.words_text.strip(_NEEDLESS_SIGNS)}"
-        if _is_last(trailing)
+        f"{trailing_tokens.call_text} // {trailing_tokens.words_text.strip(_NEEDLESS_SIGNS)}"
+        if _is_last(trailing_tokens)
         else ""
     )
 
 
-def _is_last(trailing: TrailingTokens) -> bool:
+def _is_last(trailing_tokens: TrailingTokens) -> bool:
     """Return whether only a note follows the words on their line."""
-    text_behind = trailing.text[trailing.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
+    text_behind = (
+        trailing_tokens.text[trailing_tokens.whole_span.end :].split("\n")[0].lstrip(" \t;\r")
+    )
     return not text_behind or text_behind.startswith("//")
 
 
-def _note_values(trailing: TrailingTokens) -> dict[str, str]:
+def _note_values(trailing_tokens: TrailingTokens) -> dict[str, str]:
     """Return the message values that turn the words after an instruction into a note, or {} if they
     may belong to it.
 
     Words with a number, a sign or a word of a program, and words joined to the instruction, may.
     """
     is_joined = lexicon_meaning(
-        trailing.row_tokens[0].text, "then", "and", "or"
-    ) or trailing.row_tokens[0].text in (
+        trailing_tokens.row_tokens[0].text, "then", "and", "or"
+    ) or trailing_tokens.row_tokens[0].text in (
         "AND",
         "OR",
     )
     is_prose = all(
-        token.kind is WORD or token.text in _PROSE_SIGNS for token in trailing.row_tokens
+        token.kind is WORD or token.text in _PROSE_SIGNS for token in trailing_tokens.row_tokens
     )
-    words = trailing.words_text.strip(_NEEDLESS_SIGNS)
+    words = trailing_tokens.words_text.strip(_NEEDLESS_SIGNS)
     if (
         is_joined
         or not is_prose
         or not words
-        or not lines.is_right(trailing.tokens, trailing.names)
+        or not lines.is_right(trailing_tokens.tokens, trailing_tokens.names)
     ):
         return {}
     is_instruction = any(
-        token.text in WORDS and token.source == token.text for token in trailing.row_tokens
+        token.text in WORDS and token.source == token.text for token in trailing_tokens.row_tokens
     )
     is_instruction |= any(
-        lexicon_meaning(token.text, "unit")[:1] in _UNIT_MEANINGS for token in trailing.row_tokens
+        lexicon_meaning(token.text, "unit")[:1] in _UNIT_MEANINGS
+        for token in trailing_tokens.row_tokens
     )
     if is_instruction:
         return {}
     note = f"// {words}"
-    return {"note": f"{trailing.call_text} {note}"} if _is_last(trailing) else {"last_note": note}
+    return (
+        {"note": f"{trailing_tokens.call_text} {note}"}
+        if _is_last(trailing_tokens)
+        else {"last_note": note}
+    )
 
 
 _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
-    "above": lambda gaps: ["", *gaps.trailing.instructions_before][-1] or "",
+    "above": lambda gaps: ["", *gaps.trailing_tokens.instructions_before][-1] or "",
     "all": lambda gaps: _loop_over_all(gaps, gaps["n?"]),
     "often": lambda gaps: _loop_over_all(gaps, "4"),
     "endless": lambda gaps: _loop_over_all(gaps, "FOREVER"),
     "more": lambda gaps: _loop_over_all(gaps, str(int(gaps["n"]) + 1)),
-    "said": lambda gaps: gaps.trailing.words_text.strip(" ,:"),
+    "said": lambda gaps: gaps.trailing_tokens.words_text.strip(" ,:"),
     "head": lambda gaps: gaps.meant_word("h"), "called": lambda gaps: gaps.meant_word("w"),
     "block": lambda gaps: gaps.meant_word("g"),
     "usage": lambda gaps: WORDS[gaps.meant_word("w")].usage,
     "choice": lambda gaps: _choice(gaps, is_exact=True).replace("; ", ";"),
-    "choices": _choice, "number": lambda gaps: free_number_name(gaps.trailing.text),
+    "choices": _choice, "number": lambda gaps: free_number_name(gaps.trailing_tokens.text),
     "example": lambda gaps: WORDS[plain(gaps["w"])].example,
     "reading": _sensor_on_side,
     "next": lambda gaps: WORDS[plain(gaps["s"])].example,
@@ -674,22 +706,25 @@ _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "free": _free_name,
     "loop": _loop,
     "by_way": lambda gaps:
-        _with_value(gaps, gaps.trailing.time_match, rf"\1 {UNIT_OF[gaps.trailing.command]}"),
-    "text": lambda gaps: shorten(gaps.trailing.text[slice(*gaps.trailing.whole_span)]),
-    "words": lambda gaps: shorten(gaps.trailing.words_text),
+        _with_value(gaps, gaps.trailing_tokens.time_match,
+                    rf"\1 {UNIT_OF[gaps.trailing_tokens.command]}"),
+    "text": lambda gaps:
+        shorten(gaps.trailing_tokens.text[slice(*gaps.trailing_tokens.whole_span)]),
+    "words": lambda gaps: shorten(gaps.trailing_tokens.words_text),
     "end": lambda gaps: "" if _condition_tokens(gaps, "s") else BLOCK_ENDS[gaps.meant_word("g")],
     "shown": _shown_word, "note": _call_with_note,
     "other": lambda gaps:
-        re.sub(r"^\w+", OPPOSITE_MOVES[gaps.trailing.command], gaps.trailing.call_text),
-    "once": lambda gaps: gaps.trailing.call_text if gaps["n"] == "1" else "",
-    "longer": lambda gaps: _with_value(gaps, gaps.trailing.time_match, gaps["n"]),
+        re.sub(r"^\w+", OPPOSITE_MOVES[gaps.trailing_tokens.command],
+               gaps.trailing_tokens.call_text),
+    "once": lambda gaps: gaps.trailing_tokens.call_text if gaps["n"] == "1" else "",
+    "longer": lambda gaps: _with_value(gaps, gaps.trailing_tokens.time_match, gaps["n"]),
     "paced": _with_power,
     "question": lambda gaps: format_line(_condition_tokens(gaps)),
     "contrary": lambda gaps:
         format_line(rewrites.negate(it)) if (it := _condition_tokens(gaps)) else "",
-    "made_up": lambda gaps: samples_text(_instructions_said(gaps.trailing)),
+    "made_up": lambda gaps: samples_text(_instructions_said(gaps.trailing_tokens)),
     "until": lambda gaps: f" {_rest_of_words(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _call_and_instructions,
-    "sensors": lambda gaps: ", ".join(gaps.trailing.names.sensor_names),
-    "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.trailing.names.sensors else "",
+    "sensors": lambda gaps: ", ".join(gaps.trailing_tokens.names.sensor_names),
+    "distance": lambda gaps: "DISTANCE" if "DISTANCE" in gaps.trailing_tokens.names.sensors else "",
 }  # fmt: skip

@@ -337,8 +337,10 @@ def to_original(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -
     """
     values = dict(diagnostic.values)
     for edit in edits:
-        if edit.text.endswith("(TRUE)") and "TRUE" not in (original := source[edit.span].strip()):
-            values = {name: text.replace(edit.text, original) for name, text in values.items()}
+        if edit.text.endswith("(TRUE)") and "TRUE" not in (
+            original_text := source[edit.span].strip()
+        ):
+            values = {name: text.replace(edit.text, original_text) for name, text in values.items()}
     place = diagnostic.place and _original_span(diagnostic.place, edits)
     repair = diagnostic.repair
     if repair is not None:

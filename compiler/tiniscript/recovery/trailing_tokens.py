@@ -176,7 +176,7 @@ class TrailingTokens:
 
     def _label_of_call(self) -> str:
         command, word_row = self.command, WORDS.get(self.command)
-        is_timed = word_row is not None and word_row.role.lasts
+        is_timed = word_row is not None and word_row.role.has_duration
         if self.tokens:
             is_instruction = word_row is not None and not self.is_arm and command != "START"
             labels: dict[str, object] = {
@@ -375,5 +375,9 @@ def words_set(text: str) -> frozenset[str]:
 
 def join_labels(first_label: str, labels: Mapping[str, object]) -> str:
     return "|".join(
-        (first_label, *(join_labels for join_labels, is_so in labels.items() if is_so), "\x02")
+        (
+            first_label,
+            *(join_labels for join_labels, is_member in labels.items() if is_member),
+            "\x02",
+        )
     )

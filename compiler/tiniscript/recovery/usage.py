@@ -443,7 +443,7 @@ class Usage:
     def question_tokens(self, word: str) -> list[Lexeme]:
         """Return the tokens of a header up to its body."""
         tokens_behind = [
-            *dropwhile(lambda it: self.names.find_meaning(it.text) != word, self.row_tokens)
+            *dropwhile(lambda token: self.names.find_meaning(token.text) != word, self.row_tokens)
         ][1:]
         concepts = [self.names.find_meaning(token.text) for token in tokens_behind]
         are_instructions = (
@@ -469,8 +469,8 @@ class Usage:
             word: self.names.find_meaning(word) for word in self.words if word not in WORDS
         }
         return {
-            it: instruction_word
-            for it, instruction_word in concept_of_word.items()
+            item: instruction_word
+            for item, instruction_word in concept_of_word.items()
             if instruction_word in WORDS and WORDS[instruction_word].role.is_instruction
         }
 
@@ -562,8 +562,8 @@ class Usage:
         """Return the word before the brackets that the place is in, or "" if it asks no
         question."""
         header_concepts = [
-            self.names.find_meaning(it.text)
-            for it, sign in pairwise(self.tokens_before())
+            self.names.find_meaning(token.text)
+            for token, sign in pairwise(self.tokens_before())
             if sign.text == "("
         ]
         return (
@@ -620,7 +620,9 @@ class Usage:
 
     def button_values(self) -> dict[str, str]:
         """A button that cannot be read; a program may begin with the one that starts it."""
-        asked_text = next((it.source for it in self.row_tokens if self.is_button(it.text)), "")
+        asked_text = next(
+            (token.source for token in self.row_tokens if self.is_button(token.text)), ""
+        )
         setup_text = "SB|" if self.program_text.setup_word == "SB" else ""
         when_text = (
             self.source[self.instruction_span]
@@ -851,26 +853,28 @@ def _words_as_names(tokens: Sequence[Token], word: str, is_def: bool) -> Iterato
     """
     depth = parameters = 0
     is_inside = is_value = False
-    for k, (previous, token, following) in enumerate(
+    for k, (previous_token, token, following_token) in enumerate(
         zip([None, *tokens], tokens, tokens[1:], strict=False)
     ):
         depth += (token.kind == "(") - (token.kind == ")")
-        is_begun = previous is None or (not depth and previous.kind in _INSTRUCTION_STARTS)
+        is_begun = previous_token is None or (
+            not depth and previous_token.kind in _INSTRUCTION_STARTS
+        )
         is_value = not is_begun and (is_value or (token.kind == "=" and not depth))
         is_inside = (is_inside or token.text == "DEF") and token.text not in _DEF_ENDS
         if token.text != word:
             continue
         if not is_def:
-            is_set = is_begun and following.kind == "="
-            if is_set or ((depth or is_value) and following.kind != "("):
+            is_set = is_begun and following_token.kind == "="
+            if is_set or ((depth or is_value) and following_token.kind != "("):
                 yield k
-        elif previous is not None and previous.text == "DEF":
+        elif previous_token is not None and previous_token.text == "DEF":
             parameters = max(0, _value_count(tokens, k + 1))
             yield k
         elif is_begun and not is_inside:
             count = _value_count(tokens, k + 1)
             has_own_values = count == parameters and count != (len(WORDS[word].arguments) or -1)
-            is_alone = following.kind in (*_INSTRUCTION_STARTS, "end")
+            is_alone = following_token.kind in (*_INSTRUCTION_STARTS, "end")
             if has_own_values or (is_alone and not WORDS[word].role.belongs_to_blocks):
                 yield k
 
@@ -1004,7 +1008,9 @@ def _concept(gaps: Gaps) -> str:
     """The word of the language that it means."""
     usage, word = _usage_of(gaps), _foreign_word(gaps)
     concept = usage.names.find_meaning(word)
-    is_instruction = concept in WORDS and WORDS[concept].role.begins and concept != "FOREVER"
+    is_instruction = (
+        concept in WORDS and WORDS[concept].role.can_start_item and concept != "FOREVER"
+    )
     is_among = concept == "S" and {*usage.instruction_of_word.values()} != {
         "S"
     }  # `ve para adelante`
@@ -1393,36 +1399,41 @@ def _gap_of(value_of: Callable[[Usage], str | None]) -> Callable[[Gaps], str]:
 
 # Rows with a place of their own instead of that of the finding.
 _SPAN_FUNCTIONS: dict[str, Callable[[Usage], Span]] = {
-    "here": lambda it: it.instruction_span, "behind": _following_span, "member": _member_span,
+    "here": lambda usage: usage.instruction_span, "behind": _following_span, "member": _member_span,
     "quoted": _quoted_span,
     "dots": _dotted_span,
-    "first": lambda it:
-        Span(it.instruction_span.start, it.instruction_span.start + len(it.words[0])),
+    "first": lambda usage:
+        Span(usage.instruction_span.start, usage.instruction_span.start + len(usage.words[0])),
     "amount": _amount_span,
 }  # fmt: skip
 # Values that belong together: of a place, and of the word in question.
 _SEVERAL_FUNCTIONS: dict[str, Callable[[Usage, str], Mapping[str, str]]] = {
-    "amount": lambda it, _: it.amount_values, "bound": lambda it, _: it.bound_values(),
-    "button": lambda it, _: it.button_values(),
-    "dots": lambda it, _: it.dots_values(), "unended": lambda it, _: it.unended_values(),
-    "instead": lambda it, _: foreign_word_hints(it.token_texts[0]), "in_words": Usage.worded_values,
+    "amount": lambda usage, _: usage.amount_values, "bound": lambda usage, _: usage.bound_values(),
+    "button": lambda usage, _: usage.button_values(),
+    "dots": lambda usage, _: usage.dots_values(),
+    "unended": lambda usage, _: usage.unended_values(),
+    "instead": lambda usage, _: foreign_word_hints(usage.token_texts[0]),
+    "in_words": Usage.worded_values,
     "in_brackets": Usage.bracketed_values, "one_number": Usage.number_values,
     "in_dark": (
-        lambda it, word: values if (values := it.bracketed_values(word)).get("question") else {}
+        lambda usage, word:
+            values if (values := usage.bracketed_values(word)).get("question") else {}
     ),
 }  # fmt: skip
 GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
-    "said": _gap_of(lambda it: it.source[it.instruction_span]),
-    "here": _gap_of(lambda it: it.source[it.diagnostic.span]),
-    "first": _gap_of(lambda it: it.token_texts[0]), "sign": _gap_of(lambda it: it.token_texts[1]),
-    "step": _gap_of(lambda it: it.token_texts[1][0]), "number": _gap_of(lambda it: it.number_text),
-    "found": _gap_of(lambda it: it.diagnostic.values["found"]),
-    "word": _gap_of(lambda it: it.diagnostic.values["word"]),
-    "reading": _gap_of(lambda it: it.sensor_on_side(it.diagnostic.values["word"])),
-    "lamp": _gap_of(lambda it: it.call_if_lamp("LED")),
-    "lamp_on": _gap_of(lambda it: it.call_if_lamp("LED(TRUE)")),
-    "lamp_off": _gap_of(lambda it: it.call_if_lamp("LED(FALSE)")),
-    "lamp_named": _gap_of(lambda it: it.call_if_lamp(it.source[it.instruction_span])),
+    "said": _gap_of(lambda usage: usage.source[usage.instruction_span]),
+    "here": _gap_of(lambda usage: usage.source[usage.diagnostic.span]),
+    "first": _gap_of(lambda usage: usage.token_texts[0]),
+    "sign": _gap_of(lambda usage: usage.token_texts[1]),
+    "step": _gap_of(lambda usage: usage.token_texts[1][0]),
+    "number": _gap_of(lambda usage: usage.number_text),
+    "found": _gap_of(lambda usage: usage.diagnostic.values["found"]),
+    "word": _gap_of(lambda usage: usage.diagnostic.values["word"]),
+    "reading": _gap_of(lambda usage: usage.sensor_on_side(usage.diagnostic.values["word"])),
+    "lamp": _gap_of(lambda usage: usage.call_if_lamp("LED")),
+    "lamp_on": _gap_of(lambda usage: usage.call_if_lamp("LED(TRUE)")),
+    "lamp_off": _gap_of(lambda usage: usage.call_if_lamp("LED(FALSE)")),
+    "lamp_named": _gap_of(lambda usage: usage.call_if_lamp(usage.source[usage.instruction_span])),
     "lamp_set": _lamp_set,
     "right": _offered_word, "named": _intended_word,
     "named_first": lambda gaps: _usage_of(gaps).word_meaning(_offered_word(gaps),
@@ -1433,33 +1444,37 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "block": _block, "order": _only_instruction,
     "sided": lambda gaps: _several_instructions(gaps, is_sided=True),
     "several": lambda gaps: _several_instructions(gaps, is_sided=False),
-    "made_up": _gap_of(lambda it: samples_text(it.spoken_instructions)), "endless": _forever_word,
+    "made_up": _gap_of(lambda usage: samples_text(usage.spoken_instructions)),
+    "endless": _forever_word,
     "others": lambda gaps: ", ".join(_other_instruction_words(gaps)),
-    "way": _gap_of(lambda it: it.turn.direction), "angle": _gap_of(lambda it: it.turn.angle),
-    "side": _gap_of(lambda it: {"L": "left", "R": "right"}.get(it.turn.direction)),
-    "turned": _gap_of(lambda it: it.turn.values_text),
-    "way_usage": _gap_of(lambda it: _usage(it.turn.direction)),
+    "way": _gap_of(lambda usage: usage.turn.direction),
+    "angle": _gap_of(lambda usage: usage.turn.angle),
+    "side": _gap_of(lambda usage: {"L": "left", "R": "right"}.get(usage.turn.direction)),
+    "turned": _gap_of(lambda usage: usage.turn.values_text),
+    "way_usage": _gap_of(lambda usage: _usage(usage.turn.direction)),
     "word_said": _foreign_word, "concept": _concept,
     "asking": lambda gaps: _if_asking(_concept(gaps)),
     "concept_alone": lambda gaps: _concept_alone(gaps, is_numbered=False),
     "concept_numbered": lambda gaps: _concept_alone(gaps, is_numbered=True),
     "concept_usage": lambda gaps: _usage_of(gaps).usage(_concept(gaps)), "variable": _variable,
-    "often_taught": _gap_of(lambda it: "LOOP" * it.own_word.is_counted),
-    "taught": _gap_of(lambda it: it.own_word.call_name),
-    "untaught": _gap_of(lambda it: it.own_word.name * it.own_word.is_taught),
+    "often_taught": _gap_of(lambda usage: "LOOP" * usage.own_word.is_counted),
+    "taught": _gap_of(lambda usage: usage.own_word.call_name),
+    "untaught": _gap_of(lambda usage: usage.own_word.name * usage.own_word.is_taught),
     "often": _loop_of_repeated,
-    "likely": _gap_of(lambda it: likely_word(it.token_texts[0], it.source[it.instruction_span])),
-    "plus": _gap_of(lambda it: "-" if f"-{it.number_text}" in "".join(it.token_texts) else "+"),
+    "likely": _gap_of(lambda usage:
+        likely_word(usage.token_texts[0], usage.source[usage.instruction_span])),
+    "plus": _gap_of(lambda usage:
+        "-" if f"-{usage.number_text}" in "".join(usage.token_texts) else "+"),
     "own_example": _own_example,
     "own": _own_name, "end": _block_end, "done": _method_call,
     "done_usage": lambda gaps: _usage_of(gaps).usage(_method_call(gaps)),
-    "member": _gap_of(lambda it: it.text[slice(*_member_span(it))]),
-    "bare_asking": _gap_of(lambda it: _if_asking(it.diagnostic.values["word"])),
-    "bare_example": _gap_of(lambda it: WORDS[it.instruction_name].example
-                        if len(it.row_tokens) == 1 and it.instruction_name in WORDS
-                        and WORDS[it.instruction_name].arguments else ""),
-    "bare_usage": _gap_of(lambda it: it.usage(it.diagnostic.values["word"])),
-    "first_usage": _gap_of(lambda it: it.usage(it.token_texts[0])),
+    "member": _gap_of(lambda usage: usage.text[slice(*_member_span(usage))]),
+    "bare_asking": _gap_of(lambda usage: _if_asking(usage.diagnostic.values["word"])),
+    "bare_example": _gap_of(lambda usage: WORDS[usage.instruction_name].example
+                        if len(usage.row_tokens) == 1 and usage.instruction_name in WORDS
+                        and WORDS[usage.instruction_name].arguments else ""),
+    "bare_usage": _gap_of(lambda usage: usage.usage(usage.diagnostic.values["word"])),
+    "first_usage": _gap_of(lambda usage: usage.usage(usage.token_texts[0])),
     "unit": _unit_behind, "without_seconds": _without_seconds, "number_said": _number_said,
     "way_said": _spoken_direction,
     "value_name": lambda gaps: it.argument.name if (it := _missing_value(gaps, True)) else "",
@@ -1467,11 +1482,11 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
         _NOUN_OF_UNIT[it.argument.unit] if (it := _missing_value(gaps, True)) else ""
     ),
     "extra": lambda gaps: it.found_text if (it := _missing_value(gaps, False)) else "",
-    "value_found": _gap_of(lambda it: it.wrong_value and it.wrong_value.found_text),
-    "value_word": _gap_of(lambda it: it.wrong_value and it.wrong_value.word.text),
-    "value_usage": _gap_of(lambda it: it.wrong_value and it.wrong_value.word.usage),
+    "value_found": _gap_of(lambda usage: usage.wrong_value and usage.wrong_value.found_text),
+    "value_word": _gap_of(lambda usage: usage.wrong_value and usage.wrong_value.word.text),
+    "value_usage": _gap_of(lambda usage: usage.wrong_value and usage.wrong_value.word.usage),
     "foreign": _other_robots_word, "in_words": _in_words, "in_dark": _worded_header,
-    "amount": _gap_of(lambda it: it.amount_values.get("amount")),
+    "amount": _gap_of(lambda usage: usage.amount_values.get("amount")),
     "until_block": _until_block, "until_endless": _until_endless, "until_end": _until_end,
     "started": _task_name, "button_behind": lambda gaps: "SB" * _begun_behind(gaps).endswith("SB"),
     "begun_behind": _begun_behind,
@@ -1481,32 +1496,40 @@ GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "twice": lambda gaps:
         _second_start(gaps) if _usage_of(gaps).program_text.setup_word == "SB" else "",
     "named_endless": lambda gaps: _usage_of(gaps).word_meaning("LOOP", _forever_word(gaps)),
-    "instead": _gap_of(lambda it: it.program_text.setup_word), "saying_button": _saying_button,
+    "instead": _gap_of(lambda usage: usage.program_text.setup_word),
+    "saying_button": _saying_button,
     "part": _part_of_when, "two_digits": _two_digits,
-    "sign_means": _gap_of(lambda it: lexicon_concept(it.source[it.diagnostic.span])),
-    "sign_usage": _gap_of(lambda it: _usage(lexicon_concept(it.source[it.diagnostic.span]) or "")),
-    "everywhere": _gap_of(lambda it: it.other_name.right if it.other_name.is_everywhere else ""),
-    "since": _gap_of(lambda it: VERSION_OF_WORD.get(it.other_name.word)),
+    "sign_means": _gap_of(lambda usage: lexicon_concept(usage.source[usage.diagnostic.span])),
+    "sign_usage": _gap_of(lambda usage:
+        _usage(lexicon_concept(usage.source[usage.diagnostic.span]) or "")),
+    "everywhere": _gap_of(lambda usage:
+        usage.other_name.right if usage.other_name.is_everywhere else ""),
+    "since": _gap_of(lambda usage: VERSION_OF_WORD.get(usage.other_name.word)),
     "name_line": lambda gaps: "".join(_other_lines(gaps)[:1]),
     "name_lines": lambda gaps: _line_list(_other_lines(gaps)), "name_times": _times_in_line,
-    "name_right": _gap_of(lambda it: it.other_name.suggestion or it.other_name.right),
-    "time_right": _gap_of(lambda it: it.other_name.right
-                      if it.other_name.assignment and it.other_name.assignment[1] else ""),
-    "clock": _gap_of(lambda it: it.other_name.right
-                 if it.other_name.assignment and not it.other_name.assignment[1] else ""),
+    "name_right": _gap_of(lambda usage: usage.other_name.suggestion or usage.other_name.right),
+    "time_right": _gap_of(lambda usage: usage.other_name.right
+                      if usage.other_name.assignment and usage.other_name.assignment[1] else ""),
+    "clock": _gap_of(lambda usage: usage.other_name.right
+                 if usage.other_name.assignment and not usage.other_name.assignment[1] else ""),
     "time_line": lambda gaps: _only_line(_later_lines(gaps)),
     "time_lines": lambda gaps: _line_list(_later_lines(gaps)),
-    "note": _gap_of(lambda it: "/*" if it.text.startswith("/*", it.diagnostic.span.start) else ""),
-    "sensor": _gap_of(lambda it: it.found_name if it.found_name in it.names.sensors else ""),
-    "input": _gap_of(lambda it: it.found_name if lexicon_meaning(it.found_name, "input") else ""),
-    "words_behind": _words_after, "before": _gap_of(lambda it: it.diagnostic.values["before"]),
-    "plain_letters": _unaccented_name, "letters_mean": _gap_of(lambda it: it.name_and_meaning[1]),
-    "letters_usage": _gap_of(lambda it: it.usage(it.name_and_meaning[1])),
+    "note": _gap_of(lambda usage:
+        "/*" if usage.text.startswith("/*", usage.diagnostic.span.start) else ""),
+    "sensor": _gap_of(lambda usage:
+        usage.found_name if usage.found_name in usage.names.sensors else ""),
+    "input": _gap_of(lambda usage:
+        usage.found_name if lexicon_meaning(usage.found_name, "input") else ""),
+    "words_behind": _words_after,
+    "before": _gap_of(lambda usage: usage.diagnostic.values["before"]),
+    "plain_letters": _unaccented_name,
+    "letters_mean": _gap_of(lambda usage: usage.name_and_meaning[1]),
+    "letters_usage": _gap_of(lambda usage: usage.usage(usage.name_and_meaning[1])),
     "called_here": _called_name,
     "taking_one": lambda gaps: "".join(_calls_taking_values(gaps)[:1]),
     "taking_another": lambda gaps: "".join(_calls_taking_values(gaps)[1:2]),
-    "waiting": _gap_of(lambda it:
-                   "SB|" if it.program_text.setup_word == "SB" and it.is_begun else ""),
+    "waiting": _gap_of(lambda usage:
+                   "SB|" if usage.program_text.setup_word == "SB" and usage.is_begun else ""),
     "lamp_here": _lamp_here,
     "said_first": _leading_filler, "cased": _in_capitals,
 }  # fmt: skip

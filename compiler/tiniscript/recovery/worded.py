@@ -219,11 +219,11 @@ def _sign(name: str, written_sign: str, kinds_said: set[str]) -> str:
 def _example(device: Device | None, name: str) -> int:
     if device is None:
         return _SAMPLE_NUMBER
-    middle = (device.low + device.high) // (2 * ONE)
+    middle_value = (device.low + device.high) // (2 * ONE)
     return (
         _SAMPLE_CM
         if name == "DISTANCE"
-        else round(middle, -2)
-        if middle > _ROUND_NUMBERS_FROM
-        else middle
+        else round(middle_value, -2)
+        if middle_value > _ROUND_NUMBERS_FROM
+        else middle_value
     )

@@ -37,18 +37,22 @@ def format_line(tokens: Sequence[Lexeme]) -> str:
 
 def as_written(tokens: Sequence[Lexeme]) -> str:
     """Return a line as it was written, with its own spaces if nothing was changed."""
-    line, previous = "", make_token("(")
+    line, previous_token = "", make_token("(")
     for token in tokens:
         space = token.space
         if space is None:
-            is_closed_up = token.text in (",", ")", ";", "(") or previous.text in ("(", "-", "|")
+            is_closed_up = token.text in (",", ")", ";", "(") or previous_token.text in (
+                "(",
+                "-",
+                "|",
+            )
             space = "" if is_closed_up else " "
-        elif not space and {token.kind, previous.kind} <= {WORD, NUMBER}:
+        elif not space and {token.kind, previous_token.kind} <= {WORD, NUMBER}:
             space = " "
-        if previous.text == "(" and previous.source is None:
+        if previous_token.text == "(" and previous_token.source is None:
             space = ""
         line += space + _source_text(token)
-        previous = token
+        previous_token = token
     return line
 
 
@@ -93,7 +97,9 @@ def instruction_at(span: Span, source: Source) -> Span:
     """Return the instruction around a place: between the separators of its line."""
     line_number, column = source.position(span.start)
     body = split_note(source.line_text(line_number))[0]
-    match = next(it for it in _INSTRUCTION.finditer(body) if it.end() >= min(column - 1, len(body)))
+    match = next(
+        match for match in _INSTRUCTION.finditer(body) if match.end() >= min(column - 1, len(body))
+    )
     start = span.start - column + 1 + match.end() - len(match[0].lstrip())
     return Span(start, start + len(match[0].strip()))
 
@@ -128,7 +134,7 @@ def with_signs(line: str) -> str:
         line = f"{text_before}{sign}{' ' * (sign[-1] in ',;' and bool(text_after))}{text_after}"
     line += ")" * (line.count("(") - line.count(")"))
     return _NAMED_LETTER.sub(
-        lambda it: lexicon_meaning(plain(it[0]).replace(" ", "_"), "spelt")[0], line
+        lambda match: lexicon_meaning(plain(match[0]).replace(" ", "_"), "spelt")[0], line
     )
 
 
@@ -141,8 +147,8 @@ def has_ambiguous_sign(line: str) -> bool:
     word.
     """
     sign_names = [
-        lexicon_meaning(it[0].replace(" ", "_"), "sign")[0]
-        for it in _SPOKEN_SIGN.finditer(plain(line))
+        lexicon_meaning(match[0].replace(" ", "_"), "sign")[0]
+        for match in _SPOKEN_SIGN.finditer(plain(line))
     ]
     return (
         "bracket" in sign_names
@@ -156,7 +162,9 @@ def spoken_signs(text: str) -> list[str]:
     if "\n" in text or with_signs(body) == body:
         return []
     return [
-        *dict.fromkeys(body[slice(*it.span())].lower() for it in _SPOKEN_SIGN.finditer(plain(body)))
+        *dict.fromkeys(
+            body[slice(*match.span())].lower() for match in _SPOKEN_SIGN.finditer(plain(body))
+        )
     ]
 
 

@@ -179,14 +179,17 @@ class Header(HeaderPart):
         """Return the number of ultrasonic sensors and their wiring; a single one uses constants."""
         if not self.ultrasonic_texts:
             return []
-        *earlier, last = self.ultrasonic_texts
-        parameter = " number" if earlier else ""
+        *earlier_texts, last_text = self.ultrasonic_texts
+        parameter = " number" if earlier_texts else ""
         return [
             f"constexpr uint8_t kUltrasonics = {len(self.ultrasonic_texts)};",
             "",
             f"tini_always_inline Ultrasonic ultrasonic_at(uint8_t{parameter}) {{",
-            *(f"  if (number == {k}) return {ultrasonic};" for k, ultrasonic in enumerate(earlier)),
-            f"  return {last};",
+            *(
+                f"  if (number == {k}) return {ultrasonic};"
+                for k, ultrasonic in enumerate(earlier_texts)
+            ),
+            f"  return {last_text};",
             "}",
         ]
 

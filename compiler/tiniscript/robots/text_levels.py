@@ -25,14 +25,14 @@ TASK_AND_EXTENT_WORDS = _block_words(*TASKS) | EXTENTS.keys()
 READ_ROLES = frozenset(("move", "wait", "motors", "beep", "show", "stop"))
 _INSTRUCTIONS = (word for word in WORDS.values() if word.role.is_instruction)
 _UNREAD_INSTRUCTIONS = [word for word in _INSTRUCTIONS if word.role.name not in READ_ROLES]
-NEVER_READ_WORDS = frozenset(word.text for word in _UNREAD_INSTRUCTIONS if not word.stands_for)
+NEVER_READ_WORDS = frozenset(word.text for word in _UNREAD_INSTRUCTIONS if not word.expansion)
 UNREAD_WORDS = frozenset(
     word.text for word in _UNREAD_INSTRUCTIONS
 )  # including those that `line` writes
 
 
 class Level(NamedTuple):
-    """`lacks` are words of the language that this level's reader does not read.
+    """`missing_words` are words of the language that this level's reader does not read.
 
     A Nano has the level of its chip, `uno`.
     """
@@ -40,7 +40,7 @@ class Level(NamedTuple):
     name: str
     board: str  # the board whose memory it has, named as in `robots.boards`
     sensor_bytes: int  # bytes of a set of sensors in its reader, one bit for each
-    lacks: frozenset[str] = frozenset()
+    missing_words: frozenset[str] = frozenset()
 
     @property
     def room(self) -> int:

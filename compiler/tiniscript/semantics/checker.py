@@ -181,7 +181,7 @@ class _Checker(Scope):
 
     def command(self, node: ast.Command, output: list[Statement]) -> None:
         word = WORDS.get(node.word)
-        if node.until is not None and (word is None or not word.role.lasts):
+        if node.until is not None and (word is None or not word.role.has_duration):
             self.wrong_calls.report_until_not_here(node, node.until, word)
             node = node._replace(until=None)
         if word is None:
@@ -192,7 +192,7 @@ class _Checker(Scope):
         if len(arguments) != len(word.arguments):
             self.wrong_calls.report_count(word, arguments, span)
             return
-        is_endless = word.role.lasts and arguments[0].expression[0].op == "FOREVER"
+        is_endless = word.role.has_duration and arguments[0].expression[0].op == "FOREVER"
         if is_endless and node.until is None and not self.has_tasks:
             self.wrong_calls.report_forever(arguments[0].span, word, node)
         argument_specs, unit_part = word.arguments, arguments[0].unit if word.role.is_move else None
@@ -211,14 +211,14 @@ class _Checker(Scope):
         ]
         if len(self.diagnostics) > diagnostic_count:
             self.wrong_calls.report_values(node, word, diagnostic_count)
-        if word.stands_for:
+        if word.expansion:
             if len(self.diagnostics) == diagnostic_count:
                 self.add_expansion(word, arguments, span, output)
             return
         self.check_stack_fits(values, span)
         self.add_readings(values, span, output)
         terms = [value.terms for value in values]
-        if word.role.lasts:
+        if word.role.has_duration:
             until = None if node.until is None else self.until(node.until)
             time, power = None if is_endless else terms[0], terms[-1] if word.role.is_move else None
             unit = "" if unit_part is None else unit_part.op
@@ -233,7 +233,7 @@ class _Checker(Scope):
         """Make what the instructions make that a word stands for, with these values."""
         names = [argument.name.upper() for argument in word.arguments]
         argument_of = dict(zip(names, arguments, strict=True))
-        for instruction in parse(Source(word.stands_for)).program.body:
+        for instruction in parse(Source(word.expansion)).program.body:
             _NODE_CHECKS[type(instruction)](self, _relocate(instruction, span, argument_of), output)
 
     def check_unit(self, node: ast.Command, unit: ast.Part) -> None:
@@ -359,10 +359,11 @@ class _Checker(Scope):
                 return
         values = [self.types.value(argument) for argument in arguments]
         for argument, value, number in zip(arguments, values, procedure.values, strict=True):
-            expected = self.types.variable_types[number]
-            if ANY not in (expected, value.type) and expected != value.type:
+            expected_type = self.types.variable_types[number]
+            if ANY not in (expected_type, value.type) and expected_type != value.type:
                 self.report(codes.CALL_KIND, argument.span, name=self.variables[number],
-                            word=node.word, old="@" + expected, new="@" + value.type)  # fmt: skip
+                            word=node.word, old="@" + expected_type,
+                            new="@" + value.type)  # fmt: skip
         self.check_stack_fits(values, node.span)
         self.add_readings(values, node.span, output)
         for value, number in zip(values, procedure.values, strict=True):

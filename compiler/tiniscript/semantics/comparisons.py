@@ -169,9 +169,9 @@ def comparisons_in(condition: Expression, kit: Kit) -> Iterator[Comparison]:
     """Yield the comparisons within a condition; a variable is taken for a number amid the range."""
     for k in range(len(condition) - 2):
         terms = condition[k : k + 3]
-        middle = next(((device.low + device.high) // 2 for device in _devices(terms, kit)), 0)
+        middle_value = next(((device.low + device.high) // 2 for device in _devices(terms, kit)), 0)
         likely_terms = tuple(
-            Term("NUMBER", middle) if term.op == "VARIABLE" else term for term in terms
+            Term("NUMBER", middle_value) if term.op == "VARIABLE" else term for term in terms
         )
         comparison = comparison_of(likely_terms, kit)
         if comparison is not None:

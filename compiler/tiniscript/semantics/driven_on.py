@@ -25,19 +25,21 @@ def find_move_end(source: Source, program: ast.Program, move: ast.Command) -> di
     power = source[move.arguments[1].span]
     if not power.isdecimal():
         return {}
-    following = _instructions_after(program.body, move)
-    first, second = (*following[:2], None, None)[:2]
+    following_instructions = _instructions_after(program.body, move)
+    first, second = (*following_instructions[:2], None, None)[:2]
     if isinstance(first, ast.Command) and first.word == "W" and _is_stop(second):
         time = source[first.arguments[0].span] if first.arguments else ""
         until_text = f" UNTIL({source[first.until.span]})" if first.until else ""
         if time and (until_text or time.upper() != "FOREVER"):
-            instructions_text = "; ".join(source[node.span] for node in (move, *following[:2]))
+            instructions_text = "; ".join(
+                source[node.span] for node in (move, *following_instructions[:2])
+            )
             return {
                 "used": instructions_text,
                 "fix": "",
                 "whole": f"{move.word}({time}, {power}){until_text}",
             }
-    for instruction in following:
+    for instruction in following_instructions:
         if _is_stop(instruction):
             return {"used": source[move.span], "running": _MOTORS[move.word].format(power)}
         if not isinstance(instruction, (ast.Command, ast.Assign, ast.Loop)) or _ends_a_move(

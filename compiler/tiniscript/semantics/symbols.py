@@ -65,14 +65,16 @@ class Scope:
         """Say that `name` is used before it has a value, and how it gets one first."""
         hints = self._line_to_move_up(name, use_span)
         body = self.parsed_program.body
-        enclosing = next((node for node in body if node.span.end > use_span.start), body[0])
-        line_number = self.source.position(enclosing.span.start)[0]
+        enclosing_statement = next(
+            (node for node in body if node.span.end > use_span.start), body[0]
+        )
+        line_number = self.source.position(enclosing_statement.span.start)[0]
         if hints["line"] and line_number < self.source.position(use_span.start)[0]:
             hints = {
                 **hints,
                 "row": str(line_number),
             }  # inside a block it would be done again and again
-        insert_offset = (enclosing if hints["line"] else body[0]).span.start
+        insert_offset = (enclosing_statement if hints["line"] else body[0]).span.start
         value = hints["first"] or hints["before"] or f"{name} = {hints['zero']}"
         separator = "\n" if "\n" in self.source.text else "; "
         edits = [Edit(Span(insert_offset, insert_offset), value + separator)]

@@ -71,7 +71,7 @@ def _report_lamp(scope: Scope, node: ast.Command) -> bool:
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     starting_words = (
-        starting_word for starting_word in WORDS.values() if starting_word.role.begins
+        starting_word for starting_word in WORDS.values() if starting_word.role.can_start_item
     )
     commands = [
         starting_word.text

@@ -116,7 +116,7 @@ class WrongCalls:
         call = source[Span(node.span.start, start)].rstrip()
         own_name = self.scope.names.get(node.word)
         role = word.role.name if word else own_name.kind if own_name else "def"
-        is_act = word is not None and word.is_call and not word.stands_for
+        is_act = word is not None and word.is_call and not word.expansion
         template = _UNTIL_REPAIR_BY_ROLE.get(
             role, _REPEATED_CALL if is_act else "F(5, 60) UNTIL({c})"
         )

@@ -130,7 +130,7 @@ class Attending:
 
     # -- the robot --------------------------------------------------------------------------------
 
-    def attend(self, link: RobotLink, limit_s: float = POLL_INTERVAL_S) -> None:
+    def attend(self, link: RobotLink, timeout_s: float = POLL_INTERVAL_S) -> None:
         """Pass on waiting requests, and report new events."""
         if self._wants_stop:
             self._apply_news(link.news())  # no earlier stop confirms this one
@@ -152,7 +152,7 @@ class Attending:
             except BadRequest:
                 self._stop_counts.pop(request["id"], None)
                 self.queue_news([{"id": request["id"], "failure": "bad_request"}])
-        self._apply_news(link.news(limit_s))
+        self._apply_news(link.news(timeout_s))
         if self.is_attended:
             self._is_silent = False
         elif link.has_run and not self._is_silent:

@@ -75,12 +75,12 @@ def data_of(form: Form) -> dict[str, Any]:
 
 def from_data(data: dict[str, Any]) -> Form:
     """Return the blocks that the page has sent. Raises KeyError and the like where it has a bug."""
-    loose = tuple(
+    loose_stacks = tuple(
         Stack(_blocks_from(fields["body"]), _value_from(fields["value"]))
         for fields in data["loose"]
     )
     note, is_one_line = data["note"], data["is_one_line"]
-    return Form(data["start"], note, is_one_line, _blocks_from(data["body"]), loose)
+    return Form(data["start"], note, is_one_line, _blocks_from(data["body"]), loose_stacks)
 
 
 def size_of(form: Form) -> int:

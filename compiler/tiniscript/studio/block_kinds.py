@@ -102,8 +102,8 @@ KINDS = {kind.name: kind for kind in (
 # `block/HORN` in the catalogue: `HORN = BEEP(0.5, 440)`, or the name.
 _PLAIN_WORDS = [word for word in WORDS.values() if is_plain(word)]
 PLAIN_TEXTS = {
-    word.text: f"{{{word.text}}} {word.usage.upper()} = {word.stands_for}"
-    if word.stands_for else f"{{{word.text}}} {word.text}"
+    word.text: f"{{{word.text}}} {word.usage.upper()} = {word.expansion}"
+    if word.expansion else f"{{{word.text}}} {word.text}"
     for word in _PLAIN_WORDS
 }
 KINDS |= {kind.name: kind for kind in (

@@ -35,13 +35,13 @@ def mark_code(sentence: str, kit: Kit) -> str:
     """Return a sentence with back quotes around its code, as much of it as is read as one block."""
     if "`" in sentence:
         return sentence  # the sentence mentions its values
-    parts, at = [], 0
-    while match := _BEGINNING.search(sentence, at):
+    parts, offset = [], 0
+    while match := _BEGINNING.search(sentence, offset):
         start, word_end = match.start(), match.start() + len(match["word"])
         end = _end_of_code(sentence, start, kit)
-        parts += [sentence[at:start], f"`{sentence[start:end]}`" if end else match["word"]]
-        at = end or word_end
-    return "".join((*parts, sentence[at:]))
+        parts += [sentence[offset:start], f"`{sentence[start:end]}`" if end else match["word"]]
+        offset = end or word_end
+    return "".join((*parts, sentence[offset:]))
 
 
 def codes_in(sentences: list[str]) -> list[str]:

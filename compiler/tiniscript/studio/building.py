@@ -106,9 +106,9 @@ def find_tools() -> Tools | None:
     if system_paths[0] and system_paths[1]:
         calls.append(([system_paths[0]], [system_paths[1]]))
     for node_call, npm_call in calls:
-        completed = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
-        version = completed.stdout.strip().lstrip("v")
-        if completed.returncode == 0 and int(version.partition(".")[0]) >= OLDEST_NODE:
+        result = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
+        version = result.stdout.strip().lstrip("v")
+        if result.returncode == 0 and int(version.partition(".")[0]) >= OLDEST_NODE:
             return Tools(node_call, npm_call, version)
     return None
 

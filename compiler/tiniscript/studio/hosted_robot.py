@@ -77,8 +77,8 @@ class HostedRobot:
         """Return whether the page has left it, whatever the robot does."""
         return self._is_leaving or self.attending.has_left
 
-    def join(self, limit_s: float) -> None:
-        self._thread.join(limit_s)
+    def join(self, timeout_s: float) -> None:
+        self._thread.join(timeout_s)
 
     @property
     def is_attended(self) -> bool:

@@ -29,9 +29,9 @@ def plain_name(typed_name: str) -> str:
     return printable(line, NAME_CHARACTERS)
 
 
-def are_alike(one: str, other: str) -> bool:
+def are_alike(name: str, other_name: str) -> bool:
     """Return whether two names look alike, or differ only in capitals."""
-    return not _looks(one).isdisjoint(_looks(other))
+    return not _looks(name).isdisjoint(_looks(other_name))
 
 
 def free_name(wanted_name: str, taken_names: Iterable[str]) -> str:

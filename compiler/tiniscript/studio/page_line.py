@@ -51,12 +51,12 @@ class PageKeys(KeyRing):
         since then stays as it is here. Raises BadKeys.
         """
         kept_keys = decode_keys(data) if data else []
-        before, here, there = (
+        keys_before, own_keys, page_keys = (
             {key[:3]: key for key in keys} for keys in (self._kept_keys, self.keys, kept_keys)
         )
         merged_keys = [
-            (here if there.get(key) == before.get(key) else there).get(key)
-            for key in {**there, **here}
+            (own_keys if page_keys.get(key) == keys_before.get(key) else page_keys).get(key)
+            for key in {**page_keys, **own_keys}
         ]
         self.keys, self._kept_keys = [key for key in merged_keys if key is not None], kept_keys
         self.has_changed = self.keys != kept_keys
@@ -91,10 +91,10 @@ class PageLine(LinkConnection):
     def robot(self) -> DeviceInfo | None:
         return self.session.robot
 
-    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        return make(self.session)
+    def begin(self, make_request: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        return make_request(self.session)
 
-    def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = 0) -> tuple[int, Event] | None:
         return self._events.take_event() if self._events else None
 
     def enable_place_events(self) -> None:

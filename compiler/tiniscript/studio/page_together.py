@@ -48,13 +48,13 @@ def begin(fields: Json, data: bytes) -> Json:
     has kept of before it was loaded again."""
     global _newest, _previous
     name, news, store = fields["news"]["page"], fields["news"], fields.get("kept")
-    loose: list[str] = []
+    loose_rows: list[str] = []
     try:
         page = Page.of(name, news, store)
-        loose = list(map(str, store["loose"])) if store else []
+        loose_rows = list(map(str, store["loose"])) if store else []
     except (Refused, KeyError, TypeError, ValueError, AttributeError):
         page = Page.of(name, news)
-    _previous, _newest = None, State(1, page, loose)
+    _previous, _newest = None, State(1, page, loose_rows)
     return _answer(_newest, data.decode(), None)
 
 
@@ -72,7 +72,7 @@ def step(fields: Json, data: bytes) -> Json:
     text, page, blocks = data.decode(), state.page.copy(), state.blocks
     caret, is_line_edited = fields["caret"], fields["hot"]
     text_rows = _rows(text, caret if is_line_edited else None)
-    rows, loose = split_loose(text_rows)
+    rows, loose_rows = split_loose(text_rows)
     page.type(rows, caret, is_line_edited)
     page.flush()
     printed_form: PrintedForm | None = None
@@ -80,16 +80,16 @@ def step(fields: Json, data: bytes) -> Json:
         form = from_data(fields["blocks"]["form"])
         printed_form = format_blocks(form)
         blocks = _write_blocks(page, blocks, form, fields["blocks"]["ids"])
-        loose = split_loose(_rows(printed_form.text, None))[1]
+        loose_rows = split_loose(_rows(printed_form.text, None))[1]
     for news in fields["news"]:
         page.receive(news)
     if "back" in fields:
         (page.undo if fields["back"] == "undo" else page.redo)()
-    _previous, _newest = state, State(_newest.version + 1, page, loose, blocks)
+    _previous, _newest = state, State(_newest.version + 1, page, loose_rows, blocks)
     carets = None
     if caret < len(rows):
         carets = caret, page.caret
-    elif loose:  # loose blocks come after both texts
+    elif loose_rows:  # loose blocks come after both texts
         carets = caret, caret - len(text_rows) + len(_all_rows(_newest))
     answer = _answer(_newest, text, carets)
     if printed_form is not None:

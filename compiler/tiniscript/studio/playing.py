@@ -43,14 +43,15 @@ PROGRAM_EVENTS = ("SHOW", "DONE", "FAULT")  # program events that a real robot r
 class Divergence(NamedTuple):
     """The place where a recording and the virtual robot diverge.
 
-    `what` is again (a virtual robot has done all of it again), otherwise (not), same, missed (the
-    same until values did not arrive), unread (the same until the program read what the recording
-    does not have), empty (nothing to compare), value, time, robot_more or virtual_more; `line` is
-    that of the program, or 0, and `robot` and `virtual` are the rows there. `agreed` rows were the
-    same; `sensor` was read. `at_ms` is the time there, since the virtual robot was switched on.
+    `outcome` is again (a virtual robot has done all of it again), otherwise (not), same, missed
+    (the same until values did not arrive), unread (the same until the program read what the
+    recording does not have), empty (nothing to compare), value, time, robot_more or virtual_more;
+    `line` is that of the program, or 0, and `robot` and `virtual` are the rows there. `agreed` rows
+    were the same; `sensor` was read. `at_ms` is the time there, since the virtual robot was
+    switched on.
     """
 
-    what: str
+    outcome: str
     agreed: int = 0
     line: int = 0
     robot: Row | None = None
@@ -259,15 +260,17 @@ class PlayedRun(Simulation):
         return tuple(row for row in rows[:count] if not row.is_input)
 
     def _diverge(
-        self, what: str, agreed: int, recorded_row: Row | None, virtual_row: Row | None
+        self, outcome: str, agreed: int, recorded_row: Row | None, virtual_row: Row | None
     ) -> None:
         at_ms = min(row.ms for row in (recorded_row, virtual_row) if row is not None)
         offset = (
-            virtual_row.at if virtual_row is not None and virtual_row.at >= 0 else self.robot.offset
+            virtual_row.offset
+            if virtual_row is not None and virtual_row.offset >= 0
+            else self.robot.offset
         )
         location = self.playable.program_map.location_at(offset) if offset is not None else None
         line = location.line if location is not None else 0
-        self.divergence = Divergence(what, agreed, line, recorded_row, virtual_row, "", at_ms)
+        self.divergence = Divergence(outcome, agreed, line, recorded_row, virtual_row, "", at_ms)
 
     # -- a real robot's run, beside it ------------------------------------------------------------
 

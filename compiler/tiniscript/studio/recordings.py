@@ -66,11 +66,11 @@ class BadRecording(Exception):
 
 
 class Row(NamedTuple):
-    """An event at `ms`; `at` is the place of a SHOW in the code, if known."""
+    """An event at `ms`; `offset` is the place of a SHOW in the code, if known."""
 
     ms: int
     event: str
-    at: int = -1
+    offset: int = -1
 
     @property
     def is_input(self) -> bool:
@@ -84,7 +84,7 @@ class Row(NamedTuple):
     @property
     def cells(self) -> list[Any]:
         """Return the cells in the file."""
-        return [*self] if self.at >= 0 else [*self[:2]]
+        return [*self] if self.offset >= 0 else [*self[:2]]
 
     @property
     def remote_state(self) -> RemoteState | None:
@@ -340,7 +340,7 @@ def _row(line: str, number: int, robot_kind: str) -> Row:
         isinstance(row.event, str) and robot_kind == VIRTUAL and row.remote_state
     ):
         raise BadRecording("unreadable", number)
-    if row.ms < 0 or not -1 <= row.at < 1 << 16:
+    if row.ms < 0 or not -1 <= row.offset < 1 << 16:
         raise BadRecording("unreadable", number)
     if row.event.startswith("KEYS") and (row.remote_state is None or not row.remote_state.is_sound):
         raise BadRecording("unreadable", number)

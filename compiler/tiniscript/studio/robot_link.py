@@ -81,7 +81,7 @@ class BadRequest(Exception):
 
 class _PageRequest(NamedTuple):
     number: int
-    pending: PendingRequest[Any]
+    pending_request: PendingRequest[Any]
     is_program: bool  # whether it sends or starts a program, not a line
     is_keys: bool  # whether it is a state of the remote control; only the newest waits
 
@@ -114,7 +114,7 @@ class RobotLink:
     @property
     def has_run(self) -> bool:
         return self._own_run is not None or any(
-            request.pending.starts for request in self._requests
+            request.pending_request.starts_program for request in self._requests
         )
 
     def ask(self, request: Json) -> None:
@@ -131,7 +131,7 @@ class RobotLink:
             raise BadRequest
         if action != "keys" and sum(not item.is_keys for item in self._requests) >= MOST_WAITING:
             raise BadRequest
-        make = _MAKERS[action](request)
+        make_request = _MAKERS[action](request)
         limit_ms = whole_number(request, "limit_ms", 1, LONGEST_LIMIT_MS, LIMIT_MS)
         refusal_reply = self._refusal_of(request) if "image" in request else None
         if refusal_reply is not None:
@@ -139,10 +139,10 @@ class RobotLink:
             return
 
         def make_pending(session: Requester) -> PendingRequest[Any]:
-            pending = make(session)
+            pending_request = make_request(session)
             if action != "claim":  # a claim waits for a hand on the button
-                pending.limit_ms = limit_ms
-            return pending
+                pending_request.limit_ms = limit_ms
+            return pending_request
 
         if action in ("upload", "start") and self._tells_readings:
             self._connection.begin(lambda session: session.tell_readings(True))
@@ -155,7 +155,7 @@ class RobotLink:
         """Stop the robot, whoever started its program."""
         self._connection.stop()
 
-    def news(self, limit_s: float = 0) -> list[Json]:
+    def news(self, timeout_s: float = 0) -> list[Json]:
         """Return answers and events since the last call; wait that long for one.
 
         Raises ConnectionLost.
@@ -163,7 +163,7 @@ class RobotLink:
         news, self._answers = self._answers, []
         news += self._outcomes()
         for _ in range(MOST_EVENTS):
-            event = self._connection.event(0 if news else limit_s)
+            event = self._connection.event(0 if news else timeout_s)
             news += self._outcomes()  # an answer is there before the events that follow from it
             if event is None:
                 break
@@ -176,16 +176,18 @@ class RobotLink:
 
     def _outcomes(self) -> list[Json]:
         finished_requests = [
-            request for request in self._requests if request.pending.outcome is not None
+            request for request in self._requests if request.pending_request.outcome is not None
         ]
-        self._requests = [request for request in self._requests if request.pending.outcome is None]
+        self._requests = [
+            request for request in self._requests if request.pending_request.outcome is None
+        ]
         for request in finished_requests:
-            reply = request.pending.outcome
+            reply = request.pending_request.outcome
             if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
                 if request.is_program:
                     self._program_run = self._known_run(reply.values.run)
         return [
-            {"id": request.number, **self._answer_data(request.pending)}
+            {"id": request.number, **self._answer_data(request.pending_request)}
             for request in finished_requests
         ]
 
@@ -238,15 +240,15 @@ class RobotLink:
             return None
         return refusal(_image(request), robots.load(robot_of(request)), robot)
 
-    def _answer_data(self, pending: PendingRequest[Any]) -> Json:
-        reply = pending.outcome
+    def _answer_data(self, pending_request: PendingRequest[Any]) -> Json:
+        reply = pending_request.outcome
         assert reply is not None
         if reply.status != OK:
             return self._failure_data(reply)
         values = reply.values
         if isinstance(values, ReceiptReply):
             run = self._known_run(values.run)
-            if pending.starts and run != self._ended_run:
+            if pending_request.starts_program and run != self._ended_run:
                 self._own_run = run
             return {
                 "ok": True,
@@ -259,8 +261,8 @@ class RobotLink:
             variables = [value / ONE for (value,) in iter_unpack("<i", values.values)]
             return {"ok": True, "variables": variables}
         if isinstance(values, ReadTasksReply):
-            tasks = [[TASK_STATES[state][0], at]
-                     for state, at, _ in iter_unpack("<BHI", values.tasks)]  # fmt: skip
+            tasks = [[TASK_STATES[state][0], offset]
+                     for state, offset, _ in iter_unpack("<BHI", values.tasks)]  # fmt: skip
             return {"ok": True, "tasks": tasks}
         robot = self._connection.robot
         if isinstance(values, HelloReply) and robot is not None:
@@ -286,17 +288,17 @@ class RobotLink:
         data: Json = {"event": event.name}
         if event.name == "SHOW":
             data["value"] = value_text(event.value, bool(event.is_yes_no))
-            if event.at >= 0:
-                data |= {"at": event.at, "program": f"{event.program:08x}"}
+            if event.offset >= 0:
+                data |= {"at": event.offset, "program": f"{event.program:08x}"}
         elif event.name == "FAULT":
-            data |= {"fault": fault_name(event.fault), "at": event.at,
+            data |= {"fault": fault_name(event.fault), "at": event.offset,
                       "program": f"{event.program:08x}"}  # fmt: skip
         elif event.name == "STOPPED":
             data["cause"] = cause_name(event.cause)
         elif event.name == "PLACE":
-            data |= {"at": event.at, "program": f"{event.program:08x}"}
+            data |= {"at": event.offset, "program": f"{event.program:08x}"}
         elif event.name == "HALTED":
-            data |= {"at": event.at, "task": event.task,
+            data |= {"at": event.offset, "task": event.task,
                       "is_program": self._known_run(event.run) == self._program_run}  # fmt: skip
         elif event.name == "MISSED":
             data["count"] = event.count

@@ -194,7 +194,7 @@ class Simulation:
         for event in self.session.events():
             self.is_stopped = self.is_stopped or event.name == "STOPPED"
             if event.name == "FAULT":
-                self.fault_at = event.at
+                self.fault_at = event.offset
 
     def stop(self) -> None:
         """Stop the robot, as any computer at its line does, and wait until it has confirmed it.

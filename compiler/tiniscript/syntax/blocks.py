@@ -79,7 +79,7 @@ class Blocks:
         self._depth = 0  # open blocks, not counting those allowed only at the top level
 
     @property
-    def innermost(self) -> Block | None:
+    def innermost_block(self) -> Block | None:
         return self.open_blocks[-1] if self.open_blocks else None
 
     @property
@@ -96,8 +96,8 @@ class Blocks:
         parameters: Sequence[Parameter] = (),
     ) -> None:
         if word in TASK_WORDS and self.open_blocks:
-            enclosing = self.open_blocks[-1].word
-            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=enclosing)
+            enclosing_word = self.open_blocks[-1].word
+            self._reporter.report(codes.TASK_NOT_TOP, span, word=word, around=enclosing_word)
         elif word in TASK_WORDS:
             self.task_count += 1
             if self.task_count == TASKS + 1:

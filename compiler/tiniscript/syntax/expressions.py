@@ -207,11 +207,11 @@ class ExpressionParser:
         tokens, i = self.cursor.tokens, self.cursor.i
         if tokens[i - 1].kind == "=" and not (postfix.parts or postfix.pending_operators):
             return False
-        following = tokens[min(i + 1, len(tokens) - 1)]
+        following_token = tokens[min(i + 1, len(tokens) - 1)]
         begins_value = (
-            following.kind in (NUMBER, "(", "-")
-            or _is_name(following)
-            or following.text in FUNCTIONS
+            following_token.kind in (NUMBER, "(", "-")
+            or _is_name(following_token)
+            or following_token.text in FUNCTIONS
         )
         if token.kind != "+" or not begins_value:
             return False
@@ -236,11 +236,11 @@ class ExpressionParser:
             self.reporter.fail(
                 code_of_role.get(word_row.role.name, other_code), token.span, word=token.text
             )
-        previous = (
+        previous_token = (
             self.cursor.tokens[self.cursor.index_before(self.cursor.i)] if self.cursor.i else token
         )
-        hints = {} if previous.kind is UNKNOWN_SIGN else {"before": previous.text}
-        self.reporter.fail(codes.MISSING_VALUE, token.span or previous.span, **hints)
+        hints = {} if previous_token.kind is UNKNOWN_SIGN else {"before": previous_token.text}
+        self.reporter.fail(codes.MISSING_VALUE, token.span or previous_token.span, **hints)
 
     def ends_above(self, token: Token) -> bool:
         """Return whether this token begins an instruction below an unfinished line.
@@ -352,16 +352,16 @@ class ExpressionParser:
 
     def report_missing_close(self, bracket: int) -> NoReturn:
         """Report that a comma or a closing bracket is missing."""
-        token, previous = self.cursor.peek_inner(), self.cursor.last_token
+        token, previous_token = self.cursor.peek_inner(), self.cursor.last_token
         self.reject_semicolon(bracket)
-        self.reject_unit(token if previous.text not in EXTENTS else previous)
+        self.reject_unit(token if previous_token.text not in EXTENTS else previous_token)
         self.reject_unknown_character(token)
         if token.kind in (NUMBER, WORD, "(") and not self.ends_above(token):
             word = self.cursor.tokens[bracket - 1].text
             usage = {"usage": WORDS[word].usage} if word in WORDS else {}
             self.reporter.fail(codes.MISSING_COMMA, token.span, **usage)
         span = self.cursor.tokens[bracket].span
-        self.reporter.fail(codes.MISSING_CLOSE, span, before=previous.text)
+        self.reporter.fail(codes.MISSING_CLOSE, span, before=previous_token.text)
 
 
 def _is_name(token: Token) -> bool:

@@ -137,13 +137,13 @@ def is_one_line(pieces: list[Piece]) -> bool:
     )
 
 
-def _continues_line(previous: Piece, piece: Piece, is_single_line: bool) -> bool:
+def _continues_line(previous_piece: Piece, piece: Piece, is_single_line: bool) -> bool:
     """Return whether a piece continues the line of the previous one."""
     if not piece.is_instruction:
         return False
     if is_single_line:
-        return bool(previous.tokens)
-    return previous.is_setup and not previous.comments and not piece.follows_blank
+        return bool(previous_piece.tokens)
+    return previous_piece.is_setup and not previous_piece.comments and not piece.follows_blank
 
 
 def _row(group: list[Piece], is_single_line: bool) -> Row:
@@ -196,24 +196,24 @@ def _depths(rows: list[Row]) -> list[int]:
 def instruction_text(tokens: list[Token]) -> str:
     """Return an instruction on one line, with spaces where they belong."""
     parts = [tokens[0].text]
-    previous = tokens[0]
-    is_sign = False  # whether `previous` is a minus that belongs to the next token
+    previous_token = tokens[0]
+    is_sign = False  # whether `previous_token` is a minus that belongs to the next token
     for token in tokens[1:]:
-        if _space_between(previous, is_sign, token):
+        if _space_between(previous_token, is_sign, token):
             parts.append(" ")
         is_decimal = token.kind is NUMBER and token.text.startswith(".")
         parts.append("0" + token.text if is_decimal else token.text)
-        is_sign = token.kind == "-" and previous.text in _BEFORE_VALUE
-        previous = token
+        is_sign = token.kind == "-" and previous_token.text in _BEFORE_VALUE
+        previous_token = token
     return "".join(parts)
 
 
-def _space_between(previous: Token, is_sign: bool, token: Token) -> bool:
+def _space_between(previous_token: Token, is_sign: bool, token: Token) -> bool:
     """Return whether two tokens are separated by a space; `is_sign`: the first is the minus of
     -X.
     """
-    if is_sign or previous.kind in ("(", ";", "|") or token.kind in (")", ",", ";", "|"):
+    if is_sign or previous_token.kind in ("(", ";", "|") or token.kind in (")", ",", ";", "|"):
         return False
     if token.kind == "(":
-        return previous.kind is not WORD or previous.text in _WORD_OPERATORS
+        return previous_token.kind is not WORD or previous_token.text in _WORD_OPERATORS
     return True

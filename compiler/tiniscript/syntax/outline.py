@@ -67,7 +67,7 @@ class _LoneBlocks(Blocks):
     """Each header, arm and end is right for itself."""
 
     @property
-    def innermost(self) -> Block:
+    def innermost_block(self) -> Block:
         return Block("IF", Span(0, 0), None, None, ())
 
     def begin(self, *header: object, **name: object) -> None:

@@ -121,13 +121,13 @@ class Parser:
             self.expressions.reject_unknown_character(token)
             code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
             self.reporter.fail(code, token.span, found=token.text)
-        following = tokens[cursor.i + 1]
+        following_token = tokens[cursor.i + 1]
         text = token.text
-        if following.kind == "|" and text in ("SI", "SB"):
+        if following_token.kind == "|" and text in ("SI", "SB"):
             self.reporter.report(codes.SETUP_TWICE, token.span, word=text, found=text)
             cursor.i += 2
             return
-        if following.kind == "=":
+        if following_token.kind == "=":
             self.assignment(token)
         else:
             _RULES.get(text, Parser.command)(self, token)
@@ -153,15 +153,15 @@ class Parser:
         cursor = self.cursor
         tokens = cursor.tokens
         word_row = WORDS.get(word.text)
-        following = tokens[cursor.i + 1]
+        following_token = tokens[cursor.i + 1]
         if word_row is None:
-            self.own_name(word, following)
+            self.own_name(word, following_token)
         elif not word_row.role.is_instruction and word.text != "START":
             code = _NO_COMMANDS.get(word_row.role.name, codes.NOT_AN_INSTRUCTION)
             self.reporter.fail(code, word.span, word=word.text, found=word.text)
         cursor.i += 1
         arguments = until = None
-        if following.kind == "(":
+        if following_token.kind == "(":
             arguments = self.arguments_of(word, word_row)
         elif word_row is not None and word_row.arguments:
             self.report_missing_bracket(word_row)
@@ -283,7 +283,7 @@ class Parser:
         self.blocks.begin("TASK", word.span)
 
     def arm(self, word: Token) -> None:
-        block = self.blocks.innermost
+        block = self.blocks.innermost_block
         self.cursor.i += 1
         argument = None
         try:

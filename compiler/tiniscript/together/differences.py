@@ -305,24 +305,24 @@ class _Script:
             [child for child in wanted_ids if self._work_ids.get(child) in index_of_id],
             lambda z: index_of_id[self._work_ids[z]],
         )
-        previous = ""
+        previous_id = ""
         k = 0
         while k < len(wanted_ids):
             child = wanted_ids[k]
-            place = Place(container, previous)
+            place = Place(container, previous_id)
             if self._are_all_new(child):
                 subtrees = []
                 while k < len(wanted_ids) and self._are_all_new(wanted_ids[k]):
                     subtrees.append(self._make_subtree(wanted_ids[k]))
                     k += 1
                 self._apply(Insert(place, tuple(subtrees)))
-                previous = subtrees[-1].id
+                previous_id = subtrees[-1].id
                 continue
             if self._is_new(child):
                 self._wrap_or_insert(child, place, wanted_ids)
-                previous = self._work_ids[child]
+                previous_id = self._work_ids[child]
             elif child in staying_ids and self._work[self._work_ids[child]].parent == container:
-                previous = self._work_ids[child]
+                previous_id = self._work_ids[child]
             else:
                 run = [self._work_ids[child]]
                 while k + 1 < len(wanted_ids) and self._goes_with(
@@ -331,7 +331,7 @@ class _Script:
                     k += 1
                     run.append(self._work_ids[wanted_ids[k]])
                 self._apply(Move(tuple(run), place))
-                previous = run[-1]
+                previous_id = run[-1]
             k += 1
         for child in wanted_ids:
             if self._new_tree[child].kind == BLOCK:
@@ -347,7 +347,7 @@ class _Script:
         }
         wanted_work_ids = {self._work_ids.get(child) for child in wanted_ids}
         run: list[str] = []
-        for id in siblings[siblings.index(place.previous) + 1 if place.previous else 0 :]:
+        for id in siblings[siblings.index(place.previous_id) + 1 if place.previous_id else 0 :]:
             if id in inner_ids:
                 run.append(id)
             elif run or id in wanted_work_ids:
@@ -356,7 +356,7 @@ class _Script:
             self._apply(Insert(place, (self._make_subtree(new_id, with_children=False),)))
             return
         self._apply(Wrap(tuple(run), self._make_subtree(new_id, with_children=False, is_wrap=True)))
-        if self._work.previous_sibling(self._work_ids[new_id]) != place.previous:
+        if self._work.previous_sibling(self._work_ids[new_id]) != place.previous_id:
             self._apply(Move((self._work_ids[new_id],), place))
 
     def _goes_with(self, run: list[str], new_id: str, staying_ids: set[str]) -> bool:

@@ -53,10 +53,10 @@ class Refused(Exception):
 
 
 class Place(NamedTuple):
-    """After which sibling, `previous`; if it was removed, its former place counts."""
+    """After which sibling, `previous_id`; if it was removed, its former place counts."""
 
     container: str
-    previous: str
+    previous_id: str
 
 
 class Insert(NamedTuple):

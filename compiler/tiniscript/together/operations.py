@@ -141,23 +141,23 @@ def _depth(tree: Tree) -> int:
 
 def _current_place(tree: Tree, place: Place, moving_ids: frozenset[str] = frozenset()) -> Place:
     """Return a place as it is now. Raises Refused."""
-    container, previous = place
+    container, previous_id = place
     for _ in range(len(tree.former_place_by_id) + len(tree.node_by_id) + 2):
-        if previous in moving_ids and previous in tree:
-            container, previous = tree[previous].parent, tree.previous_sibling(previous)
-        elif previous and previous in tree:
-            return Place(tree[previous].parent, previous)
-        elif previous:  # it has been removed: use its old place
-            if previous not in tree.former_place_by_id:
+        if previous_id in moving_ids and previous_id in tree:
+            container, previous_id = tree[previous_id].parent, tree.previous_sibling(previous_id)
+        elif previous_id and previous_id in tree:
+            return Place(tree[previous_id].parent, previous_id)
+        elif previous_id:  # it has been removed: use its old place
+            if previous_id not in tree.former_place_by_id:
                 raise Refused(IS_GONE)
-            container, previous, _ = tree.former_place_by_id[previous]
+            container, previous_id, _ = tree.former_place_by_id[previous_id]
         elif container in tree:
             return Place(container, "")
         elif (
             container in tree.former_place_by_id
             and not tree.former_place_by_id[container].is_deleted
         ):  # its original place
-            container, previous, _ = tree.former_place_by_id[container]
+            container, previous_id, _ = tree.former_place_by_id[container]
         else:
             break
     raise Refused(IS_GONE)
@@ -165,10 +165,10 @@ def _current_place(tree: Tree, place: Place, moving_ids: frozenset[str] = frozen
 
 def _block_at(tree: Tree, place: Place, moving_ids: frozenset[str] = frozenset()) -> Place:
     """Return a place in a block as it is now. Raises Refused."""
-    current = _current_place(tree, place, moving_ids)
-    if tree[current.container].kind != BLOCK:
+    current_place = _current_place(tree, place, moving_ids)
+    if tree[current_place.container].kind != BLOCK:
         raise Refused(BAD)
-    return current
+    return current_place
 
 
 def _insert(tree: Tree, operation: Insert, uid: str) -> _Effect:
@@ -283,14 +283,14 @@ def _move(tree: Tree, operation: Move, uid: str) -> _Effect:
         raise Refused(UNPARSED)
     marks = dict(operation.marks)
     inverse: list[Operation] = []
-    previous = place.previous
+    previous_id = place.previous_id
     for id in ids:
         old_place = Place(tree[id].parent, tree.previous_sibling(id))
         inverse.insert(0, Move((id,), old_place, ((id, tree[id].mark(PLACE)),)))
         tree[old_place.container].children.remove(id)
-        tree.put([id], place.container, previous)
+        tree.put([id], place.container, previous_id)
         tree[id].marks[PLACE] = marks.get(id, uid)
-        previous = id
+        previous_id = id
     return [
         Move(tuple(ids), Place(place.container, tree.previous_sibling(ids[0])), operation.marks)
     ], inverse

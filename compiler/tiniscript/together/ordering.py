@@ -93,9 +93,9 @@ class SharedProgram:
         self.last_count_by_page.pop(page, None)  # the newest is the last
         self.last_count_by_page[page] = count
         while len(self.last_count_by_page) > MOST_PAGES:
-            oldest = next(iter(self.last_count_by_page))
-            del self.last_count_by_page[oldest]
-            self.refusals_by_page.pop(oldest, None)
+            oldest_page = next(iter(self.last_count_by_page))
+            del self.last_count_by_page[oldest_page]
+            self.refusals_by_page.pop(oldest_page, None)
 
     def news(self, page: str, since: int, epoch: str) -> Json:
         """Return the changes that a page lacks, or the whole program."""

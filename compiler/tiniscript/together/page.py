@@ -587,12 +587,20 @@ class Page:
     def _keep_refused_text(self, refused_changes: list[Change]) -> None:
         """Turn text typed into an instruction deleted by others into a draft."""
         for change in refused_changes:
-            [first, *more] = change.operations
-            if more or not isinstance(first, Replace) or change.uid in self._undo_uids:
+            [operation, *other_operations] = change.operations
+            if (
+                other_operations
+                or not isinstance(operation, Replace)
+                or change.uid in self._undo_uids
+            ):
                 continue
-            text = dict(first.fields).get(TEXT, "")
-            if text and first.id in self.base.former_place_by_id and kind_of(text) == INSTRUCTION:
-                own_key = (first.id, OWN_LINE)
+            text = dict(operation.fields).get(TEXT, "")
+            if (
+                text
+                and operation.id in self.base.former_place_by_id
+                and kind_of(text) == INSTRUCTION
+            ):
+                own_key = (operation.id, OWN_LINE)
                 self.drafts.append(Draft([text], (own_key,), own_key, True))
 
     def _rebase(self) -> None:
@@ -675,9 +683,9 @@ class Page:
         for _ in range(MOST_STEPS):
             if id not in self.view.former_place_by_id:
                 break
-            container, previous, _ = self.view.former_place_by_id[id]
-            id = previous or container
-            for key in ((id, END_LINE), (id, OWN_LINE)) if previous else ((id, OWN_LINE),):
+            container, previous_id, _ = self.view.former_place_by_id[id]
+            id = previous_id or container
+            for key in ((id, END_LINE), (id, OWN_LINE)) if previous_id else ((id, OWN_LINE),):
                 if key in present_keys:
                     return key
         return None

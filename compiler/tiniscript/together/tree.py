@@ -81,7 +81,7 @@ class FormerPlace(NamedTuple):
     """The former place of a removed node; `is_deleted`: with its children."""
 
     container: str
-    previous: str
+    previous_id: str
     is_deleted: bool
 
 
@@ -182,10 +182,10 @@ class Tree:
             self.add(child, node.id, uid)
         return node
 
-    def put(self, ids: list[str], container: str, previous: str) -> None:
+    def put(self, ids: list[str], container: str, previous_id: str) -> None:
         """Put nodes in a place."""
         siblings = self.node_by_id[container].children
-        k = siblings.index(previous) + 1 if previous else 0
+        k = siblings.index(previous_id) + 1 if previous_id else 0
         siblings[k:k] = ids
         for id in ids:
             self.node_by_id[id].parent = container

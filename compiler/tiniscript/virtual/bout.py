@@ -75,29 +75,31 @@ class Mover:
 
     def speed_along(self, point: Point, direction: Point) -> float:
         """Return the speed of `point` in a direction, in cm/s."""
-        ahead, aside, lever = self._push_parts(point, direction)
+        forward_part, side_part, lever = self._push_parts(point, direction)
         percent_cm_s = self.body.speed_cm_s / 100
-        turning = (self.right - self.left) / 200 * self._turn_radians_s
+        turn_radians_s = (self.right - self.left) / 200 * self._turn_radians_s
         return (
-            (self.left + self.right) / 2 * percent_cm_s * ahead
-            + self.aside_cm_s * aside
-            + turning * lever
+            (self.left + self.right) / 2 * percent_cm_s * forward_part
+            + self.aside_cm_s * side_part
+            + turn_radians_s * lever
         )
 
     def speed_gain(self, point: Point, direction: Point) -> float:
         """Return the increase of that speed for a push of one percent of the stall force."""
-        ahead, aside, lever = self._push_parts(point, direction)
+        forward_part, side_part, lever = self._push_parts(point, direction)
         full_cm_s = self.body.speed_cm_s
-        straight = (ahead * ahead + SLIP_RATIO * aside * aside) * full_cm_s
-        return (straight + (self._turn_radians_s * lever) ** 2 / full_cm_s) / 100
+        straight_gain = (
+            forward_part * forward_part + SLIP_RATIO * side_part * side_part
+        ) * full_cm_s
+        return (straight_gain + (self._turn_radians_s * lever) ** 2 / full_cm_s) / 100
 
     def push(self, point: Point, direction: Point, percent: float) -> None:
-        ahead, aside, lever = self._push_parts(point, direction)
+        forward_part, side_part, lever = self._push_parts(point, direction)
         full_cm_s = self.body.speed_cm_s
-        turning = lever * self._turn_radians_s / full_cm_s
-        self.left += percent * (ahead - turning)
-        self.right += percent * (ahead + turning)
-        self.aside_cm_s += percent / 100 * SLIP_RATIO * aside * full_cm_s
+        turn_share = lever * self._turn_radians_s / full_cm_s
+        self.left += percent * (forward_part - turn_share)
+        self.right += percent * (forward_part + turn_share)
+        self.aside_cm_s += percent / 100 * SLIP_RATIO * side_part * full_cm_s
 
     def move(self) -> None:
         old_pose = self.pose
@@ -171,9 +173,13 @@ class Opponent(Mover):
             around_ms = TURN_AWAY_DEGREES / (self.body.turn_s * power / 100) * 1000
             self._manoeuvres = [(BACK_UP_MS, (-power, -power)), (around_ms, (-power, power))]
         if self._manoeuvres:
-            (left_ms, self.wanted_speeds), *later = self._manoeuvres
+            (left_ms, self.wanted_speeds), *later_manoeuvres = self._manoeuvres
             left_ms -= DECISION_INTERVAL_MS
-            self._manoeuvres = [(left_ms, self.wanted_speeds), *later] if left_ms > 0 else later
+            self._manoeuvres = (
+                [(left_ms, self.wanted_speeds), *later_manoeuvres]
+                if left_ms > 0
+                else later_manoeuvres
+            )
         elif self._sees(target):
             self.wanted_speeds = (power, power)
         else:
@@ -289,10 +295,12 @@ class Bout(Driving):
             else 2
         )
         for _ in range(sweeps if touching_pairs else 1):
-            for first, second, _, ours, theirs in touching_pairs:
-                direction = _direction(theirs, ours)
+            for first, second, _, own_point, other_point in touching_pairs:
+                direction = _direction(other_point, own_point)
                 radius = second.hull.radius_cm
-                point = Point(theirs.x + direction.x * radius, theirs.y + direction.y * radius)
+                point = Point(
+                    other_point.x + direction.x * radius, other_point.y + direction.y * radius
+                )
                 percent = _push_apart(first, second, point, direction, math.inf)
                 _push_apart(first, second, point, Point(-direction.y, direction.x), GRIP * percent)
             for mover, contact in wall_contacts:
@@ -319,9 +327,9 @@ class Bout(Driving):
         """Move what overlaps; return whether nothing has."""
         is_parted = True
         for first, second in combinations(self._movers, 2):
-            gap, ours, theirs = self._gap(first, second)
+            gap, own_point, other_point = self._gap(first, second)
             if gap < -EXACT_CM:
-                direction = _direction(theirs, ours)
+                direction = _direction(other_point, own_point)
                 first.shift(direction, -gap / 2)
                 second.shift(Point(-direction.x, -direction.y), -gap / 2)
                 is_parted = False
@@ -336,8 +344,8 @@ class Bout(Driving):
     @staticmethod
     def _gap(first: Mover, second: Mover) -> tuple[float, Point, Point]:
         """Return the distance of two bodies, and the nearest points of their spines."""
-        distance_cm, ours, theirs = gap_between(first.spine(), second.spine())
-        return distance_cm - first.hull.radius_cm - second.hull.radius_cm, ours, theirs
+        distance_cm, own_point, other_point = gap_between(first.spine(), second.spine())
+        return distance_cm - first.hull.radius_cm - second.hull.radius_cm, own_point, other_point
 
     def _record(self, old_pose: Pose) -> None:
         """Take down the way, what it bumps into, and who has left the ring."""

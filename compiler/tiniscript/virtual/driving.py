@@ -62,31 +62,31 @@ class Hull:
         spine = self.spine(pose)
         middle_x, middle_y = (spine.a.x + spine.b.x) / 2, (spine.a.y + spine.b.y) / 2
         reach = (self.front_cm - self.back_cm) / 2 + self.radius_cm
-        nearest: Contact | None = None
+        nearest_contact: Contact | None = None
         for obstacle in obstacles:
             # far away is known more quickly
             if (
-                nearest is not None
-                and distance(obstacle, middle_x, middle_y) >= nearest.gap_cm + reach
+                nearest_contact is not None
+                and distance(obstacle, middle_x, middle_y) >= nearest_contact.gap_cm + reach
             ):
                 continue
             distance_cm, body_point, obstacle_point = gap_between(spine, obstacle)
             gap_cm = distance_cm - self.radius_cm
-            if nearest is None or gap_cm < nearest.gap_cm:
-                nearest = Contact(gap_cm, body_point, obstacle_point)
-        return nearest
+            if nearest_contact is None or gap_cm < nearest_contact.gap_cm:
+                nearest_contact = Contact(gap_cm, body_point, obstacle_point)
+        return nearest_contact
 
     def outline(self, pose: Pose, corners: int = 24) -> list[Point]:
         """Return points around the robot, for a picture."""
         back, front = self.spine(pose)
         points = []
         for k in range(corners):
-            middle = front if k < corners // 2 else back
+            center = front if k < corners // 2 else back
             angle = math.radians(pose.heading - 90) + math.pi * (
                 k / (corners // 2 - 1) if k < corners // 2 else (k - 1) / (corners // 2 - 1)
             )
             x, y = self.radius_cm * math.cos(angle), self.radius_cm * math.sin(angle)
-            points.append(Point(middle.x + x, middle.y + y))
+            points.append(Point(center.x + x, center.y + y))
         return points
 
 
@@ -233,9 +233,9 @@ class Driving:
     def _fastest_cm_ms(self) -> float:
         """Return the highest possible speed of a point of the body."""
         percent_cm_ms = self.body.speed_cm_s / 100 / 1000
-        ahead = abs(self.left + self.right) / 2 * percent_cm_ms
-        turning = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
-        return ahead + turning * self.hull.reach_cm
+        ahead_cm_ms = abs(self.left + self.right) / 2 * percent_cm_ms
+        turn_radians_ms = abs(self.right - self.left) / 200 * math.radians(self.body.turn_s) / 1000
+        return ahead_cm_ms + turn_radians_ms * self.hull.reach_cm
 
     def _pushed_wheel_speeds(self, pose: Pose) -> tuple[float, float]:
         """Return the wheel speeds in percent while an obstacle pushes against the body.
@@ -251,21 +251,25 @@ class Driving:
         cos, sin = math.cos(heading), math.sin(heading)
         distance_cm = math.dist(contact.body_point, contact.obstacle_point) or 1.0
         away_x, away_y = (
-            (ours - theirs) / distance_cm
-            for ours, theirs in zip(contact.body_point, contact.obstacle_point, strict=True)
+            (body_coordinate - obstacle_coordinate) / distance_cm
+            for body_coordinate, obstacle_coordinate in zip(
+                contact.body_point, contact.obstacle_point, strict=True
+            )
         )
-        ahead = away_x * cos + away_y * sin  # the part of the push that is along the robot,
-        aside = away_y * cos - away_x * sin
+        forward_part = away_x * cos + away_y * sin  # the part of the push that is along the robot,
+        side_part = away_y * cos - away_x * sin
         lever_cm = (contact.body_point.x - pose.x_cm) * cos + (
             contact.body_point.y - pose.y_cm
         ) * sin
         lever = lever_cm * math.radians(self.body.turn_s) / self.body.speed_cm_s
-        turning = aside * lever  # the torque that turns it
-        closing_speed = (left + right) / 2 * ahead + (right - left) / 2 * turning
+        torque = side_part * lever  # the torque that turns it
+        closing_speed = (left + right) / 2 * forward_part + (right - left) / 2 * torque
         if closing_speed >= 0:
             return left, right
-        push = closing_speed / (ahead * ahead + turning * turning)
-        return left - push * (ahead - turning), right - push * (ahead + turning)
+        push_percent = closing_speed / (forward_part * forward_part + torque * torque)
+        return left - push_percent * (forward_part - torque), right - push_percent * (
+            forward_part + torque
+        )
 
     def _slide_along(self, old_pose: Pose, pose: Pose) -> tuple[Pose, float]:
         """Return the end of a robot's way to `pose`, and the free distance there.

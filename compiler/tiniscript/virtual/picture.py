@@ -114,8 +114,8 @@ class _Sheet:
         small_image.save(file, "PNG", pnginfo=metadata)
         return file.getvalue()
 
-    def _disc(self, middle: Point | Pose, radius_cm: float, colour: str) -> None:
-        x, y = self.to_pixels(middle)
+    def _disc(self, center: Point | Pose, radius_cm: float, colour: str) -> None:
+        x, y = self.to_pixels(center)
         radius = radius_cm * self.scale
         self.draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=colour)
 

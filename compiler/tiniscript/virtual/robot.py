@@ -262,10 +262,10 @@ class VirtualRobot:
         self._advance_to(now_ms)
         self._traced_robot.beep(hertz, duration_ms)
 
-    def show(self, now_ms: int, value: int, is_yes_no: int, at: int) -> None:
+    def show(self, now_ms: int, value: int, is_yes_no: int, offset: int) -> None:
         self._advance_to(now_ms)
         self._traced_robot.show(value, bool(is_yes_no))
-        self._traced_robot.events[-1] = self._traced_robot.events[-1]._replace(offset=at)
+        self._traced_robot.events[-1] = self._traced_robot.events[-1]._replace(offset=offset)
 
     def set(self, now_ms: int, actuator: int, value: int) -> None:
         self._advance_to(now_ms)

@@ -118,10 +118,10 @@ class Simulator:
         """Return the number of bytes that the robot has yet to receive."""
         return self.robot.unread_bytes + self.to_robot.byte_count
 
-    def turn(self, limit_s: float = IDLE_S) -> None:
-        """Wait for bytes, at most `limit_s`; then advance the robot to the present."""
+    def turn(self, timeout_s: float = IDLE_S) -> None:
+        """Wait for bytes, at most `timeout_s`; then advance the robot to the present."""
         is_full = self.waiting_bytes >= MOST_WAITING_BYTES
-        self.transports.wait(min(limit_s, self._pause_s()), is_full)
+        self.transports.wait(min(timeout_s, self._pause_s()), is_full)
         wall_s = monotonic()
         elapsed_s = min(wall_s - self._wall_s, MOST_DELAY_S)
         self._wall_s = wall_s

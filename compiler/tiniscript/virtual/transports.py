@@ -66,24 +66,24 @@ class Transports:
         """Return whether a client is connected; unknown for a pseudo-terminal."""
         return self._client is not None
 
-    def wait(self, limit_s: float, is_full: bool = False) -> None:
+    def wait(self, timeout_s: float, is_full: bool = False) -> None:
         """Wait until something comes, at most for so long. `is_full`: nothing more is wanted."""
         watched_files: list[socket.socket | int] = [self._server] if self._has_room() else []
         watched_files += [
             caller.peer for caller in self._callers if caller.is_refused or not caller.may_enter
         ]
-        limit_s = min(limit_s, REFUSAL_DELAY_S) if self._callers else limit_s
+        timeout_s = min(timeout_s, REFUSAL_DELAY_S) if self._callers else timeout_s
         if not watched_files:
-            limit_s = min(limit_s, PROTECTION_S / 4)
+            timeout_s = min(timeout_s, PROTECTION_S / 4)
         if not is_full:
             if self._client is not None:
                 watched_files.append(self._client)
             elif self._own_end >= 0:
                 watched_files.append(self._own_end)
         if watched_files or sys.platform != "win32":
-            select.select(watched_files, [], [], limit_s)
+            select.select(watched_files, [], [], timeout_s)
         else:  # Windows does not wait for nothing
-            sleep(limit_s)
+            sleep(timeout_s)
 
     def receive(self) -> bytes:
         """Return received bytes. Also accepts and removes clients."""

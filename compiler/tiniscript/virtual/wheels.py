@@ -57,11 +57,12 @@ class Wheel:
     def _edges(self) -> int:
         """Return the number of edges since the disc was at its first one."""
         edge_position = self.turned_cm / self.edge_cm
-        nearest = round(edge_position)
+        nearest_edge = round(edge_position)
         return (
-            nearest
-            if edge_position >= nearest + self._edge_offsets[nearest % len(self._edge_offsets)]
-            else nearest - 1
+            nearest_edge
+            if edge_position
+            >= nearest_edge + self._edge_offsets[nearest_edge % len(self._edge_offsets)]
+            else nearest_edge - 1
         )
 
     def step(self, has_two_channels: bool) -> float:

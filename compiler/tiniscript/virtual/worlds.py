@@ -93,13 +93,13 @@ def _read(root: Table, name: str) -> World:
 
 
 def _parts(
-    root: Table, key: str, read: Callable[[Table], T], most: int = MOST_PARTS
+    root: Table, key: str, read: Callable[[Table], T], most_count: int = MOST_PARTS
 ) -> tuple[T, ...]:
     tables = root.tables(key)
-    if len(tables) > most:
-        root.complain("too_many_parts", key, found=str(len(tables)), most=str(most))
+    if len(tables) > most_count:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(most_count))
     parts = []
-    for table in tables[:most]:
+    for table in tables[:most_count]:
         parts.append(read(table))
         table.finish()
     return tuple(parts)
@@ -131,7 +131,7 @@ def _line(table: Table) -> Line:
 
 def _box(table: Table) -> tuple[Point, ...]:
     """Return the corners of a box that lies around its middle, turned by `heading`."""
-    middle = _place(table)
+    center = _place(table)
     length, width = (
         _number(table, key, ONE // 10, LARGEST_CM, f"{key} = 20")
         for key in ("length_cm", "width_cm")
@@ -141,8 +141,8 @@ def _box(table: Table) -> tuple[Point, ...]:
     corners = ((1, 1), (-1, 1), (-1, -1), (1, -1))
     return tuple(
         Point(
-            middle.x + along * length / 2 * cos - across * width / 2 * sin,
-            middle.y + along * length / 2 * sin + across * width / 2 * cos,
+            center.x + along * length / 2 * cos - across * width / 2 * sin,
+            center.y + along * length / 2 * sin + across * width / 2 * cos,
         )
         for along, across in corners
     )

@@ -14,8 +14,8 @@ def _duration(time_milli: int) -> int:
     return max(time_milli, 0)
 
 
-def _percent(power: int, least: int) -> int:
-    return clamp(round_to_whole(power), least, 100)
+def _percent(power: int, least_power: int) -> int:
+    return clamp(round_to_whole(power), least_power, 100)
 
 
 @handles("SHOW")

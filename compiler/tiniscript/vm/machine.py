@@ -66,7 +66,7 @@ class Machine(Drive):
         """`code` must be verified for a kit with so many sensors; `seed` is 1 to 4294967295."""
         super().__init__(robot, Task(seed, sensor_count, now_ms), now_ms)
         self.fault = ""
-        self.at = 0  # start of the instruction that runs or has faulted
+        self.offset = 0  # start of the instruction that runs or has faulted
         self.steps = 0  # instructions that have run
         self._code = code
         self._steps = bind_steps(self, code)
@@ -85,19 +85,19 @@ class Machine(Drive):
             task.wait = NOTHING
         self.status = RUNNING
         steps = self._steps
-        at, pc = self.at, task.pc
+        offset, pc = self.offset, task.pc
         steps_left = most_steps
         try:
             for steps_left in range(most_steps - 1, -1, -1):  # noqa: B007 - asked for after the loop
-                at = pc
-                pc = steps[at]()
+                offset = pc
+                pc = steps[offset]()
                 if pc < 0:
-                    pc = at if pc == STAY else mark_stop(pc)
+                    pc = offset if pc == STAY else mark_stop(pc)
                     break
         except Fault as fault:
             self.robot.off()
             self.status, self.fault = FAULT, fault.name
-            pc = instruction_at(self._code, at)[1]
-        self.at, task.pc = at, pc
+            pc = instruction_at(self._code, offset)[1]
+        self.offset, task.pc = offset, pc
         self.steps += most_steps - steps_left
         return self.status

@@ -31,7 +31,7 @@ class AnyMachine(Protocol):
     def fault(self) -> str: ...
 
     @property
-    def at(self) -> int: ...
+    def offset(self) -> int: ...
 
     def tick(self, now_ms: int, most_steps: int) -> str: ...
 
@@ -78,5 +78,5 @@ def run(
             continue
         text = f"FAULT {machine.fault}" if ending == "FAULT" else ending
         yield Event(robot.now_ms, ending, (), text)
-        yield Ending(ending, machine.fault, machine.at, machine.steps)
+        yield Ending(ending, machine.fault, machine.offset, machine.steps)
         return

@@ -130,17 +130,17 @@ class TaskMachine(Machine):
             return self.status
         self.now_ms = now_ms
         self.status = RUNNING
-        at, steps_left = self.at, most_steps
+        offset, steps_left = self.offset, most_steps
         try:
             while steps_left and self._finds_turn():
                 steps, pc = self._steps, self.current_task.pc
                 while steps_left:
                     steps_left -= 1
-                    at = pc
-                    pc = steps[at]()
+                    offset = pc
+                    pc = steps[offset]()
                     if pc < 0:
                         break
-                self.current_task.pc = at if pc == STAY else mark_stop(pc) if pc < 0 else pc
+                self.current_task.pc = offset if pc == STAY else mark_stop(pc) if pc < 0 else pc
                 if self.status == DONE:
                     break
                 if pc < 0 and not (pc == STAY and self.is_first_turn):
@@ -150,8 +150,8 @@ class TaskMachine(Machine):
         except Fault as fault:
             self.robot.off()
             self.status, self.fault = FAULT, fault.name
-            self.current_task.pc = instruction_at(self._code, at)[1]
-        self.at = at
+            self.current_task.pc = instruction_at(self._code, offset)[1]
+        self.offset = offset
         self.steps += most_steps - steps_left
         return self.status
 

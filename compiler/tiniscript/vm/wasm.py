@@ -153,7 +153,7 @@ class WasmMachine:
         return _FAULT_NAMES[self._image.call("fault")]
 
     @property
-    def at(self) -> int:
+    def offset(self) -> int:
         """Return the start of the current or faulty instruction."""
         return self._image.call("at")
 

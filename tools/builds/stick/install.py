@@ -67,9 +67,9 @@ def main(arguments: list[str]) -> int:
     for name in ("pages", "examples"):
         shutil.copytree(STICK / name, folder / name, dirs_exist_ok=True)
     command = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
-    completed = subprocess.run(command, env=variables, capture_output=True)
-    if completed.returncode:
-        reason = completed.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
+    result = subprocess.run(command, env=variables, capture_output=True)
+    if result.returncode:
+        reason = result.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
         _say("no_robot", why=reason[0])
     activate = f'. "{programs}/activate"'
     if IS_WINDOWS:

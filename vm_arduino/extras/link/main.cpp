@@ -212,7 +212,7 @@ void answer_seal(RequestReader* request, Writer* answer) {
   origin.nonce = request->u32();
   origin.robot_nonce = request->u32();
   origin.epoch = request->u8();
-  origin.which = request->u8();
+  origin.kind = request->u8();
   TestedSeal seal = TestedSeal();
   seal.begin(key, origin);
   seal.heard(request->u32());

@@ -223,21 +223,21 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
   return port.is_busy ? Answer::kBusy : Answer::kOk;
 }
 
-Answer port_key(uint8_t which, uint8_t* key) {
-  for (uint8_t k = 0; k < kKeyBytes; k++) key[k] = port.keys[which][k];
+Answer port_key(uint8_t kind, uint8_t* key) {
+  for (uint8_t k = 0; k < kKeyBytes; k++) key[k] = port.keys[kind][k];
   if (port.is_busy) return Answer::kBusy;
   return port.is_saving ? Answer::kSaving : Answer::kOk;
 }
 
-Answer port_keep_key(uint8_t which, const uint8_t* key) {
-  bool is_owned = which == 0 ? false : (port.identity.features & kOwned) != 0;
+Answer port_keep_key(uint8_t kind, const uint8_t* key) {
+  bool is_owned = kind == 0 ? false : (port.identity.features & kOwned) != 0;
   for (uint8_t k = 0; k < kKeyBytes; k++) {
-    port.keys[which][k] = key[k];
-    if (which == 0 && key[k] != 0) is_owned = true;
+    port.keys[kind][k] = key[k];
+    if (kind == 0 && key[k] != 0) is_owned = true;
   }
   const int flag = is_owned ? kOwned : 0;
   port.identity.features = static_cast<uint8_t>((port.identity.features & ~kOwned) | flag);
-  say("KEY %u", which);
+  say("KEY %u", kind);
   return Answer::kSaving;
 }
 

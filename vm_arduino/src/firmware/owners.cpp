@@ -27,11 +27,11 @@ void read_owner() {
   if (kHasSeals) port_identity().more_features |= kMoreSeals;
 }
 
-Answer port_key(uint8_t which, uint8_t* key) {
+Answer port_key(uint8_t kind, uint8_t* key) {
   if (!nvm_is_readable()) return Answer::kUnreadable;
   const Answer answer = owner_kept();
   if (answer != Answer::kOk) return answer;
-  return fetch_key(which, key) ? Answer::kOk : not_now();
+  return fetch_key(kind, key) ? Answer::kOk : not_now();
 }
 
 }  // namespace tiniscript

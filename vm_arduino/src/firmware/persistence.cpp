@@ -177,23 +177,23 @@ Answer identity_kept() {
   return Answer::kNotKept;
 }
 
-bool fetch_key(uint8_t which, uint8_t* key) {
+bool fetch_key(uint8_t kind, uint8_t* key) {
   if (!has_booted() && boot <= Boot::kSettling) return false;
   const bool is_there = store.used(Area::kOwner) != kNoSlot;
   for (uint8_t k = 0; k < kKeyRoom; k++) {
     key[k] = 0;
-    const uint16_t at = static_cast<uint16_t>(kKeysAt + which * kKeyRoom + k);
+    const uint16_t at = static_cast<uint16_t>(kKeysAt + kind * kKeyRoom + k);
     if (is_there && !store.fetch(Area::kOwner, at, key + k)) return false;
   }
   return true;
 }
 
-Answer port_keep_key(uint8_t which, const uint8_t* key) {
+Answer port_keep_key(uint8_t kind, const uint8_t* key) {
   if (!may_keep_keys()) return not_now();
   for (uint8_t k = 0; k < kOwnerKeys; k++) {
     if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return not_now();
   }
-  copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);
+  copy_bytes(key, record + kKeysAt + kind * kKeyRoom, kKeyRoom);
   const bool was_worn = (worn & kOwnerBit) != 0;
   keep_keys();
   link.expire_others();

@@ -27,7 +27,7 @@ void keep_identity();
 Answer identity_kept();
 
 // Copies a key of the robot into `key`: zeros if it has none. False: not available now.
-bool fetch_key(uint8_t which, uint8_t* key);
+bool fetch_key(uint8_t kind, uint8_t* key);
 
 // kSaving or kLowSupply while a key is being saved.
 Answer owner_kept();

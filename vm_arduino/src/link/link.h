@@ -276,7 +276,7 @@ class Link {
   }
   uint8_t open_seal(uint8_t end);
   void close_seal();
-  void begin_seal(const uint8_t* key, uint8_t which);
+  void begin_seal(const uint8_t* key, uint8_t kind);
   void drop_seal() {
     if (kMaySeal) seal_.drop();
   }

@@ -63,16 +63,16 @@ bool Link::confirm_claim() {
 }
 
 tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
-  const uint8_t which = payload[kClaimWhichAt];
+  const uint8_t kind = payload[kClaimKindAt];
   const uint8_t key_bytes = static_cast<uint8_t>(length - kClaimKeyAt);
-  if (which > static_cast<uint8_t>(Key::kTeacher)) return Answer::kBadValue;
+  if (kind > static_cast<uint8_t>(Key::kTeacher)) return Answer::kBadValue;
   if (key_bytes != 0 && key_bytes != kKeyBytes) return Answer::kBadLength;
   uint8_t key[kKeyBytes];
   uint8_t wanted[kKeyBytes] = {};
   copy_bytes(payload + kClaimKeyAt, wanted, key_bytes);
-  Answer answer = port_key(which, key);
+  Answer answer = port_key(kind, key);
   if (answer != Answer::kOk) return answer;
-  const bool is_teachers = which == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
+  const bool is_teachers = kind == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
   const bool is_allowed = is_teachers ? may(is_teacher()) : !has(kOwned) || may(has(kYours));
   const bool is_given = is_key(wanted);
   // A claim that is repeated because its answer was lost comes without authority.
@@ -85,15 +85,15 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
     rights_ |= kIsAsked;
     return Answer::kHoldButton;
   }
-  return port_keep_key(which, wanted);
+  return port_keep_key(kind, wanted);
 }
 
 tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length) {
-  const uint8_t which = payload[kAuthenticateWhichAt];
+  const uint8_t kind = payload[kAuthenticateKindAt];
   const uint8_t* const tag = payload + kAuthenticateTagAt;
-  if (which > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);
+  if (kind > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);
   uint8_t key[kKeyBytes];
-  const Answer answer = port_key(which, key);
+  const Answer answer = port_key(kind, key);
   if (answer != Answer::kOk) return number_of(answer);
   if (!is_key(key)) return number_of(Answer::kWrongKey);
   uint8_t text[kChallengeText];
@@ -112,15 +112,15 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   rights_ &= static_cast<uint8_t>(~kHasChallenge);
   copy_bytes(&nonce_, text + kChallengeBytes, sizeof nonce_);
   text[kTagText - 2] = epoch_;
-  text[kTagText - 1] = which;
+  text[kTagText - 1] = kind;
   siphash(key, text, kTagText, text);
   // 64 bits cannot be guessed, and a pause for strangers would also delay the owner.
   if (!are_equal(text, tag, kTagBytes)) return number_of(Answer::kWrongKey);
   port_identity().features |= kYours;
-  if (which == static_cast<uint8_t>(Key::kTeacher)) {
+  if (kind == static_cast<uint8_t>(Key::kTeacher)) {
     port_identity().more_features |= kMoreByTeacher;
   }
-  if (kMaySeal) begin_seal(key, which);
+  if (kMaySeal) begin_seal(key, kind);
   return kOkStatus;
 }
 

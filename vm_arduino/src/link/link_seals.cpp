@@ -42,9 +42,9 @@ void Link::close_seal() {
   if (!seal_.is_set()) left_ms_[kListen] = kListenMs;  // what has dropped it was heard
 }
 
-void Link::begin_seal(const uint8_t* key, uint8_t which) {
+void Link::begin_seal(const uint8_t* key, uint8_t kind) {
   if (!may_seal()) return;
-  const SealOrigin origin = {challenge_, nonce_, port_identity().nonce, epoch_, which};
+  const SealOrigin origin = {challenge_, nonce_, port_identity().nonce, epoch_, kind};
   seal_.begin(key, origin);
 }
 

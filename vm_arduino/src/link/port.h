@@ -272,11 +272,11 @@ bool is_key(const uint8_t* key);
 
 // Puts a key of the robot into `key`, zeros if it has none. kBusy: not available now; kSaving and
 // kLowSupply: another one is being saved.
-Answer port_key(uint8_t which, uint8_t* key);
+Answer port_key(uint8_t kind, uint8_t* key);
 
 // Has a key saved; zeros take it away. kSaving: it has begun, and `port_key` tells it when it is
 // saved; kNotKept: the memory is worn out, and it is tried again; kBusy: nothing was done.
-Answer port_keep_key(uint8_t which, const uint8_t* key);
+Answer port_keep_key(uint8_t kind, const uint8_t* key);
 
 // Blinks, and plays the tune of the id unless a program runs.
 void port_identify();

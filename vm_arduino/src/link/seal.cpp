@@ -20,8 +20,8 @@ constexpr uint8_t kChallengeAt = 1;
 constexpr uint8_t kNonceAt = kChallengeAt + kChallengeBytes;
 constexpr uint8_t kRobotNonceAt = kNonceAt + sizeof(uint32_t);
 constexpr uint8_t kOriginEpochAt = kRobotNonceAt + sizeof(uint32_t);
-constexpr uint8_t kOriginWhichAt = kOriginEpochAt + 1;
-constexpr uint8_t kOriginBytes = kOriginWhichAt + 1;
+constexpr uint8_t kOriginKindAt = kOriginEpochAt + 1;
+constexpr uint8_t kOriginBytes = kOriginKindAt + 1;
 
 static_assert(kKeyBytes == 2 * kHashBytes, "a key is two hashes");
 static_assert(kTagBytes == kHashBytes, "a MAC is a hash");
@@ -34,7 +34,7 @@ void Seal::begin(const uint8_t* key, const SealOrigin& origin) {
   copy_bytes(&origin.nonce, text + kNonceAt, sizeof origin.nonce);
   copy_bytes(&origin.robot_nonce, text + kRobotNonceAt, sizeof origin.robot_nonce);
   text[kOriginEpochAt] = origin.epoch;
-  text[kOriginWhichAt] = origin.which;
+  text[kOriginKindAt] = origin.kind;
   text[kLabelAt] = 1;
   siphash(key, text, kOriginBytes, key_);
   text[kLabelAt] = 2;

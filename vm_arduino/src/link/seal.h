@@ -24,7 +24,7 @@ struct SealOrigin {
   uint32_t nonce;        // the computer's
   uint32_t robot_nonce;
   uint8_t epoch;
-  uint8_t which;  // of the robot's keys
+  uint8_t kind;  // of the robot's keys
 };
 
 // Starts as one that is not set.

@@ -103,7 +103,7 @@ def _examine_member(expectations: Expectations, connection: Connection, member: 
     findings, answers = examination_of(
         connection,
         expectations,
-        lambda what: member.set_state(f"doing_{what}", n=expectations.ping_count),
+        lambda step: member.set_state(f"doing_{step}", n=expectations.ping_count),
     )
     wrong_findings = [finding for finding in findings if finding.is_wrong]
     rows, fields = [sentences_of(finding, language).finding for finding in wrong_findings], {}

@@ -134,13 +134,23 @@ def report(
 ) -> int:
     """Print the differences and their number; return the exit code."""
     verdicts = list(verdicts)
-    lacking_count = sum(verdict.what == LACKS for verdict in verdicts)
-    verdicts = [verdict for verdict in verdicts if verdict.what != LACKS]
+    lacking_count = sum(verdict.outcome == LACKS for verdict in verdicts)
+    verdicts = [verdict for verdict in verdicts if verdict.outcome != LACKS]
     case_count -= lacking_count
-    differing_verdicts = [verdict for verdict in verdicts if verdict.what != AGREES]
+    differing_verdicts = [verdict for verdict in verdicts if verdict.outcome != AGREES]
     agreeing_count = len(verdicts) - len(differing_verdicts)
     if options.json:
-        rows = [verdict._asdict() for verdict in differing_verdicts]
+        rows = [
+            {
+                "name": verdict.name,
+                "what": verdict.outcome,
+                "line": verdict.line,
+                "want": verdict.expected_line,
+                "got": verdict.actual_line,
+                "detail": verdict.detail,
+            }
+            for verdict in differing_verdicts
+        ]
         summary = {
             **facts,
             "cases": case_count,
@@ -165,15 +175,17 @@ def report(
 
 def _rows(verdict: Verdict, timeout_s: int, language: str) -> list[str]:
     rows = [text("conform_case", language).format(name=verdict.name)]
-    if verdict.what != DIFFERS:
-        key = "conform_silent_check" if verdict.what == "silent" else f"conform_{verdict.what}"
+    if verdict.outcome != DIFFERS:
+        key = (
+            "conform_silent_check" if verdict.outcome == "silent" else f"conform_{verdict.outcome}"
+        )
         sentence = text(key, language)
         rows.append(sentence.format(detail=printable_name(verdict.detail), seconds=timeout_s))
     if verdict.line:
         nothing_text = text("conform_nothing", language)
         got_text, wanted_text = (
             nothing_text if row is None else printable_name(row)
-            for row in (verdict.got, verdict.want)
+            for row in (verdict.actual_line, verdict.expected_line)
         )
         rows.append(
             text("conform_line", language).format(line=verdict.line, got=got_text, want=wanted_text)

@@ -316,14 +316,14 @@ class Repl:
         except CommandError as error:
             print(error.sentence(self.language), file=sys.stderr)
 
-    def _print_pending_events(self, limit_s: float = 0) -> None:
+    def _print_pending_events(self, timeout_s: float = 0) -> None:
         """Print the robot's events since the last line.
 
         The next line reports a lost robot, if it is still lost.
         """
         printer, bookkeeping = EventPrinter(self.language), Bookkeeping()
-        while (timed_event := self.connection.event(limit_s)) is not None:
-            limit_s = 0
+        while (timed_event := self.connection.event(timeout_s)) is not None:
+            timeout_s = 0
             if not bookkeeping.filter_event(timed_event[1]):
                 printer.print_event(*timed_event)
 

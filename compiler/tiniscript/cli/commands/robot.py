@@ -109,7 +109,7 @@ class _Stage:
                 while not end_request.is_set and (end_ms is None or robot.now_ms < end_ms):
                     if pushes and robot.now_ms >= pushes[0][0]:
                         self.simulator.push(pushes.pop(0)[1])
-                    self.simulator.turn(self._limit_s(pushes, end_ms))
+                    self.simulator.turn(self._timeout_s(pushes, end_ms))
                     self._print_events(robot.take_events())
                     self._save_state(is_due=False)
                     if not self._handle_keys(keys.read_keys()):
@@ -147,7 +147,7 @@ class _Stage:
         self.picture = WorldPicture(self.simulator.robot, self.language, keys)
         self.screen.begin()
 
-    def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
+    def _timeout_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
         limits_s = [FRAME_S if self.screen else IDLE_S]
         for due_ms in (

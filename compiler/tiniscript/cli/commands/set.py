@@ -10,6 +10,6 @@ from tiniscript.cli.texts.verbs import settings
 
 
 def run(options: Namespace, language: str) -> int:
-    *known_names, last = settings()
-    settings_text = f"{', '.join(known_names)} {text('or', language)} {last}"
+    *known_names, last_name = settings()
+    settings_text = f"{', '.join(known_names)} {text('or', language)} {last_name}"
     raise CommandError(2, "set_what", known=settings_text)

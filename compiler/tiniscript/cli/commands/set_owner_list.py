@@ -111,8 +111,8 @@ def _key_file_error(key_file: KeyFile, key: str, error: BadKeys) -> CommandError
 def _print(robot_keys: list[RobotKey], language: str) -> None:
     if not robot_keys:
         say("no_keys", language)
-    for key in sorted(robot_keys, key=lambda key: (key.name, key.id, key.which)):
-        kind = text(f"kind_{KEYS[key.which][0].lower()}", language)
+    for key in sorted(robot_keys, key=lambda key: (key.name, key.id, key.kind)):
+        kind = text(f"kind_{KEYS[key.kind][0].lower()}", language)
         row = text("key_row", language).format(
             id=f"{key.id:08x}", kind=kind, name=printable_name(key.name)
         )
@@ -122,6 +122,6 @@ def _print(robot_keys: list[RobotKey], language: str) -> None:
 
 
 def _fields(key: RobotKey) -> dict[str, object]:
-    return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.which][0].lower(),
+    return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.kind][0].lower(),
             "is_pending": key.is_pending, "is_stale": key.is_stale,
             "seals": key.uses_seals}  # fmt: skip

@@ -107,7 +107,7 @@ def _upload(
 ) -> int:  # fmt: skip
     language = connection.language
     progress = Progress(
-        language, 1 + len(ready_program.image.later) + len(ready_program.image.code)
+        language, 1 + len(ready_program.image.later_fields) + len(ready_program.image.code)
     )
     connection.wait_notice.before_print = progress.end
 

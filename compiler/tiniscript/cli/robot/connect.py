@@ -200,8 +200,8 @@ class Connection(Client):
         self.wait_notice.begin()
         return super().wait(request, poll)
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
-        timed_event = super().event(limit_s)
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
+        timed_event = super().event(timeout_s)
         if timed_event is not None:
             self.wait_notice.restart()
         elif self._needs_a_reader:
@@ -216,9 +216,9 @@ class Connection(Client):
         is_own = self.drives and not self.is_one_of_many and not self.drives_another
         return is_own and not self._is_stopped_unseen
 
-    def stop(self, limit_s: float | None = None) -> bool:
+    def stop(self, timeout_s: float | None = None) -> bool:
         with self._show_wait("waits_for_stop"):
-            return super().stop(limit_s)
+            return super().stop(timeout_s)
 
     @contextmanager
     def _show_wait(self, key: str = "waits_for_robot") -> Iterator[None]:
@@ -264,10 +264,10 @@ class Connection(Client):
         print(self.text(key, **values))
 
     def request_or_raise(
-        self, begin: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
+        self, make_request: Callable[[Requester], PendingRequest[T]], key: str, *statuses: str
     ) -> Reply[T]:
         """Make a request; these refusals have the sentence `key`. Raises CommandError."""
-        reply = self.request(begin, [STATUSES[status] for status in statuses])
+        reply = self.request(make_request, [STATUSES[status] for status in statuses])
         if reply.status:
             raise CommandError(3, key, robot=self.name)
         return reply
@@ -344,11 +344,11 @@ def convert_robot_error() -> Iterator[None]:
 
 def open_client(
     port: str, robot: Robot, verb: str, baud: int | None, language: str,
-    limit_s: float,
+    timeout_s: float,
 ) -> Client:  # fmt: skip
     """Connect to a port through its server, or open it. Raises CommandError."""
     with convert_robot_error():
-        return Client(port, verb, robot, baud, language, limit_s, is_shared=verb in SHARED_VERBS)
+        return Client(port, verb, robot, baud, language, timeout_s, is_shared=verb in SHARED_VERBS)
 
 
 def error_for_port(port: str, error: PortError) -> CommandError:

@@ -118,18 +118,19 @@ class Debugger:
         if self.first_breakpoints is not None:
             breakpoints, self.first_breakpoints = self.first_breakpoints, None
             self.connection.request(lambda session: session.break_at(breakpoints))
-            if event.at not in breakpoints:
+            if event.offset not in breakpoints:
                 self._resume(RESUME_GO)
                 return True
-        location = self.program.location_at(self.statement_offsets, event.at)
+        location = self.program.location_at(self.statement_offsets, event.offset)
         is_inside = (
-            location is None or statement_of(self.statement_offsets, location.offset) != event.at
+            location is None
+            or statement_of(self.statement_offsets, location.offset) != event.offset
         )
         # The step covers one instruction of the text, or one that is not shown.
         if self.is_stepping and is_inside:
             self._resume(RESUME_STEP)
             return True
-        self._print_halt(event.at, event.task, location)
+        self._print_halt(event.offset, event.task, location)
         self.is_halted = True
         if not self.has_keys:
             self._resume(RESUME_GO)

@@ -78,7 +78,7 @@ def expectations_of(
 
 def examination_of(
     connection: Connection, expectations: Expectations,
-    on_step: Callable[[str], None] = lambda what: None,
+    on_step: Callable[[str], None] = lambda step: None,
 ) -> tuple[list[Finding], RobotAnswers | None]:  # fmt: skip
     """Examine a robot that has answered; return the findings and its answers."""
     robot = SharedRobot(connection.connection, connection.wait)
@@ -135,5 +135,5 @@ def _make_services(
         confirm_opening,
         ports.is_radio,
         share_port,
-        lambda what: status_line.show(text(f"doing_{what}", language).format(n=ping_count)),
+        lambda step: status_line.show(text(f"doing_{step}", language).format(n=ping_count)),
     )

@@ -96,7 +96,7 @@ class EventPrinter:
         elif event.name == "DONE":
             self.print_values(since_ms, "DONE", "", text("robot_done", self.language))
         elif event.name == "FAULT":
-            self._print_fault(since_ms, event.fault, event.at, event.program)
+            self._print_fault(since_ms, event.fault, event.offset, event.program)
         elif event.name == "STOPPED":
             cause = cause_name(event.cause)
             sentence = text(f"stopped_{cause}", self.language)

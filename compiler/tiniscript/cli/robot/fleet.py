@@ -154,9 +154,9 @@ class Fleet:
         with suppress(KeyboardInterrupt):
             self.wait_for_results(opening.CONFIRM_TIMEOUT_S)
 
-    def wait_for_results(self, limit_s: float) -> None:
+    def wait_for_results(self, timeout_s: float) -> None:
         """Wait until all robots have a result."""
-        end_s = monotonic() + limit_s
+        end_s = monotonic() + timeout_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._attend()
             self._result_bell.wait(POLL_INTERVAL_S)

@@ -50,13 +50,13 @@ def _upload(
     receipt = program_upload.receipt_fields(connection, ready_program, name, receipt_reply, options)
     if options.json:
         member.queue_line(json.dumps(receipt))
-    starts = program_upload.is_running(ready_program, options)
-    member.set_state("crew_running" if starts and not options.detach else "crew_saving")
+    starts_program = program_upload.is_running(ready_program, options)
+    member.set_state("crew_running" if starts_program and not options.detach else "crew_saving")
     printer = MemberPrinter(connection, ready_program, member, options.json, receipt_reply.program)
     saving = Saving(connection, printer, receipt_reply)
     exit_code = program_upload.follow_run(connection, ready_program, saving, options, printer)
-    if not starts or options.detach:
-        key = "how_waits" if not starts else "how_detached"
+    if not starts_program or options.detach:
+        key = "how_waits" if not starts_program else "how_detached"
         printer.end_text = text(key, language).format(start=ready_program.image.start)
     sentence = printer.end_text
     if options.verbose:

@@ -47,9 +47,9 @@ def send_program(
             parse_lines(options.breaks, connection.language), _haltable_program(ready_program)
         )
         require_breakpoints(connection)
-    starts = not options.no_run and not breakpoints
+    starts_program = not options.no_run and not breakpoints
     reply = connection.send_program(
-        ready_program.image, starts, not options.no_save, options.detach, draw_progress
+        ready_program.image, starts_program, not options.no_save, options.detach, draw_progress
     )
     if reply.status:
         raise _upload_error(connection, reply, ready_program)
@@ -143,7 +143,7 @@ def receipt_fields(
     options: Namespace,
 ) -> dict[str, object]:
     """Return the result of the upload as data."""
-    image, starts, saved_state = (
+    image, starts_program, saved_state = (
         ready_program.image,
         is_running(ready_program, options),
         saved_name(receipt_reply.saved),
@@ -159,8 +159,8 @@ def receipt_fields(
         "saved": saved_state,
         "slot": receipt_reply.slot if saved_state == "STORED" else None,
         "start": image.start,
-        "is_running": starts,
-        "is_detached": starts and bool(options.detach),
+        "is_running": starts_program,
+        "is_detached": starts_program and bool(options.detach),
         "is_pushed": has_button(connection, ready_program, options),  # JSON output has no keys
     }
 

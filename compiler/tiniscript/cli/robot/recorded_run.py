@@ -69,7 +69,7 @@ def record(program_input: Input, options: Namespace, language: str) -> int:
     if result is None:
         return 1
     image = result.image
-    data = pack(image.start, image.devices, image.code, image.later, image.needs)
+    data = pack(image.start, image.devices, image.code, image.later_fields, image.needs)
     with convert_refusal(world.name, language):
         run = Simulation(
             robot.name, world, data, settings=Settings(seed=seed, given_readings=message)
@@ -118,7 +118,7 @@ def play(program_input: Input, options: Namespace, language: str) -> int:
         sentence(divergence, started_ms if run.recording.is_virtual else 0, language),
         file=sys.stderr,
     )
-    return int(divergence.what not in SAME_OUTCOMES)
+    return int(divergence.outcome not in SAME_OUTCOMES)
 
 
 def _read(program_input: Input) -> PlayableRecording:
@@ -137,7 +137,7 @@ def _print(rows: list[Row], started_ms: int) -> None:
 def sentence(divergence: Divergence, started_ms: int, language: str) -> str:
     """Return the sentence about a comparison; times count from `started_ms`."""
     place = text("replay_line" if divergence.line else "replay_end", language)
-    return text(f"replay_{divergence.what}", language).format(
+    return text(f"replay_{divergence.outcome}", language).format(
         count=divergence.agreed,
         place=place.format(line=divergence.line),
         robot=_row_text(divergence.robot, started_ms, language),

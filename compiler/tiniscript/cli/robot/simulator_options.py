@@ -59,10 +59,10 @@ def convert_refusal(world: str, language: str) -> Iterator[None]:
     missing."""
     try:
         yield
-    except NoWebAssembly as why:
-        raise missing_package_error("virtual_needs_wasmtime", why) from None
-    except WorldRefused as why:
-        raise refusal(why, language, "world_refused", file=printable_name(world)) from None
+    except NoWebAssembly as error:
+        raise missing_package_error("virtual_needs_wasmtime", error) from None
+    except WorldRefused as error:
+        raise refusal(error, language, "world_refused", file=printable_name(world)) from None
 
 
 def world_of(options: Namespace, language: str) -> World:

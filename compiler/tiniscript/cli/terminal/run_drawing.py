@@ -136,9 +136,9 @@ class Picture:
                 name, unit = devices[number].name, devices[number].unit
                 rows.append((name, devices[number].text(values[number]), unit, self.labels[name]))
         if self.shown_values:
-            *older, newest = self.shown_values
-            older_text = text("before", language).format(values=", ".join(reversed(older)))
-            rows.append(("SHOW", newest, "", older_text if older else ""))
+            *older_values, newest_value = self.shown_values
+            older_text = text("before", language).format(values=", ".join(reversed(older_values)))
+            rows.append(("SHOW", newest_value, "", older_text if older_values else ""))
         if len(rows) > height:
             rows[1:3] = [(text("motors", language), f"{left} {right}", "%", "")]
         # values have a column that only grows: one that jumps cannot be read

@@ -43,11 +43,11 @@ class Comment(NamedTuple):
 
 
 class SketchNames(NamedTuple):
-    """The C++ names in a sketch. `reads` and `sets` are functions."""
+    """The C++ names in a sketch. `readers` and `setters` are functions."""
 
     sensors: Sequence[str]
-    reads: Sequence[str]
-    sets: Sequence[str]
+    readers: Sequence[str]
+    setters: Sequence[str]
     procedures: Sequence[str]
     variables: Sequence[str]
 
@@ -175,7 +175,7 @@ class Statements:
 
     def reading_code(self, sensor: int) -> str:
         self.read_sensors.add(sensor)
-        return f"{self.names.reads[sensor]}();"
+        return f"{self.names.readers[sensor]}();"
 
     def add_call(self, key: str, comment: str, values: Sequence[str]) -> None:
         self.add_line(f"{self.use(key)}({', '.join(values)});", comment)
@@ -237,7 +237,7 @@ class Statements:
             (value,) = self.argument_codes(
                 (statement.value, (device.low // ONE, device.high // ONE))
             )
-        self.add_line(f"{self.names.sets[statement.actuator]}({value});", comment)
+        self.add_line(f"{self.names.setters[statement.actuator]}({value});", comment)
 
     def move_until(self, move: ir.Move, until: ir.Until, comment: str) -> None:
         self.add_call(

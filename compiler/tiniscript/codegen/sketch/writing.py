@@ -236,14 +236,14 @@ class _Sketch:
             self.plan.add_motors()
         own_functions = {
             **{
-                self.sketch_names.reads[k]: self.plan.reader_code(
-                    k, self.sketch_names.sensors[k], self.sketch_names.reads[k]
+                self.sketch_names.readers[k]: self.plan.reader_code(
+                    k, self.sketch_names.sensors[k], self.sketch_names.readers[k]
                 )
                 for k in sorted(statements.read_sensors)
             },
             **{
-                self.sketch_names.sets[k]: self.translate_code(
-                    self.plan.setter_code(k, self.sketch_names.sets[k])
+                self.sketch_names.setters[k]: self.translate_code(
+                    self.plan.setter_code(k, self.sketch_names.setters[k])
                 )
                 for k in sorted(statements.set_actuators)
             },

@@ -25,7 +25,7 @@ def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
     tokens_left = iter(tokens)
     for token in tokens_left:
         word = WORDS.get(token.text)
-        if word is None or not word.stands_for:
+        if word is None or not word.expansion:
             yield token
             continue
         values = _values(tokens_left) if word.arguments else []
@@ -33,7 +33,7 @@ def spell_out(tokens: Iterable[Token]) -> Iterator[Token]:
             zip([parameter.name.upper() for parameter in word.arguments], values, strict=True)
         )
         expansion = []
-        for token_of_expansion in scan(word.stands_for).tokens[:-1]:
+        for token_of_expansion in scan(word.expansion).tokens[:-1]:
             expansion += value_of.get(
                 token_of_expansion.text,
                 [token_of_expansion._replace(start=token.start, end=token.end)],

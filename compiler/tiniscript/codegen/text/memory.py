@@ -267,7 +267,7 @@ class Reader:
             self.emit(_JUMP_BYTES)
             self.open(word)
         is_forever = self.arguments()
-        if word_row.role.lasts:
+        if word_row.role.has_duration:
             code_bytes = 2 if self.has_extent_unit else 1
             if self.token.kind is WORD:
                 self.take()

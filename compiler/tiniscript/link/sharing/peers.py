@@ -18,7 +18,7 @@ _BY_FAMILY, _REQUEST, _ERROR = 20, 1, 2
 _ALL_STATES, _NO_COOKIE = 0xFFFFFFFF, b"\xff" * 8
 _HEAD = struct.Struct("=IHHII")  # length, type, flags, number, sender
 _REQUEST_BODY = struct.Struct("=BBBBI")  # family, protocol, extensions, padding, states
-_SOCKET_ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
+_SOCKET_ENDPOINTS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
 _ANSWER = struct.Struct("=BBBB48sIIIII")  # family, state, .., expires, queues, user, inode
 ROOT_USER = 0
 HOST = "127.0.0.1"
@@ -93,8 +93,8 @@ def _socket_owner(peer_address: tuple[str, int], own_address: tuple[str, int]) -
     if sys.platform != "linux":
         raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
     addresses = socket.inet_aton(peer_address[0]), socket.inet_aton(own_address[0])
-    ends = _SOCKET_ENDS.pack(peer_address[1], own_address[1], *addresses, 0, _NO_COOKIE)
-    request = _REQUEST_BODY.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + ends
+    endpoints = _SOCKET_ENDPOINTS.pack(peer_address[1], own_address[1], *addresses, 0, _NO_COOKIE)
+    request = _REQUEST_BODY.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + endpoints
     head = _HEAD.pack(_HEAD.size + len(request), _BY_FAMILY, _REQUEST, 1, 0)
     with socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, _SOCK_DIAG) as kernel:
         kernel.send(head + request)

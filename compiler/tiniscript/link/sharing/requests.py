@@ -37,9 +37,9 @@ class ClientRequest(PendingRequest[T]):
     """A request of a client: the values of its reply have the type `reply_type`."""
 
     def __init__(
-        self, name: str, reply_type: type[T], starts: bool = False, /, **fields: object
+        self, name: str, reply_type: type[T], starts_program: bool = False, /, **fields: object
     ) -> None:
-        self.starts = starts
+        self.starts_program = starts_program
         self.message: JsonMessage = {"do": name, **fields}
         self.reply_type = reply_type
 
@@ -48,9 +48,9 @@ class ClientRequests(Requester):
     """All requests of a client: the same as those of a session."""
 
     def _ask(
-        self, name: str, reply_type: type[T], starts: bool = False, /, **arguments: object
+        self, name: str, reply_type: type[T], starts_program: bool = False, /, **arguments: object
     ) -> ClientRequest[T]:
-        return ClientRequest(name, reply_type, starts, **_message_fields(arguments))
+        return ClientRequest(name, reply_type, starts_program, **_message_fields(arguments))
 
 
 def _message_fields(arguments: Mapping[str, object]) -> JsonMessage:
@@ -197,7 +197,7 @@ def _image(message: JsonMessage) -> Image:
         _bytes(message, "code", 0, MOST_CODE_BYTES),
         _bounded_number(message, "checksum", 1 << 32),
         (major, minor),
-        _bytes(message, "later", 0, MOST_LATER_BYTES),
+        _bytes(message, "later_fields", 0, MOST_LATER_BYTES),
         # Without this field, the image is of version 2.0.
         _bounded_number(message, "needs", 1 << 8, 0),
     )
@@ -217,8 +217,8 @@ _ARGUMENT_READERS: dict[str, Callable[[JsonMessage], tuple[object, ...]]] = {
     "press": _pressed_keys,
     "trim": lambda message: (_trim(message),),
     "break_at": lambda message: (_places(message),),
-    "claim": lambda message: (_bounded_number(message, "which", len(KEYS)),),
-    "disown": lambda message: (_bounded_number(message, "which", len(KEYS)),),
+    "claim": lambda message: (_bounded_number(message, "kind", len(KEYS)),),
+    "disown": lambda message: (_bounded_number(message, "kind", len(KEYS)),),
     "allow_text": lambda message: (protocol.read_field(message, "is_allowed", bool),),
     "tell_readings": lambda message: (protocol.read_field(message, "is_on", bool),),
     "start": lambda message: (protocol.read_field(message, "is_detached", bool),),

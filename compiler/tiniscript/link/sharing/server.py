@@ -72,7 +72,7 @@ class ConnectedClient:
 
 
 class ServedRequest(NamedTuple):
-    pending: PendingRequest[Any]
+    pending_request: PendingRequest[Any]
     is_detached: bool
     told_bytes: int = 0  # the `done_bytes` that the client knows
 
@@ -142,7 +142,9 @@ class Server:
         clients = list(self._clients)
         requests = [request for client in clients for request in list(client.requests.values())]
         return self.has_run or any(
-            request.pending.outcome is None and request.pending.starts and not request.is_detached
+            request.pending_request.outcome is None
+            and request.pending_request.starts_program
+            and not request.is_detached
             for request in (*requests, *list(self._orphaned_requests))
         )
 
@@ -279,36 +281,40 @@ class Server:
         if message["do"] == "press" and not client.speaker:
             self._speaker_count += 1
             client.speaker = self._speaker_count
-        make = request_maker(message, limit_ms, client.speaker)
+        make_request = request_maker(message, limit_ms, client.speaker)
         if self._is_latched() and message["do"] in _STARTING_REQUESTS:
             self._tell_outcome(client, number, Reply(CANCELLED))
             return
-        client.requests[number] = ServedRequest(self._connection.begin(make), is_detached(message))
+        client.requests[number] = ServedRequest(
+            self._connection.begin(make_request), is_detached(message)
+        )
 
     def _pass_on_outcomes(self) -> None:
         for client in list(self._clients):
             for number, request in list(client.requests.items()):
-                outcome = request.pending.outcome
+                outcome = request.pending_request.outcome
                 if outcome is not None:
                     del client.requests[number]
                     self._note_owner(request, client)
                     self._tell_outcome(client, number, outcome)
-                elif request.pending.done_bytes != request.told_bytes:
-                    done_bytes = request.pending.done_bytes
+                elif request.pending_request.done_bytes != request.told_bytes:
+                    done_bytes = request.pending_request.done_bytes
                     client.requests[number] = request._replace(told_bytes=done_bytes)
                     self._send(client, {"id": number, "done_bytes": done_bytes})
         for request in self._orphaned_requests:
             self._note_owner(request, None)
         self._orphaned_requests = [
-            request for request in self._orphaned_requests if request.pending.outcome is None
+            request
+            for request in self._orphaned_requests
+            if request.pending_request.outcome is None
         ]
 
     def _note_owner(self, request: ServedRequest, client: ConnectedClient | None) -> None:
         """Note which client's run has begun; stop the run where that client has left."""
-        outcome = request.pending.outcome
+        outcome = request.pending_request.outcome
         if outcome is None or outcome.status != OK:
             return
-        if not request.pending.starts or request.is_detached:
+        if not request.pending_request.starts_program or request.is_detached:
             return
         receipt: ReceiptReply = outcome.values
         run = receipt.run
@@ -376,7 +382,7 @@ class Server:
         self._selector.unregister(client.peer)
         client.peer.close()
         for request in client.requests.values():
-            self._connection.withdraw(request.pending)
+            self._connection.withdraw(request.pending_request)
             self._orphaned_requests.append(request)
         if client.speaker:
             self._connection.begin(lambda session: session.press(speaker=client.speaker))

@@ -72,8 +72,8 @@ class SharedConnection(LinkConnection):
     def has_ended(self) -> bool:
         return self._end is not None
 
-    def begin(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
-        request = make(self._requests)
+    def begin(self, make_request: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        request = make_request(self._requests)
         assert isinstance(request, ClientRequest)
         self._request_count += 1
         self._pending_requests[self._request_count] = request
@@ -89,11 +89,11 @@ class SharedConnection(LinkConnection):
                 look()
         return request.outcome
 
-    def event(self, limit_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = POLL_INTERVAL_S) -> tuple[int, Event] | None:
         if not self._events:
             if self._end is not None:
                 raise self._end
-            self._listen(limit_s)
+            self._listen(timeout_s)
         return self._events.popleft() if self._events else None
 
     def enable_place_events(self) -> None:
@@ -115,7 +115,7 @@ class SharedConnection(LinkConnection):
             # messages that arrived earlier may give a better reason
             self._end = self._end or ConnectionLost(str(error), is_server=True)
 
-    def _listen(self, limit_s: float) -> None:
+    def _listen(self, timeout_s: float) -> None:
         """Read and handle messages until some arrive or the time is over."""
         now_s = monotonic()
         if now_s - self._heartbeat_s >= protocol.HEARTBEAT_S:
@@ -124,7 +124,7 @@ class SharedConnection(LinkConnection):
                 self._unanswered_since_s = now_s
             self._send({"do": "beat"})
         try:
-            self._peer.settimeout(max(limit_s, 0.001))
+            self._peer.settimeout(max(timeout_s, 0.001))
             data = self._peer.recv(65536)
             if not data:
                 raise ConnectionError

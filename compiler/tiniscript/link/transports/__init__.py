@@ -31,6 +31,6 @@ class Transport(Protocol):
         """Return the address of the robot that a name means: a port, too."""
         ...
 
-    def open_port(self, port: str, baud: int, limit_s: float) -> Port:
-        """Open a port for exclusive use. `limit_s` is for those without limits of their own."""
+    def open_port(self, port: str, baud: int, timeout_s: float) -> Port:
+        """Open a port for exclusive use. `timeout_s` is for those without limits of their own."""
         ...

@@ -79,18 +79,18 @@ def resolve(port: str) -> str:
 
 def list_robots() -> list[search.SeenDevice]:
     """Return the robots in reach. Raises PortError."""
-    limit_s = search.LIST_S + search.LEAVE_S * 2
-    seen_devices = _run(shared_loop(), search.find_robots(), limit_s)
+    timeout_s = search.LIST_S + search.LEAVE_S * 2
+    seen_devices = _run(shared_loop(), search.find_robots(), timeout_s)
     _found_devices.update(
         {canonical_name(seen_device.address): seen_device.device for seen_device in seen_devices}
     )
     return seen_devices
 
 
-def open_port(port: str, baud: int, limit_s: float) -> BluetoothPort:
+def open_port(port: str, baud: int, timeout_s: float) -> BluetoothPort:
     """Connect to a device. Raises PortError, at the latest after a search and QUEUE_S.
 
-    `baud` is the speed of the UART behind an HM-10. Radios take longer than `limit_s`.
+    `baud` is the speed of the UART behind an HM-10. Radios take longer than `timeout_s`.
     """
     address = name_in(port)
     if address not in _found_devices:
@@ -126,9 +126,9 @@ class BluetoothPort(PushedTransport):
         """Send bytes in pieces. Pieces that do not get through in time are lost."""
         if self._end_reason:
             raise OSError(self._end_reason)
-        limit_s = WRITE_S + len(data) * self._byte_s
+        timeout_s = WRITE_S + len(data) * self._byte_s
         with suppress(TimeoutError, asyncio.TimeoutError, BleakError, OSError, EOFError):
-            self._loop.run(self._send(data), limit_s)
+            self._loop.run(self._send(data), timeout_s)
         if self._end_reason:
             raise OSError(self._end_reason)
 
@@ -193,10 +193,10 @@ class BluetoothPort(PushedTransport):
                 self._ready_s = time() + len(piece) * self._byte_s
 
 
-def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
+def _run(loop: EventLoop, work: Coroutine[Any, Any, T], timeout_s: float) -> T:
     """Run a coroutine of bleak. Raises PortError for all that can go wrong there."""
     try:
-        return loop.run(work, limit_s)
+        return loop.run(work, timeout_s)
     except PortError:
         raise
     except (TimeoutError, asyncio.TimeoutError):  # two of them, in Python 3.10

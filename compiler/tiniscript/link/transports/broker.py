@@ -88,7 +88,7 @@ def resolve(port: str) -> str:
     return port
 
 
-def open_port(port: str, baud: int, limit_s: float) -> BrokerPort:
+def open_port(port: str, baud: int, timeout_s: float) -> BrokerPort:
     """Return the port of a robot. Raises PortError, after CONNECT_S at the latest."""
     match = _PORT.fullmatch(port)
     if match is None or int(match[2]) >= 1 << 16:

@@ -32,7 +32,7 @@ class EventLoop:
         self._thread.start()
         atexit.register(self.close)
 
-    def run(self, coroutine: Coroutine[Any, Any, T], limit_s: float) -> T:
+    def run(self, coroutine: Coroutine[Any, Any, T], timeout_s: float) -> T:
         """Run a coroutine and return its result. Raises TimeoutError after the time limit.
 
         After the time limit, or Ctrl-C, the coroutine is cancelled.
@@ -45,7 +45,7 @@ class EventLoop:
             tasks[0].add_done_callback(lambda _: is_over.ring())
 
         self._loop.call_soon_threadsafe(begin)
-        end_s = monotonic() + limit_s
+        end_s = monotonic() + timeout_s
         try:
             while not is_over.wait(max(0.0, min(POLL_INTERVAL_S, end_s - monotonic()))):
                 if monotonic() >= end_s:

@@ -45,9 +45,9 @@ def resolve(port: str) -> str:
     return _address(info)
 
 
-def open_port(port: str, baud: int, limit_s: float) -> Port:
+def open_port(port: str, baud: int, timeout_s: float) -> Port:
     """Open the address of a name, which is searched first. Raises PortError."""
-    opened_port: Port = serial.open_port(resolve(port), baud, limit_s)
+    opened_port: Port = serial.open_port(resolve(port), baud, timeout_s)
     return opened_port
 
 

@@ -80,8 +80,10 @@ def resolve(port: str) -> str:
     return port
 
 
-def open_port(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -> serial.SerialBase:
-    """Open a port, at the latest after `limit_s`. Raises PortError.
+def open_port(
+    port: str, baud: int, timeout_s: float, is_exclusive: bool = True
+) -> serial.SerialBase:
+    """Open a port, at the latest after `timeout_s`. Raises PortError.
 
     Some drivers block in `open` forever, so a daemon thread opens the port.
     """
@@ -95,7 +97,7 @@ def open_port(port: str, baud: int, limit_s: float, is_exclusive: bool = True) -
 
     thread = Thread(target=open_in_thread, name="open", daemon=True)
     thread.start()
-    thread.join(limit_s)
+    thread.join(timeout_s)
     if not outcomes:
         raise PortError(SLOW)
     if isinstance(outcomes[0], BaseException):

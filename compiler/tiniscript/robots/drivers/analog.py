@@ -41,12 +41,12 @@ class Analog(SensorDriver):
     )
 
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
-        zero, full = wiring.settings["zero"], wiring.settings["full"]
-        step, remainder = divmod(full - zero, FULL_COUNT)
-        lowest, highest = sorted((zero, full))
+        zero_value, full_value = wiring.settings["zero"], wiring.settings["full"]
+        step, remainder = divmod(full_value - zero_value, FULL_COUNT)
+        lowest, highest = sorted((zero_value, full_value))
         return [
             part.analog_read(wiring),
-            f"      *value = analog_scaled(*value, {zero}, {step}, {remainder});",
+            f"      *value = analog_scaled(*value, {zero_value}, {step}, {remainder});",
             *limit_lines(device, lowest, highest),
             "      return true;",
         ]
@@ -79,9 +79,14 @@ class Analog(SensorDriver):
     ) -> Shape:
         if sensed_kind == "light":
             return photoresistor_shape()
-        full = wiring.settings["full"]
-        if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > pin_volts:
-            return _divided_voltage(device, full, pin_volts)
+        full_value = wiring.settings["full"]
+        if (
+            device
+            and device.unit == "V"
+            and wiring.settings["zero"] == 0
+            and full_value > pin_volts
+        ):
+            return _divided_voltage(device, full_value, pin_volts)
         return module_shape("OUT", "need_analog", "mind_analog")
 
 

@@ -16,8 +16,8 @@ class PwmActuator(ActuatorDriver):
 
     def firmware_lines(self, part: HeaderPart, device: Device, wiring: Wiring) -> list[str]:
         pin, pwm = part.pins.pin(wiring.pins["pin"]), part.pins.pwm(wiring.pins["pin"])
-        begin = f"begin_pwm(Pwm{pwm});" if part.is_esp32 else f"begin_output({pin}, false);"
-        part.begin_lines.append(begin)
+        begin_line = f"begin_pwm(Pwm{pwm});" if part.is_esp32 else f"begin_output({pin}, false);"
+        part.begin_lines.append(begin_line)
         part.off_lines.append(f"disconnect(Pwm{pwm});  // {device.name}")
         share = part.part_of_range(device, 0, 255)
         return [f"      connect(Pwm{pwm}, {share});", "      return;"]

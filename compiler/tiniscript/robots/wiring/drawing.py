@@ -120,16 +120,16 @@ FAINT_STYLE = ' fill="#666666"'
 
 def _board(plan: Plan, layout: Layout) -> list[str]:
     left, top, width, height = layout.board
-    middle = left + width / 2
+    middle_x = left + width / 2
     lines = [
         f'<rect x="{left}" y="{top}" width="{width}" height="{height}" rx="8" '
         f'fill="#eef4f6" stroke="{LINE_COLOUR}" stroke-width="2"/>',
-        f'<rect x="{middle - 22:g}" y="{top - 14}" width="44" height="24" rx="3" fill="#dddddd" '
+        f'<rect x="{middle_x - 22:g}" y="{top - 14}" width="44" height="24" rx="3" fill="#dddddd" '
         f'stroke="{LINE_COLOUR}"/>',
-        text_at("USB", middle, top + 3, 40, "middle", 13),
+        text_at("USB", middle_x, top + 3, 40, "middle", 13),
         text_at(
             SIDES[plan.chip.name].name,
-            middle,
+            middle_x,
             top + height - 14,
             width - 12,
             "middle",
@@ -267,7 +267,7 @@ def _resistor(value: str, x: float, y: float) -> str:
 def _box(box: Box, language: str) -> list[str]:
     part, icon = box.part, ICONS[box.part.shape.icon]
     outer_x = box.x + (32 if box.side == LEFT else places.PART_WIDTH - 32)
-    middle = box.y + box.height - 30
+    middle_y = box.y + box.height - 30
     inner_width = places.PART_WIDTH - 16
     model = part.shape.model if part.is_device else ""
     title = f"{part.title} ({model})" if model else part.title
@@ -276,7 +276,7 @@ def _box(box: Box, language: str) -> list[str]:
         f'fill="#fafafa" stroke="{LINE_COLOUR}" stroke-width="2"/>',
         text_at(title, box.x + 8, box.y + 18, inner_width, size=15, style=BOLD_STYLE),
         text_at(part.label, box.x + 8, box.y + 36, inner_width, size=13) if part.label else "",
-        f'<g transform="translate({outer_x} {middle:g})" fill="#ffffff" stroke="{LINE_COLOUR}" '
+        f'<g transform="translate({outer_x} {middle_y:g})" fill="#ffffff" stroke="{LINE_COLOUR}" '
         f'stroke-width="1.5">{icon}</g>',
     ]
     if part.shape.motor_terminals:
