@@ -58,8 +58,8 @@ def halt_output(terminal: Terminal) -> list[str]:
     """Wait for the end; return the output about the halts and after them."""
     assert terminal.end() == 0
     lines = [line for line in terminal.whole() if line]
-    first = next(k for k, line in enumerate(lines) if line.startswith("Halted"))
-    return lines[first:]
+    halt_index = next(k for k, line in enumerate(lines) if line.startswith("Halted"))
+    return lines[halt_index:]
 
 
 def test_without_a_terminal_it_tells_each_halt_and_goes_on(
@@ -96,8 +96,8 @@ def test_a_line_without_an_instruction_halts_before_the_next_one(
 def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     result = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
-    first = result.out.splitlines()[1:6]
-    assert first == [
+    place_lines = result.out.splitlines()[1:6]
+    assert place_lines == [
         "Halted before line 5: S",
         "  N = 3",
         "  Line 1: another task, waiting",

@@ -68,13 +68,13 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
 
 
 def test_an_invalid_certificate_is_reported_before_the_robot_is_asked(tmp_path: Path) -> None:
-    authority, other = Authority(tmp_path), Authority(tmp_path, "Otra")
+    authority, other_authority = Authority(tmp_path), Authority(tmp_path, "Otra")
     text = authority.file.read_bytes()
     begin = text.index(b"-----BEGIN")
     files = {
         "none": b"", "text": b"hello\n", "cut": text[: begin + 200], "der": authority.der[:-1],
-        "two der": authority.der + other.der,
-        "two": text + other.file.read_bytes(), "junk": text.replace(b"M", b"!"),
+        "two der": authority.der + other_authority.der,
+        "two": text + other_authority.file.read_bytes(), "junk": text.replace(b"M", b"!"),
         "long": text[:begin] + bytes(5000), "key": (tmp_path / "Aula.key").read_bytes(),
     }  # fmt: skip
     for name, data in files.items():

@@ -232,8 +232,8 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
             break
     assert len({value["port"] for value in values}) == 2, result
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
-        first, *rows = csv.reader(file)
-    assert first == ["robot", "id", "ms", "event", "value", "name"]
+        header, *rows = csv.reader(file)
+    assert header == ["robot", "id", "ms", "event", "value", "name"]
     shows = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
     assert shows == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
     assert len([row for row in rows if row[3] == "SHOW"]) == len(values)

@@ -139,10 +139,10 @@ def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
 
 def test_check_json(tsc: Tsc) -> None:
     result = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
-    first, second = json.loads(result.out)
-    assert set(first) == {"code", "severity", "line", "column", "end_line", "end_column",
+    first_diagnostic, second = json.loads(result.out)
+    assert set(first_diagnostic) == {"code", "severity", "line", "column", "end_line", "end_column",
                           "message", "fix"}  # fmt: skip
-    place = {key: first[key] for key in ("line", "column", "end_line", "end_column")}
+    place = {key: first_diagnostic[key] for key in ("line", "column", "end_line", "end_column")}
     assert place == {"line": 2, "column": 3, "end_line": 2, "end_column": 4}
     assert (second["line"], second["column"], second["severity"]) == (2, 13, "mistake")
     assert "1.5, 80" in second["fix"]
@@ -187,9 +187,9 @@ def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
 
 def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
     text = "LOOP(5);SHOW(RANDOM(1,1000));END_LOOP"
-    first = tsc("run", "-e", text).out
-    assert first == tsc("run", "-e", text, "--seed", "1").out
-    assert first != tsc("run", "-e", text, "--seed", "2").out
+    unseeded_output = tsc("run", "-e", text).out
+    assert unseeded_output == tsc("run", "-e", text, "--seed", "1").out
+    assert unseeded_output != tsc("run", "-e", text, "--seed", "2").out
 
 
 @each_row("arguments", [

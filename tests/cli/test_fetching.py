@@ -223,9 +223,11 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
-    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:])
+    first_step, second = (
+        text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:]
+    )
     text_before, _, text_after = person.output.partition(second)
-    shown_text = text_before.rpartition(first)[2]
+    shown_text = text_before.rpartition(first_step)[2]
     assert text_after and re.search(r"\r {40,}\r", shown_text), "nothing is left of the step before"
     assert clone.page.exists()
     person.interrupt()

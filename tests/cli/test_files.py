@@ -274,15 +274,15 @@ def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
 
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The owner left between our opening and our locking its file; another one came."""
-    first = registry.lock_port("socket://x:1")
-    assert first is not None
+    old_lock = registry.lock_port("socket://x:1")
+    assert old_lock is not None
     real_call = registry._lock
     others: list[IO[bytes] | None] = []
 
     def lock(file: registry._Lock) -> bool:
         if not others:
             others.append(None)
-            first.close()
+            old_lock.close()
             others.append(registry.lock_port("socket://x:1"))
         return real_call(file)
 

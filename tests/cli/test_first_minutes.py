@@ -256,12 +256,12 @@ def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
 
 @each_row("language, try_it", [("en", "Try"), ("es", "Prueba"), ("pt", "Tente")])
 def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: Tsc) -> None:
-    for verb, option, other in (
+    for verb, option, other_verb in (
         ("run", "--virtual", "upload"), ("run", "--hurry", "upload"), ("run", "--detach", "upload"),
         ("upload", "--max-steps", "run"), ("upload", "--show", "run"),
     ):  # fmt: skip
         result = tsc(verb, "prog.ts", option, "--lang", language).gives(2)
-        assert f"{try_it}:  tsc {other} prog.ts {option}" in result.err
+        assert f"{try_it}:  tsc {other_verb} prog.ts {option}" in result.err
     result = tsc("run", "prog.ts", "--virtul", "--lang", language).gives(2)
     assert "tsc run --help" in result.err
 
@@ -512,8 +512,8 @@ def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:
     assert tsc("check", ROOT / PROGRAM).gives(0, out="no mistakes").err == ""
     for path in sorted(ROOT.glob("README*.md")):
         program = path.read_text(encoding="utf-8")
-        first = program.partition("```tiniscript\n")[2].partition("```")[0]
-        assert tsc("check", "-e", first).gives(0, out="no mistakes").err == "", path
+        first_program = program.partition("```tiniscript\n")[2].partition("```")[0]
+        assert tsc("check", "-e", first_program).gives(0, out="no mistakes").err == "", path
         assert f"`{PROGRAM.as_posix()}`" in program, path
 
 

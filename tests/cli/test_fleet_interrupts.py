@@ -67,10 +67,10 @@ def step_calls(
     """Make calls of a function, whose first argument contains a port, pass two stages."""
     whole: Callable[..., Any] = getattr(owner, name)
 
-    def interrupt_step(first: Any, *words: Any, **keyword_arguments: Any) -> Any:
-        port = first if isinstance(first, str) else first.port
+    def interrupt_step(target: Any, *words: Any, **keyword_arguments: Any) -> Any:
+        port = target if isinstance(target, str) else target.port
         room.at(before, port)
-        outcome = whole(first, *words, **keyword_arguments)
+        outcome = whole(target, *words, **keyword_arguments)
         room.at(after, port)
         return outcome
 
@@ -89,11 +89,11 @@ def test_after_ctrl_c_nothing_starts(
     fleet: RobotFleet, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     rng = random.Random(seed)
-    first = seed % 6  # the stages of all robots overlap
+    first_stage = seed % 6  # the stages of all robots overlap
     room = Room(
         fleet,
         [
-            first,
+            first_stage,
             *(rng.choice((OPENING_STAGE, OPENED_STAGE, ASKED_STAGE, DRIVING_STAGE)) for _ in "23"),
         ],
     )

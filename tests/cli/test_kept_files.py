@@ -271,17 +271,17 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
             )()
             kept_memory.add(SECOND_NUMBER)
 
-        def other(say: Any = say) -> None:
+        def run_child(say: Any = say) -> None:
             vars(files)["sleep"] = lambda _: os.write(say[1], b"w")
             kept_memory.add(THIRD_NUMBER)
             os.write(say[1], b"e")
 
-        first = fork_child(pause_at_line)
+        first_child = fork_child(pause_at_line)
         assert os.read(arrived[0], 1)
-        second = fork_child(other)
+        second = fork_child(run_child)
         assert os.read(say[0], 1) in (b"w", b"e")
         os.write(holds[1], b"1")
-        assert (wait_for_child(first), wait_for_child(second)) == (0, 0), line
+        assert (wait_for_child(first_child), wait_for_child(second)) == (0, 0), line
         assert sorted(kept_memory.all()) == [*before, SECOND_NUMBER, THIRD_NUMBER], line
         for end in (*arrived, *holds, *say):
             os.close(end)

@@ -209,8 +209,8 @@ def pings(heard_bytes: bytes) -> int:
 
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
-    first, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
-    assert run_in_process("upload", "-e", first, "--all").code == 0
+    first_program, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
+    assert run_in_process("upload", "-e", first_program, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
     assert run_in_process("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
     result = run_in_process("start", "--previous", "--all", "--json").gives(3)
@@ -315,8 +315,8 @@ def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
     when: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     options = Namespace(verb="upload", json=False, detach=False)
-    at = [Target(port, "", True, True) for port in "AB"]
-    fleet = Fleet(at, options, robots.load("tinibot"), "en")
+    targets = [Target(port, "", True, True) for port in "AB"]
+    fleet = Fleet(targets, options, robots.load("tinibot"), "en")
     fleet.members[0].result = Result(True, "fine")
     pressed_keys: list[str] = []
 

@@ -26,13 +26,13 @@ PARSERS = parsers()
 
 # each output of each verb, against everything that this verb reads, and against its other outputs
 PAIRS = [
-    (verb, output, other)
+    (verb, output, other_output)
     for verb, parser in PARSERS.items()
     for output in values_of(parser)
-    for other in values_of(parser)
+    for other_output in values_of(parser)
     if output in paths.WRITE_OPTIONS
-    and other != output
-    and {other} & {*paths.READ_OPTIONS, *paths.WRITE_OPTIONS}
+    and other_output != output
+    and {other_output} & {*paths.READ_OPTIONS, *paths.WRITE_OPTIONS}
     if not (verb == "monitor" and output == "plot")
 ]
 # Arguments of a verb before its files.
@@ -104,12 +104,12 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
 
 @pytest.mark.sampled("how")
 @pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])
-@pytest.mark.parametrize(("verb", "output", "other"), PAIRS)
+@pytest.mark.parametrize(("verb", "output", "other_output"), PAIRS)
 def test_no_output_is_another_file_of_its_command(
-    tsc: Tsc, working_folder: Path, verb: str, output: str, other: str,
+    tsc: Tsc, working_folder: Path, verb: str, output: str, other_output: str,
     how: str,
 ) -> None:  # fmt: skip
-    text = TEXTS.get(other, "what was there")
+    text = TEXTS.get(other_output, "what was there")
     precious = working_folder / "precious.ts"
     precious.write_text(text, encoding="utf-8")
     path = {"same": precious, "dot": Path("./precious.ts")}.get(how, working_folder / "other name")
@@ -119,7 +119,7 @@ def test_no_output_is_another_file_of_its_command(
         os.link(precious, path)
     before = sorted(os.listdir(working_folder))  # noqa: PTH208
     for language in ("en", "es"):
-        tsc(*arguments(verb, {other: precious, output: path}), "--lang", language).gives(
+        tsc(*arguments(verb, {other_output: precious, output: path}), "--lang", language).gives(
             2, str(path), precious.name, paths.WRITE_OPTIONS[output][0]
         )
     assert precious.read_text(encoding="utf-8") == text

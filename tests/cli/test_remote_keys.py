@@ -99,9 +99,10 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
             chance.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
             2.0 * k,
         )
-        at = chance.randrange(len(typed_text) + 1)
+        offset = chance.randrange(len(typed_text) + 1)
         leaves = [
-            cut.press_typed(piece, now_s) for piece in (typed_text[:at], "", typed_text[at:], "")
+            cut.press_typed(piece, now_s)
+            for piece in (typed_text[:offset], "", typed_text[offset:], "")
         ]
         assert any(leaves) == whole.press_typed(typed_text, now_s), (k, typed_text)
         assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed_text)

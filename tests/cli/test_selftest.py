@@ -135,8 +135,8 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     low = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
     _, parts = find_with_selftest(pty_robot)
-    first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
-    assert parts[first]["cause"] == "stuck"
+    first_sensor, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
+    assert parts[first_sensor]["cause"] == "stuck"
     assert parts[second]["verdict"] == "ok"
     pty_robot.ask(lambda robot: robot.sense(GOOD_LIGHT, GOOD_LIGHT, 0))
     code, parts = find_with_selftest(pty_robot)

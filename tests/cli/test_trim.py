@@ -218,8 +218,8 @@ def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
     code = unpack(compile_text(f"SI|{line}", KIT).image).code
     assert robot.until(session, session.live(code)) == OK
     robot.talk(session, 9000)
-    at = [int(row.split()[0]) for row in robot.did[count_before:] if "MOTORS" in row]
-    return [end - start for start, end in zip(at[::2], at[1::2], strict=True)]
+    times_ms = [int(row.split()[0]) for row in robot.did[count_before:] if "MOTORS" in row]
+    return [end - start for start, end in zip(times_ms[::2], times_ms[1::2], strict=True)]
 
 
 def test_a_measured_robot_goes_by_the_line_through_two_points() -> None:
@@ -266,10 +266,10 @@ def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
     for memory in (memory_before, robot.memory()):
         assert pace_of(memory) == PACE
     assert robot.memory() != memory_before
-    slots = [at for at in (66, 97) if robot.memory()[at] != 0xFF]
+    slots = [offset for offset in (66, 97) if robot.memory()[offset] != 0xFF]
     torn_bytes = bytearray(robot.memory())
-    for at in slots:
-        torn_bytes[at + 4 + 20] ^= 1  # a bit of both records
+    for offset in slots:
+        torn_bytes[offset + 4 + 20] ^= 1  # a bit of both records
     assert pace_of(bytes(torn_bytes)) == Pace()
 
 

@@ -140,8 +140,8 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
 @pytest.mark.parametrize("is_many", [False, True])
 def test_a_reset_during_a_run_is_not_success(pty_robot: PtyRobot, is_many: bool) -> None:
     """After a power cycle, a program has not ended by itself, however it was started."""
-    other = ("--port", "/dev/none") if is_many else ()
-    command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
+    more_options = ("--port", "/dev/none") if is_many else ()
+    command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *more_options)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     pty_robot.switch_off_and_on()
     result = command.wait_for_result()
@@ -237,9 +237,9 @@ def upload_two(pty_robot: PtyRobot) -> list[str]:
 
 def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
     """The JSON form is a receipt."""
-    first, second = upload_two(pty_robot)
+    first_checksum, second = upload_two(pty_robot)
     for language, checksum, expected, saved_text in (
-        ("en", first, "it has the previous program again, checksum", "Saved. The button"),
+        ("en", first_checksum, "it has the previous program again, checksum", "Saved. The button"),
         ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         result = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
@@ -251,7 +251,7 @@ def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRob
     receipt, kept_state = map(
         json.loads, on(pty_robot, "start", "--previous", "--json").out.splitlines()
     )
-    assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first
+    assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first_checksum
     assert receipt["saved"] == "SAVING" and receipt["slot"] is None
     assert kept_state["event"] == "SAVED" and kept_state["slot"] == 0
 
@@ -287,15 +287,20 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
 
 @pytest.mark.sampled(of="slow commands")
 def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
-    first, second = upload_two(pty_robot)
+    first_checksum, second = upload_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
-        on(pty_robot, "start", "--previous", "--lang", language).gives(3, expected, out=first)
+        on(pty_robot, "start", "--previous", "--lang", language).gives(
+            3, expected, out=first_checksum
+        )
         assert on(pty_robot, "start", "--previous").code == 0, "the second one is saved already"
     on(pty_robot, "start", "--previous")
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     pty_robot.switch_off_and_on()
-    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (first, second)
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (
+        first_checksum,
+        second,
+    )
 
 
 def test_ports_and_options_are_those_of_the_other_verbs() -> None:

@@ -117,12 +117,16 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
         running_robot.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
     options = ("--button-at", "1", "--for", "20", "--hurry", "max", "--noise", "5", "--lang", "es")
-    first, second, other = (
+    first, second, other_result = (
         run_in_process("robot", "--memory", memory, *options, "--seed", seed) for seed in "112"
     )
     assert first.code == 0
     assert first.out.count("READ DISTANCE") > 10
-    assert first.out.splitlines()[1:] == second.out.splitlines()[1:] != other.out.splitlines()[1:]
+    assert (
+        first.out.splitlines()[1:]
+        == second.out.splitlines()[1:]
+        != other_result.out.splitlines()[1:]
+    )
     found_cm = re.search(r"El robot virtual recorrió (\d+) cm en 20.0 s", first.err)
     assert found_cm and int(found_cm[1]) > 50, "what it drives when its time is over counts"
     with robot("--memory", memory):
@@ -143,10 +147,10 @@ def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Pa
     assert len(memory.read_bytes()) == size
     run_in_process("robot", *options).gives(0)
     assert b"INTI" in memory.read_bytes()
-    for other in (size + 1, size - 1, 0):
-        memory.write_bytes(bytes(other))
+    for wrong_size in (size + 1, size - 1, 0):
+        memory.write_bytes(bytes(wrong_size))
         run_in_process("robot", *options).gives(2, f"which has {size} bytes")
-        assert len(memory.read_bytes()) == other
+        assert len(memory.read_bytes()) == wrong_size
 
 
 def test_a_pseudo_terminal_is_a_port_too() -> None:

@@ -99,8 +99,8 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     assert diagnosis.port_access(linux, port).using_programs == ("screen",)
     linux.write("/run/lock/LCK..ttyUSB0", "999")  # process 999 has ended
     assert diagnosis.port_access(linux, port).using_programs == ()
-    for other in ("socket://robot:7000", "/dev/ttyUSB9"):
-        assert diagnosis.port_access(linux, other) == computer.FREE_ACCESS
+    for other_port in ("socket://robot:7000", "/dev/ttyUSB9"):
+        assert diagnosis.port_access(linux, other_port) == computer.FREE_ACCESS
 
 
 # -- macOS and Windows --------------------------------------------------------------------------

@@ -197,11 +197,11 @@ def test_each_restart_counts_once(restarts_ms: int) -> None:
     robot = WireRobot(SimulatedWire(end), 4711, KIT)
     end.restarts_ms, end.resets = restarts_ms, "POWER"
     hello = robot.hello()
-    first = hello_values(hello)
-    assert hello is not None and first is not None
+    first_values = hello_values(hello)
+    assert hello is not None and first_values is not None
     (finding,) = examine(robot, hello, Expectations(KIT, "tinibot", NAMES.get), 20_000)
     last = end.hello["nonce"]
-    assert isinstance(last, int) and finding.values["count"] == str(last - first.nonce)
+    assert isinstance(last, int) and finding.values["count"] == str(last - first_values.nonce)
 
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])

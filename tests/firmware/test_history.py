@@ -487,7 +487,7 @@ def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
     owner_key, teacher_key = keys.stored_keys
     wrong_key = owner_key._replace(key=bytes(range(16)))
     key_by_name = {"owner": owner_key, "teacher": teacher_key, "thief": wrong_key}
-    rings = {who: Keys(first=10 * k) for k, who in enumerate(("stranger", *key_by_name), 1)}
+    rings = {who: Keys(first_number=10 * k) for k, who in enumerate(("stranger", *key_by_name), 1)}
     for who, key in key_by_name.items():
         rings[who].stored_keys = [key]
     return table.robot.memory(), rings

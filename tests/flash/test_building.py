@@ -70,8 +70,8 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         result = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
         assert result.code == 0, result.err
         assert "PlatformIO is building the firmware of mine for the uno" in result.err
-        first = result.out.splitlines()[0]
-        assert first.startswith("The firmware for mine was written to the uno and verified: ")
+        first_line = result.out.splitlines()[0]
+        assert first_line.startswith("The firmware for mine was written to the uno and verified: ")
         info = process("doctor", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     files = ready.files(ready.firmware_cache())

@@ -76,10 +76,10 @@ def test_a_new_board_becomes_a_robot(
 ) -> None:
     with new_board(bootloader(board)) as uno:
         result = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
-        first, second = result.out.splitlines()[:2]
+        first_line, second = result.out.splitlines()[:2]
         message = f"The firmware for {robot} was written to the {board} and verified: "
-        assert first.startswith(message)
-        assert int(first.removeprefix(message).split()[0].replace(",", "")) > bytes_least
+        assert first_line.startswith(message)
+        assert int(first_line.removeprefix(message).split()[0].replace(",", "")) > bytes_least
         assert second.startswith(f"{robot} on {uno.pty}, id ")
 
 
@@ -294,9 +294,9 @@ def test_a_firmware_is_the_same_however_it_is_built(
     assert path.name.startswith("tinibot-uno-")
     halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
     assert halting.name.startswith("tinibot_breakpoints-uno-")
-    one, other = (file.read_text().split() for file in (
+    one, other_words = (file.read_text().split() for file in (
         path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
-    assert one == other
+    assert one == other_words
 
 
 def test_every_board_of_the_option_is_one_that_is_built() -> None:

@@ -78,13 +78,13 @@ def whole_frames(rows: list[str]) -> list[Frame]:
 def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     """Assert that Python encodes, receives and decodes a line as the C++ does."""
     sent_line = Line(line.data, [frame_of(frame) for frame in line.frames], line.is_damaged)
-    at = 0
+    offset = 0
     for frame, is_damaged in zip(sent_line.frames, sent_line.is_damaged, strict=True):
         if not is_damaged:
             wire = encode_frame(frame)
-            start = sent_line.data.find(wire, at)
+            start = sent_line.data.find(wire, offset)
             assert start >= 0, f"the C++ encodes it in another way: {frame}"
-            at = start + len(wire)
+            offset = start + len(wire)
     stream = [(0, byte) for byte in sent_line.data]
     rows = packets_of(stream, is_large=is_large)
     assert cpp_link(is_large).packets(stream) == rows

@@ -70,16 +70,16 @@ def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording)
         also |= {"micropython"}
     chance = random.Random(recording.shown_text)
     for _ in range(400):
-        first, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
-        board = identify_board(recording.data[first:last])
-        assert (board and board.name) in also, recording.data[first:last]
+        start, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
+        board = identify_board(recording.data[start:last])
+        assert (board and board.name) in also, recording.data[start:last]
 
 
 @each_recording
 def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording) -> None:
     line = LinkLine()
-    for at in range(0, len(recording.data), 3):
-        line.note_heard(recording.data[at : at + 3])
+    for offset in range(0, len(recording.data), 3):
+        line.note_heard(recording.data[offset : offset + 3])
     assert line.early_bytes == recording.data and line.heard_count == len(recording.data)
     assert identify_board(line.early_bytes) == identify_board(recording.data)
 
@@ -157,8 +157,8 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 def test_a_piece_of_a_robot_s_bytes_is_not_a_board(piece: int) -> None:
     chance = random.Random(piece)
     data = b"".join(chance.choices(OWN_ROWS, k=5))
-    first, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
-    assert identify_board(data[first:last]) is None
+    start, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
+    assert identify_board(data[start:last]) is None
 
 
 def test_bytes_of_a_computer_are_not_those_of_a_robot() -> None:

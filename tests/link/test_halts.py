@@ -77,21 +77,25 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
     session, robot = open_session()
     long = image("F(1, 80);" * 40)
     withdrawn_request = session.upload(long)
-    other = live(session)
+    other_request = live(session)
     robot.talk(session, after_ms)
     session.withdraw(withdrawn_request)
     assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
-    assert robot.until(session, other) == OK
+    assert robot.until(session, other_request) == OK
     robot.talk(session, 1000)
     assert not is_moving(robot) and "MOTORS 80 80" not in "".join(robot.did)
 
 
 def test_one_that_waits_is_withdrawn() -> None:
     session, robot = open_session()
-    first, withdrawn_request, last = live(session), session.upload(DRIVE_IMAGE), live(session)
+    first_request, withdrawn_request, last = (
+        live(session),
+        session.upload(DRIVE_IMAGE),
+        live(session),
+    )
     session.withdraw(withdrawn_request)
     assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
-    assert robot.until(session, last) == OK and first.outcome
+    assert robot.until(session, last) == OK and first_request.outcome
     assert not is_moving(robot)
 
 

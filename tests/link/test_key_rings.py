@@ -54,7 +54,7 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
             case "claim":
                 claim = ring.create_pending_key(*slot, "TINI")
                 assert claim is not None
-                older_claims = [other for other in claims if other.slot == slot]
+                older_claims = [claim for claim in claims if claim.slot == slot]
                 claims = [c for c in claims if c not in older_claims[:-MOST_PENDING_KEYS]] + [claim]
             case "import":
                 add(ring, chance.choice(lists))

@@ -88,10 +88,10 @@ def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
 
 
 def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None:
-    for at in (2, 3, 7, 9, 10, 11):
+    for offset in (2, 3, 7, 9, 10, 11):
         damage = bytearray(live(CODES[0]))
-        damage[at] ^= 0x40 if at < 8 else 0x11
-        assert open_session().step(10, bytes(damage)) == NOTHING, at
+        damage[offset] ^= 0x40 if offset < 8 else 0x11
+        assert open_session().step(10, bytes(damage)) == NOTHING, offset
     more = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
     ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, data) for data in more)]
     for code in CODES:

@@ -39,9 +39,9 @@ def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
     """
     draw = random.Random(seed)
     counts: Counter[str] = Counter()
-    for first in range(0, count, LINES):
+    for first_number in range(0, count, LINES):
         world = LiveWorld(cpp, draw, draw.choice((0.001, 0.005, 0.01)), draw.choice((0, 0.0005)))
-        for number in range(first, min(first + LINES, count)):
+        for number in range(first_number, min(first_number + LINES, count)):
             world.sent = 0
             request = world.session.live(line_of(number))
             world.run(request)

@@ -159,9 +159,9 @@ def test_a_robot_announces_itself_only_when_asked(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
-    with robot("--name", "quiet") as running_robot, robot("--announce") as other:
-        name = other.line()
-        assert name == f"tcp://tinibot-{number_of(other.port)}"
+    with robot("--name", "quiet") as running_robot, robot("--announce") as other_robot:
+        name = other_robot.line()
+        assert name == f"tcp://tinibot-{number_of(other_robot.port)}"
         rows = run_in_process("doctor", "--ports", "--ask").out.splitlines()
         assert any(row.startswith(f"{name} ") for row in rows)
         assert [row.split("   ")[0] for row in rows if "quiet" in row] == [running_robot.port]

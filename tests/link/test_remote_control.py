@@ -578,9 +578,9 @@ def test_keys_between_the_pieces_of_a_program() -> None:
     )
     assert wire.answer(wire.frame("BEGIN", begin)) == "OK"
     rest = bytes([sent_image.needs]) + sent_image.code
-    for at in range(0, len(rest), 40):
+    for offset in range(0, len(rest), 40):
         assert wire.answer(wire.keys(KEY_UP)) == "OK"
-        piece = at.to_bytes(2, "little") + rest[at : at + 40]
+        piece = offset.to_bytes(2, "little") + rest[offset : offset + 40]
         assert wire.answer(wire.frame("DATA", piece)) == "OK"
     assert wire.answer(wire.keys(KEY_UP)) == "OK"
     assert wire.robot.remote() == remote_readings(KEY_UP)

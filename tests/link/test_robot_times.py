@@ -106,7 +106,7 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
     under_way = [(0, b"F(2,800)\r\n")]
     answers = []
     for now_ms in range(0, 60_000, 10):
-        came = b"".join(data for at, data in under_way if at == now_ms)
+        came = b"".join(data for arrival_ms, data in under_way if arrival_ms == now_ms)
         under_way = [pair for pair in under_way if pair[0] > now_ms]
         sent_bytes = cpp.step(now_ms, came).sent.replace(b"\0", b"")
         answers += [now_ms] * sent_bytes.count(b"\n")

@@ -126,10 +126,10 @@ def test_each_bit_and_each_length_counts() -> None:
     for bit in range(8 * len(to_robot)):
         change = 1 << bit % 8
         for data in (to_robot, to_computer):
-            other = bytearray(data)
-            other[bit // 8] ^= change
-            assert seal(0).open_frame(frame_of(bytes(other))) is None
-            assert not cpp_link().opens(KEY, ORIGIN, 0, bytes(other))
+            changed_data = bytearray(data)
+            changed_data[bit // 8] ^= change
+            assert seal(0).open_frame(frame_of(bytes(changed_data))) is None
+            assert not cpp_link().opens(KEY, ORIGIN, 0, bytes(changed_data))
     for length in range(3, len(to_robot)):
         assert seal(0).open_frame(frame_of(to_computer[:length])) is None
         assert not cpp_link().opens(KEY, ORIGIN, 0, to_robot[:length])
@@ -139,12 +139,12 @@ def test_another_origin_is_another_key() -> None:
     sent = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
     assert cpp_link().opens(KEY, ORIGIN, 0, sent)
     keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH)}
-    for at in range(len(ORIGIN)):
-        other = bytearray(ORIGIN)
-        other[at] ^= 1
-        assert not cpp_link().opens(KEY, bytes(other), 0, sent)
-        nonces = (int.from_bytes(other[at : at + 4], "little") for at in (8, 12))
-        keys.add(session_key(KEY, bytes(other[:8]), *nonces, *other[16:]))
+    for index in range(len(ORIGIN)):
+        other_origin = bytearray(ORIGIN)
+        other_origin[index] ^= 1
+        assert not cpp_link().opens(KEY, bytes(other_origin), 0, sent)
+        nonces = (int.from_bytes(other_origin[offset : offset + 4], "little") for offset in (8, 12))
+        keys.add(session_key(KEY, bytes(other_origin[:8]), *nonces, *other_origin[16:]))
     assert len(keys) == len(ORIGIN) + 1
 
 

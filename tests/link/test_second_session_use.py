@@ -150,8 +150,8 @@ def ends_are_told_once(events: list[Event]) -> bool:
 
 
 def check(seed: int) -> str:
-    used, other = first_use(random.Random(seed)), first_use(random.Random(seed))
-    for wire in (used, other):
+    used, other_use = first_use(random.Random(seed)), first_use(random.Random(seed))
+    for wire in (used, other_use):
         wire.robot.talk(wire.session, QUIET_MS)
         if not wire.robot.is_latched:  # detached programs continue
             wire.session.stop(wire.robot.now_ms)
@@ -160,9 +160,9 @@ def check(seed: int) -> str:
     assert ends_are_told_once(events), f"seed {seed} {events}"
     session = computer(77)
     session.tells_starts = True
-    assert other.robot.until(session, session.hello()) == OK
+    assert other_use.robot.until(session, session.hello()) == OK
     actual = second_use(random.Random(seed), used.session, used.robot)
-    want = second_use(random.Random(seed), session, other.robot)
+    want = second_use(random.Random(seed), session, other_use.robot)
     assert actual.what == want.what, f"seed {seed}\n{actual.what}\nnot\n{want.what}"
     late = [a - b for a, b in zip(actual.took_ms, want.took_ms, strict=True)]
     assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"

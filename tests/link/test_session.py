@@ -48,28 +48,28 @@ LOW_SUPPLY, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 def list_packets(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
     """Return a session's output if it is woken exactly when it requested."""
     packets = []
-    while (at := session.next_wake_ms()) is not None and at <= until_ms:
-        data = session.poll(at)
+    while (poll_ms := session.next_wake_ms()) is not None and poll_ms <= until_ms:
+        data = session.poll(poll_ms)
         if data:
-            packets.append((at, data))
-        assert session.next_wake_ms() != at or session.next_wake_ms() is None, (
+            packets.append((poll_ms, data))
+        assert session.next_wake_ms() != poll_ms or session.next_wake_ms() is None, (
             "it wants to be woken at once"
         )
     return packets
 
 
-@pytest.mark.parametrize(("baud", "first"), [(9600, 200), (57600, 134), (115200, 127)])
+@pytest.mark.parametrize(("baud", "first_wait_ms"), [(9600, 200), (57600, 134), (115200, 127)])
 def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
-    baud: int, first: int
+    baud: int, first_wait_ms: int
 ) -> None:
     session = greet(baud)
     session.is_attached = False
     request = session.live(FORWARD)
     session.poll(0)
     packets = list_packets(session, EXCHANGE_TIMEOUT_MS)
-    times = [at for at, _ in packets]
+    times = [sent_ms for sent_ms, _ in packets]
     # a byte more, the 0x00 before, from the second one on is no matter
-    assert abs(times[0] - first) <= 2
+    assert abs(times[0] - first_wait_ms) <= 2
     gaps = [later - earlier for earlier, later in pairwise(times)]
     doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
     assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
@@ -93,7 +93,7 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
         session.ping()
         begun_ms = now_ms
         data = session.poll(now_ms)
-        times = [at - begun_ms for at, _ in list_packets(session, begun_ms + took_ms)]
+        times = [sent_ms - begun_ms for sent_ms, _ in list_packets(session, begun_ms + took_ms)]
         now_ms = begun_ms + took_ms
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
         return [later - earlier for earlier, later in pairwise([0, *times])]
@@ -102,10 +102,10 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
     assert measure_waits(500) == []  # it stays, and this one is certain: 500 and 4 * 250
     silent = session.ping()
     session.poll(now_ms)
-    first = list_packets(session, now_ms + 2000)[0][0] - now_ms
+    first_wait_ms = list_packets(session, now_ms + 2000)[0][0] - now_ms
     assert silent.outcome is None
     # HELLO's round trip took no time: a mean of 500 / 8, a variation of 500 / 4
-    assert first == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
+    assert first_wait_ms == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
 
 
 def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_ends_it() -> None:
@@ -121,7 +121,9 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
         late_ms = begun_ms + 900
         gaps = [
             b - a
-            for a, b in pairwise([begun_ms, *(at for at, _ in list_packets(session, late_ms))])
+            for a, b in pairwise(
+                [begun_ms, *(sent_ms for sent_ms, _ in list_packets(session, late_ms))]
+            )
         ]
         assert gaps and max(gaps) <= MOST_RETRY_MS < messages.DEAD_MAN_MS / 2
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
@@ -187,10 +189,10 @@ def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> N
             session.receive(event("STOPPED", 0, {"cause": cause}), 0)
             session.events()
         session.stop(10)
-        for number, at in ((1, 10), (2, 110)):
-            assert session.poll(at) == bytes(8)
+        for number, poll_ms in ((1, 10), (2, 110)):
+            assert session.poll(poll_ms) == bytes(8)
             assert session.events() == []
-            session.receive(event("STOPPED", number, {"cause": cause}), at + 20)
+            session.receive(event("STOPPED", number, {"cause": cause}), poll_ms + 20)
             if is_known:
                 break
         assert [event.name for event in session.events()] == ["STOPPED"]
@@ -202,9 +204,12 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     session, robot = running()
     stopped_event = robot.step(flags=1) + robot.wait(60)  # stopped, and STOPPED is under way
     robot.step(flags=2)
-    other = Session(2, 9600, KIT)
-    assert robot.until(other, other.clear()) == 0
-    assert robot.until(other, other.live(compile_text("F(200, 80)", ROBOT.kit).code)) == 0
+    other_session = Session(2, 9600, KIT)
+    assert robot.until(other_session, other_session.clear()) == 0
+    assert (
+        robot.until(other_session, other_session.live(compile_text("F(200, 80)", ROBOT.kit).code))
+        == 0
+    )
     session.stop(robot.now_ms)
     assert session.poll(robot.now_ms)  # no client hears it
     session.receive(stopped_event, robot.now_ms)
@@ -312,10 +317,10 @@ def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> N
 
 def test_an_old_answer_is_ignored() -> None:
     session = greet()
-    first = session.live(FORWARD)
+    old_request = session.live(FORWARD)
     data = session.poll(0)
     session.receive(answer(data, receipt(1)), 10)
-    assert first.outcome
+    assert old_request.outcome
     second = session.live(FORWARD)
     session.poll(20)
     session.receive(answer(data, receipt(1)), 30)
@@ -492,11 +497,11 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
     """The answer has another epoch, which was not announced."""
     session = Session(1, kit=KIT)
     session.hello()
-    first, second = session.live(FORWARD), session.live(FORWARD)
+    first_request, second = session.live(FORWARD), session.live(FORWARD)
     session.receive(answer(session.poll(0), DESCRIPTION), 0)
-    assert first.outcome is None  # HELLO begins an epoch, and does not end one
+    assert first_request.outcome is None  # HELLO begins an epoch, and does not end one
     session.receive(answer(session.poll(1), receipt(1), epoch=epoch), 1)
-    assert first.outcome and first.outcome.status == 0
+    assert first_request.outcome and first_request.outcome.status == 0
     assert second.outcome is None
     session.receive(answer(session.poll(2), {**DESCRIPTION, **values}, epoch=epoch), 2)
     assert (second.outcome is not None) == is_void
@@ -506,10 +511,10 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
 def time_lost_ms(session: Session, now_ms: int = 0) -> int:
     """Leave all frames unanswered, and check every millisecond; return when the robot is given
     up."""
-    for at in range(now_ms, now_ms + 10_000):
-        session.poll(at)
+    for time_ms in range(now_ms, now_ms + 10_000):
+        session.poll(time_ms)
         if [event.name for event in session.events()] == ["LOST"]:
-            return at
+            return time_ms
     raise AssertionError("it waits for ever")
 
 
@@ -518,17 +523,17 @@ def session_after_run() -> tuple[Session, int]:
     session = greet()
     session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
-    at = session.next_wake_ms()
-    assert at is not None
-    session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
-    return session, at
+    poll_ms = session.next_wake_ms()
+    assert poll_ms is not None
+    session.receive(answer(session.poll(poll_ms), {"state": 0, "run": 1}), poll_ms)
+    return session, poll_ms
 
 
 def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
     assert 3000 <= time_lost_ms(greet()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
-    session, at = session_after_run()
-    assert session.poll(at), "it asks how the run has ended"
-    assert 3000 <= time_lost_ms(session, at) - at < 3500
+    session, poll_ms = session_after_run()
+    assert session.poll(poll_ms), "it asks how the run has ended"
+    assert 3000 <= time_lost_ms(session, poll_ms) - poll_ms < 3500
 
 
 IDLE_STATUS: dict[str, int | bytes] = {
@@ -541,32 +546,32 @@ IDLE_STATUS: dict[str, int | bytes] = {
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
     """A heartbeat's reply may report it in the same moment as its event."""
-    session, at = session_after_run()
-    frames = [answer(session.poll(at), IDLE_STATUS),
+    session, poll_ms = session_after_run()
+    frames = [answer(session.poll(poll_ms), IDLE_STATUS),
               event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
     for frame in reversed(frames) if is_event_first else frames:
-        session.receive(frame, at)
+        session.receive(frame, poll_ms)
     assert [event.name for event in session.events()] == ["DONE"]
 
 
 @pytest.mark.parametrize("reading_count", [0, 3, 12, 10_000])
 def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_count: int) -> None:
     """Its event is lost; a robot that sends readings endlessly still obeys requests."""
-    session, at = session_after_run()
+    session, poll_ms = session_after_run()
     values: dict[str, int | bytes] = {"run": 1, "sensor": 0, "value": 7, "ms": 0}
     told_count, request = 0, session.name(b"Ana")
     for _ in range(100):
-        at += 20
-        data = session.poll(at)
+        poll_ms += 20
+        data = session.poll(poll_ms)
         if told_count < reading_count:
-            session.receive(event("READING", told_count, values, epoch=10), at)
+            session.receive(event("READING", told_count, values, epoch=10), poll_ms)
             told_count += 1
         if data:
             frame = decode_frame(data.strip(b"\0"))
             assert frame
             asked_for = messages.BY_NUMBER[frame.number].reply
             reply = {field.name: IDLE_STATUS.get(field.name, b"") for field in asked_for}
-            session.receive(answer(data, reply), at)
+            session.receive(answer(data, reply), poll_ms)
     assert request.outcome and request.outcome.status == 0
     names = [event.name for event in session.events()]
     assert names == ["READING"] * told_count + ["DONE"] * (told_count == reading_count)
@@ -640,9 +645,9 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
 
 
 def test_a_place_is_told_when_it_is_another_one() -> None:
-    place, other = b"\3\0abcd", b"\3\0abce"
+    place, other_place = b"\3\0abcd", b"\3\0abce"
     assert places_told(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
-    places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other)
+    places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other_place)
     assert places == [(1, 3), (2, 3), (2, 3)]
 
 

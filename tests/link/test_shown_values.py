@@ -25,8 +25,8 @@ def value(seq: int, run: int | None, at: int = 2, epoch: int = EPOCH) -> bytes:
     return event("SHOW", seq, {"value": 1500, "is_yes_no": 0, "place": place}, epoch)
 
 
-def make_shown_event(run: int = 0, program: int = 0, at: int = -1) -> ShownEvent:
-    return ShownEvent(1500, 0, run, program, at)
+def make_shown_event(run: int = 0, program: int = 0, place: int = -1) -> ShownEvent:
+    return ShownEvent(1500, 0, run, program, place)
 
 
 def new_session(run: int = 5, features: int = PLACES) -> Session:
@@ -134,8 +134,8 @@ def test_runs_of_two_epochs_with_one_number_are_two() -> None:
 def test_a_run_number_that_comes_round_again_is_another_run() -> None:
     session = new_session(run=5, features=0)
     session.ping()
-    other = answer(session.poll(20), {"state": STATE_RUNNING, "run": 6, "place": b""})
-    events_after(session, other, now_ms=20)
+    other_run = answer(session.poll(20), {"state": STATE_RUNNING, "run": 6, "place": b""})
+    events_after(session, other_run, now_ms=20)
     assert events_after(session, value(1, 5)) == [make_shown_event()]
 
 

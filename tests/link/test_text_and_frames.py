@@ -109,13 +109,13 @@ def check_torn_lines_arrive_when_repeated(sender: TextSender, draw: random.Rando
     for _ in range(FRAMES):
         frame = random_frame(draw)
         data = sender.prepare_frames(encode_frame(frame), line.now_ms)
-        at = draw.randrange(len(data))
+        offset = draw.randrange(len(data))
         line.receiver.put(data[0], line.now_ms)  # no client looks
-        for byte in data[1:at]:
+        for byte in data[1:offset]:
             line.now_ms += 1
             line.receiver.put(byte, line.now_ms)
         line.now_ms += draw.choice((0, 20, 150, 900, SILENCE_MS, 1500))
-        for byte in data[at:] if draw.random() < 0.5 else b"":
+        for byte in data[offset:] if draw.random() < 0.5 else b"":
             line.receiver.put(byte, line.now_ms)
         line.receiver.take()
         line.now_ms += draw.choice((0, 30, 200))

@@ -82,12 +82,12 @@ def test_it_is_done_after_a_program_that_faults(is_told: bool, make_request: Ask
     assert robot.until(session, request) == OK
 
 
-@pytest.mark.parametrize("first", ["upload", "live"])
+@pytest.mark.parametrize("verb", ["upload", "live"])
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-def test_one_after_a_program_that_faults_at_once_is_done(first: str, make_request: Ask) -> None:
+def test_one_after_a_program_that_faults_at_once_is_done(verb: str, make_request: Ask) -> None:
     session, robot = open_session()
     faulty = image(FAULTS)
-    begun = session.live(faulty.code) if first == "live" else session.upload(faulty)
+    begun = session.live(faulty.code) if verb == "live" else session.upload(faulty)
     request = make_request(session)
     assert robot.until(session, begun) == OK
     assert robot.until(session, request) == OK

@@ -78,9 +78,9 @@ class Holder:
 
 def open_shared_connection(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
     monkeypatch.setattr(shared_connection, "monotonic", holder.clock)
-    at = Registration("P", 1, "token", "answer", "upload", 9600, 1)
+    registration = Registration("P", 1, "token", "answer", "upload", 9600, 1)
     peer = cast(socket.socket, holder)
-    return SharedConnection(peer, at, MessageReader(protocol.LINE_BYTES))
+    return SharedConnection(peer, registration, MessageReader(protocol.LINE_BYTES))
 
 
 def listen_until_lost(line: SharedConnection, holder: Holder, seconds: float) -> float:

@@ -225,55 +225,55 @@ END_ACTIONS: dict[str, Callable[[random.Random, Client], object]] = {
 }
 
 
-def play_first_client(rng: random.Random, at: Desk) -> str:
-    client = at.join(rng.choice(("upload", "run", "monitor", "python")))
-    at.steps(rng.choice((20, 200)))
+def play_first_client(rng: random.Random, desk: Desk) -> str:
+    client = desk.join(rng.choice(("upload", "run", "monitor", "python")))
+    desk.steps(rng.choice((20, 200)))
     for _ in range(rng.randint(1, 3)):
         send_request(rng, client, rng.choice((*REQUEST_NAMES, *STORED_PROGRAM_REQUESTS)))
-        at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
+        desk.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
     if rng.random() < 0.6:  # during its run, or while it is under way
         for _ in range(rng.choice((1, 1, 3))):
             send_request(rng, client, rng.choice(("upload", "live")))
-        at.steps(rng.choice((0, 20, 40, 60, 400)))
+        desk.steps(rng.choice((0, 20, 40, 60, 400)))
     ends = rng.choice([*END_ACTIONS])
     END_ACTIONS[ends](rng, client)
     if ends == "breaks off":
-        at.steps(rng.choice((20, 300)))
+        desk.steps(rng.choice((20, 300)))
         client.socket.close()
-    robot = at.line.robot_itself
+    robot = desk.line.robot_itself
     robot.codes()
     if rng.random() < 0.5:
-        at.steps(rng.choice((60, 400, 900)))
+        desk.steps(rng.choice((60, 400, 900)))
         return ends
     if ends != "is silent":
-        at.steps(400)
-        assert client.has_detached or not at.line.session.is_running, f"{ends}: not at once"
+        desk.steps(400)
+        assert client.has_detached or not desk.line.session.is_running, f"{ends}: not at once"
         assert len(robot.codes()) <= 1, f"{ends}: more begins than what was under way"
-    at.steps(2500)
-    if at.line.session.is_running:
+    desk.steps(2500)
+    if desk.line.session.is_running:
         assert client.has_detached, f"{ends}: the run of a client that has gone goes on"
-        other = at.join("stop")
-        other.says({"do": "stop"})
-        at.steps(400)
-        other.socket.close()
-        at.steps(400)
+        other_client = desk.join("stop")
+        other_client.says({"do": "stop"})
+        desk.steps(400)
+        other_client.socket.close()
+        desk.steps(400)
     return ends
 
 
-def play_second_client(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
+def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[str]]:
     """Return the second client's messages from its first run on, and the robot's actions."""
-    robot = at.line.robot_itself
-    client = at.join("run")
-    at.steps(60)
+    robot = desk.line.robot_itself
+    client = desk.join("run")
+    desk.steps(60)
     robot.did.clear()
     client.heard.clear()
     send_request(rng, client, "upload")
-    at.steps(rng.choice((400, 1500, 3000)))
+    desk.steps(rng.choice((400, 1500, 3000)))
     for _ in range(2):
         send_request(rng, client, rng.choice(REQUEST_NAMES))
-        at.steps(rng.choice((400, 1500)))
+        desk.steps(rng.choice((400, 1500)))
     client.says({"do": "stop"})
-    at.steps(400)
+    desk.steps(400)
     heard = [message for message in client.heard if "beat" not in message]
     begins = next((k for k, message in enumerate(heard) if "status" in message), 0)
     messages = [
@@ -310,7 +310,7 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
     """It does so by leaving or by its silence, and others do not. A stop ends it, and another run
     takes its place; a detached one ends with nobody. Each who comes and goes is told once."""
     rng = random.Random(seed)
-    with desk(monkeypatch) as at:
+    with desk(monkeypatch) as made_desk:
         owner: Client | str = ""
         verbs: dict[Client, str] = {}
         told: list[tuple[str, str]] = []
@@ -321,7 +321,7 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
             )
             if client is None or how == "comes":
                 verb = rng.choice(("upload", "live", "monitor", protocol.LOOKING_VERB))
-                client = at.join(verb)
+                client = made_desk.join(verb)
                 verbs[client] = verb
                 told += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
             elif how == "starts":
@@ -338,9 +338,9 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
                 END_ACTIONS[how](rng, client)
                 told += [("LEFT", verb)] * (how == "leaves" and verb != protocol.LOOKING_VERB)
                 owner = "" if owner is client else owner
-            at.steps(1600 if how == "is silent" else 300)
-            assert at.line.session.is_running == (owner != ""), how
-            assert at.line.posted == told, how
+            made_desk.steps(1600 if how == "is silent" else 300)
+            assert made_desk.line.session.is_running == (owner != ""), how
+            assert made_desk.line.posted == told, how
 
 
 DROPPED: dict[str, Event] = {
@@ -356,19 +356,19 @@ def test_who_reads_nothing_has_little_waiting_and_is_let_go_where_nothing_can_be
 ) -> None:
     event = DROPPED.get(name, StoppedEvent(1))
     most_bytes = 1000 + (server_of.FULL_BYTES if name in DROPPED else server_of.TOO_FULL_BYTES)
-    with desk(monkeypatch) as at:
-        client = at.join("monitor")
-        at.steps(60)
+    with desk(monkeypatch) as made_desk:
+        client = made_desk.join("monitor")
+        made_desk.steps(60)
         client.says({"do": "places"})
-        at.steps(60)
-        [served] = at.server._clients
+        made_desk.steps(60)
+        [served] = made_desk.server._clients
         served.peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         for _ in range(40):
-            at.server._on_events([(0, event)] * 1000)
-            at.server._attend()
+            made_desk.server._on_events([(0, event)] * 1000)
+            made_desk.server._attend()
             assert len(served.output) <= most_bytes
-        assert (served in at.server._clients) == (name in DROPPED)
+        assert (served in made_desk.server._clients) == (name in DROPPED)
 
 
 if __name__ == "__main__":

@@ -88,7 +88,7 @@ def test_which_ends_are_let_in(
     monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(user, inode))
+    monkeypatch.setattr(peers, "_socket_owner", lambda peer, own: peers.SocketOwner(user, inode))
     own_end, other_end = connected_pair()
     with own_end, other_end:
         assert peers.is_of_this_user(own_end) == is_let_in
@@ -96,7 +96,7 @@ def test_which_ends_are_let_in(
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing_owner(number: int) -> object:
-        def other_end(other: object, own: object) -> peers.SocketOwner:
+        def other_end(peer: object, own: object) -> peers.SocketOwner:
             raise OSError(number, "no")
 
         return other_end

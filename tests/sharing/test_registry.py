@@ -82,16 +82,20 @@ def each_line(
     assert wanted_line > 5
 
 
-@pytest.mark.parametrize("other", ["tidies", "leaves"])
+@pytest.mark.parametrize("other_action", ["tidies", "leaves"])
 def test_a_server_that_registers_while_another_command_removes_is_found(
-    number: int, other: str
+    number: int, other_action: str
 ) -> None:
     live = registration(number, "live")
 
     def prepare() -> tuple[Callable[[], object], Callable[[], object]]:
         gone_registration = dead()
         registry.write(gone_registration)
-        runs = registry.tidy if other == "tidies" else lambda: registry.remove(gone_registration)
+        runs = (
+            registry.tidy
+            if other_action == "tidies"
+            else lambda: registry.remove(gone_registration)
+        )
         return (lambda: registry.write(live)), runs
 
     for has_registered in each_line(prepare):
@@ -164,22 +168,22 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
 
 def test_whoever_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
     """Somebody has emptied the cache."""
-    first = lock()
+    old_lock = lock()
     registry.lock_path(PORT).unlink()
     second = lock()
-    assert first is not None and second is not None
-    first.close()
+    assert old_lock is not None and second is not None
+    old_lock.close()
     check_one_owner([second])
 
 
-@pytest.mark.parametrize("other", ["school2", "school-2", "s", "school.local"])
+@pytest.mark.parametrize("other_host", ["school2", "school-2", "s", "school.local"])
 @pytest.mark.parametrize("does", ["tidies", "finds", "registers", "leaves"])
 def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
-    does: str, other: str, monkeypatch: pytest.MonkeyPatch
+    does: str, other_host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Only the other computer can check whether a server listens at that port number."""
     foreign = dead()
-    monkeypatch.setattr(registry, "gethostname", lambda: other)
+    monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     registry.write(foreign)
     monkeypatch.setattr(registry, "gethostname", lambda: "school")
     own = registration(foreign.number, "live")
@@ -190,5 +194,5 @@ def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
         "leaves": lambda: registry.remove(own),
     }
     acts[does]()
-    monkeypatch.setattr(registry, "gethostname", lambda: other)
+    monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     assert registry.find_registration(PORT) == foreign

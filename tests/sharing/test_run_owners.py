@@ -138,8 +138,8 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
         assert [
             registration for registration in registry.find_all() if registration.token == own.token
         ] == [own]
-        other = registry.find_registration(line.address)
-        assert other is not None and other.token == own.token
+        registration = registry.find_registration(line.address)
+        assert registration is not None and registration.token == own.token
 
 
 def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
@@ -155,14 +155,14 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
     line.post_event(event("SHOW"))
     until(lambda: line.halted == [7], "its run is ended")
     assert line.stops == 0
-    with closing(cast(SharedConnection, join(PORT, "upload"))) as other:
-        other.begin(lambda requests: requests.start())
+    with closing(cast(SharedConnection, join(PORT, "upload"))) as other_client:
+        other_client.begin(lambda requests: requests.start())
         until(lambda: len(line.asked) == 3, "its request arrives")
         line.begin_run()  # a reset robot restarts its run numbers
         line.post_event(event("SHOW"))
-        wait_for_event(other, "SHOW")
+        wait_for_event(other_client, "SHOW")
         line.post_event(event("SHOW"))
-        wait_for_event(other, "SHOW")
+        wait_for_event(other_client, "SHOW")
         assert line.halted == [7], "the next run is not its"
 
 
@@ -233,8 +233,8 @@ def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
 
     command.begin(lambda requests: requests.press(1))
     until(lambda: len(line.asked) == 1, "the first word arrives")
-    with closing(cast(SharedConnection, join(PORT, "live"))) as other:
-        other.begin(lambda requests: requests.press(2))
+    with closing(cast(SharedConnection, join(PORT, "live"))) as other_client:
+        other_client.begin(lambda requests: requests.press(2))
         until(lambda: len(line.asked) == 2, "the second word arrives")
     until(lambda: len(line.asked) == 3, "the second client has left")
     assert list_pressed_keys() == [(1, 1), (2, 2), (2, 0)]

@@ -30,8 +30,8 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
     shared_port = Shared()
     with shared_port as (pty_robot, _):
-        client, other = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
-        assert client and other
+        client, other_client = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
+        assert client and other_client
         client.enable_place_events()
         assert client.wait(client.begin(lambda session: session.hello())).status == OK
         request = client.begin(lambda session: session.upload(image, saves=False))
@@ -43,10 +43,10 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         ]
         assert len(places) == 2 and {place.program for place in places} == {image.checksum}
         assert places[0].at < places[1].at < len(image.code)
-        for connection in (other, shared_port.line):
+        for connection in (other_client, shared_port.line):
             assert "PLACE" not in {event.name for event in list_events_until_done(connection)}
         client.close()
-        other.close()
+        other_client.close()
 
 
 def test_whoever_takes_no_events_keeps_the_newest_place_alone() -> None:

@@ -251,10 +251,10 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
     pty_robot: PtyRobot,
 ) -> None:
     """It runs through the first command, whose own work is over."""
-    first = start_endless_upload(pty_robot)
+    first_command = start_endless_upload(pty_robot)
     second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
     second.wait_for_result().gives(0, out="Done.")
-    result = first.wait_for_result().gives(
+    result = first_command.wait_for_result().gives(
         3, "another command started a program", "holds the port until the other command has ended."
     )
     assert result.err.index("holds the port") < result.err.index(
@@ -265,12 +265,12 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
 
 
 def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
-    first = start_endless_upload(pty_robot)
+    first_command = start_endless_upload(pty_robot)
     second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     second.until("running")
-    first.until("holds the port", is_aside=True)
-    first.signal(signal.SIGINT)
-    assert first.wait_for_result().code == 2
+    first_command.until("holds the port", is_aside=True)
+    first_command.signal(signal.SIGINT)
+    assert first_command.wait_for_result().code == 2
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
     result = second.wait_for_result()  # it hears of the stop, or that the port's holder has ended
     assert result.code == 3
@@ -280,14 +280,14 @@ def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRo
 def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     pty_robot: PtyRobot,
 ) -> None:
-    first = start_endless_upload(pty_robot)
+    first_command = start_endless_upload(pty_robot)
     second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     second.until("running")
-    first.until("holds the port", is_aside=True)
+    first_command.until("holds the port", is_aside=True)
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
     second.wait_for_result().gives(3, out="The robot was stopped from a computer.")
-    first.wait_for_result().gives(3, "another command started a program")
+    first_command.wait_for_result().gives(3, "another command started a program")
 
 
 # -- endings of a server --------------------------------------------------------------------------
@@ -415,9 +415,9 @@ def is_idle_once_released(client: SharedConnection) -> bool:
 def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
     """The frame that starts it was under way."""
     with Shared() as (robot, _), ExitStack() as stack:
-        other = join(robot.port, "show --port")
-        assert other is not None
-        stack.callback(other.close)
+        other_client = join(robot.port, "show --port")
+        assert other_client is not None
+        stack.callback(other_client.close)
         kit = robots.load("tinibot").kit
         image = unpack(compile_text(FOREVER, kit).image)
         for _ in range(5):
@@ -427,4 +427,4 @@ def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_ref
             client.begin(lambda session: session.upload(image, True, kit=kit.fingerprint))
             robot.until(lambda: len(robot.heard) > 10, "a part of it has come")
             client.close()
-            robot.until(lambda: is_idle_once_released(other) and not robot.moves, "it ends")
+            robot.until(lambda: is_idle_once_released(other_client) and not robot.moves, "it ends")

@@ -23,9 +23,9 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.server import FULL_BYTES, MOST_CLIENTS
 
 
-def greeting(registration: Registration, **other: object) -> bytes:
+def greeting(registration: Registration, **changes: object) -> bytes:
     message = {"tsc": __version__, "token": registration.token, "verb": "upload"}
-    return protocol.encode_message({**message, **other})
+    return protocol.encode_message({**message, **changes})
 
 
 def visitor(registration: Registration) -> socket.socket:
@@ -132,14 +132,14 @@ def test_nothing_is_shared_where_nothing_can_be_written(
 
 
 def test_a_file_that_says_nothing_is_not_a_server(pty_robot: PtyRobot) -> None:
-    with Shared() as (other, registration):
-        path = registry._path(other.port)
+    with Shared() as (shared, registration):
+        path = registry._path(shared.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
             path.write_text(text)
-            assert registry.find_registration(other.port) is None, text[:20]
+            assert registry.find_registration(shared.port) is None, text[:20]
             assert registry.find_all() == []
     path.write_text(json.dumps(registration._replace(port=pty_robot.port)._asdict()))
-    assert registry.find_registration(other.port) is None
+    assert registry.find_registration(shared.port) is None
 
 
 def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(

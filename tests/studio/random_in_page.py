@@ -102,8 +102,8 @@ def main() -> int:
         pages = Pages(browser, server.address, patience_s=300)
         page = pages.open()
         right = sum(
-            compare(page, min(100, options.count - at), options.seed + at)
-            for at in range(0, options.count, 100)
+            compare(page, min(100, options.count - start), options.seed + start)
+            for start in range(0, options.count, 100)
         )
         assert not pages.wrong, pages.wrong[:3]
         pages.close()

@@ -61,17 +61,17 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
         format_blocks(read_blocks(program.text, kit))
 
 
-@pytest.mark.sampled("first")
-@pytest.mark.parametrize("first", range(0, 1000, 250))
-def test_random_programs_are_the_same_from_their_blocks(first: int) -> None:
-    for seed in range(first, first + 250):
+@pytest.mark.sampled("first_seed")
+@pytest.mark.parametrize("first_seed", range(0, 1000, 250))
+def test_random_programs_are_the_same_from_their_blocks(first_seed: int) -> None:
+    for seed in range(first_seed, first_seed + 250):
         theirs, kit = KITS[seed % len(KITS)]
         check_blocks(oracle_programs.program(random.Random(seed), theirs), kit)
 
 
-@pytest.mark.parametrize("first", range(0, 500, 250))
-def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
-    for seed in range(first, first + 250):
+@pytest.mark.parametrize("first_seed", range(0, 500, 250))
+def test_nothing_of_a_broken_text_is_lost(first_seed: int) -> None:
+    for seed in range(first_seed, first_seed + 250):
         rng = random.Random(seed)
         theirs, kit = KITS[seed % len(KITS)]
         text = oracle_programs.break_text(rng, oracle_programs.program(rng, theirs))

@@ -55,8 +55,8 @@ class Ana:
         return answer
 
     def takes(self, answer: Json) -> None:
-        for first, last, text in reversed(answer["changes"]):
-            self.text = self.text[:first] + text + self.text[last:]
+        for start, last, text in reversed(answer["changes"]):
+            self.text = self.text[:start] + text + self.text[last:]
         self.answer = answer
 
     def show(self) -> None:
@@ -167,8 +167,8 @@ def test_what_others_do_meanwhile_stays(seed: int) -> None:
     ana = Ana(program)
     loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
     last = program.tree[ROOT].children[-1]
-    first = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
-    program.submit([first])
+    change = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
+    program.submit([change])
     ana.step()
     changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     ana.writes()
@@ -217,14 +217,14 @@ def test_a_deleted_block_that_somebody_has_put_something_into_stays() -> None:
 
 def test_of_two_that_are_equal_the_one_is_changed_that_was_touched() -> None:
     program = program_of("W(1);\nB(1, 40);\nB(1, 40);\nW(2);\n")
-    [_, one, other, _] = (id for id in program.tree[ROOT].children if id != START)
+    [_, one, other_id, _] = (id for id in program.tree[ROOT].children if id != START)
     ana = Ana(program)
     del ana.form["body"][1]
     ana.writes()
     ana.sends()
     assert one not in program.tree
-    assert other in program.tree
+    assert other_id in program.tree
     ana.form["body"].reverse()
     ana.writes()
     ana.sends()
-    assert program.tree[ROOT].children.index(other) == 2
+    assert program.tree[ROOT].children.index(other_id) == 2

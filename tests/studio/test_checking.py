@@ -43,14 +43,14 @@ def test_the_sensors_that_a_program_reads_are_named_by_their_numbers(robot: str)
     assert all_read == tuple(range(len(names)))
 
 
-@pytest.mark.sampled("first", "part")
-@pytest.mark.parametrize("first", range(2))
+@pytest.mark.sampled("first_index", "part")
+@pytest.mark.parametrize("first_index", range(2))
 @pytest.mark.parametrize("part", range(12))
-def test_messages_are_those_of_the_command_and_repairs_help(first: int, part: int) -> None:
+def test_messages_are_those_of_the_command_and_repairs_help(first_index: int, part: int) -> None:
     """Languages alternate; no offered repair makes a program worse."""
     offered = 0
     for k, entry in enumerate(corpus.entries()[part::12]):
-        language = LANGUAGES[(first + k) % len(LANGUAGES)]
+        language = LANGUAGES[(first_index + k) % len(LANGUAGES)]
         result = checking.check(entry.program.encode(), "tinibot", language)
         messages = [
             finding.message for finding in result.findings if finding.message.code not in LACKING

@@ -289,9 +289,9 @@ def test_nobody_joins_without_a_name(name: object) -> None:
 
 def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room = Room()
-    first = room.joins("p0")
-    room.checks_in(first, True)
-    room.connects(first)
+    token = room.joins("p0")
+    room.checks_in(token, True)
+    room.connects(token)
     room.now_s += 1
     for k in range(1, class_keeping.MOST_PUPILS):
         room.joins(f"p{k}", f"198.51.100.{k}")
@@ -301,7 +301,7 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room.now_s += 31
     assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
     assert len(room.teaches("class")["pupils"]) == class_keeping.MOST_PUPILS
-    assert room.made.most_bytes(first) > 0  # it is her turn
+    assert room.made.most_bytes(token) > 0  # it is her turn
 
 
 def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
@@ -434,7 +434,7 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
     wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
-    wrong += [{**right, "key": other} for other in ("0" * 32, [key])]
+    wrong += [{**right, "key": other_key} for other_key in ("0" * 32, [key])]
     for text in wrong:
         assert room.checks_in(ana, took=text)["given"]["key"] == key
     assert "given" not in room.checks_in(eve, took=right)  # another pupil cannot confirm it
@@ -449,10 +449,10 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     """It was returned to a closed page, and the pupil joins again from another device."""
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
-    first = room.joins("Ana")
+    token = room.joins("Ana")
     key = key_of(room)
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert room.checks_in(first)["given"]["key"] == key
+    assert room.checks_in(token)["given"]["key"] == key
     room.teaches("class_remove", pupil=room.number("Ana"))
     second = room.joins("Ana", "198.51.100.1")
     assert "given" not in room.checks_in(second)
@@ -574,8 +574,8 @@ def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None
     assert return_to_class() == {"token": ana, "name": "Ana"}
     room.teaches("class_remove", pupil=room.number("Ana"))
     for token in ("", None, 5, "0" * 32, [ana]):
-        other = return_to_class(token=token)
-        assert other["name"] == "ana (2)"
+        other_pupil = return_to_class(token=token)
+        assert other_pupil["name"] == "ana (2)"
         room.teaches("class_remove", pupil=room.number("ana (2)"))
     luz = return_to_class("Luz")  # the next child at this device
     assert luz["name"] == "Luz" and luz["token"] != ana
@@ -739,8 +739,8 @@ def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None
         Keeper()
     assert kept_at.exists()
     keeper.close()  # the command has ended
-    with closing(Keeper()) as other:
-        assert other.read() is not None
+    with closing(Keeper()) as other_keeper:
+        assert other_keeper.read() is not None
         keeper.keep(None)  # a closed keeper has no effect
         assert kept_at.exists()
 

@@ -72,7 +72,7 @@ def peer() -> Iterator[socket.socket]:
 def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
     """All connections within this computer are of another user."""
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(NOBODY_UID, 1))
+    monkeypatch.setattr(peers, "_socket_owner", lambda peer, own: peers.SocketOwner(NOBODY_UID, 1))
     monkeypatch.setattr(os, "geteuid", lambda: 1234, raising=False)
 
 

@@ -33,9 +33,9 @@ def flash(port: str, board: str, file: Path, *cancelled: str) -> str:
 def hex_file(folder: Path, data: bytes) -> Path:
     # Rows as linkers write them, followed by data at 0.
     rows = [b"\2\0\0\4\0\0\xfa", b"\2\0\0\2\0\0\xfc"]
-    for at in range(0, len(data), 16):
-        part = data[at : at + 16]
-        row = bytes([len(part), at >> 8, at & 255, 0]) + part
+    for offset in range(0, len(data), 16):
+        part = data[offset : offset + 16]
+        row = bytes([len(part), offset >> 8, offset & 255, 0]) + part
         rows.append(row + bytes([-sum(row) & 255]))
     file = folder / "firmware.hex"
     lines = [f":{row.hex().upper()}" for row in rows]
@@ -150,28 +150,28 @@ class FakeBoard:
 
 @contextmanager
 def plug_in(board: FakeBoard) -> Iterator[str]:
-    file, other = pty.openpty()
-    tty.setraw(other)
+    file, device = pty.openpty()
+    tty.setraw(device)
     thread = threading.Thread(target=board.run, args=(file,), daemon=True)
     thread.start()
     try:
-        yield os.ttyname(other)
+        yield os.ttyname(device)
     finally:
-        os.close(other)
+        os.close(device)
         with suppress(OSError):
             os.close(file)
 
 
 def changed_answer(
-    at: int, *, by: bytes | None, times: int = 10_000
+    changed_command: int, *, by: bytes | None, times: int = 10_000
 ) -> Callable[[int, bytes], bytes | None]:
     """Answer a command otherwise; None: the cable is pulled. `times`: from which time on."""
     count = 0
 
     def change_answer(command: int, answer: bytes) -> bytes | None:
         nonlocal count
-        count += command == at
-        return by if command == at and count >= times else answer
+        count += command == changed_command
+        return by if command == changed_command and count >= times else answer
 
     return change_answer
 

@@ -54,9 +54,9 @@ class Robot:
             return self._begins("program", "line", "button")
         program = self.program or self.line
         if does == "place":
-            at = self.chance.randrange(500)
-            self.place = at if self.program else self.place
-            return {"event": "PLACE", "at": at, "program": program}
+            place = self.chance.randrange(500)
+            self.place = place if self.program else self.place
+            return {"event": "PLACE", "at": place, "program": program}
         self.values += 1
         value = str(self.values)
         if self.program:
@@ -223,11 +223,11 @@ def test_whoever_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     runs.add_news("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
     heard_events = [item["event"] for item in Page(runs, "eva").looks()]
     assert heard_events == ["STARTED", "SHOW", "PLACE"]
-    other = GroupRuns(lambda: 0.0)
-    other.add_news("ana", [begin])
+    new_runs = GroupRuns(lambda: 0.0)
+    new_runs.add_news("ana", [begin])
     page = Page(runs, "luz")
     page.looks()
-    page.runs = other  # after a crash of the class
+    page.runs = new_runs  # after a crash of the class
     assert [item["event"] for item in page.looks()] == ["STARTED"]
 
 

@@ -133,10 +133,10 @@ def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
     [pupil] = luz.sends()["others"]
     assert pupil == {"name": "Ana", "mark": 0, "at": "i.3", "writes": True}
     assert luz.sends()["others"][0]["mark"] != luz.asks("group", **ana.request())
-    assert {other["mark"] for other in ana.sends()["others"]} == {1}
-    for at in ("x" * 30, "a b", 5, None):
+    assert {member["mark"] for member in ana.sends()["others"]} == {1}
+    for place in ("x" * 30, "a b", 5, None):
         with pytest.raises(BadRequest):
-            ana.sends(at=at)
+            ana.sends(at=place)
 
 
 def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -> None:
@@ -279,10 +279,10 @@ def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) 
     assert not has_value(eva, "three") and not has_value(luz, "three")
     ana.joins("Red")
     show_value("four")
-    other = school.connects(luz.token)
+    other_robot = school.connects(luz.token)
     show_value("five")  # the stop at the end of her run
     assert has_value(luz, "five")
-    assert other.witness is not None
+    assert other_robot.witness is not None
 
 
 def start_thread(do: Callable[[], object]) -> Thread:
@@ -449,8 +449,8 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
     assert teacher.page.lines == members[0].page.lines
-    [other] = [other for other in members[0].sends()["others"] if other["name"] == "Teacher"]
-    marks = {other["mark"] for other in teacher.sends()["others"]}
+    [other] = [member for member in members[0].sends()["others"] if member["name"] == "Teacher"]
+    marks = {member["mark"] for member in teacher.sends()["others"]}
     assert marks == set(range(groups.MARK_COUNT)) and other["mark"] not in marks
     teacher.types("80", "95")
     teacher.sends(at="i.3", writes=True)
@@ -519,13 +519,13 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
-    assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
+    assert [member["name"] for member in ana.sends()["others"]] == ["Teacher"]
     school.now_s += groups.ABSENCE_S + 1
     assert ana.sends()["others"] == []
     assert teacher.asks("group", **teacher.request()) == {"left": True}
     second_teacher = Teacher(school, group["key"], teacher.page.name)
     assert second_teacher.page.name == teacher.page.name
-    assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
+    assert [member["name"] for member in ana.sends()["others"]] == ["Teacher"]
 
 
 def test_whoever_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
@@ -635,11 +635,11 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
     school.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"})
     assert robot.stopped == 3
     assert school.made.answer(eve, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
-    other = school.connects(luz.token)
-    assert (robot.leave_reason, other.has_ended) == ("group_other", False)
+    other_robot = school.connects(luz.token)
+    assert (robot.leave_reason, other_robot.has_ended) == ("group_other", False)
     assert school.checks_in(ana.token)["driver"] == "Luz"
     ana.asks("stop")
-    assert (other.stopped, robot.stopped) == (1, 3)
+    assert (other_robot.stopped, robot.stopped) == (1, 3)
 
 
 @pytest.mark.parametrize("seed", range(100))

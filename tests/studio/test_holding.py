@@ -101,8 +101,8 @@ def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
     """It resumes in the tick in which it paused, with the remaining instructions."""
     text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
     runs = []
-    for at in ((), (2,)):
-        simulation = started_simulation(text, at)
+    for held_parts in ((), (2,)):
+        simulation = started_simulation(text, held_parts)
         while simulation.robot.is_running:
             simulation.go_on()
             simulation.advance(50)
@@ -133,11 +133,11 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -
     breakpoints: list[int] = []
     pauses = 0
     while arrivals:
-        at, now_ms = simulation.held_at, simulation.robot.now_ms
-        if at is None:
+        place, now_ms = simulation.held_at, simulation.robot.now_ms
+        if place is None:
             arrivals = [arrival for arrival in arrivals if arrival[0] > now_ms]
         else:
-            assert (now_ms, at) == arrivals[0]
+            assert (now_ms, place) == arrivals[0]
             arrivals = arrivals[1:]
             pauses += 1
         if chance.random() < 0.5:
@@ -163,7 +163,7 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -
 def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
     """The looks of an UNTIL, fifty in a second, are one stay."""
     text = "LOOP(2);\n  W(1) UNTIL(DISTANCE < 3);\nEND_LOOP"
-    simulation = started_simulation(text, at=(1,))
+    simulation = started_simulation(text, held_parts=(1,))
     times = []
     while simulation.robot.is_running:
         if simulation.held_at is not None:
@@ -174,7 +174,7 @@ def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
 
 
 def test_nothing_passes_while_it_is_held() -> None:
-    simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation = started_simulation("F(1, 80);\nR(1, 60)", held_parts=(1,))
     simulation.advance(5000)
     state = simulation.state()
     assert state["is_held"] and simulation.robot.now_ms - state["began_ms"] == 1000
@@ -184,7 +184,7 @@ def test_nothing_passes_while_it_is_held() -> None:
 
 def test_a_stop_ends_a_held_program() -> None:
     """No more of it is executed."""
-    simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation = started_simulation("F(1, 80);\nR(1, 60)", held_parts=(1,))
     simulation.advance(5000)
     simulation.state()
     simulation.set_breakpoints(())
@@ -196,7 +196,7 @@ def test_a_stop_ends_a_held_program() -> None:
 
 def test_a_program_that_never_waits_is_held_too() -> None:
     simulation = started_simulation(
-        "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), at=(1,)
+        "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), held_parts=(1,)
     )
     for _ in range(5):
         simulation.advance(100)
@@ -209,7 +209,7 @@ def test_a_program_that_never_waits_is_held_too() -> None:
 
 
 def test_its_button_starts_a_program_that_can_be_held_again() -> None:
-    simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", at=(1,))
+    simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", held_parts=(1,))
     for ends in (simulation.stop, simulation.go_on):
         simulation.advance(100)
         simulation.push()

@@ -234,12 +234,14 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     studio stops it.
     """
     start_drive(page, robot)
-    other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port)
-    other.until("running")
+    other_command = Command(
+        "upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port
+    )
+    other_command.until("running")
     page.beat(do="leave")
     began_ms = robot.robot_ms
     robot.until(lambda: robot.robot_ms > began_ms + 2000, "it goes on")
-    assert robot.moves and other.process.poll() is None
+    assert robot.moves and other_command.process.poll() is None
     assert hosting.is_free(robot.port)
     second_page = Page(hosting, "another")
     assert second_page.connect(robot.port) == {}
@@ -247,10 +249,10 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     second_page.beat(do="leave")
     began_ms = robot.robot_ms
     robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
-    assert robot.moves and other.process.poll() is None
+    assert robot.moves and other_command.process.poll() is None
     assert hosting.close() == []
     robot.until(lambda: not robot.moves, "it stands")
-    assert other.wait_for_result().code == 3
+    assert other_command.wait_for_result().code == 3
 
 
 def test_a_port_has_one_page(
@@ -260,8 +262,8 @@ def test_a_port_has_one_page(
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)  # the page is silent while the command begins
     ports = hosting.answer({"do": "ports"})["ports"]
     assert all(set(port) == {"port", "name", "description", "virtual"} for port in ports)
-    other = Page(hosting, "other")
-    assert other.connect(robot.port) == {"failure": "other_tab"}
+    other_page = Page(hosting, "other")
+    assert other_page.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {}  # the page already has this robot
     start_drive(page, robot)
     # STOP of a page without a robot
@@ -277,8 +279,8 @@ def test_a_port_has_one_page(
     result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
     assert result.code != 0 and not robot.moves, result.out
     page.beat(do="leave")
-    until(lambda: other.connect(robot.port) == {}, "the port is free")
-    other.until(lambda item: "connected" in item)
+    until(lambda: other_page.connect(robot.port) == {}, "the port is free")
+    other_page.until(lambda item: "connected" in item)
 
 
 def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
@@ -288,8 +290,8 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
     hosted_robot = hosting.robot_of(page.name)
     assert hosted_robot
     hosted_robot.leave("turn_over")
-    other = Page(hosting, "other")
-    until(lambda: other.connect(robot.port) == {}, "the port is free")
+    other_page = Page(hosting, "other")
+    until(lambda: other_page.connect(robot.port) == {}, "the port is free")
     assert page.until(lambda item: "over" in item)["over"] == "turn_over"
 
 
@@ -340,9 +342,9 @@ def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
     hosting: Hosting, page: Page, robot: PtyRobot
 ) -> None:
     for port in ("/dev/nothing", "socket://127.0.0.1:1", "no such port"):
-        other = Page(hosting, port)
-        other.connect(port)
-        over = other.until(lambda item: "over" in item)
+        other_page = Page(hosting, port)
+        other_page.connect(port)
+        over = other_page.until(lambda item: "over" in item)
         assert over["over"].startswith("port_") and port in over["said"]
     page.upload(FOREVER)
     robot.pull()

@@ -259,9 +259,9 @@ def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
         for words in (row["held"], row["said"]):
             assert words == sorted(set(words)), row
         if not row["isWild"]:
-            first = row["first"]
-            assert first["isThere"] and len(row["made"]) == len(first["ends"]), row
-            assert bool(first["heard"]) == bool(first["presses"]), row
+            first_ask = row["first"]
+            assert first_ask["isThere"] and len(row["made"]) == len(first_ask["ends"]), row
+            assert bool(first_ask["heard"]) == bool(first_ask["presses"]), row
         # No press is lost: each press of STOP stops.
         assert len(row["second"]["heard"]) == row["second"]["presses"], row
         assert (row["second"], row["secondDone"]) == (row["fresh"], row["freshDone"]), row
@@ -316,8 +316,8 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
-    for other in others:
-        asker.asks("stop", **other)
+    for other_fields in others:
+        asker.asks("stop", **other_fields)
         until(lambda: has_news(1) and not robot.moves, "it stands")
         start_drive(1)
 

@@ -64,15 +64,15 @@ def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> N
         assert answer["image"] == ("" if unsupported else compiled_text), program.name
 
 
-@pytest.mark.sampled("first", "part")
-@pytest.mark.parametrize("first", range(2))
+@pytest.mark.sampled("first_index", "part")
+@pytest.mark.parametrize("first_index", range(2))
 @pytest.mark.parametrize("part", range(24))
 def test_every_wrong_program_gets_the_words_of_the_command(
-    page: Page, first: int, part: int
+    page: Page, first_index: int, part: int
 ) -> None:
     """Languages alternate. This also detects missing parts of the package."""
     requests = [
-        {"text": entry.program, "robot": "tinibot", "language": ("en", "es")[(first + k) % 2]}
+        {"text": entry.program, "robot": "tinibot", "language": ("en", "es")[(first_index + k) % 2]}
         for k, entry in enumerate(corpus.entries()[part::24])
     ]
     for request, answer in zip(requests, checks(page, requests), strict=True):
@@ -198,10 +198,10 @@ def test_work_is_kept(page: Page, only_page: tuple[Pages, Page]) -> None:
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
     assert (page.input_value("#robot"), page.input_value("#language")) == ("grabber", "es")
     page.click("#words")
-    other = only_page[0].another(page)  # a new tab begins with it
-    assert other.locator(".cm-content").inner_text() == "GRIPPER(90)"
-    write(other, "S")
-    other.close()
+    other_page = only_page[0].another(page)  # a new tab begins with it
+    assert other_page.locator(".cm-content").inner_text() == "GRIPPER(90)"
+    write(other_page, "S")
+    other_page.close()
     page.reload()  # each tab keeps its own program
     wait_until_checked(page)
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"

@@ -172,10 +172,14 @@ class Scene:
         wrong += [f"said twice: {text}" for text, after in pairwise(texts) if text == after]
         wrong += self._next_try()
         times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
-        gaps = [(after - at) / 1000 for k, (at, after) in enumerate(pairwise(times))
+        gaps = [(after - start_ms) / 1000 for k, (start_ms, after) in enumerate(pairwise(times))
                 if not k or not UNFINISHED_MESSAGE.search(texts[k - 1])]  # fmt: skip
-        first = [at_ms for at_ms, text in timed_messages if re.search(END_PATTERNS[action], text)]
-        took_s = ((first[0] if first else begun_ms + 1000 * LONGEST_END_S) - begun_ms) / 1000
+        end_times_ms = [
+            at_ms for at_ms, text in timed_messages if re.search(END_PATTERNS[action], text)
+        ]
+        took_s = (
+            (end_times_ms[0] if end_times_ms else begun_ms + 1000 * LONGEST_END_S) - begun_ms
+        ) / 1000
         return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
                            tuple(wrong), tuple(texts))  # fmt: skip
 

@@ -86,10 +86,10 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     """
     page = pages.open()
     start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
-    first = box_of(block(page, "when it starts"))  # a program is seen from its beginning
+    first_box = box_of(block(page, "when it starts"))  # a program is seen from its beginning
     pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
     assert pane is not None and words is not None
-    assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
+    assert first_box["x"] > words["x"] + words["width"] and first_box["y"] > pane["y"]
     forms = [
         read_blocks(program.text, robots.load(program.robot).kit)
         for program in programs()[part::10]
@@ -350,8 +350,8 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     icons.first.click()  # puts it away
     bubble.wait_for(state="detached")
     page.click("#view_text")
-    row, first = page.locator("#messages li"), page.locator("#first_message")
-    for place in (row, first):
+    row, first_message = page.locator("#messages li"), page.locator("#first_message")
+    for place in (row, first_message):
         row_text = place.text_content() or ""
         assert message.message in row_text and message.fix in row_text
     page.locator("#messages .repair").wait_for()
@@ -363,7 +363,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     named_text, mended_text = "here “forward” takes 0", "Try: “back 2 s at 80 %”"
     whole = "".join((bubble.text_content() or "").split())
     assert "".join(named_text.split()) in whole and "".join(mended_text.split()) in whole
-    assert named_text in (first.text_content() or "")
+    assert named_text in (first_message.text_content() or "")
     assert row.locator(".on_block").all_inner_texts() == ["forward", "back 2 s at 80 %"]
     assert page.locator("#messages .repair").count() == 1
     page.locator("#messages .place").click()
@@ -674,8 +674,8 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
 
 @drawn
 def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
-    first, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
-    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first}{then}"
+    first_hat, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
+    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{then}"
     start(page, text, "usual")
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
@@ -689,7 +689,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     page.mouse.down()
     page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
     page.mouse.up()
-    moved = moved_text.replace(first + then, then + first)
+    moved = moved_text.replace(first_hat + then, then + first_hat)
     wait_for_text(page, moved)
     place = box_of(last)
     assert place["x"] > above["right"] and place["y"] < above["y"]

@@ -383,10 +383,10 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
         ):
             speak(teacher, language)
         teacher.wait_for_function(ONE_HELD_SCRIPT)
-    first = tile(teacher, "Ana").locator("img").get_attribute("src")
+    first_picture = tile(teacher, "Ana").locator("img").get_attribute("src")
     teacher.evaluate("() => made()")
     teacher.wait_for_function(ONE_HELD_SCRIPT)
-    assert tile(teacher, "Ana").locator("img").get_attribute("src") != first
+    assert tile(teacher, "Ana").locator("img").get_attribute("src") != first_picture
     tile(teacher, "Ana").locator(".see").click()
     large = teacher.locator("#big_pupil img[src^=blob]")
     assert large.evaluate("async (image) => { await image.decode(); return image.width > 0; }")

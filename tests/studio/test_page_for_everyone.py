@@ -218,13 +218,13 @@ TRY_REQUEST_SCRIPT = """async (address) => {
 def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     """The page does not reach another address, and no text becomes code."""
     wrong = only_page[0].wrong
-    with socket.create_server(("127.0.0.1", 0)) as other:
-        address = f"http://127.0.0.1:{other.getsockname()[1]}/"
+    with socket.create_server(("127.0.0.1", 0)) as other_server:
+        address = f"http://127.0.0.1:{other_server.getsockname()[1]}/"
         tried: dict[str, Any] = page.evaluate(TRY_REQUEST_SCRIPT, address)
         assert [name for name, how in tried.items() if how != "refused"] == []
-        other.setblocking(False)
+        other_server.setblocking(False)
         with pytest.raises(BlockingIOError):
-            other.accept()
+            other_server.accept()
     assert sum("Content Security Policy" in error for error in wrong) >= 5
     wrong.clear()
 

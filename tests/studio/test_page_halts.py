@@ -98,8 +98,10 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
     """Return the state of the virtual robot in the same form."""
     program = check(text.encode(), "tinibot", "en")
     rows = text.split("\n")
-    first = [next(place for place in program.places if place.line == line) for line in lines]
-    wanted_spans = {place[1:3] for place in first}
+    wanted_places = [
+        next(place for place in program.places if place.line == line) for line in lines
+    ]
+    wanted_spans = {place[1:3] for place in wanted_places}
     breaks = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
     parts = tuple(place.offset for place in program.places)
     marks = Marks(parts, breaks, len(program.variables), is_held=steps)
@@ -262,45 +264,45 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     board or robot has no such firmware here."""
     monkeypatch.setattr(robot_link, "BREAKPOINTS", 0)
     leave_link(page)
-    other = pages.blank(is_alone=True)
+    other_page = pages.blank(is_alone=True)
     rows = [
         {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
         for title, board in BROUGHT_FIRMWARES
     ]
     questions: list[str] = []
-    other.route("**/firmware.json", lambda route: route.fulfill(json=rows))
-    other.route("**/*.hex", lambda route: route.fulfill(body=":00"))
-    other.on("request", lambda request: questions.append(request.url.rpartition("/")[2]))
-    other.add_init_script(SILENT_SERIAL)
-    enter(other, pages.entrance())
-    other.click("#view_text")
-    connect(other, robot)
-    write(other, "SHOW(1);\nSHOW(2)")
-    offered_element = other.locator("#link_get_halting")
+    other_page.route("**/firmware.json", lambda route: route.fulfill(json=rows))
+    other_page.route("**/*.hex", lambda route: route.fulfill(body=":00"))
+    other_page.on("request", lambda request: questions.append(request.url.rpartition("/")[2]))
+    other_page.add_init_script(SILENT_SERIAL)
+    enter(other_page, pages.entrance())
+    other_page.click("#view_text")
+    connect(other_page, robot)
+    write(other_page, "SHOW(1);\nSHOW(2)")
+    offered_element = other_page.locator("#link_get_halting")
     assert offered_element.is_hidden()
-    press_margin(other, 2)
+    press_margin(other_page, 2)
     offered_element.wait_for()
-    press_margin(other, 2)
+    press_margin(other_page, 2)
     offered_element.wait_for(state="hidden")
-    press_margin(other, 2)
+    press_margin(other_page, 2)
     offered_element.click()
-    wait_for_message(other, "but no longer reads typed text")
-    assert other.locator("html[data-robot=none]").count() == 1
-    assert other.locator("#flash_halts").is_checked()
-    assert other.input_value("#flash_board") == "uno"
+    wait_for_message(other_page, "but no longer reads typed text")
+    assert other_page.locator("html[data-robot=none]").count() == 1
+    assert other_page.locator("#flash_halts").is_checked()
+    assert other_page.input_value("#flash_board") == "uno"
     assert not [name for name in questions if name.endswith(".hex")]
-    other.click("#flash_write")
-    wait_for_message(other, "That is not a complete HEX file")
+    other_page.click("#flash_write")
+    wait_for_message(other_page, "That is not a complete HEX file")
     assert [name for name in questions if name.endswith(".hex")] == [
         f"{HALTING_TITLE}-uno-digest.hex"
     ]
-    other.select_option("#flash_board", "nano")
-    other.locator("#flash_halts").wait_for(state="hidden")
-    assert not other.locator("#flash_halts").is_checked()
-    other.select_option("#flash_board", "uno")
-    other.locator("#flash_halts").wait_for()
-    other.select_option("#robot", "liner")
-    other.locator("#flash_halts").wait_for(state="hidden")
+    other_page.select_option("#flash_board", "nano")
+    other_page.locator("#flash_halts").wait_for(state="hidden")
+    assert not other_page.locator("#flash_halts").is_checked()
+    other_page.select_option("#flash_board", "uno")
+    other_page.locator("#flash_halts").wait_for()
+    other_page.select_option("#robot", "liner")
+    other_page.locator("#flash_halts").wait_for(state="hidden")
     connect(page, robot)
 
 

@@ -467,18 +467,18 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
 @drawn
 def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
-    own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
+    own, first_text, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
     write(page, own)
     choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
-    write(page, first)
+    write(page, first_text)
     choose_lesson(page, 2)
     write(page, second)  # in the existing program
     page.select_option("#lesson", "1")
     wait_for_note(page, "Here is your program for this lesson again.")
-    assert editor.inner_text() == first
+    assert editor.inner_text() == first_text
     choose_lesson(page, 3)
     assert not page.locator("#note").is_visible()  # the program has no note yet
     page.click("#home")
@@ -487,7 +487,7 @@ def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     page.click("#home")
     page.click("#start_lessons")
     choose_lesson(page, 1)
-    editor.filter(has_text=first).wait_for()
+    editor.filter(has_text=first_text).wait_for()
     choose_lesson(page, 2)
     editor.filter(has_text=second).wait_for()
     page.reload()
@@ -496,7 +496,7 @@ def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
     choose_lesson(page, 1)
-    editor.filter(has_text=first).wait_for()
+    editor.filter(has_text=first_text).wait_for()
     page.click("#home")
     page.click("#start_write")
     editor.filter(has_text=own).wait_for()

@@ -136,15 +136,15 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
 
 @drawn
 def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
-    other = first[0].another(page)
-    other.click("#side_real")
-    other.locator("#link_port option").first.wait_for(state="attached")
-    other.click("#link_connect")
-    wait_for_message(other, "Another tab of this browser is driving this robot.")
+    other_page = first[0].another(page)
+    other_page.click("#side_real")
+    other_page.locator("#link_port option").first.wait_for(state="attached")
+    other_page.click("#link_connect")
+    wait_for_message(other_page, "Another tab of this browser is driving this robot.")
     start_drive(page, robot)
-    other.click("#stop")  # anyone who sees STOP may press it
+    other_page.click("#stop")  # anyone who sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
-    other.close()
+    other_page.close()
     while BLINKING_MESSAGE not in page.locator("#link_said").inner_text():
         page.click("#link_identify")  # refused for a moment after a STOP for all
         wait_for_message(page, re.compile(f"{VOID_STOP_MESSAGE}|{BLINKING_MESSAGE}"))
@@ -471,7 +471,7 @@ def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> 
     wait_for_no_mark(page)
 
 
-def upload_until_told(page: Page, at: int) -> None:
+def upload_until_told(page: Page, place: int) -> None:
     """Upload, and wait until the page got the place `at` instead of the robot's."""
     places: list[int] = []
 
@@ -480,7 +480,7 @@ def upload_until_told(page: Page, at: int) -> None:
         answer = response.json()
         for item in answer.get("news", []):
             if item.get("event") == "PLACE":
-                item["at"] = at
+                item["at"] = place
                 places.append(item["at"])
         route.fulfill(response=response, json=answer)
 
@@ -501,8 +501,8 @@ def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
 @drawn
 def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     """Both are held at the first line, then one continues, then the other one."""
-    first, second = "W(0.1)", "F(60, 80)"
-    write(page, f"{first};\n{second}")
+    first_row, second = "W(0.1)", "F(60, 80)"
+    write(page, f"{first_row};\n{second}")
     page.click("#side_virtual")
     breakpoint = page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last
     breakpoint.click()
@@ -511,11 +511,11 @@ def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     page.click("#side_real")
     page.click("#link_upload")
     page.locator("html[data-halt='read']").wait_for()
-    wait_for_running(page, first)
+    wait_for_running(page, first_row)
     page.click("#link_go_on")
     wait_for_running(page, second)
     page.click("#side_virtual")
-    wait_for_running(page, first)
+    wait_for_running(page, first_row)
     page.click("#pause")  # continues
     wait_for_running(page, second)
     page.click("#stop")

@@ -192,9 +192,9 @@ def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
     write(page, f"// robot: tinibot\n{KEYS}")
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-    first = page.locator("#lesson_name").text_content()
+    lesson_name = page.locator("#lesson_name").text_content()
     page.select_option("#lesson", index=17)
-    page.locator("#lesson_name").filter(has_not_text=first or "?").wait_for(state="attached")
+    page.locator("#lesson_name").filter(has_not_text=lesson_name or "?").wait_for(state="attached")
     page.locator("#lesson_steps button").last.click()
     page.click("#run")  # the own run
     wait_for_phase(page, "running")

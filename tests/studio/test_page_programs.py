@@ -436,12 +436,12 @@ def test_a_program_is_deleted_and_brought_back(page: Page) -> None:
         page.keyboard.press("Escape")
     page.click("#my_programs")
     rows = page.locator("#versions li:not(:has(#new))")
-    for at in (0, 2, 3, 1):
-        title = texts[::-1][at]
+    for index in (0, 2, 3, 1):
+        title = texts[::-1][index]
         assert list_programs(page) == texts[::-1]
-        delete = rows.nth(at).get_by_role("button", name=f"Delete {title}")
-        assert delete.count() == (at > 0)
-        if not at:
+        delete = rows.nth(index).get_by_role("button", name=f"Delete {title}")
+        assert delete.count() == (index > 0)
+        if not index:
             continue
         delete.click()
         assert list_programs(page) == [each for each in texts[::-1] if each != title]

@@ -58,8 +58,8 @@ def wait_for_status(page: Page, text: str) -> None:
 
 
 def real_recording(*rows: tuple[int, str], text: str = LOOKS) -> str:
-    first = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
-    return encode(first, [Row(*row) for row in rows], rows[-1][0])
+    header = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
+    return encode(header, [Row(*row) for row in rows], rows[-1][0])
 
 
 def open_run(page: Page, data: bytes | str, file: Path) -> None:
@@ -141,9 +141,9 @@ def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path
     wait_for_status(
         page, f"The virtual robot did exactly the same again. Rows compared: {len(rows)}."
     )
-    first = json.loads(data.splitlines()[0])
+    header = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
-        first["robot"], first["world"])  # fmt: skip
+        header["robot"], header["world"])  # fmt: skip
 
 
 @drawn

@@ -41,8 +41,8 @@ def context(
             playwright, folder, robot.port, server.address
         ) as opened_browser_context,
     ):
-        first = opened_browser_context.pages[0]
-        enter(first, server.address)
+        first_page = opened_browser_context.pages[0]
+        enter(first_page, server.address)
         yield opened_browser_context
 
 
@@ -82,13 +82,13 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
 
 
 def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRobot) -> None:
-    other = context.new_page()
-    enter(other, page.url)
-    other.click("#side_real")
-    other.locator("#link_port option").first.wait_for(state="attached")
-    other.click("#link_connect")
-    wait_for_message(other, "Another tab of this browser is driving this robot.")
-    other.close()
+    other_page = context.new_page()
+    enter(other_page, page.url)
+    other_page.click("#side_real")
+    other_page.locator("#link_port option").first.wait_for(state="attached")
+    other_page.click("#link_connect")
+    wait_for_message(other_page, "Another tab of this browser is driving this robot.")
+    other_page.close()
     assert page.locator("html[data-robot=connected]").count() == 1
 
 

@@ -170,9 +170,9 @@ def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -
     assert screen(start) == "program"
     wait_until_checked(start)
     assert image(start) == compile("SI|F(9, 90)").image
-    other = pages.visit(f"{pages.address}#program={GOOD_WORK[:-8]}")
-    wait_for_note(other, "The link is incomplete")
-    assert screen(other) == "program"
+    other_page = pages.visit(f"{pages.address}#program={GOOD_WORK[:-8]}")
+    wait_for_note(other_page, "The link is incomplete")
+    assert screen(other_page) == "program"
 
 
 NO_MARKS = """() => {

@@ -172,8 +172,8 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, 
     until(lambda: "BEEP" in text_of(ana), "the others' line arrives after a while")
     ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
     ana.mouse.up()
-    first, loop, end_loop, *rest = ROWS[:-1]
-    ends(two, first, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
+    first_row, loop, end_loop, *rest = ROWS[:-1]
+    ends(two, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
 
 
 @drawn
@@ -265,9 +265,9 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
         return True
     rows = [row for row in lines(page) if row.strip()]
     row = rng.choice(rows)
-    at = page.locator(".cm-line").filter(has_text=row.strip()).first
+    line = page.locator(".cm-line").filter(has_text=row.strip()).first
     try:
-        at.click(timeout=3000)
+        line.click(timeout=3000)
     except Error:  # others have changed it meanwhile
         return False
     page.keyboard.press("End")

@@ -54,8 +54,8 @@ def count(page: Page, color: str) -> int:
     pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
     return sum(
         all(
-            abs(one - other) < COLOUR_TOLERANCE
-            for one, other in zip(pixel, wanted_bytes, strict=True)
+            abs(one - other_value) < COLOUR_TOLERANCE
+            for one, other_value in zip(pixel, wanted_bytes, strict=True)
         )
         for pixel in pixels
     )
@@ -190,8 +190,8 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
     run(page, CRASH_PROGRAM)
     assert page.evaluate(noted_text) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
-    first, *_, last = page.evaluate("window.told")
-    assert first.startswith("The robot has bumped into something. The robot is ")
+    first_message, *_, last = page.evaluate("window.told")
+    assert first_message.startswith("The robot has bumped into something. The robot is ")
     assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
     run(page, "W(1)")
     assert page.evaluate(noted_text) == [1, 1, 1]

@@ -235,11 +235,11 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
     for _ in range(3000):
         data = bytearray(rng.choice(whole))
         for _ in range(rng.randint(1, 3)):
-            at = rng.randrange(len(data))
+            offset = rng.randrange(len(data))
             piece = bytes(
                 rng.choice(b'09-,"[]{}:e.\\nulltruE\xff ') for _ in range(rng.randint(0, 3))
             )
-            data[at : at + rng.randint(0, 4)] = piece
+            data[offset : offset + rng.randint(0, 4)] = piece
         try:
             recording = decode(bytes(data))
         except BadRecording as bad:
@@ -286,10 +286,10 @@ def test_each_row_that_is_another_one_is_told() -> None:
     for k, row in enumerate(rows):
         if k % max(1, len(rows) // 10):
             continue
-        at = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
+        index = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
         for changed_lines in ([recordings.encode_row(Row(row.ms, "BEEP 1 1"))], []):
-            other = "\n".join((*lines[:at], *changed_lines, *lines[at + 1 :]))
-            divergence = play(prepare(decode(other.encode()))).divergence
+            changed_text = "\n".join((*lines[:index], *changed_lines, *lines[index + 1 :]))
+            divergence = play(prepare(decode(changed_text.encode()))).divergence
             assert divergence is not None
             assert divergence.what == "otherwise" and divergence.agreed <= k
 

@@ -38,14 +38,16 @@ def server(folder: Path) -> Iterator[serving.Server]:
 
 def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: Path) -> None:
     page = serving.files(folder)
-    with serves(serving.Server(page, 0)) as first:
+    with serves(serving.Server(page, 0)) as first_server:
         with pytest.raises(OSError):
-            serving.Server(page, first.server_port)
-        with socket.create_connection((serving.HOST, first.server_port), HANG_LIMIT_S) as browser:
+            serving.Server(page, first_server.server_port)
+        with socket.create_connection(
+            (serving.HOST, first_server.server_port), HANG_LIMIT_S
+        ) as browser:
             browser.sendall(b"GET / HTTP/1.0\r\n\r\n")
             while browser.recv(4096):  # the server is the first that closes
                 pass
-    serving.Server(page, first.server_port).server_close()
+    serving.Server(page, first_server.server_port).server_close()
 
 
 def test_the_page_comes_with_its_policy(own: str) -> None:

@@ -186,10 +186,10 @@ def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
     (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n')
     monkeypatch.setattr(serving, "PAGE", tmp_path)
     words = ("studio", "--class", "--address", HOST, "--no-browser", "--lang", "en")
-    with closing(class_keeping.Keeper()) as first:
+    with closing(class_keeping.Keeper()) as first_keeper:
         room = Classroom(Hosting(), [])
         room.answer("", OTHER_HOST, {"do": "join", "code": room.code, "name": "Ana"})
-        first.keep(room.state_to_keep())
+        first_keeper.keep(room.state_to_keep())
         kept_bytes = class_keeping.path().read_bytes()
         result = tsc(*words)
         assert result.code == 3 and "another tsc studio." in result.err

@@ -125,9 +125,9 @@ def test_the_token_is_another_one_each_time_and_in_no_file(
 ) -> None:
     assert server.entrances.token not in server.entrance()
     assert len(server.entrances.token) == 32
-    other = serving.Server(serving.files(tmp_path), 0, robots.answer)
-    other.server_close()
-    assert other.entrances.token != server.entrances.token
+    other_server = serving.Server(serving.files(tmp_path), 0, robots.answer)
+    other_server.server_close()
+    assert other_server.entrances.token != server.entrances.token
     response, data = ask(own)
     assert server.entrances.token not in data.decode() + str(response.getheaders())
 

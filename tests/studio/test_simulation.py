@@ -32,11 +32,11 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
     simulation = Simulation(robot, worlds.load(world), compile(text, robot).image)
     simulation.advance(8000)
-    other = VirtualRobot(load(robot), worlds.load(world))
-    talk = Talk(other)
+    other_robot = VirtualRobot(load(robot), worlds.load(world))
+    talk = Talk(other_robot)
     talk.upload(text)
     talk.wait(8000)
-    ours, theirs = trace_of(simulation), trace(other.take_events())
+    ours, theirs = trace_of(simulation), trace(other_robot.take_events())
     shorter = min(len(ours), len(theirs)) - 5  # the two were uploaded at other times
     assert shorter > 10 and ours[:shorter] == theirs[:shorter]
 
@@ -76,8 +76,8 @@ def test_it_is_told_where_each_task_is() -> None:
     def marked_lines() -> set[int]:
         """The lines of the text that are marked."""
         lines = set()
-        for at in simulation.state()["places"]:
-            lines.add(next(place for place in reversed(places) if place.offset <= at).line)
+        for offset in simulation.state()["places"]:
+            lines.add(next(place for place in reversed(places) if place.offset <= offset).line)
         return lines
 
     simulation.advance(100)
@@ -95,7 +95,9 @@ def test_it_is_told_where_each_task_is() -> None:
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
 def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
-    free, simulation = (started_simulation(TASKS, at, robot="tinibot32") for at in ((), parts))
+    free, simulation = (
+        started_simulation(TASKS, held_parts, robot="tinibot32") for held_parts in ((), parts)
+    )
     free.advance(600)
     held_places: set[int | None] = set()
     while simulation.robot.now_ms < free.robot.now_ms:
@@ -199,7 +201,7 @@ def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
 
 
 def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> None:
-    simulation = started_simulation(STICK, at=(1,))
+    simulation = started_simulation(STICK, held_parts=(1,))
     simulation.advance(100)
     assert simulation.held_at is not None
     for _ in range(3):

@@ -29,12 +29,12 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
         assert program.image, text
         lines = text.split("\n")
         places = [list(place) for place in program.places]
-        at = next(
+        index = next(
             place[0]
             for place in places
             if lines[place[1] - 1][place[2] - 1 :].startswith(wanted_text)
         )
-        rows.append({"text": text, "places": places, "at": at, "values": VALUES})
+        rows.append({"text": text, "places": places, "at": index, "values": VALUES})
     return [json.loads(row) for row in in_node(SCRIPT, json.dumps(rows))]
 
 

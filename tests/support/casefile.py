@@ -98,8 +98,8 @@ def read(path: Path) -> list[Case]:
 def _unfold(row: str) -> list[str]:
     """Return the rows that a row stands for."""
     if match := TIMES.fullmatch(row):
-        at, size = int(match[1], 16), len(bytes.fromhex(match[3]))
-        return [f"{at + k * size:04x}  {match[2]}" for k in range(int(match[4]))]
+        offset, size = int(match[1], 16), len(bytes.fromhex(match[3]))
+        return [f"{offset + k * size:04x}  {match[2]}" for k in range(int(match[4]))]
     return [row]
 
 
@@ -189,7 +189,7 @@ def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case differs; git shows the changes."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # The current place of the case, which earlier accepts may have moved.
-    now = next(other for other in read(case.path) if other.title == case.title)
+    now = next(written_case for written_case in read(case.path) if written_case.title == case.title)
     if part == "refused":
         rows[now.line - 1] = f"{actual.rstrip()}: {now.title}\n"
     else:

@@ -215,13 +215,13 @@ FAR_JUMP = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 by
 
 
 def some_task_programs(
-    first: int, count: int, text_before: str = ""
+    first_seed: int, count: int, text_before: str = ""
 ) -> Iterator[tuple[bytes, Senses]]:
     """Yield images of random programs with tasks, and the readings of their sensors.
 
     All that a program does lies after the code of the text `before`.
     """
-    for seed in range(first, first + count):
+    for seed in range(first_seed, first_seed + count):
         text, readings = task_program(random.Random(seed))
         yield compile_text(text_before + text, KIT).image, Senses(readings, TASK_MS, seed=seed + 1)
 
@@ -241,10 +241,10 @@ def check_task_codes(machine: Process, seed: int, count: int) -> None:
     assert {0, 21, 27, 32, 33, 35, 38, 40} <= rules, rules
 
 
-def check_task_programs(machine: Process, first: int, count: int) -> None:
-    for image, senses in some_task_programs(first, count):
+def check_task_programs(machine: Process, first_seed: int, count: int) -> None:
+    for image, senses in some_task_programs(first_seed, count):
         run = machine.run(image, KIT, senses)
-        assert machine.agrees(run, run_in_python(image, KIT, senses), senses.max_ms), first
+        assert machine.agrees(run, run_in_python(image, KIT, senses), senses.max_ms), first_seed
 
 
 class SlowRobot(TracedRobot):
@@ -339,10 +339,10 @@ def check_way_codes(machine: Process, seed: int, count: int) -> None:
     assert "BAD_CODE" not in ends
 
 
-def check_way_programs(machine: Process, first: int, count: int) -> None:
+def check_way_programs(machine: Process, first_seed: int, count: int) -> None:
     """Random programs with ways, with tasks and without, run alike."""
     ends: Counter[str] = Counter()
-    for image, kit, senses in some_way_programs(first, count):
+    for image, kit, senses in some_way_programs(first_seed, count):
         run = machine.run(image, kit, senses)
         want = run_in_python(image, kit, senses)
         assert machine.agrees(run, want, senses.max_ms), image.hex(" ")
@@ -350,10 +350,10 @@ def check_way_programs(machine: Process, first: int, count: int) -> None:
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
 
 
-def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
+def some_way_programs(first_seed: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
     """Return images of random programs with moves by distance, every second one with tasks."""
     codes = []
-    for seed in range(first, first + count):
+    for seed in range(first_seed, first_seed + count):
         rng = random.Random(seed)
         theirs, kit = KITS[seed // 2 % 2]
         if seed % 2:

@@ -53,9 +53,11 @@ def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str
     return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
 
 
-def list_present_robots(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPresence]:
+def list_present_robots(
+    robot: Esp32Robot, broker: Broker, group: str = "aula"
+) -> list[RobotPresence]:
     robot.wait(20)
-    return at.list_robots(group)
+    return broker.list_robots(group)
 
 
 def motor_state(robot: Esp32Robot) -> str:

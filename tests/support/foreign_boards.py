@@ -167,11 +167,11 @@ class MbotBoard(Board):
 
     def take(self, byte: int) -> bytes:
         self._line += bytes([byte])
-        at = self._line.find(b"\xff\x55")
-        if at < 0:
+        offset = self._line.find(b"\xff\x55")
+        if offset < 0:
             self._line = self._line[-1:]
             return b""
-        frame = self._line[at:]
+        frame = self._line[offset:]
         if len(frame) < 3 or len(frame) < 3 + frame[2]:
             return b""
         self._line = b""

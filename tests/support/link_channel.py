@@ -23,33 +23,37 @@ LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # numbers of moves for a large ro
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
 
 
-def lose_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + data[at + 1 :]
+def lose_byte(data: bytes, offset: int, draw: random.Random) -> bytes:
+    return data[:offset] + data[offset + 1 :]
 
 
-def change_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + bytes([data[at] ^ draw.randrange(1, 256)]) + data[at + 1 :]
+def change_byte(data: bytes, offset: int, draw: random.Random) -> bytes:
+    return data[:offset] + bytes([data[offset] ^ draw.randrange(1, 256)]) + data[offset + 1 :]
 
 
-def double_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[: at + 1] + data[at:]
+def double_byte(data: bytes, offset: int, draw: random.Random) -> bytes:
+    return data[: offset + 1] + data[offset:]
 
 
-def swap_bytes(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + data[at : at + 2][::-1] + data[at + 2 :]
+def swap_bytes(data: bytes, offset: int, draw: random.Random) -> bytes:
+    return data[:offset] + data[offset : offset + 2][::-1] + data[offset + 2 :]
 
 
-def insert_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + bytes([draw.randrange(256)]) + data[at:]
+def insert_byte(data: bytes, offset: int, draw: random.Random) -> bytes:
+    return data[:offset] + bytes([draw.randrange(256)]) + data[offset:]
 
 
-def cut(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + data[at + draw.randrange(1, 20) :]
+def cut(data: bytes, offset: int, draw: random.Random) -> bytes:
+    return data[:offset] + data[offset + draw.randrange(1, 20) :]
 
 
-def with_module_text(data: bytes, at: int, draw: random.Random) -> bytes:
+def with_module_text(data: bytes, offset: int, draw: random.Random) -> bytes:
     """Return the data with text inserted by radio modules."""
-    return data[:at] + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n")) + data[at:]
+    return (
+        data[:offset]
+        + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n"))
+        + data[offset:]
+    )
 
 
 DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
@@ -81,30 +85,30 @@ class Radio:
             return
         if self.shuffles:
             data = self.shuffle(data)
-        at = 0
-        while at < len(data):
+        offset = 0
+        while offset < len(data):
             if self.draw.random() < self.faults:
-                data = self.draw.choice(DAMAGES)(data, at, self.draw)
-            at += 1
+                data = self.draw.choice(DAMAGES)(data, offset, self.draw)
+            offset += 1
         late_ms = self.draw.uniform(15, 40) + (self.draw.random() < 0.02) * self.draw.uniform(
             200, 600
         )
         self._last_ms = max(self._last_ms, now_ms + late_ms)
-        for at, byte in enumerate(data):
-            if self.is_split and at % PIECE_BYTES == 0 and self.draw.random() < 0.2:
+        for offset, byte in enumerate(data):
+            if self.is_split and offset % PIECE_BYTES == 0 and self.draw.random() < 0.2:
                 self._last_ms += self.draw.choice(PAUSES_MS)
             self._last_ms += self.byte_ms
             self._queue.append((self._last_ms, byte))
 
     def shuffle(self, data: bytes) -> bytes:
         frames = re.findall(rb"\0*[^\0]*\0?", data)
-        for at in range(len(frames) - 1, -1, -1):
+        for index in range(len(frames) - 1, -1, -1):
             if self.draw.random() >= self.shuffles:
                 continue
             if self.draw.random() < 0.5:
-                frames.insert(at, frames[at])
+                frames.insert(index, frames[index])
             else:
-                frames[at : at + 2] = frames[at : at + 2][::-1]
+                frames[index : index + 2] = frames[index : index + 2][::-1]
         return b"".join(frames)
 
     def take_arrived(self, now_ms: int) -> bytes:
@@ -180,9 +184,9 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     old = pack("SI", 0, program(draw, cpp.is_large))
     world.to_robot.faults = world.to_computer.faults = 0
     drops, world.drops = world.drops, 0
-    first = world.session.upload(unpack(old), runs=False)
-    world.run(first)
-    assert first.outcome and first.outcome.status == 0 and cpp.fetch_image() == old
+    old_upload = world.session.upload(unpack(old), runs=False)
+    world.run(old_upload)
+    assert old_upload.outcome and old_upload.outcome.status == 0 and cpp.fetch_image() == old
     world.to_robot.faults = world.to_computer.faults = faults
     world.to_robot.is_split = world.to_computer.is_split = world.is_split
     world.drops = drops

@@ -91,8 +91,8 @@ class Mosquitto:
 class AtBroker:
     """A robot's client at a broker, as an `End` of `esp32_radio`."""
 
-    def __init__(self, robot: Esp32Robot, at: Broker, group: str = "aula") -> None:
-        self.port: BrokerPort = at.port_of(group, f"{ID:08x}")
+    def __init__(self, robot: Esp32Robot, broker: Broker, group: str = "aula") -> None:
+        self.port: BrokerPort = broker.port_of(group, f"{ID:08x}")
         self.has_ended = False
 
     def send(self, data: bytes) -> None:

@@ -63,8 +63,8 @@ def spread_names(names: Sequence[str], count: int) -> list[int]:
             where[k % len(where)] += files.pop(name)
     quick = [k for row in files.values() for k in row]
     left = len(names)
-    for at, part in enumerate(parts):
-        size = max(len(part), left // (count - at))
+    for index, part in enumerate(parts):
+        size = max(len(part), left // (count - index))
         left -= size
         room = size - len(part)
         part += quick[:room]

@@ -26,9 +26,9 @@ OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
 class Keys(KeyRing):
     """A `KeyRing` in memory. Keys are numbered, so each run has the same."""
 
-    def __init__(self, first: int = 1) -> None:
+    def __init__(self, first_number: int = 1) -> None:
         self.stored_keys: list[RobotKey] = []
-        self.next_number = first
+        self.next_number = first_number
         self.is_full = False
         self.id_by_place: dict[str, int] = {}
         self.accepted_ids: set[int] = set()

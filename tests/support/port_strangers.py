@@ -47,14 +47,16 @@ def mutate_data(chance: Random) -> bytes:
     """Return something strange that is a little otherwise."""
     data = bytearray(chance.choice(STRANGE_LINES)[:1200] or b"{")
     for _ in range(chance.randrange(1, 6)):
-        at = chance.randrange(len(data))
+        offset = chance.randrange(len(data))
         kind = chance.randrange(4)
         if kind == 0:
-            data[at] = chance.randrange(256)
+            data[offset] = chance.randrange(256)
         elif kind == 1:
-            data[at:at] = chance.choice((b'"', b"\\ud8", b"\n", b"\0", b"{", b"[", b"\xff", b"1e9"))
+            data[offset:offset] = chance.choice(
+                (b'"', b"\\ud8", b"\n", b"\0", b"{", b"[", b"\xff", b"1e9")
+            )
         elif kind == 2:
-            del data[at : at + chance.randrange(20)]
+            del data[offset : offset + chance.randrange(20)]
         else:
             data += chance.choice(STRANGE_LINES)[:200]
         data = data or bytearray(b"{")

@@ -100,10 +100,10 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
         elif kind == 3:
             code += answer + jump(branch, far, len(inner) + slip) + inner
         elif kind == 4:
-            other = likely_code(rng)[:6]
-            skip = jump("ELSE", far, len(other) + slip)
+            else_code = likely_code(rng)[:6]
+            skip = jump("ELSE", far, len(else_code) + slip)
             code += answer + jump(branch, far, len(inner) + len(skip)) + inner
-            code += skip + other
+            code += skip + else_code
         elif kind == 5:
             end = inner + simple("RETURN")
             code += jump("DEF", far, len(end) + slip) + end
@@ -164,8 +164,8 @@ def deep_code(rng: random.Random) -> bytes:
         for depth in range(rng.choice((10, 11, 12, 13))):
             body = simple("LOOP8") + b"\x01" + body + jump("NEXT", False, 4 + 4 * depth)
             # the call lies further after the procedure with each loop around it
-            at = body.index(BY_NAME["CALL"].code)
-            body = body[: at + 1] + bytes([ways + at + 2]) + body[at + 2 :]
+            offset = body.index(BY_NAME["CALL"].code)
+            body = body[: offset + 1] + bytes([ways + offset + 2]) + body[offset + 2 :]
         code += body
     else:
         end = simple("RETURN")
@@ -261,21 +261,21 @@ def jump(name: str, far: bool, distance: int) -> bytes:
     return simple(name + "_FAR" * far) + (distance & ((1 << 8 * size) - 1)).to_bytes(size, "little")
 
 
-def mutate_code(rng: random.Random, code: bytes, other: bytes) -> bytes:
+def mutate_code(rng: random.Random, code: bytes, other_code: bytes) -> bytes:
     data = bytearray(code)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        at = rng.randrange(len(data) + 1)
+        offset = rng.randrange(len(data) + 1)
         kind = rng.randrange(7)
         if kind == 0:
-            data[at:at] = bytes([rng.randrange(256)])
+            data[offset:offset] = bytes([rng.randrange(256)])
         elif kind == 1:
-            del data[at : at + rng.choice((1, 1, 2, 3))]
+            del data[offset : offset + rng.choice((1, 1, 2, 3))]
         elif kind == 2:
-            data[at:] = other[rng.randrange(len(other) + 1) :]
-        elif at < len(data):
+            data[offset:] = other_code[rng.randrange(len(other_code) + 1) :]
+        elif offset < len(data):
             delta = rng.choice((1, 255, 2, 254))
-            choices = (rng.randrange(256), rng.choice(UNO_OPS).code, (data[at] + delta) % 256)
-            data[at] = rng.choice(choices)
+            choices = (rng.randrange(256), rng.choice(UNO_OPS).code, (data[offset] + delta) % 256)
+            data[offset] = rng.choice(choices)
     return bytes(data)
 
 
@@ -345,24 +345,24 @@ def images_of_programs(seed: int, count: int) -> Iterator[tuple[bytes, Kit]]:
 def changed_kit(rng: random.Random, kit: Kit) -> Kit:
     """Return a kit with one device that is another one, is missing, or has come."""
     sensors = list(kit.sensors)
-    at = rng.randrange(len(sensors))
+    index = rng.randrange(len(sensors))
     change = rng.randrange(4)
     if change == 0:
-        sensors[at] = sensors[at]._replace(unit=sensors[at].unit + "x")
+        sensors[index] = sensors[index]._replace(unit=sensors[index].unit + "x")
     elif change == 1:
-        sensors[at] = sensors[at]._replace(low=sensors[at].low - 1)
+        sensors[index] = sensors[index]._replace(low=sensors[index].low - 1)
     elif change == 2:
-        del sensors[at]
+        del sensors[index]
     else:
-        sensors.append(sensors[at]._replace(name="ANOTHER"))
+        sensors.append(sensors[index]._replace(name="ANOTHER"))
     return kit._replace(sensors=tuple(sensors))
 
 
 def changed_image(rng: random.Random, data: bytes) -> bytes:
     image = bytearray(data)
     for _ in range(rng.choice((0, 1, 1, 2))):
-        at = rng.randrange(min(len(image), HEADER_BYTES))
-        image[at] = rng.choice((0, 1, 2, 3, HEADER_BYTES, 127, 128, 255))
+        offset = rng.randrange(min(len(image), HEADER_BYTES))
+        image[offset] = rng.choice((0, 1, 2, 3, HEADER_BYTES, 127, 128, 255))
     if rng.random() < 0.3:
         del image[rng.randrange(len(image) + 1) :]
     elif rng.random() < 0.2:

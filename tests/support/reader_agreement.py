@@ -160,9 +160,13 @@ def damage_text(rng: random.Random, data: bytes) -> bytes:
     """Return a text with one byte changed, lost or added, now and then."""
     if not data or rng.random() < 0.6:
         return data
-    at = rng.randrange(len(data))
+    offset = rng.randrange(len(data))
     byte = bytes((rng.choice((rng.randrange(256), *b"\x00\xc2\xa0\xe2\x80\x93~09AZ_.<>/=-\r\n")),))
-    return data[:at] + rng.choice((byte, b"", byte + data[at : at + 1])) + data[at + 1 :]
+    return (
+        data[:offset]
+        + rng.choice((byte, b"", byte + data[offset : offset + 1]))
+        + data[offset + 1 :]
+    )
 
 
 def soup(seed: int) -> tuple[Kit, bytes]:

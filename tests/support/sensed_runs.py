@@ -39,7 +39,7 @@ def sensed_run(
     robot = Debugged(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
     rng, readings = random.Random(seed), [[0] for _ in KIT.sensors]
-    first = len(robot.robot.did)
+    first_row = len(robot.robot.did)
     robot.start()
     robot.robot.ask(b"P", bytes([byte_ticks]))
     events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
@@ -49,11 +49,11 @@ def sensed_run(
         values = [row[-1] for row in readings]
         robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
         events += robot.talk(rng.randint(1, most_ms))
-    rows = (line.split(" ", 1) for line in robot.robot.did[first:])
+    rows = (line.split(" ", 1) for line in robot.robot.did[first_row:])
     return SensedRun([(float(ms), what) for ms, what in rows], events, readings)
 
 
 def is_steady(text: str, seed: int) -> bool:
     """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
     usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
-    return all(largest_difference_ms(usual, other) <= LARGEST_DELAY_MS for other in others)
+    return all(largest_difference_ms(usual, other_run) <= LARGEST_DELAY_MS for other_run in others)

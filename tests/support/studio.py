@@ -189,10 +189,10 @@ class Pages:
 
     def another(self, page: Page) -> Page:
         """Open another tab of the same visitor."""
-        other: Page = page.context.new_page()
-        self.watch(other)
-        enter(other, self.entrance())
-        return other
+        new_page: Page = page.context.new_page()
+        self.watch(new_page)
+        enter(new_page, self.entrance())
+        return new_page
 
     def blank(self, *, is_alone: bool = False, **options: Any) -> Page:
         """Return a tab of a new visitor, without an open page.

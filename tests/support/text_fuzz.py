@@ -91,8 +91,8 @@ class Fuzz:
     def line(self) -> None:
         data = "".join(self.rng.choices(LINES, k=self.rng.randrange(1, 5))).encode()
         if self.rng.random() < 0.3:
-            at = self.rng.randrange(len(data))
-            data = data[:at] + self.rng.randbytes(self.rng.randrange(2)) + data[at + 1 :]
+            offset = self.rng.randrange(len(data))
+            data = data[:offset] + self.rng.randbytes(self.rng.randrange(2)) + data[offset + 1 :]
         if self.rng.random() < 0.8:
             self.type(data)
         else:
@@ -114,8 +114,10 @@ class Fuzz:
         for _ in range(rng.choice((2, 10, 60, 300))):
             data = session.poll(self.robot.now_ms)
             if data and rng.random() < 0.1:
-                at = rng.randrange(len(data))
-                data = data[:at] + rng.choice((b"", b"\n", b"S\n", b"\0\0\0")) + data[at + 1 :]
+                offset = rng.randrange(len(data))
+                data = (
+                    data[:offset] + rng.choice((b"", b"\n", b"S\n", b"\0\0\0")) + data[offset + 1 :]
+                )
             session.receive(self.step(data), self.robot.now_ms)
 
     def zeros(self) -> None:

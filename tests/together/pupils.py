@@ -171,8 +171,8 @@ class Pupil:
             return []
         block = self._chance.choice(ifs)
         arm = "ELSE" if self._chance.random() < 0.6 else f"ELSEIF(X > {next(self._numbers)})"
-        at = Place(block, self._chance.choice(["", *view[block].children]))
-        return [Insert(at, (Subtree(self.page.new_id(), self._own(arm)),))]
+        place = Place(block, self._chance.choice(["", *view[block].children]))
+        return [Insert(place, (Subtree(self.page.new_id(), self._own(arm)),))]
 
     def _comment(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
         text, is_apart = self._own(f"// c{next(self._numbers)}"), self._chance.random() < 0.5
@@ -214,7 +214,7 @@ class Pupil:
     def _plan_change(self) -> list[Stage]:
         final = ""
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             nonlocal final
             k = self._code(text, lambda row: row.strip().rstrip(";").endswith(")")
                            and "DISTANCE" not in row)  # fmt: skip
@@ -231,7 +231,7 @@ class Pupil:
                 text[caret] = final
             return text, caret, False
 
-        return [first, last]
+        return [first_step, last]
 
     def _plan_kept(self) -> list[Stage]:
         """Keep refused changes in the plan."""
@@ -241,7 +241,7 @@ class Pupil:
     def _plan_new(self) -> list[Stage]:
         final = self._simple()
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._line(text) + 1 if text else 0
             k += k < len(text) and "|" in text[k]
             text.insert(k, self._part_of(final))
@@ -252,38 +252,38 @@ class Pupil:
                 text[caret] = final
             return text, caret, False
 
-        return [first, last]
+        return [first_step, last]
 
     def _plan_lines(self) -> list[Stage]:
         """Plan lines one below the other, each followed by Enter."""
         rows = [self._simple() for _ in range(self._chance.randint(2, 4))]
-        at = 0
+        row_number = 0
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._new_line(text)
             text.insert(k, rows[0])
             text.insert(k + 1, "")
             return text, k + 1, True
 
         def more(text: Text, caret: int) -> tuple[Text, int, bool]:
-            nonlocal at
-            at += 1
+            nonlocal row_number
+            row_number += 1
             if not text:
                 return text, caret, False
-            text[caret] = rows[at]
-            if at == len(rows) - 1:
+            text[caret] = rows[row_number]
+            if row_number == len(rows) - 1:
                 return text, caret, False
             text.insert(caret + 1, "")
             return text, caret + 1, True
 
-        return [first, *[more] * (len(rows) - 1)]
+        return [first_step, *[more] * (len(rows) - 1)]
 
     def _plan_around(self) -> list[Stage]:
         head = self._make_head()
         end = {"L": "END_LOOP", "W": "END_WHILE", "I": "ENDIF"}[head[0]]
         size = self._chance.randint(1, 4)
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._new_line(text)
             text.insert(k, head)
             return text, k, False
@@ -293,12 +293,12 @@ class Pupil:
             text.insert(min(len(text), (rows[0] if rows else caret) + 1 + size), end)
             return text, caret, False
 
-        return [first, last]
+        return [first_step, last]
 
     def _plan_cut(self) -> list[Stage]:
         """One after the other, or pasted before anything is made of it."""
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._code(text)
             size = self._chance.randint(1, 3)
             if k is None or any("|" in row for row in text[k : k + size]):
@@ -314,8 +314,8 @@ class Pupil:
             return text, k, False
 
         if self._chance.random() < 0.5:
-            return [lambda text, caret: last(*first(text, caret)[:2])]
-        return [first, last]
+            return [lambda text, caret: last(*first_step(text, caret)[:2])]
+        return [first_step, last]
 
     def _plan_gone(self) -> list[Stage]:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
@@ -329,7 +329,7 @@ class Pupil:
     def _plan_unround(self) -> list[Stage]:
         indent = -1
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             nonlocal indent
             heads = [k for k, row in enumerate(text)
                      if row.strip().startswith(("LOOP", "WHILE", "IF"))]  # fmt: skip
@@ -348,7 +348,7 @@ class Pupil:
                     break
             return text, caret, False
 
-        return [first, last]
+        return [first_step, last]
 
     def _plan_arm(self) -> list[Stage]:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
@@ -380,10 +380,10 @@ class Pupil:
         return [only]
 
     def _plan_layout(self) -> list[Stage]:
-        def other(row: str) -> str:
+        def relaid_row(row: str) -> str:
             return row + " " if "//" in row else row.lower().replace(", ", " ,  ")
 
-        return [lambda text, caret: (list(map(other, text)), caret, False)]
+        return [lambda text, caret: (list(map(relaid_row, text)), caret, False)]
 
     def _plan_two(self) -> list[Stage]:
         pair = f"{self._simple()}; {self._simple()}"
@@ -400,7 +400,7 @@ class Pupil:
         """A line is deleted and another written in its place."""
         final = self._simple()
 
-        def first(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             words = ("F(", "B(", "L(", "R(", "W(")
             k = self._code(text, lambda row: row.strip().startswith(words))
             if k is None:
@@ -414,4 +414,4 @@ class Pupil:
                 text[caret] = final
             return text, caret, False
 
-        return [first, last]
+        return [first_step, last]

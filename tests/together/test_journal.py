@@ -36,9 +36,9 @@ def change_program(program: SharedProgram, value: int, page: str = "a") -> bool:
     return program.submit([Change(uid, (operation,))])
 
 
-def are_same(one: SharedProgram, other: SharedProgram) -> bool:
-    return (one.number, one.last_count_by_page, one.refusals_by_page, one.tree.checksum()) == (
-        other.number, other.last_count_by_page, other.refusals_by_page, other.tree.checksum()
+def are_same(a: SharedProgram, b: SharedProgram) -> bool:
+    return (a.number, a.last_count_by_page, a.refusals_by_page, a.tree.checksum()) == (
+        b.number, b.last_count_by_page, b.refusals_by_page, b.tree.checksum()
     )  # fmt: skip
 
 

@@ -110,9 +110,9 @@ def test_an_arm_goes_with_all_that_is_in_it_or_not(two: Two) -> None:
 
 
 def test_a_block_goes_around_what_was_put_between(two: Two) -> None:
-    first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
-    two.inserts(two.ana, two.find("LOOP(3)"), first)
-    apply_edits(two.luz, [Wrap((first, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
+    first_id, last = two.find("B(1, 40)"), two.find("R(1, 40)")
+    two.inserts(two.ana, two.find("LOOP(3)"), first_id)
+    apply_edits(two.luz, [Wrap((first_id, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
 
 

@@ -217,11 +217,11 @@ class World:
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks form the same program.
         round_tripped = format_blocks(read_blocks(text, KIT)).text
-        one, other = (
+        one, other_result = (
             compile_text(_with_x_set(text), KIT),
             compile_text(_with_x_set(round_tripped), KIT),
         )
-        assert one.image and one.image == other.image, (text, round_tripped, one.diagnostics)
+        assert one.image and one.image == other_result.image, (text, round_tripped, one.diagnostics)
         # No two pupils' values were mixed; no node is there twice.
         for node in tree.node_by_id.values():
             assert node.text in self.typed or node.id in (ROOT, START), node.text
