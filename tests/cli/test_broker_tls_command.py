@@ -99,7 +99,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
     Each in a process, since one keeps its connection to a broker.
     """
     authority = Authority(tmp_path)
-    broker = Mosquitto(tmp_path, more=authority.rules(NAME))
+    broker = Mosquitto(tmp_path, extra_lines=authority.rules(NAME))
     authority.rules("other.aula")
     binary = tmp_path / "own.der"
     binary.write_bytes(der(authority.sign(NAME)))

@@ -84,9 +84,9 @@ def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
     for _ in range(2):
         tsc("check", "a.ts", "b.ts", "--lang", "es", "--csv", "tabla.csv").gives(1)
     table = StringIO((folder / "tabla.csv").read_text("utf-8-sig"))
-    first_row, second = csv.DictReader(table, delimiter=";")
+    first_row, second_row = csv.DictReader(table, delimiter=";")
     assert (first_row["archivo"], first_row["errores"], first_row["mensaje"]) == ("a.ts", "0", "")
-    assert (second["errores"], second["línea"], second["código"]) == ("1", "1", "TS017")
+    assert (second_row["errores"], second_row["línea"], second_row["código"]) == ("1", "1", "TS017")
 
 
 def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Tsc) -> None:

@@ -272,12 +272,19 @@ def test_what_became_of_the_robots_is_the_exit_code(
 ) -> None:
     """Ctrl-C is the usual end of `class show`, and of no other command. 1 is a program with a
     mistake, which no robot gets."""
-    own = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
+    options = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
                           robot=None)  # fmt: skip
-    room = cast(Classroom, SimpleNamespace(
-        options=own, language="en", group="c", present_robots=list, options_for=lambda *_: own,
-        broker=SimpleNamespace(stop=lambda _: True),
-    ))  # fmt: skip
+    room = cast(
+        Classroom,
+        SimpleNamespace(
+            options=options,
+            language="en",
+            group="c",
+            present_robots=list,
+            options_for=lambda *_: options,
+            broker=SimpleNamespace(stop=lambda _: True),
+        ),
+    )
     monkeypatch.setattr(classroom, "run_together", lambda *_: code)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))

@@ -97,7 +97,7 @@ def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
-    for instruction, fault, what in (
+    for instruction, fault, message in (
         ("SHOW(2000000 * 2000000)", "OVERFLOW", "Use smaller numbers."),
         ("SHOW(1 / 0)", "DIVIDE_BY_ZERO", "check with IF"),
         ("F(20 CM, 0)", "NO_POWER", "Use more power."),
@@ -105,7 +105,7 @@ def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
         result = tsc("run", "-e", f"SI|{instruction}")
         assert (result.code, result.out) == (1, f"0 FAULT {fault}\n"), instruction
         assert f"fault {fault}: " in result.err, instruction
-        assert what in result.err, instruction
+        assert message in result.err, instruction
     assert all(has_text(f"fault_{name}") for _, name, _ in FAULTS)
 
 
@@ -139,13 +139,17 @@ def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
 
 def test_check_json(tsc: Tsc) -> None:
     result = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
-    first_diagnostic, second = json.loads(result.out)
+    first_diagnostic, second_diagnostic = json.loads(result.out)
     assert set(first_diagnostic) == {"code", "severity", "line", "column", "end_line", "end_column",
                           "message", "fix"}  # fmt: skip
     place = {key: first_diagnostic[key] for key in ("line", "column", "end_line", "end_column")}
     assert place == {"line": 2, "column": 3, "end_line": 2, "end_column": 4}
-    assert (second["line"], second["column"], second["severity"]) == (2, 13, "mistake")
-    assert "1.5, 80" in second["fix"]
+    assert (
+        second_diagnostic["line"],
+        second_diagnostic["column"],
+        second_diagnostic["severity"],
+    ) == (2, 13, "mistake")
+    assert "1.5, 80" in second_diagnostic["fix"]
     assert json.loads(tsc("check", "--json", "-e", PROGRAM).out) == []
 
 

@@ -153,17 +153,17 @@ SEVEN = [
 
 
 @pytest.mark.parametrize(
-    ("end", "cause", "what", "heard_text"), SEVEN, ids=[row[1] for row in SEVEN]
+    ("end", "cause", "board_name", "heard_text"), SEVEN, ids=[row[1] for row in SEVEN]
 )
 def test_a_board_that_is_not_ours_at_a_real_port(
-    tsc: Tsc, end: boards.Board, cause: str, what: str, heard_text: str
+    tsc: Tsc, end: boards.Board, cause: str, board_name: str, heard_text: str
 ) -> None:
     """The speed is that of a robot with an HC-05, which most boards do not have."""
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
     (finding,) = json.loads(result.out)["findings"]
     assert (finding["cause"], finding["is_sure"]) == (cause, True)
-    assert what in finding["said"] and heard_text in finding["seen"] and finding["next"]
+    assert board_name in finding["said"] and heard_text in finding["seen"] and finding["next"]
 
 
 @pytest.mark.parametrize(("board", "sentence"), [
@@ -234,14 +234,20 @@ def test_the_question_before_a_cable_is_opened(
 
 def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
-    own = (getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd()))
+    private_words = (getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd()))
     with PtyEnd(Firmware(name=b"ANA 6B", kit=0x1234)) as pty_end:
         tsc("doctor", "--port", pty_end.port, "--report", file).gives(3, out=str(file))
         text = file.read_text(encoding="utf-8")
         assert text.startswith(report.REPORT_MARK + "\n")
         assert "unknown_kit sure" in text and "next: Name its profile once" in text
         assert f"port: {pty_end.port}" in text
-        for word in ("ANA", "6B", "12347f3a", str(tmp_path), *(x for x in own if len(x) > 2)):
+        for word in (
+            "ANA",
+            "6B",
+            "12347f3a",
+            str(tmp_path),
+            *(x for x in private_words if len(x) > 2),
+        ):
             assert not re.search(rf"\b{re.escape(word)}\b", text), word
         # A name of its own replaces the option.
         tsc("doctor", "--port", "/dev/not-there", "--report", file)

@@ -34,14 +34,18 @@ def robot() -> Iterator[Esp32PtyRobot]:
         yield esp32_pty_robot
 
 
-def ask_radios(robot: Esp32PtyRobot, what: str) -> str:
+def ask_radios(robot: Esp32PtyRobot, property_name: str) -> str:
     """Return the settings of the robot's radios, or the address where it listens."""
     questions: list[str] = []
 
     def ask(host_firmware: HostFirmware) -> None:
         assert isinstance(host_firmware, Esp32Robot)
         questions.append(
-            str(port_of(host_firmware) if what == "port" else getattr(radios(host_firmware), what))
+            str(
+                port_of(host_firmware)
+                if property_name == "port"
+                else getattr(radios(host_firmware), property_name)
+            )
         )
 
     robot.ask(ask)

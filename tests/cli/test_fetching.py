@@ -223,10 +223,10 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
-    first_step, second = (
+    first_step, second_step = (
         text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:]
     )
-    text_before, _, text_after = person.output.partition(second)
+    text_before, _, text_after = person.output.partition(second_step)
     shown_text = text_before.rpartition(first_step)[2]
     assert text_after and re.search(r"\r {40,}\r", shown_text), "nothing is left of the step before"
     assert clone.page.exists()
@@ -456,7 +456,7 @@ def test_each_failure_has_its_own_step_cause_and_log(
         cause = chance.choice([*CAUSES])
         log, exit_code = f"{k} {CAUSES[cause]}", chance.choice((0, 1, 7, None))
 
-        def pretended_run(command: object, folder: object, look: Any, *more: object) -> Any:
+        def pretended_run(command: object, folder: object, look: Any, *arguments: object) -> Any:
             if exit_code is None:  # noqa: B023 - it runs at once
                 raise children.CannotStart(5, log)  # noqa: B023
             for count in range(len(keys)):  # noqa: B023

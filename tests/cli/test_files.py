@@ -29,15 +29,19 @@ LIBRARY_FOLDER = Path(files.__file__).parent
 def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Though on Linux they are found without that."""
     chosen = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
-    for one, home in product(chosen, (None, "", "part", "/home/ada", "/")):
-        for name, value in (("XDG_CACHE_HOME", one), ("XDG_CONFIG_HOME", one), ("HOME", home)):
+    for folder, home in product(chosen, (None, "", "part", "/home/ada", "/")):
+        for name, value in (
+            ("XDG_CACHE_HOME", folder),
+            ("XDG_CONFIG_HOME", folder),
+            ("HOME", home),
+        ):
             if value is None:
                 monkeypatch.delenv(name, raising=False)
             else:
                 monkeypatch.setenv(name, value)
         cache = platformdirs.user_cache_path("tiniscript", appauthor=False)
         settings = platformdirs.user_config_path("tiniscript", appauthor=False)
-        assert (files.cache_folder(), files.settings_folder()) == (cache, settings), (one, home)
+        assert (files.cache_folder(), files.settings_folder()) == (cache, settings), (folder, home)
 
 
 def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyPatch) -> None:

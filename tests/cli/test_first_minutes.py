@@ -303,10 +303,12 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
 
 def test_up_to_three_robots_are_named() -> None:
     kit = robots.load("liner").kit
-    own = robots.load("tinibot").kit
-    compilation = compile_text("LED(TRUE)", own)
+    tinibot_kit = robots.load("tinibot").kit
+    compilation = compile_text("LED(TRUE)", tinibot_kit)
     others = {f"R{k}": kit for k in range(5)}
-    (named_diagnostic,) = hints_among(others, compilation.diagnostics, "LED(TRUE)", "tinibot", own)
+    (named_diagnostic,) = hints_among(
+        others, compilation.diagnostics, "LED(TRUE)", "tinibot", tinibot_kit
+    )
     assert named_diagnostic.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
@@ -366,16 +368,16 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
     """The mark is the smallest number: `Y = -2147483.647 - 0.001`."""
     known_state = LiveState(robots.load("tinibot").kit)
-    for before in (0, 1, 2):  # random numbers used before, by the program itself
+    for use_count in (0, 1, 2):  # random numbers used before, by the program itself
         catch = ValueCatcher(("X", "Y"), known_state, EventPrinter("en"), prints_done=False)
-        for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
+        for value in (*[BOOKKEEPING_MARK] * use_count, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
             assert catch.hold_event(ShownEvent(value, 0))
         assert catch.hold_event(DoneEvent(1))
         assert {name: value.value for name, value in known_state.value_by_name.items()} == {
             "X": BOOKKEEPING_MARK,
             "Y": 7,
         }
-        assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
+        assert capsys.readouterr().out == "SHOW -2147483.648\n" * use_count
         known_state.value_by_name.clear()
 
 
@@ -400,8 +402,8 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     # nor the picture or the lines of a virtual robot
     bookkeeping = Bookkeeping()
     hidden = [
-        bookkeeping.filter_trace_event(what, values)
-        for what, values in (
+        bookkeeping.filter_trace_event(event_name, values)
+        for event_name, values in (
             ("START", ()), ("SHOW", (1,)), ("SHOW", (BOOKKEEPING_MARK,)), ("SHOW", (5000,)),
             ("MOTORS", (0, 0)), ("DONE", ()), ("START", ()), ("SHOW", (5000,)),
         )
@@ -478,12 +480,12 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     assert tsc("check", folder / expected).err == ""
 
 
-@pytest.mark.parametrize("more", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
+@pytest.mark.parametrize("options", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
 @pytest.mark.parametrize("chip", ["nano", "MEGA"])
 def test_a_chip_in_the_place_of_a_robot_leads_to_its_option(
-    tsc: Tsc, chip: str, more: tuple[str, ...]
+    tsc: Tsc, chip: str, options: tuple[str, ...]
 ) -> None:
-    for words in (("--board", chip, *more), (*more, f"--board={chip}")):
+    for words in (("--board", chip, *options), (*options, f"--board={chip}")):
         tsc("firmware", *words).gives(2, f"Try:  tsc firmware --chip {chip.lower()}\n")
 
 

@@ -62,14 +62,19 @@ class Room:
 
 
 def step_calls(
-    monkeypatch: pytest.MonkeyPatch, room: Room, owner: object, name: str, before: int, after: int
+    monkeypatch: pytest.MonkeyPatch,
+    room: Room,
+    owner: object,
+    name: str,
+    early_stage: int,
+    after: int,
 ) -> None:
     """Make calls of a function, whose first argument contains a port, pass two stages."""
     whole: Callable[..., Any] = getattr(owner, name)
 
     def interrupt_step(target: Any, *words: Any, **keyword_arguments: Any) -> Any:
         port = target if isinstance(target, str) else target.port
-        room.at(before, port)
+        room.at(early_stage, port)
         outcome = whole(target, *words, **keyword_arguments)
         room.at(after, port)
         return outcome
@@ -157,10 +162,10 @@ class Watched:
             raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize("how", ["lines", "a table", "stop"])
+@pytest.mark.parametrize("interruption", ["lines", "a table", "stop"])
 @pytest.mark.parametrize("presses", [1, 2, 3])
 def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_none(
-    monkeypatch: pytest.MonkeyPatch, how: str, presses: int
+    monkeypatch: pytest.MonkeyPatch, interruption: str, presses: int
 ) -> None:
     """They may come at any time; without a second press, it ends by itself."""
     for seed in range(10):
@@ -173,7 +178,7 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
             )
         room = Watched(monkeypatch, times[:presses])
         limit_s = opening.CONFIRM_TIMEOUT_S + 1
-        if how == "stop":  # an unreadable output acts like a first Ctrl-C
+        if interruption == "stop":  # an unreadable output acts like a first Ctrl-C
             room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with interrupt_contained():
@@ -181,7 +186,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
         else:
             table = SimpleNamespace(draw=room.passes, end=lambda _: None, print_line=lambda _: None)
             with interrupt_contained():
-                room.fleet.print_until_done(cast(FleetTable, table) if how == "a table" else None)
+                room.fleet.print_until_done(
+                    cast(FleetTable, table) if interruption == "a table" else None
+                )
         assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * POLL_INTERVAL_S], (
             "each is told"
         )

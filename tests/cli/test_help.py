@@ -231,8 +231,8 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     for verb in takes:
         assert "-e" in {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
         if verb not in ("upload", "class", "lesson"):
-            more = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
-            assert tsc(verb, "-e", PROGRAM, *more).code == 0
+            options = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
+            assert tsc(verb, "-e", PROGRAM, *options).code == 0
     assert "-e" in {flag for action in PARSERS["live"]._actions for flag in action.option_strings}
 
 
@@ -332,14 +332,14 @@ time.sleep(1000)
 
 
 @pytest.mark.parametrize(
-    ("how", "output"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
+    ("pager_mode", "output"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
 )
 def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
-    tmp_path: Path, how: str, output: str
+    tmp_path: Path, pager_mode: str, output: str
 ) -> None:
     """`less` continues after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
     (tmp_path / "pager.py").write_text(PAGER)
-    words = shlex.join([sys.executable, str(tmp_path / "pager.py"), how])
+    words = shlex.join([sys.executable, str(tmp_path / "pager.py"), pager_mode])
     terminal = on_terminal("help upload --lang en", PAGER=f"exec {words}")
     terminal.until("begun")
     terminal.type("\x03")

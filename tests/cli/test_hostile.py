@@ -214,8 +214,8 @@ def test_a_damaged_or_unwritable_cache_does_no_harm(
     tsc("compile", program)
     path = source_map._path(unpack(image.read_bytes()).checksum)
     huge = '{"version": 1, "name": "", "lines": [], "places": [[1e400, 1, 1, 1, 9]]}'
-    wrong = ("", "{}", "[]", '{"version": 1, "places": 5}', "nonsense", '{"version": 9}')
-    for text in ("[" * 200_000, huge, *wrong):
+    damaged_texts = ("", "{}", "[]", '{"version": 1, "places": 5}', "nonsense", '{"version": 9}')
+    for text in ("[" * 200_000, huge, *damaged_texts):
         path.write_text(text)
         assert tsc("show", image).code == 0
     blocked_path = program.with_name("blocked")

@@ -208,7 +208,7 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
     assert lines > 10
     lines_reached = set()
     for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = restore(kept_memory, tmp_path)
+        saved_numbers = restore(kept_memory, tmp_path)
 
         def kill_at_line(line: int = line) -> None:
             trace_until_line(kept_memory, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
@@ -216,9 +216,10 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
 
         assert wait_for_child(fork_child(kill_at_line)) == -signal.SIGKILL, line
         all_after = kept_memory.all()
-        assert sorted(all_after) in (before, expected_values(kept_memory, before, SECOND_NUMBER)), (
-            line
-        )
+        assert sorted(all_after) in (
+            saved_numbers,
+            expected_values(kept_memory, saved_numbers, SECOND_NUMBER),
+        ), line
         lines_reached.add(len(all_after))
         kept_memory.add(THIRD_NUMBER)
         assert sorted(kept_memory.all()) == expected_values(
@@ -235,7 +236,7 @@ def expected_values(kept_memory: Kept, counts_before: list[int], number: int) ->
 def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
     kept_memory = KEPT_FILES[name]
     for most in (0, 1, 10, 60):
-        before = restore(kept_memory, tmp_path)
+        saved_numbers = restore(kept_memory, tmp_path)
 
         def cut(most: int = most) -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
@@ -243,12 +244,12 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
                 kept_memory.add(SECOND_NUMBER)
 
         assert wait_for_child(fork_child(cut)) == 0
-        assert kept_memory.all() == before, most
+        assert kept_memory.all() == saved_numbers, most
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
         kept_memory.add(SECOND_NUMBER)
-        assert sorted(kept_memory.all()) == expected_values(kept_memory, before, SECOND_NUMBER), (
-            most
-        )
+        assert sorted(kept_memory.all()) == expected_values(
+            kept_memory, saved_numbers, SECOND_NUMBER
+        ), most
 
 
 @pytest.mark.sampled("name", keep=2)
@@ -261,7 +262,7 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
     restore(kept_memory, tmp_path)
     lines = lines_of(kept_memory, SECOND_NUMBER)
     for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = restore(kept_memory, tmp_path)
+        saved_numbers = restore(kept_memory, tmp_path)
         arrived, holds = os.pipe(), os.pipe()
         say = os.pipe()
 
@@ -278,11 +279,11 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
 
         first_child = fork_child(pause_at_line)
         assert os.read(arrived[0], 1)
-        second = fork_child(run_child)
+        second_child = fork_child(run_child)
         assert os.read(say[0], 1) in (b"w", b"e")
         os.write(holds[1], b"1")
-        assert (wait_for_child(first_child), wait_for_child(second)) == (0, 0), line
-        assert sorted(kept_memory.all()) == [*before, SECOND_NUMBER, THIRD_NUMBER], line
+        assert (wait_for_child(first_child), wait_for_child(second_child)) == (0, 0), line
+        assert sorted(kept_memory.all()) == [*saved_numbers, SECOND_NUMBER, THIRD_NUMBER], line
         for end in (*arrived, *holds, *say):
             os.close(end)
 
@@ -293,7 +294,7 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
 ) -> None:
     """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""
     kept_memory = KEPT_FILES[name]
-    before = restore(kept_memory, tmp_path)
+    saved_numbers = restore(kept_memory, tmp_path)
     now_s = 0.0
 
     def pass_time(seconds: float) -> None:
@@ -313,8 +314,8 @@ def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
             with suppress(BadKeys, OSError):
                 kept_memory.add(SECOND_NUMBER)
             assert sorted(kept_memory.all()) in (
-                before,
-                expected_values(kept_memory, before, SECOND_NUMBER),
+                saved_numbers,
+                expected_values(kept_memory, saved_numbers, SECOND_NUMBER),
             )
     kept_memory.add(THIRD_NUMBER)
     assert THIRD_NUMBER in kept_memory.all()

@@ -103,8 +103,8 @@ def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
         "failed", "passed", "failed", "mistakes", "passed", "mistakes"]  # fmt: skip
     assert rows[2]["findings"][0]["kind"] == "ends_in"
     assert rows[2]["seed"] == 1
-    (one,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT, "--json").out)
-    assert one == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
+    (result,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT, "--json").out)
+    assert result == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
 
 def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path) -> None:
@@ -187,9 +187,9 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
 @pytest.mark.parametrize("number", range(1, 15))
 def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: Path) -> None:
     """A sheet is one file: it downloads nothing, closes every element, and includes the drawing."""
-    for more in ([], ["--teacher"]):
+    for options in ([], ["--teacher"]):
         path = tmp_path / "sheet.html"
-        tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more).gives(0)
+        tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *options).gives(0)
         page = path.read_text(encoding="utf-8")
         assert not re.search(r"(src|href|url|@import|<script|<link)\b", page)
         assert page.count("<svg") == 1
@@ -295,14 +295,16 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
 
 
 def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path) -> None:
-    for wrong in (
+    for wrong_program in (
         "SI\nF 2,80\nR 1,60", "F 2 80;R 1 60", "adelante 5 segundos\nderecha 1",
         "forward 5\nright 90", "if distancia < 10 parar", "Nombre: Ana\nSI;F 2,80;R 1,60",
     ):  # fmt: skip
-        (tmp_path / "ana.txt").write_text(wrong, encoding="utf-8")
+        (tmp_path / "ana.txt").write_text(wrong_program, encoding="utf-8")
         result = tsc("lesson", "check", "1", tmp_path, "--json")
         (row,) = json.loads(result.out)
-        assert (result.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes"), wrong
+        assert (result.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes"), (
+            wrong_program
+        )
 
 
 def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> None:

@@ -191,12 +191,12 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     heard_count_by_port = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
     robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))
     alone = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
-    wrong = [finding for finding in alone["findings"] if finding["is_wrong"]]
-    assert [finding["cause"] for finding in wrong] == ["low_supply"]
+    wrong_findings = [finding for finding in alone["findings"] if finding["is_wrong"]]
+    assert [finding["cause"] for finding in wrong_findings] == ["low_supply"]
     findings = robots_by_port[weak.port]["findings"]
     assert isinstance(findings, list)
-    assert [finding for finding in findings if finding["is_wrong"]] == wrong
-    assert wrong[0]["said"] in str(robots_by_port[weak.port]["said"])
+    assert [finding for finding in findings if finding["is_wrong"]] == wrong_findings
+    assert wrong_findings[0]["said"] in str(robots_by_port[weak.port]["said"])
     for pupil in class_.pupils:
         assert robots_by_port[pupil.port]["is_done"] == (pupil is not weak)
         assert robots_by_port[pupil.port]["round_trips"] == 3
@@ -209,10 +209,13 @@ def pings(heard_bytes: bytes) -> int:
 
 
 def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
-    first_program, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
+    first_program, second_program = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
     assert run_in_process("upload", "-e", first_program, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    assert run_in_process("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
+    assert (
+        run_in_process("upload", "-e", second_program, "--port", names[1], "--port", names[2]).code
+        == 0
+    )
     result = run_in_process("start", "--previous", "--all", "--json").gives(3)
     rows = results(result)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
@@ -231,8 +234,8 @@ def test_a_port_that_never_had_a_robot_is_not_a_failure(
 ) -> None:
     import pty
 
-    ends = [end for _ in range(2) for end in pty.openpty()]
-    port, known_text = os.ttyname(ends[1]), os.ttyname(ends[3])
+    pty_ends = [end for _ in range(2) for end in pty.openpty()]
+    port, known_text = os.ttyname(pty_ends[1]), os.ttyname(pty_ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_TIMEOUT_S", 1.0)
     result = run_in_process("doctor", "--identify", "--all").gives(0)
@@ -244,7 +247,7 @@ def test_a_port_that_never_had_a_robot_is_not_a_failure(
     run_in_process("doctor", "--identify", "--all").gives(
         3, "Done: 4 of 5.", out=f"R9 ({known_text}): nothing responds"
     )
-    for end in ends:
+    for end in pty_ends:
         os.close(end)
 
 

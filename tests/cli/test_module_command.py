@@ -157,10 +157,12 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
 
 def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
     """No other cause concerns a setting."""
-    outcome_by_cause = {cause: how for how, causes in MESSAGES_BY_CAUSE.items() for cause in causes}
+    outcome_by_cause = {
+        cause: outcome for outcome, causes in MESSAGES_BY_CAUSE.items() for cause in causes
+    }
     assert {*outcome_by_cause} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
     assert {
-        cause for cause, how in outcome_by_cause.items() if how not in set_up.GOOD_OUTCOMES
+        cause for cause, outcome in outcome_by_cause.items() if outcome not in set_up.GOOD_OUTCOMES
     } == {cause for cause in outcome_by_cause if CAUSES[cause].verdict == WRONG}
 
 

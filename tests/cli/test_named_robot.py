@@ -62,12 +62,12 @@ def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> No
 
 def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
     shipped_path = ROOT / "compiler" / "tiniscript" / "robots" / "liner.toml"
-    own = tmp_path / "mine.toml"
-    own.write_text(shipped_path.read_text(encoding="utf-8"), encoding="utf-8")
+    robot_file = tmp_path / "mine.toml"
+    robot_file.write_text(shipped_path.read_text(encoding="utf-8"), encoding="utf-8")
     path = tmp_path / "line.ts"
     path.write_text(LINER.replace("liner", "mine"), encoding="utf-8")
     assert "No robot is called mine" in tsc("check", path).gives(1).err
-    assert tsc("check", path, "--robot", own).gives(0).err == ""
+    assert tsc("check", path, "--robot", robot_file).gives(0).err == ""
 
 
 @each_row("verb", ["check", "run", "compile", "show", "upload", "lesson"])

@@ -139,11 +139,11 @@ def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
 
 
 def test_a_wrong_command_in_a_robot_s_message_is_found() -> None:
-    for wrong in (
+    for wrong_command in (
         "Owned: tsc set txet on, or button 2 s.",
         "Take other pins with tsc firmwear -b.",
     ):
-        (command,) = commands_in(wrong, is_document=False, is_robots=True)
+        (command,) = commands_in(wrong_command, is_document=False, is_robots=True)
         assert find_unknown_word(command) in ("txet", "firmwear")
 
 
@@ -166,8 +166,8 @@ def test_what_documents_say_to_type_is_a_command() -> None:
 def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
     assert name not in VERBS
     for language in LANGUAGES:
-        for more in ([], ["--nonsense"], ["--lang", language]):
-            result = tsc("--lang", language, name, *more).gives(2, out="")
+        for options in ([], ["--nonsense"], ["--lang", language]):
+            result = tsc("--lang", language, name, *options).gives(2, out="")
             assert result.err.count("\n") == 1 and name in result.err
             now = result.err.rstrip("\n").rpartition("  tsc ")[2]
             verb, *words = shlex.split(now)
@@ -225,8 +225,8 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
     for words in (["--port", "trim", "name"], ["--lang", "en", "name"], ["name", "--port", "x"]):
         tsc("set", *words).gives(2, "which name?", out="")
     tsc("set", "--lang", "en").gives(2, "owner, name, trim, text or wifi")
-    for more in ([], ["3", "--balance"]):  # the first mistake is reported first
-        tsc("set", "trmi", *more, "--lang", "en").gives(2, "Did you mean trim?")
+    for options in ([], ["3", "--balance"]):  # the first mistake is reported first
+        tsc("set", "trmi", *options, "--lang", "en").gives(2, "Did you mean trim?")
 
 
 def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:

@@ -102,28 +102,28 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     assert {places[name] for name in known_options} == {*paths.WRITE_OPTIONS, "program", "programs"}
 
 
-@pytest.mark.sampled("how")
-@pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])
+@pytest.mark.sampled("way")
+@pytest.mark.parametrize("way", ["same", "dot", "link", "hard"])
 @pytest.mark.parametrize(("verb", "output", "other_output"), PAIRS)
 def test_no_output_is_another_file_of_its_command(
     tsc: Tsc, working_folder: Path, verb: str, output: str, other_output: str,
-    how: str,
+    way: str,
 ) -> None:  # fmt: skip
     text = TEXTS.get(other_output, "what was there")
     precious = working_folder / "precious.ts"
     precious.write_text(text, encoding="utf-8")
-    path = {"same": precious, "dot": Path("./precious.ts")}.get(how, working_folder / "other name")
-    if how == "link":
+    path = {"same": precious, "dot": Path("./precious.ts")}.get(way, working_folder / "other name")
+    if way == "link":
         path.symlink_to(precious)
-    elif how == "hard":
+    elif way == "hard":
         os.link(precious, path)
-    before = sorted(os.listdir(working_folder))  # noqa: PTH208
+    files_before = sorted(os.listdir(working_folder))  # noqa: PTH208
     for language in ("en", "es"):
         tsc(*arguments(verb, {other_output: precious, output: path}), "--lang", language).gives(
             2, str(path), precious.name, paths.WRITE_OPTIONS[output][0]
         )
     assert precious.read_text(encoding="utf-8") == text
-    assert sorted(os.listdir(working_folder)) == before  # noqa: PTH208 - nothing was made either
+    assert sorted(os.listdir(working_folder)) == files_before  # noqa: PTH208 - nothing was made either
 
 
 def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) -> None:
@@ -142,9 +142,9 @@ def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, working_fol
     (working_folder / "folder").mkdir()
     (working_folder / "link").symlink_to("x")
     (working_folder / "loop").symlink_to("loop")
-    for second in ("x", "./x", "X", "folder/../x", "link"):
-        result = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second)
-        assert result.code == 2 and "the same file" in result.err, second
+    for second_path in ("x", "./x", "X", "folder/../x", "link"):
+        result = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second_path)
+        assert result.code == 2 and "the same file" in result.err, second_path
         assert not (working_folder / "x").exists()
     assert tsc("compile", "-e", PROGRAM, "-o", "link", "--map", "x").code == 2
     assert tsc("compile", "-e", PROGRAM, "-o", "loop").code == 2

@@ -72,11 +72,13 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, dest: str, pytestconfig: pytest.Config
 ) -> None:
     option = values_of(PARSERS[verb])[dest]
-    ends = END_ARGUMENTS.get(verb, [])
-    if dest in ("port", "ports", "listen") and ends:
-        ends = ends[:-2]
+    end_arguments = END_ARGUMENTS.get(verb, [])
+    if dest in ("port", "ports", "listen") and end_arguments:
+        end_arguments = end_arguments[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
-        ends = [ending for ending in ends if ending not in ("X", "-e", PROGRAM, "F(1, 80)")]
+        end_arguments = [
+            ending for ending in end_arguments if ending not in ("X", "-e", PROGRAM, "F(1, 80)")
+        ]
     for language in sample_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
         for evil in (
             HOSTILE_TEXT,
@@ -85,7 +87,7 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
             f"/{HOSTILE_TEXT}/x",
         ):
             words = [option, evil] if option else [evil]
-            result = tsc(*words_of(verb), *words, *ends, "--lang", language)
+            result = tsc(*words_of(verb), *words, *end_arguments, "--lang", language)
             assert_plain(result.out, result.err)
 
 
@@ -128,8 +130,8 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
         words.append("evil.toml")
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
         for language in sample_of(pytestconfig, f"{verb} {number}", LANGUAGES):
-            ends = END_ARGUMENTS["robot"] if verb == "robot" else []
-            result = tsc(*words, *ends, "--lang", language)
+            end_arguments = END_ARGUMENTS["robot"] if verb == "robot" else []
+            result = tsc(*words, *end_arguments, "--lang", language)
             assert result.code != 2 or "evil.toml" in result.err
             assert_plain(result.out, result.err)
 
@@ -194,8 +196,8 @@ def test_what_is_printable_stays() -> None:
 def test_a_single_byte_takes_the_singular() -> None:
     for language, expected in (("en", "1 byte of code"), ("es", "1 byte de código")):
         values = {"checksum": "0", "name": " (1 bytes.ts)", "saved": "x"}
-        one = text("info_program", language).format(code=1, **values)
-        assert expected in one and "(1 bytes.ts)" in one
+        one_byte_text = text("info_program", language).format(code=1, **values)
+        assert expected in one_byte_text and "(1 bytes.ts)" in one_byte_text
         assert expected not in text("info_program", language).format(code=11, **values)
 
 

@@ -289,8 +289,10 @@ def test_what_is_not_recorded_or_played_says_why(
 ) -> None:
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
     shipped_path = Path(recordings.__file__).parents[1].joinpath("robots/tinibot.toml")
-    own = shipped_path.read_text(encoding="utf-8").replace('name = "tinibot"', 'name = "own"')
-    Path("own.toml").write_text(own, encoding="utf-8")
+    robot_text = shipped_path.read_text(encoding="utf-8").replace(
+        'name = "tinibot"', 'name = "own"'
+    )
+    Path("own.toml").write_text(robot_text, encoding="utf-8")
     Path("letter").write_bytes(b"a letter")
     Path("r").write_bytes(real_recording((5, "SHOW 5")))
     tsc(*words).gives(2, message, out="")
@@ -314,12 +316,12 @@ def test_a_recording_has_an_end_and_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file, show = tmp_path / "run.tsr", ("SHOW", "1")
-    for ends, wanted_texts in (
+    for end_options, wanted_texts in (
         ((), ["SHOW 1", "STOPPED"]),
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        events = record(file, show, *ends, began_s=monotonic())
+        events = record(file, show, *end_options, began_s=monotonic())
         assert [event.event for event in events] == wanted_texts
     with monkeypatch.context() as patch:
         patch.setattr(recordings, "MOST_ROW_BYTES", 30)

@@ -188,9 +188,9 @@ def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
             table.now_s += POLL_S
         assert table.is_entered
     assert not table.is_entered
-    for (before_s, before), (after_s, after) in pairwise(table.words):
+    for (before_s, earlier_word), (after_s, after) in pairwise(table.words):
         is_due = after_s - before_s > SEND_INTERVAL_S - POLL_S and after != NOTHING_PRESSED
-        assert before != after or is_due
+        assert earlier_word != after or is_due
 
 
 @pytest.mark.parametrize("name", ["NOT_OWNER", "NO_REMOTE", "LATCHED"])

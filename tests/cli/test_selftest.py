@@ -135,9 +135,9 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     low = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
     _, parts = find_with_selftest(pty_robot)
-    first_sensor, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
+    first_sensor, second_sensor = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert parts[first_sensor]["cause"] == "stuck"
-    assert parts[second]["verdict"] == "ok"
+    assert parts[second_sensor]["verdict"] == "ok"
     pty_robot.ask(lambda robot: robot.sense(GOOD_LIGHT, GOOD_LIGHT, 0))
     code, parts = find_with_selftest(pty_robot)
     assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
@@ -171,11 +171,11 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
         result = run_in_process("doctor", "--selftest", "--port", port, "--json").gives(3)
         text = run_in_process("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
     reported = json.loads(result.out)["found"]
-    wrong = [finding for finding in findings if finding["is_wrong"]]
-    assert wrong and [finding["cause"] for finding in reported] == [
-        finding["cause"] for finding in wrong
+    wrong_findings = [finding for finding in findings if finding["is_wrong"]]
+    assert wrong_findings and [finding["cause"] for finding in reported] == [
+        finding["cause"] for finding in wrong_findings
     ]
-    for ours, its in zip(reported, wrong, strict=True):
+    for ours, its in zip(reported, wrong_findings, strict=True):
         assert [ours[key] for key in ("said", "seen", "next")] == [
             its[key] for key in ("said", "seen", "next")
         ]
@@ -357,13 +357,13 @@ WIRES = [Wires(*flags) for flags in product((False, True), repeat=3)]
 def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wires) -> None:
     """Earlier values do not matter; the rest of its trim stays."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
-    for before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
-        assert on(pty_robot, "set", "trim", *before, "--least", "3").code == 0
+    for options_before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
+        assert on(pty_robot, "set", "trim", *options_before, "--least", "3").code == 0
         code, out, _ = run_self_test(pty_robot, person(pty_robot, wires, learns="1"))
         assert (code, out.count("turns forward"), "WRONG" in out) == (0, 2, False), out
         kept_state = json.loads(on(pty_robot, "set", "trim", "--show", "--json").out)
         assert tuple(kept_state[name] for name in Wires._fields[:3]) == wires[:3]
-        assert (kept_state["least"], kept_state["balance"]) == (3, 7 if before else 0)
+        assert (kept_state["least"], kept_state["balance"]) == (3, 7 if options_before else 0)
         assert ("motors swapped" in out) == wires.is_exchanged, "what it keeps now is said"
 
 

@@ -21,8 +21,8 @@ def program(tmp_path: Path) -> Path:
 
 
 def test_the_line_goes_to_standard_output(tsc: Tsc, program: Path) -> None:
-    for more in ([], ["-o", "-"], ["--text-level", "uno"]):
-        result = tsc("compile", "--text", program, *more)
+    for options in ([], ["-o", "-"], ["--text-level", "uno"]):
+        result = tsc("compile", "--text", program, *options)
         assert (result.code, result.out) == (0, LINE)
         assert f"{program} -> -   20 bytes of text   3 bytes of code" in result.err
     assert [path.name for path in program.parent.iterdir()] == ["go.ts"]
@@ -41,8 +41,8 @@ def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path)
 
 def test_a_line_that_has_changed_does_nothing(tsc: Tsc) -> None:
     for verb in ("run", "check", "fmt", "compile"):
-        more = ["-o", "-"] if verb == "compile" else []
-        tsc(verb, "-e", LINE.replace("80", "90"), *more).gives(1, "[TS058]", out="")
+        options = ["-o", "-"] if verb == "compile" else []
+        tsc(verb, "-e", LINE.replace("80", "90"), *options).gives(1, "[TS058]", out="")
 
 
 def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:

@@ -295,8 +295,8 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
 
 
 def test_whoever_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
-    wrong = "1\n\n33\n\n33\n"
-    result = run_trim(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
+    wrong_answers = "1\n\n33\n\n33\n"
+    result = run_trim(pty_robot, data=LIFTED + wrong_answers + "\n0\n\n13 in\n\n144\n\n288\n")
     assert result.code == 0, result.err
     assert "Measure both again" in result.err
     assert stored_trim(pty_robot).pace == Pace(0, 16.51, 144, 288)

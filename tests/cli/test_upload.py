@@ -237,10 +237,10 @@ def upload_two(pty_robot: PtyRobot) -> list[str]:
 
 def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
     """The JSON form is a receipt."""
-    first_checksum, second = upload_two(pty_robot)
+    first_checksum, second_checksum = upload_two(pty_robot)
     for language, checksum, expected, saved_text in (
         ("en", first_checksum, "it has the previous program again, checksum", "Saved. The button"),
-        ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
+        ("es", second_checksum, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         result = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
         lines = result.out.splitlines()
@@ -287,7 +287,7 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
 
 @pytest.mark.sampled(of="slow commands")
 def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
-    first_checksum, second = upload_two(pty_robot)
+    first_checksum, second_checksum = upload_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
         on(pty_robot, "start", "--previous", "--lang", language).gives(
@@ -299,7 +299,7 @@ def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot
     pty_robot.switch_off_and_on()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (
         first_checksum,
-        second,
+        second_checksum,
     )
 
 

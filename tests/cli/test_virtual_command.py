@@ -228,10 +228,10 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     assert result.code == 0
     assert "The time set with --for is over.\nSaved. The button starts it.\n" in result.out
     assert f"and touched nothing. Picture: {way}\n" in result.out
-    before, colours_after = colours(still.read_bytes()), colours(way.read_bytes())
-    assert before["way"] < 20 < 4000 < colours_after["way"]
-    assert before["robot"] > 200
-    assert before["box"] > 10_000
+    colours_before, colours_after = colours(still.read_bytes()), colours(way.read_bytes())
+    assert colours_before["way"] < 20 < 4000 < colours_after["way"]
+    assert colours_before["robot"] > 200
+    assert colours_before["box"] > 10_000
     assert directory.running_robots() == []
 
 

@@ -243,7 +243,7 @@ def test_nothing_is_said_of_a_wait_that_is_over(
 def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     """Otherwise it might begin while Python exits, and crash it."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    ends: list[str] = []
+    events: list[str] = []
 
     def begin_late(run: Callable[[], None], arguments: tuple[()]) -> None:
         def run_late() -> None:
@@ -253,12 +253,12 @@ def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.Monk
         Thread(target=run_late).start()
 
     monkeypatch.setattr(progress, "start_new_thread", begin_late)
-    monkeypatch.setattr(progress.WaitNotice, "_print_wait", lambda _: ends.append("thread"))
+    monkeypatch.setattr(progress.WaitNotice, "_print_wait", lambda _: events.append("thread"))
     for _ in range(2):
         with progress.show_wait("studio_stops", "en") as notice:
             notice.cancel()
-        ends.append("wait")
-    assert ends == ["thread", "wait"] * 2
+        events.append("wait")
+    assert events == ["thread", "wait"] * 2
 
 
 def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(

@@ -81,13 +81,13 @@ def watch_line(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
     return {finding.cause: finding for finding in examine(robot, reply, expected, watch_ms)}
 
 
-def only_cause(end: OtherEnd, **how: object) -> tuple[str, bool]:
-    (finding,) = findings_on(end, **how)  # type: ignore[arg-type]
+def only_cause(end: OtherEnd, **options: object) -> tuple[str, bool]:
+    (finding,) = findings_on(end, **options)  # type: ignore[arg-type]
     return finding.cause, finding.is_sure
 
 
-def causes(end: OtherEnd, **how: object) -> dict[str, Finding]:
-    return {finding.cause: finding for finding in findings_on(end, **how)}  # type: ignore[arg-type]
+def causes(end: OtherEnd, **options: object) -> dict[str, Finding]:
+    return {finding.cause: finding for finding in findings_on(end, **options)}  # type: ignore[arg-type]
 
 
 # -- a robot ------------------------------------------------------------------------------------
@@ -214,11 +214,11 @@ def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool)
                 self.hello["state"] = state("RUNNING")
             return super().answer(data)
 
-    ends = [Driver(), Driver()]
-    for end in ends:
+    drivers = [Driver(), Driver()]
+    for end in drivers:
         end.restarts_ms, end.resets = 10_000, resets
-    assert watch_line(ends[0], 12_000)["motors_restart"].is_sure == is_sure
-    assert "motors_restart" not in causes(ends[1])  # the watch was too short for that
+    assert watch_line(drivers[0], 12_000)["motors_restart"].is_sure == is_sure
+    assert "motors_restart" not in causes(drivers[1])  # the watch was too short for that
 
 
 @pytest.mark.parametrize("is_radio", [False, True])
@@ -255,18 +255,20 @@ def test_a_robot_that_hears_badly_and_answers_all_the_same(
     assert ("lossy" in causes(Noisy())) == is_lossy
 
 
-@pytest.mark.parametrize("before", [0, 100, 240, 253, 255])
+@pytest.mark.parametrize("count_before", [0, 100, 240, 253, 255])
 @pytest.mark.parametrize("count", ["damaged", "framing", "overrun"])
-def test_what_is_damaged_is_counted_past_the_end_of_a_counter(count: str, before: int) -> None:
+def test_what_is_damaged_is_counted_past_the_end_of_a_counter(
+    count: str, count_before: int
+) -> None:
     """Its 256 values follow each other in a circle."""
 
     class Noisy(Firmware):
         def answer(self, data: bytes) -> bytes:
             if len(self.requests) == 10:  # in the middle of the PINGs
-                self.counts[count] = (before + 4) % 256
+                self.counts[count] = (count_before + 4) % 256
             return super().answer(data)
 
-    assert causes(Noisy(**{count: before}))["lossy"].values["damaged"] == "4"
+    assert causes(Noisy(**{count: count_before}))["lossy"].values["damaged"] == "4"
 
 
 def test_how_bad_a_line_was_before() -> None:

@@ -65,7 +65,7 @@ class Room(NamedTuple):
 def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Room]:
     folder = tmp_path_factory.mktemp("tls")
     authority = Authority(folder)
-    made_room = Room(Mosquitto(folder, more=authority.rules(NAME)), authority)
+    made_room = Room(Mosquitto(folder, extra_lines=authority.rules(NAME)), authority)
     yield made_room
     made_room.broker.kill()
 

@@ -50,8 +50,8 @@ def test_one_that_writes_for_ever(tmp_path: Path, message: str) -> None:
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
     body = f'print("{HALF_OUTPUT}", flush=True)\n' + waits + WRITING_CODE.format(said=" waiting\n")
-    how, steps = write_and_watch(tmp_path, body)
-    assert how.outcome == avrdude.ENDLESS
+    result, steps = write_and_watch(tmp_path, body)
+    assert result.outcome == avrdude.ENDLESS
     assert StepProgress(avrdude.WRITING, 50) in steps
 
 

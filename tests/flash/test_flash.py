@@ -76,11 +76,11 @@ def test_a_new_board_becomes_a_robot(
 ) -> None:
     with new_board(bootloader(board)) as uno:
         result = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
-        first_line, second = result.out.splitlines()[:2]
+        first_line, second_line = result.out.splitlines()[:2]
         message = f"The firmware for {robot} was written to the {board} and verified: "
         assert first_line.startswith(message)
         assert int(first_line.removeprefix(message).split()[0].replace(",", "")) > bytes_least
-        assert second.startswith(f"{robot} on {uno.pty}, id ")
+        assert second_line.startswith(f"{robot} on {uno.pty}, id ")
 
 
 def test_a_board_without_a_bootloader_stays_as_it_is(
@@ -231,7 +231,7 @@ def test_the_avrdude_of_another_program_is_found(
     assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
 
 
-@pytest.mark.parametrize(("how", "name"), [
+@pytest.mark.parametrize(("outcome", "name"), [
     (avrdude.NOBODY, "avrdude: stk500_getsync() attempt 10 of 10: not in sync: resp=0xc9"),
     (avrdude.NOBODY, "avrdude: stk500v2_ReceiveMessage(): timeout"),
     (avrdude.NOBODY, "avrdude error: unable to open programmer arduino on port /dev/ttyUSB0"),
@@ -250,14 +250,14 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, "avrdude: cannot find its settings"),
     (avrdude.FAILED, ""),
 ])  # fmt: skip
-def test_what_avrdude_says_has_a_name(how: str, name: str) -> None:
+def test_what_avrdude_says_has_a_name(outcome: str, name: str) -> None:
     for code in (1, 255, -9, -15):  # including exits by a signal from outside
-        assert avrdude.result_of(code, name).outcome == how
+        assert avrdude.result_of(code, name).outcome == outcome
 
 
 def test_every_end_has_its_sentence() -> None:
-    for how in avrdude.OUTCOMES:
-        assert has_text(f"flash_{how}")
+    for outcome in avrdude.OUTCOMES:
+        assert has_text(f"flash_{outcome}")
 
 
 @pytest.mark.parametrize(("expected", "progress"), [
@@ -294,9 +294,9 @@ def test_a_firmware_is_the_same_however_it_is_built(
     assert path.name.startswith("tinibot-uno-")
     halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
     assert halting.name.startswith("tinibot_breakpoints-uno-")
-    one, other_words = (file.read_text().split() for file in (
+    words, other_words = (file.read_text().split() for file in (
         path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
-    assert one == other_words
+    assert words == other_words
 
 
 def test_every_board_of_the_option_is_one_that_is_built() -> None:

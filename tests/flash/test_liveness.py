@@ -85,8 +85,8 @@ def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
     parts = output(rng, MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
     some = parts[: rng.randrange(len(parts) - 1)]
     last_s = some[-1][0] if some else 0.0
-    how, at_s = watch_parts(clock, some, RUN_TIMEOUT_S + 1)
-    assert how and how.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
+    result, at_s = watch_parts(clock, some, RUN_TIMEOUT_S + 1)
+    assert result and result.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
     limit_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
     assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
 
@@ -100,12 +100,12 @@ def test_a_bootloader_that_misses_the_first_try_is_waited_for(clock: Clock, fail
     ]
     good = output(random.Random(failed), MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
     parts = [*tries, *((5.0 * failed + at_s, part) for at_s, part in good)]
-    how, at_s = watch_parts(clock, parts, parts[-1][0] + 1)
-    assert how == (WriteResult(avrdude.NOBODY) if failed > 1 else None)
+    result, at_s = watch_parts(clock, parts, parts[-1][0] + 1)
+    assert result == (WriteResult(avrdude.NOBODY) if failed > 1 else None)
     assert failed < 2 or at_s < 5.0 * 2 + 2 * LOOK_S
 
 
 def test_what_only_says_something_ends(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
-    how, at_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
-    assert how == WriteResult(avrdude.ENDLESS) and at_s < RUN_TIMEOUT_S + 2 * LOOK_S
+    result, at_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
+    assert result == WriteResult(avrdude.ENDLESS) and at_s < RUN_TIMEOUT_S + 2 * LOOK_S

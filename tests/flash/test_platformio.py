@@ -198,20 +198,20 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
     """`tsc firmware --board` writes its header, and from then on the sketch is for it."""
-    own = project / "src" / "boards" / "kits" / "own.h"
+    kit_header = project / "src" / "boards" / "kits" / "own.h"
     pio(project, "run", "-e", "uno").gives(0)
     profile = Path(robots.__file__).parent / "tinibot.toml"
     try:
-        assert main(["firmware", "--board", str(profile), "-o", str(own)]) == 0
+        assert main(["firmware", "--board", str(profile), "-o", str(kit_header)]) == 0
         log = pio(project, "run", "-e", "uno").gives(0).out
         assert re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
-        with change_file(own, ("kBuzzer", "kNothingLikeIt")):
+        with change_file(kit_header, ("kBuzzer", "kNothingLikeIt")):
             pio(project, "run", "-e", "uno").gives(1, out="kBuzzer")
         fits = "is wired to another board. It fits: uno."
         pio(project, "run", "-e", "mega").gives(1, out=fits)
         pio(project, "run", "-e", "mega_grabber").gives(0)
     finally:
-        own.unlink(missing_ok=True)
+        kit_header.unlink(missing_ok=True)
 
 
 def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:

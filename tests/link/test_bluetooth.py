@@ -214,12 +214,12 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
 
 
 def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
-    with PtyRobot(ble.robot.kit) as second:
-        bluez.add(BleRobot(second, "Tini 2", OTHER, NORDIC))
+    with PtyRobot(ble.robot.kit) as second_robot:
+        bluez.add(BleRobot(second_robot, "Tini 2", OTHER, NORDIC))
         ports = ("--port", NAME, "--port", "ble://tini 2")
         for words in (("upload", "-e", DRIVE), ("stop",)):
             run_in_process(*words, *ports).gives(0, "Done: 2 of 2.")
-        assert (ble.robot.actions[:3], second.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
+        assert (ble.robot.actions[:3], second_robot.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:

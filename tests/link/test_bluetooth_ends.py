@@ -55,9 +55,9 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     ble: BleRobot, tmp_path: Path, heard_count: int
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
-    before, after = tmp_path / "before.bin", tmp_path / "after.bin"
+    old_path, after = tmp_path / "before.bin", tmp_path / "after.bin"
     assert run_in_process("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
-    assert run_in_process("show", "-o", before, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("show", "-o", old_path, "--port", ADDRESS_PORT).code == 0
     ble.parts_after = len(ble.received_data) + heard_count
     result = run_in_process("upload", "-e", LONG, "--port", ADDRESS_PORT)
     assert result.code == 3
@@ -67,7 +67,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     ours = tmp_path / "ours.bin"
     run_in_process("compile", "-e", LONG, "-o", ours)
     assert run_in_process("show", "-o", after, "--port", ADDRESS_PORT).code == 0
-    assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
+    assert after.read_bytes() in (old_path.read_bytes(), ours.read_bytes())
     assert run_in_process("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
 
 
@@ -97,14 +97,14 @@ def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBlue
     )
 
 
-@pytest.mark.parametrize("what", ["power", "unplug", "vanish"])
+@pytest.mark.parametrize("failure", ["power", "unplug", "vanish"])
 def test_an_adapter_that_is_gone_ends_the_command(
-    ble: BleRobot, bluez: FakeBluez, what: str
+    ble: BleRobot, bluez: FakeBluez, failure: str
 ) -> None:
     command = start_endless_upload(ble)
-    if what == "power":
+    if failure == "power":
         bluez.power(False)
-    elif what == "unplug":
+    elif failure == "unplug":
         bluez.unplug()
     else:
         bluez.vanish()
@@ -112,7 +112,9 @@ def test_an_adapter_that_is_gone_ends_the_command(
     assert result.err.count("\n") == 1  # no part of bleak
     wait_for_dead_man_stop(ble)
     result = run_in_process("stop", "--port", ADDRESS_PORT, "--lang", "es")
-    message = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
+    message = (
+        "el servicio de Bluetooth" if failure == "vanish" else "el Bluetooth de esta computadora"
+    )
     assert (result.code, message in result.err) == (3, True)
 
 

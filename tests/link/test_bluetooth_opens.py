@@ -111,14 +111,14 @@ def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort
 def check_next_client_works(loop: event_loop.EventLoop, device: Device) -> None:
     """The next one gets the device, and leaves it."""
     device.fails_at = device.lacks = ""
-    before = device.notified
+    notified_before = device.notified
     for _ in range(2):
         port = connects(loop, device)
         assert len(device.clients) == 1
         port.close()
         assert device.clients == []
         port.close()  # no effect
-    assert device.notified == before + 2
+    assert device.notified == notified_before + 2
 
 
 @pytest.mark.parametrize("failure", FAILURES)

@@ -100,26 +100,26 @@ def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: i
     """However often it was not, and whether somebody wanted it meanwhile: robots share a connection
     as long as that lasts.
     """
-    chance, own, is_there = Random(seed), Mosquitto(tmp_path), True
-    connections = [broker.connect("127.0.0.1", own.port)]
+    chance, mosquitto, is_there = Random(seed), Mosquitto(tmp_path), True
+    connections = [broker.connect("127.0.0.1", mosquitto.port)]
     try:
         for _ in range(12):
             if chance.random() < 0.5:
                 is_there = not is_there
-                own.start() if is_there else own.kill()
+                mosquitto.start() if is_there else mosquitto.kill()
             if not is_there:
                 until(lambda: connections[-1].end_reason != "", "the connection ends")
-            port = broker.port_of("127.0.0.1", own.port, "aula", f"{chance.randrange(3):08x}")
+            port = broker.port_of("127.0.0.1", mosquitto.port, "aula", f"{chance.randrange(3):08x}")
             if is_there:
                 broker.open_port(port, 0, 1.0).write(bytes(STOP_BYTES))
-                connections.append(broker.connect("127.0.0.1", own.port))
+                connections.append(broker.connect("127.0.0.1", mosquitto.port))
                 assert connections[-1].stop("aula")
                 assert connections[-1] is connections[-2] or connections[-2].end_reason
             else:
                 with pytest.raises(PortError):
                     broker.open_port(port, 0, 1.0)
     finally:
-        own.kill()
+        mosquitto.kill()
         for connection in connections:
             connection.close()
 
@@ -132,9 +132,9 @@ def flush(client: Broker) -> None:
     client._client.publish(LAST, b"", qos=1).wait_for_publish(HANG_LIMIT_S)
 
 
-def retained_topics(own: Mosquitto) -> list[str]:
+def retained_topics(mosquitto: Mosquitto) -> list[str]:
     """Return the topics of all that a broker retains."""
-    late = own.connect_client()
+    late = mosquitto.connect_client()
     texts: list[str] = []
 
     def keep(_: Any, __: Any, message: Any) -> None:
@@ -149,23 +149,23 @@ def retained_topics(own: Mosquitto) -> list[str]:
 
 
 def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
-    own = Mosquitto(tmp_path)
+    mosquitto = Mosquitto(tmp_path)
     try:
-        teacher = own.connect_client()
+        teacher = mosquitto.connect_client()
         port = teacher.port_of("aula", "12345678")
         port.write(bytes(STOP_BYTES))
         teacher.stop("aula")
         port.close()
         flush(teacher)
-        assert retained_topics(own) == []
+        assert retained_topics(mosquitto) == []
         teacher._client.publish("tiniscript/aula/12345678", b"+x", retain=True)
         flush(teacher)
-        assert retained_topics(own) == ["tiniscript/aula/12345678"], (
+        assert retained_topics(mosquitto) == ["tiniscript/aula/12345678"], (
             "what is retained would be seen"
         )
         teacher.close()
     finally:
-        own.kill()
+        mosquitto.kill()
 
 
 # -- a broker that sends more than a robot says ---------------------------------------------------
@@ -186,10 +186,14 @@ def message(bytes_of_it: int) -> bytes:
 def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, size: int) -> None:
     """It may come before a robot, between robots and after one, and is named."""
     topics = [f"{broker.ROOT}/3b/{name}" for name in ("0000000f", "fff", "x" * 300)]
-    more = [{"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics]
-    more.append({"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True})
+    retained_messages = [
+        {"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics
+    ]
+    retained_messages.append(
+        {"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True}
+    )
     access = {"username": "robots", "password": "word"}
-    paho.multiple(more, "127.0.0.1", school.port, auth=access)
+    paho.multiple(retained_messages, "127.0.0.1", school.port, auth=access)
     with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as school_broker:
         for _ in range(2):
             assert len(school_broker.list_robots("3b")) == ROBOTS  # one of them was written over

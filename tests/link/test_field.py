@@ -89,11 +89,11 @@ class Robot:
 def check_never_silent(cpp: CppLink, seed: int) -> str:
     draw = random.Random(seed)
     robot = Robot(cpp)
-    before = [draw.choice(NOISE_BEFORE) for _ in range(draw.randint(0, 4))]
+    noise = [draw.choice(NOISE_BEFORE) for _ in range(draw.randint(0, 4))]
     # Before the last silence, because a mistake removes all lines that follow it directly.
     answered = 0
     in_frames = False  # only if a line needs its end
-    for data in before:
+    for data in noise:
         robot.type(data)
         pause_ms = draw.choice(PAUSES_MS)
         robot.wait(pause_ms)
@@ -105,7 +105,7 @@ def check_never_silent(cpp: CppLink, seed: int) -> str:
     robot.type(line)
     robot.wait(4200)
     is_done = any(row.startswith("TEXT") for row in robot.did[event_count:])
-    assert is_done or len(robot.answers) > answered, f"seed {seed}: silence for {before} {line!r}"
+    assert is_done or len(robot.answers) > answered, f"seed {seed}: silence for {noise} {line!r}"
     return "runs" if is_done else "told"
 
 
@@ -146,10 +146,10 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     def ask(request: PendingRequest[Any]) -> None:
         end_ms = robot.now_ms + 3000
         while request.outcome is None and robot.now_ms < end_ms:
-            before = len(robot.sent)
+            sent_before = len(robot.sent)
             robot.type(session.poll(robot.now_ms))
             robot.wait(20)
-            session.receive(robot.sent[before:], robot.now_ms)
+            session.receive(robot.sent[sent_before:], robot.now_ms)
         assert request.outcome and request.outcome.status == OK, f"seed {seed}: {request.outcome}"
 
     heard_count = 0

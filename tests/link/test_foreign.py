@@ -85,9 +85,9 @@ def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording)
 
 
 @each_recording
-@pytest.mark.parametrize("before", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
-def test_noise_before_a_recording_changes_nothing(recording: Recording, before: bytes) -> None:
-    board = identify_board(before + b"\r\n" + recording.data)
+@pytest.mark.parametrize("noise", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
+def test_noise_before_a_recording_changes_nothing(recording: Recording, noise: bytes) -> None:
+    board = identify_board(noise + b"\r\n" + recording.data)
     assert board is not None and board.name == recording.name
 
 

@@ -46,7 +46,7 @@ def interrupt_often(work: Callable[[], object], count: int = INTERRUPT_COUNT) ->
         pressed.append(number)
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGALRM, press)
+    old_handler = signal.signal(signal.SIGALRM, press)
     try:
         for _ in range(count):
             pressed.clear()
@@ -55,7 +55,7 @@ def interrupt_often(work: Callable[[], object], count: int = INTERRUPT_COUNT) ->
                 while not pressed:
                     work()
     finally:
-        signal.signal(signal.SIGALRM, before)
+        signal.signal(signal.SIGALRM, old_handler)
 
 
 def test_a_line_goes_on_and_still_stops() -> None:

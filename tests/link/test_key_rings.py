@@ -163,7 +163,7 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
             )
             reply = robot.does(key_proof)
             assert reply is not None and reply.status == OK
-            [own] = [key for key in ring.keys_of_robot(1) if key.key == right]
+            [own_key] = [key for key in ring.keys_of_robot(1) if key.key == right]
             sealing_keys |= {right} if robot.has_seals else set()
-            assert (own.which, own.is_pending, own.is_stale) == (which, False, False)
-            assert own.uses_seals == (right in sealing_keys)
+            assert (own_key.which, own_key.is_pending, own_key.is_stale) == (which, False, False)
+            assert own_key.uses_seals == (right in sealing_keys)

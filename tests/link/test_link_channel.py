@@ -64,11 +64,11 @@ def one_undo(cpp: CppLink, seed: int) -> str:
     world.drops = draw.choice((0, 0.0002, 0.002))
     confirmed = 0
     for _ in range(4):
-        before = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
+        old_undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
         pending_request = world.session.undo()
         world.run(pending_request)
         assert pending_request.outcome, f"seed {seed}: an undo has no end"
-        undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - before
+        undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - old_undo_count
         assert undo_count <= 1, f"seed {seed}: undone {undo_count} times"
         if pending_request.outcome.status == 0:
             assert undo_count == 1, (

@@ -92,8 +92,8 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
         damage = bytearray(live(CODES[0]))
         damage[offset] ^= 0x40 if offset < 8 else 0x11
         assert open_session().step(10, bytes(damage)) == NOTHING, offset
-    more = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
-    ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, data) for data in more)]
+    wrong_packets = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
+    ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, data) for data in wrong_packets)]
     for code in CODES:
         for now_ms, end in ends:
             robot = open_session()
@@ -101,13 +101,11 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
             assert robot.step(now_ms, end) == NOTHING, (code, end)
 
 
-@pytest.mark.parametrize(
-    ("before", "interruption"), [("", "b"), ("r", "f")], ids=["button", "fault"]
-)
-def test_a_button_or_a_fault_in_between_makes_it_stale(before: str, interruption: str) -> None:
+@pytest.mark.parametrize(("verb", "interruption"), [("", "b"), ("r", "f")], ids=["button", "fault"])
+def test_a_button_or_a_fault_in_between_makes_it_stale(verb: str, interruption: str) -> None:
     robot = open_session()
-    if before:
-        robot.happens(before)
+    if verb:
+        robot.happens(verb)
     data = live(CODES[0])
     assert not robot.step(10, data[:-1]).did
     robot.happens(interruption, 65)

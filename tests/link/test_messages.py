@@ -73,9 +73,12 @@ def test_every_payload_fits_a_frame() -> None:
     """It fits a small one; a payload that fills a frame can fill a large one, too."""
     large = payload_bytes(LARGE_FRAME)
     for message in MESSAGES:
-        for fields, before in ((message.request, 0), (message.reply, message.number < FIRST_EVENT)):
+        for fields, size_before in (
+            (message.request, 0),
+            (message.reply, message.number < FIRST_EVENT),
+        ):
             fills = any(field.fills_frame for field in fields)
-            most = before + sizes(fields)[1]
+            most = size_before + sizes(fields)[1]
             assert most == large if fills else most <= PAYLOAD_BYTES, message.name
     assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55
     assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)

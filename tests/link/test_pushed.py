@@ -46,34 +46,34 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
     port, waits = port_and_waits(monkeypatch)
     unread, is_cancelled, why = b"", False, ""
     for _ in range(200):
-        what = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
+        action = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
         if rng.random() < 0.002:
-            what = "end"
-        if what == "bring":
+            action = "end"
+        if action == "bring":
             data = rng.randbytes(rng.choice((1, 20, 300)))
             port.add_received(data)
             unread += data
-        elif what == "cancel":
+        elif action == "cancel":
             port.cancel_read()
             is_cancelled = True
-        elif what == "end":
+        elif action == "end":
             port.end("")
             why = why or END_REASON
         else:
             size = rng.choice((1, 20, 4096))
-            late = rng.randbytes(5) if what == "while it waits" else b""
+            late = rng.randbytes(5) if action == "while it waits" else b""
             waits.then = [late] if late else []
             has_to_wait = not (unread or is_cancelled or why)
             if has_to_wait:
                 unread += late
-            before = waits.count
+            count_before = waits.count
             if why and not unread:
                 with pytest.raises(OSError, match=why):
                     port.read(size)
             else:
                 assert port.read(size) == unread[:size]
             unread = unread[size:]
-            assert waits.count - before == has_to_wait, "it waits once, or not at all"
+            assert waits.count - count_before == has_to_wait, "it waits once, or not at all"
             is_cancelled = False
         assert port.in_waiting == len(unread)
 

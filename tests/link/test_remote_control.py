@@ -102,7 +102,7 @@ def hand() -> Hand:
 
 
 def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
-    one = hand()
+    remote = hand()
     for held_state in (
         KEY_UP,
         RemoteState(0, 100, -100),
@@ -111,56 +111,59 @@ def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
         KEY_A,
         NOTHING_PRESSED,
     ):
-        one.holds(held_state)
-        one.talk(40)
-        assert one.robot.remote() == remote_readings(held_state)
-        one.talk(700)
-        assert one.robot.remote() == remote_readings(held_state)
-    assert set(one.outcomes) <= {OK, CANCELLED}
-    assert [event.name for event in one.session.events()] == []
+        remote.holds(held_state)
+        remote.talk(40)
+        assert remote.robot.remote() == remote_readings(held_state)
+        remote.talk(700)
+        assert remote.robot.remote() == remote_readings(held_state)
+    assert set(remote.outcomes) <= {OK, CANCELLED}
+    assert [event.name for event in remote.session.events()] == []
 
 
 def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is() -> None:
-    one = hand()
-    one.talk(3000)
-    assert one.words == []
-    one.holds(KEY_UP)
-    one.talk(2001)
-    assert len(one.words) == 11
-    one.holds(NOTHING_PRESSED)
-    one.talk(3000)
-    assert len(one.words) == 12
-    numbers = [seq for seq, _ in one.words]
+    remote = hand()
+    remote.talk(3000)
+    assert remote.words == []
+    remote.holds(KEY_UP)
+    remote.talk(2001)
+    assert len(remote.words) == 11
+    remote.holds(NOTHING_PRESSED)
+    remote.talk(3000)
+    assert len(remote.words) == 12
+    numbers = [seq for seq, _ in remote.words]
     assert len(set(numbers)) == len(numbers), "no word is sent twice"
 
 
 def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
-    one = hand()
+    remote = hand()
     for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, KEY_UP, NOTHING_PRESSED):
-        one.holds(held_state)
-        one.talk(5)
-        assert one.words[-1][1] == held_state
-    one.loses = lambda: True
-    count = len(one.words)
-    one.holds(KEY_UP)
-    one.talk(1)
-    one.holds(NOTHING_PRESSED)
-    one.talk(GAP_MS - 1)
-    assert [word for _, word in one.words[count:]] == [KEY_UP]
-    one.talk(1)
-    assert [word for _, word in one.words[count:]] == [KEY_UP, NOTHING_PRESSED]
+        remote.holds(held_state)
+        remote.talk(5)
+        assert remote.words[-1][1] == held_state
+    remote.loses = lambda: True
+    count = len(remote.words)
+    remote.holds(KEY_UP)
+    remote.talk(1)
+    remote.holds(NOTHING_PRESSED)
+    remote.talk(GAP_MS - 1)
+    assert [word for _, word in remote.words[count:]] == [KEY_UP]
+    remote.talk(1)
+    assert [word for _, word in remote.words[count:]] == [KEY_UP, NOTHING_PRESSED]
 
 
 def test_words_alone_keep_an_attached_program_alive() -> None:
-    one = hand()
-    assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
-    one.session.sends_heartbeat = lambda: False
-    one.holds(KEY_UP)
-    one.talk(3000)
-    assert one.robot.did[-1].endswith("MOTORS 40 40")
-    one.holds(NOTHING_PRESSED)
-    one.talk(1100)
-    assert one.robot.did[-1].endswith("FAULTED"), "and nothing else does"
+    remote = hand()
+    assert (
+        remote.robot.until(remote.session, remote.session.upload(image(DRIVE_PROGRAM), saves=False))
+        == OK
+    )
+    remote.session.sends_heartbeat = lambda: False
+    remote.holds(KEY_UP)
+    remote.talk(3000)
+    assert remote.robot.did[-1].endswith("MOTORS 40 40")
+    remote.holds(NOTHING_PRESSED)
+    remote.talk(1100)
+    assert remote.robot.did[-1].endswith("FAULTED"), "and nothing else does"
 
 
 @pytest.mark.sampled("seed")
@@ -168,18 +171,18 @@ def test_words_alone_keep_an_attached_program_alive() -> None:
 def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
     """Whenever it is lost: 300 times in all."""
     rng = random.Random(seed)
-    one = hand()
+    remote = hand()
     for _ in range(100):
-        one.loses = lambda: False
-        one.holds(rng.choice([KEY_UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
-        one.talk(rng.randint(60, 400))
-        assert one.robot.remote() == remote_readings(one.held)
-        one.loses = lambda: True
-        one.talk(HOLD_MS)
-        assert one.robot.remote() == RELEASED
-        one.loses = lambda: False
-        one.holds(NOTHING_PRESSED)
-        one.talk(250)
+        remote.loses = lambda: False
+        remote.holds(rng.choice([KEY_UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
+        remote.talk(rng.randint(60, 400))
+        assert remote.robot.remote() == remote_readings(remote.held)
+        remote.loses = lambda: True
+        remote.talk(HOLD_MS)
+        assert remote.robot.remote() == RELEASED
+        remote.loses = lambda: False
+        remote.holds(NOTHING_PRESSED)
+        remote.talk(250)
 
 
 @pytest.mark.sampled("seed", keep=2)
@@ -187,37 +190,37 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
 def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     """Held keys are mostly read, and released keys are never read more than 0.5 s later."""
     rng = random.Random(seed)
-    one = hand()
+    remote = hand()
     read_count = look_count = 0
     for _ in range(40):
-        one.loses = lambda: rng.random() < 0.3
-        one.holds(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
-        one.talk(300)
+        remote.loses = lambda: rng.random() < 0.3
+        remote.holds(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
+        remote.talk(300)
         for _ in range(20):
-            one.talk(50)
+            remote.talk(50)
             look_count += 1
-            read_count += one.robot.remote() == remote_readings(one.held)
-        one.holds(NOTHING_PRESSED)
-        one.talk(HOLD_MS)
+            read_count += remote.robot.remote() == remote_readings(remote.held)
+        remote.holds(NOTHING_PRESSED)
+        remote.talk(HOLD_MS)
         for _ in range(10):
-            assert one.robot.remote() == RELEASED
-            one.talk(20)
+            assert remote.robot.remote() == RELEASED
+            remote.talk(20)
     assert read_count > 0.9 * look_count, (read_count, look_count)
-    assert one.session.is_open
+    assert remote.session.is_open
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
     """`Hand` checks each state: it is that at the time of sending."""
     rng = random.Random(seed)
-    one = hand()
-    one.loses = lambda: rng.random() < 0.3
+    remote = hand()
+    remote.loses = lambda: rng.random() < 0.3
     for _ in range(300):
-        one.holds(RemoteState(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
-        one.talk(rng.randint(1, 60))
-    one.loses = lambda: False
-    one.talk(250)
-    assert one.robot.remote() == remote_readings(one.held)
+        remote.holds(RemoteState(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
+        remote.talk(rng.randint(1, 60))
+    remote.loses = lambda: False
+    remote.talk(250)
+    assert remote.robot.remote() == remote_readings(remote.held)
 
 
 def test_whoever_falls_silent_holds_nothing() -> None:
@@ -248,42 +251,42 @@ def test_two_who_press_on_one_line() -> None:
 
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
 def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: str) -> None:
-    one = hand()
-    one.holds(KEY_UP)
-    one.talk(100)
-    request = one.session.upload(image(text))
+    remote = hand()
+    remote.holds(KEY_UP)
+    remote.talk(100)
+    request = remote.session.upload(image(text))
     while request.outcome is None:
-        one.talk(1)
-        one.holds(random.Random(one.robot.now_ms).choice([KEY_UP, KEY_A, KEY_LEFT]))
-        assert one.robot.now_ms < 30_000
+        remote.talk(1)
+        remote.holds(random.Random(remote.robot.now_ms).choice([KEY_UP, KEY_A, KEY_LEFT]))
+        assert remote.robot.now_ms < 30_000
     assert request.outcome.status == OK
-    one.talk(250)
-    assert one.robot.remote() == remote_readings(one.held)
+    remote.talk(250)
+    assert remote.robot.remote() == remote_readings(remote.held)
 
 
 def test_keys_that_never_rest_leave_others_their_turn() -> None:
-    one = hand()
+    remote = hand()
     requests = []
     for k in range(1500):
         if k % 100 == 0:
-            requests.append(one.session.status())
-        one.holds(RemoteState(0, k % 101, 0))
-        one.talk(1)
+            requests.append(remote.session.status())
+        remote.holds(RemoteState(0, k % 101, 0))
+        remote.talk(1)
     assert len(requests) == 15
     assert all(request.outcome and request.outcome.status == OK for request in requests)
-    assert len(one.words) > 20
+    assert len(remote.words) > 20
 
 
 def test_requests_that_never_rest_leave_keys_their_turn() -> None:
-    one = hand()
-    waiting = [one.session.status() for _ in range(3)]
+    remote = hand()
+    waiting = [remote.session.status() for _ in range(3)]
     for held in (KEY_UP, KEY_A, NOTHING_PRESSED, KEY_LEFT):
-        one.holds(held)
+        remote.holds(held)
         for _ in range(300):
             waiting = [request for request in waiting if request.outcome is None]
-            waiting += [one.session.status() for _ in range(3 - len(waiting))]
-            one.talk(1)
-        assert one.robot.remote() == remote_readings(held)
+            waiting += [remote.session.status() for _ in range(3 - len(waiting))]
+            remote.talk(1)
+        assert remote.robot.remote() == remote_readings(held)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -316,54 +319,60 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
 
 def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
     """The request is a name, which is saved as soon as the motors are off."""
-    one = hand()
-    assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
-    name = one.session.name(b"Ana")
-    one.talk(300)
+    remote = hand()
+    assert (
+        remote.robot.until(remote.session, remote.session.upload(image(DRIVE_PROGRAM), saves=False))
+        == OK
+    )
+    name = remote.session.name(b"Ana")
+    remote.talk(300)
     for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, NOTHING_PRESSED):
-        one.holds(held_state)
-        one.talk(60)
-        assert one.robot.remote() == remote_readings(held_state)
+        remote.holds(held_state)
+        remote.talk(60)
+        assert remote.robot.remote() == remote_readings(held_state)
     while name.outcome is None:
-        one.talk(1)
+        remote.talk(1)
     assert name.outcome.status == STATUSES["SAVING"]
-    assert len(one.words) == 4
+    assert len(remote.words) == 4
 
 
 # -- stops and starts ---------------------------------------------------------------------------
 
 
 def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
-    one = hand()
-    assert one.robot.until(one.session, one.session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
-    one.holds(KEY_UP)
-    one.talk(300)
-    one.session.stop(one.robot.now_ms)
-    one.held = NOTHING_PRESSED
-    one.talk(300)
-    assert one.robot.is_latched
-    action_count = len(one.robot.did)
-    one.holds(KEY_UP)
-    one.talk(2000)
-    assert one.robot.is_latched and len(one.robot.did) == action_count
-    status = one.session.status()
-    assert one.robot.until(one.session, status) == OK
+    remote = hand()
+    assert (
+        remote.robot.until(remote.session, remote.session.upload(image(DRIVE_PROGRAM), saves=False))
+        == OK
+    )
+    remote.holds(KEY_UP)
+    remote.talk(300)
+    remote.session.stop(remote.robot.now_ms)
+    remote.held = NOTHING_PRESSED
+    remote.talk(300)
+    assert remote.robot.is_latched
+    action_count = len(remote.robot.did)
+    remote.holds(KEY_UP)
+    remote.talk(2000)
+    assert remote.robot.is_latched and len(remote.robot.did) == action_count
+    status = remote.session.status()
+    assert remote.robot.until(remote.session, status) == OK
     assert status.outcome and status.outcome.values.state == STATE_STOPPED
 
 
-@pytest.mark.parametrize("how", ["button", "zeros", "text"])
-def test_a_stop_by_somebody_else_voids_what_is_held(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["button", "zeros", "text"])
+def test_a_stop_by_somebody_else_voids_what_is_held(stop_kind: str) -> None:
     """It is held again once it is said again."""
-    one = hand()
-    session, robot = one.session, one.robot
+    remote = hand()
+    session, robot = remote.session, remote.robot
     assert robot.until(session, session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     session.press(*KEY_UP)
     robot.talk(session, 60)
     assert robot.remote() == remote_readings(KEY_UP)
-    if how == "button":
+    if stop_kind == "button":
         robot.push()
     else:
-        robot.step(bytes(4) if how == "zeros" else b"\r\nS\r\n")
+        robot.step(bytes(4) if stop_kind == "zeros" else b"\r\nS\r\n")
     robot.talk(session, 1000)  # it hears of the stop
     check_nothing_held_at_start(session, robot)
     robot.talk(session, HOLD_MS)
@@ -380,16 +389,16 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     """
     rng = random.Random(seed)
     session, robot = open_session()
-    how = rng.choice((*STOPS, OWN))
+    stop_kind = rng.choice((*STOPS, OWN))
     assert robot.until(session, session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     for _ in range(rng.randint(1, 3)):
         for speaker in range(rng.randint(1, 2)):
             session.press(rng.randint(1, 63), rng.randint(-100, 100), speaker=speaker)
         robot.talk(session, rng.choice((0, 1, 20, 60, 200)))
-    if how == OWN:
+    if stop_kind == OWN:
         session.stop(robot.now_ms)
     else:
-        session.receive(STOPS[how](robot, session), robot.now_ms)
+        session.receive(STOPS[stop_kind](robot, session), robot.now_ms)
     robot.talk(session, rng.choice((20, 40, 80, 150, 400)))  # it hears of the stop
     robot.codes()
     session.live(image("W(9)").code)
@@ -397,18 +406,18 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     for _ in range(70):
         robot.talk(session, 10)
         has_begun = has_begun or bool(robot.codes())
-        assert not has_begun or robot.remote() == RELEASED, how
-    assert has_begun, how
+        assert not has_begun or robot.remote() == RELEASED, stop_kind
+    assert has_begun, stop_kind
 
 
 def test_a_program_begins_with_nothing_held() -> None:
-    one = hand()
-    one.holds(KEY_UP)
-    one.talk(60)
-    assert one.robot.remote() == remote_readings(KEY_UP)
-    check_nothing_held_at_start(one.session, one.robot)
-    one.talk(250)
-    assert one.robot.remote() == remote_readings(KEY_UP)
+    remote = hand()
+    remote.holds(KEY_UP)
+    remote.talk(60)
+    assert remote.robot.remote() == remote_readings(KEY_UP)
+    check_nothing_held_at_start(remote.session, remote.robot)
+    remote.talk(250)
+    assert remote.robot.remote() == remote_readings(KEY_UP)
 
 
 def check_nothing_held_at_start(session: Session, robot: HostFirmware) -> None:
@@ -422,15 +431,15 @@ def check_nothing_held_at_start(session: Session, robot: HostFirmware) -> None:
 
 
 def test_a_lost_link_and_one_that_is_found_again() -> None:
-    one = hand()
-    one.holds(KEY_UP)
-    one.talk(60)
-    one.loses = lambda: True
-    one.talk(6000)
-    assert LOST in one.outcomes and "LOST" in [event.name for event in one.session.events()]
-    one.loses = lambda: False
-    one.talk(3000)
-    assert one.robot.remote() == remote_readings(KEY_UP), "who goes on pressing is heard again"
+    remote = hand()
+    remote.holds(KEY_UP)
+    remote.talk(60)
+    remote.loses = lambda: True
+    remote.talk(6000)
+    assert LOST in remote.outcomes and "LOST" in [event.name for event in remote.session.events()]
+    remote.loses = lambda: False
+    remote.talk(3000)
+    assert remote.robot.remote() == remote_readings(KEY_UP), "who goes on pressing is heard again"
 
 
 # -- permissions ----------------------------------------------------------------------------------
@@ -619,7 +628,7 @@ def test_the_reply_says_where_the_program_is() -> None:
 @pytest.mark.parametrize("seed", range(30))
 def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(seed: int) -> None:
     chance, remote, now_ms = random.Random(seed), RemoteControl(), 0
-    ends: dict[str, Callable[[], None]] = {
+    end_actions: dict[str, Callable[[], None]] = {
         "answer": lambda: remote.take_answer(Reply(OK, 0, EmptyReply())),
         "refusal": lambda: remote.take_answer(Reply(STATUSES["UNOWNED"])),
         "silence": remote.note_unanswered,
@@ -636,8 +645,8 @@ def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(
             presses.append(
                 remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))
             )
-        how = chance.choice([*ends])
-        if how in ("answer", "silence"):  # of a word after these presses
+        end_kind = chance.choice([*end_actions])
+        if end_kind in ("answer", "silence"):  # of a word after these presses
             remote.take_message(now_ms)
-        ends[how]()
-        assert all(press.outcome is not None for press in presses), how
+        end_actions[end_kind]()
+        assert all(press.outcome is not None for press in presses), end_kind

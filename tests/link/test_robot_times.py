@@ -96,9 +96,9 @@ def test_many_unread_stops_are_not_lost() -> None:
 @pytest.mark.sampled("late_ms", keep=2)
 @pytest.mark.parametrize("late_ms", [0, 300, 1500, 2900, 4000])
 @pytest.mark.parametrize(("piece_bytes", "gap_ms"), [(99, 0), (10, 0), (7, 1100), (45, 1100)])
-@pytest.mark.parametrize("before", [b"", b"> "], ids=["plain", "prompt"])
+@pytest.mark.parametrize("noise", [b"", b"> "], ids=["plain", "prompt"])
 def test_an_echo_of_everything_starts_no_endless_conversation(
-    late_ms: int, piece_bytes: int, gap_ms: int, before: bytes
+    late_ms: int, piece_bytes: int, gap_ms: int, noise: bytes
 ) -> None:
     """A terminal or a radio module echoes its input, whole and in pieces."""
     cpp = cpp_link()
@@ -110,7 +110,7 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
         under_way = [pair for pair in under_way if pair[0] > now_ms]
         sent_bytes = cpp.step(now_ms, came).sent.replace(b"\0", b"")
         answers += [now_ms] * sent_bytes.count(b"\n")
-        echo = before + sent_bytes if sent_bytes else b""
+        echo = noise + sent_bytes if sent_bytes else b""
         for k in range(-(-len(echo) // piece_bytes)):
             piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
             under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))

@@ -89,20 +89,20 @@ class SealedWorld(World):
 
     def forge_frame(self) -> bytes:
         draw = self.draw
-        how = draw.randrange(7)
+        forgery = draw.randrange(7)
         old = draw.choice(self.frames)
-        if how == 6 and self.asked is not None:
+        if forgery == 6 and self.asked is not None:
             return self.answer_unsealed(self.asked)
-        if how == 0:
+        if forgery == 0:
             return damage_frame(old, draw)
         frame = decode_frame(old.rstrip(b"\0"))
-        if how < 3 or frame is None:
+        if forgery < 3 or frame is None:
             return old
-        if how == 3:  # a seal is removed, added, or moved to an expected frame
+        if forgery == 3:  # a seal is removed, added, or moved to an expected frame
             number = draw.choice((frame.number, BY_NAME["LIVE"].number))
             frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
             return encode_frame(frame._replace(is_sealed=draw.random() < 0.5))
-        if how == 4:  # the attacker claims that the robot has no seal, or has done it
+        if forgery == 4:  # the attacker claims that the robot has no seal, or has done it
             status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
             payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))

@@ -77,19 +77,29 @@ def first_use(rng: random.Random) -> Wire:
 
 def end_first_use(rng: random.Random, wire: Wire) -> None:
     # A STOP from a client without HELLO may have a number ahead of ours: not "a message".
-    how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence",
-                      "a dead line", "a dead line"))  # fmt: skip
-    if how in STOPS:
-        wire.turn(STOPS[how](wire.robot, wire.session))
-    elif how == "its own stop":
+    end_kind = rng.choice(
+        (
+            "zeros",
+            "the button",
+            "the cable",
+            "its own stop",
+            "a reset",
+            "a silence",
+            "a dead line",
+            "a dead line",
+        )
+    )
+    if end_kind in STOPS:
+        wire.turn(STOPS[end_kind](wire.robot, wire.session))
+    elif end_kind == "its own stop":
         wire.session.stop(wire.robot.now_ms)
-    elif how == "a silence":
+    elif end_kind == "a silence":
         wire.robot.wait(rng.choice((400, 4000)))
-    elif how == "a dead line":  # usually long enough for the robot to be given up
+    elif end_kind == "a dead line":  # usually long enough for the robot to be given up
         for _ in range(rng.choice((40, 400, 1200))):
             wire.session.poll(wire.robot.now_ms)
             wire.robot.wait(10)
-    elif how == "a reset":
+    elif end_kind == "a reset":
         restart(rng, wire)
 
 
@@ -109,7 +119,7 @@ def restart(rng: random.Random, wire: Wire) -> None:
 
 def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
     """Make some requests one after the other; return the results."""
-    what: list[str] = []
+    results: list[str] = []
     took_ms: list[int] = []
     for _ in range(4):
         upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
@@ -122,7 +132,7 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Sai
         request = rng.choice(asks)()
         status = robot.until(session, request)
         assert request.outcome
-        what.append(f"{status} {request.outcome.values if status == OK else ''}")
+        results.append(f"{status} {request.outcome.values if status == OK else ''}")
         took_ms.append(robot.now_ms - began_ms)
         began_ms = robot.now_ms
         if rng.random() < 0.3:
@@ -130,10 +140,10 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Sai
         elif rng.random() < 0.3 and session.is_running:  # a robot at rest was stopped earlier
             session.receive(robot.step(bytes(4)), robot.now_ms)  # another client
         robot.talk(session, rng.choice((5, 700)))
-        what += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
+        results += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
     robot.talk(session, 1500)
-    what += [str(event) for event in session.events()]
-    return Said([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1", one) for one in what],
+    results += [str(event) for event in session.events()]
+    return Said([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1", row) for row in results],
                 took_ms)  # fmt: skip
 
 
@@ -195,10 +205,10 @@ def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
     assert wire.robot.until(wire.session, wire.session.identify()) == OK
 
 
-@pytest.mark.parametrize("how", STOPS)
-def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", STOPS)
+def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(stop_kind: str) -> None:
     wire = open_wire(random.Random(1))
-    STOPS[how](wire.robot, wire.session)  # no client hears it
+    STOPS[stop_kind](wire.robot, wire.session)  # no client hears it
     wire.robot.until(wire.session, wire.session.fetch())
     assert wire.robot.until(wire.session, wire.session.identify()) == OK
 

@@ -321,10 +321,10 @@ def test_an_old_answer_is_ignored() -> None:
     data = session.poll(0)
     session.receive(answer(data, receipt(1)), 10)
     assert old_request.outcome
-    second = session.live(FORWARD)
+    second_request = session.live(FORWARD)
     session.poll(20)
     session.receive(answer(data, receipt(1)), 30)
-    assert second.outcome is None
+    assert second_request.outcome is None
 
 
 def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
@@ -464,8 +464,8 @@ def test_a_line_that_an_older_machine_does_not_know(minor: int, version: tuple[i
     assert request.outcome and (request.outcome.status, request.outcome.detail) == version
 
 
-@pytest.mark.parametrize(("busy_ms", "ends"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
-def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -> None:
+@pytest.mark.parametrize(("busy_ms", "wanted_status"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
+def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, wanted_status: int) -> None:
     """One that answers is not lost; one that falls silent then is."""
     session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
@@ -475,7 +475,7 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, ends: int) -
         if data and now_ms < busy_ms:
             session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
         now_ms += 10
-    assert request.outcome and request.outcome.status == ends
+    assert request.outcome and request.outcome.status == wanted_status
     assert now_ms <= EXCHANGE_TIMEOUT_MS + 1000
 
 
@@ -497,15 +497,15 @@ def test_hello_tells_whether_another_epoch_voids_what_waits(
     """The answer has another epoch, which was not announced."""
     session = Session(1, kit=KIT)
     session.hello()
-    first_request, second = session.live(FORWARD), session.live(FORWARD)
+    first_request, second_request = session.live(FORWARD), session.live(FORWARD)
     session.receive(answer(session.poll(0), DESCRIPTION), 0)
     assert first_request.outcome is None  # HELLO begins an epoch, and does not end one
     session.receive(answer(session.poll(1), receipt(1), epoch=epoch), 1)
     assert first_request.outcome and first_request.outcome.status == 0
-    assert second.outcome is None
+    assert second_request.outcome is None
     session.receive(answer(session.poll(2), {**DESCRIPTION, **values}, epoch=epoch), 2)
-    assert (second.outcome is not None) == is_void
-    assert second.outcome is None or second.outcome.status == STATUSES["STALE"]
+    assert (second_request.outcome is not None) == is_void
+    assert second_request.outcome is None or second_request.outcome.status == STATUSES["STALE"]
 
 
 def time_lost_ms(session: Session, now_ms: int = 0) -> int:
@@ -610,7 +610,7 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("statuses", "times", "ends"),
+    ("statuses", "times", "wanted_status"),
     [
         ([LOW_SUPPLY], 1 + 4, LOW_SUPPLY),
         ([SAVING], 1 + 12, SAVING),
@@ -622,8 +622,10 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
         ),
     ],
 )
-def test_a_low_voltage_is_waited_for_less_long(statuses: list[int], times: int, ends: int) -> None:
-    assert count_namings(statuses) == (times, ends)
+def test_a_low_voltage_is_waited_for_less_long(
+    statuses: list[int], times: int, wanted_status: int
+) -> None:
+    assert count_namings(statuses) == (times, wanted_status)
 
 
 def places_told(*replies: bytes) -> list[tuple[int, int]]:

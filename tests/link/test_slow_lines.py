@@ -142,11 +142,11 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
     wire.in_a_row = in_a_row
     most = 0
     for code_bytes in (7000, 7000) if is_large else [380] * 6:
-        before = wire.losses
+        losses_before = wire.losses
         request = talk.session.upload(program(code_bytes), runs=False)
         request.limit_ms = REQUEST_TIMEOUT_MS
         status = talk.wait(request)
-        most = max(most, wire.losses - before)
+        most = max(most, wire.losses - losses_before)
         assert status == OK, most
     assert most > TRIES or in_a_row == 1 or not is_large, most
 
@@ -261,6 +261,6 @@ def test_an_answer_that_comes_after_its_piece_was_sent_again_counts() -> None:
     while request.done_bytes < 3000:
         talk.step()
     talk.to_robot, talk.to_computer = Wire(10_000, 400), Wire(10_000, 400)
-    before, talk.sent_bytes = request.done_bytes, 0
+    done_before, talk.sent_bytes = request.done_bytes, 0
     assert talk.wait(request) == OK
-    assert talk.sent_bytes < (8000 - before) * 1.5
+    assert talk.sent_bytes < (8000 - done_before) * 1.5

@@ -149,15 +149,15 @@ def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> 
     request = session.hello()
     robot.run(request, robot.now_ms + 3000)
     assert any(data == bytes(STOP_BYTES) for data in sent_chunks)
-    before = b""
+    sent_before = b""
     for data in sent_chunks:
         zeros = len(data) - len(data.lstrip(b"\0"))
         assert zeros <= 1 or data == bytes(STOP_BYTES), data.hex()
         assert b"\0\0" not in data.strip(b"\0"), data.hex()
         if data and data != bytes(STOP_BYTES):
-            is_begun = before[-1:] == b"\0"
+            is_begun = sent_before[-1:] == b"\0"
             assert zeros or is_begun, "the first frame has no 0x00 before it"
-        before = data or before
+        sent_before = data or sent_before
 
 
 Property = Callable[[TextSender, random.Random], None]

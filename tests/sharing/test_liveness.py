@@ -50,7 +50,7 @@ class Holder:
     def says(self, message: JsonMessage, after_s: float) -> None:
         at_s = self.now_s + after_s
         if at_s < self.dies_s:
-            insort(self._coming, (at_s, protocol.encode_message(message)), key=lambda one: one[0])
+            insort(self._coming, (at_s, protocol.encode_message(message)), key=lambda item: item[0])
 
     def settimeout(self, seconds: float) -> None:
         self._limit_s = seconds
@@ -103,8 +103,8 @@ def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, se
     holder = Holder(lambda: rng.choice((0.0, longest_s)))
     line = open_shared_connection(monkeypatch, holder)
     if seed % 2:
-        for second in range(int(LONG_S)):
-            holder.says(SHOWN, second + rng.random())
+        for second_s in range(int(LONG_S)):
+            holder.says(SHOWN, second_s + rng.random())
     assert listen_until_lost(line, holder, LONG_S) >= LONG_S and not line.has_ended
     assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + POLL_INTERVAL_S) / 2
 
@@ -164,8 +164,8 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
                 events.append(timed_event[0])
 
     for k in range(60):
-        how = rng.choice(("ask", "ask", "answer", "answer", "progress", "event"))
-        if how == "ask":
+        action = rng.choice(("ask", "ask", "answer", "answer", "progress", "event"))
+        if action == "ask":
             number += 1
             new_name = rng.choice(("", f"Pia{k}"))
             message = (
@@ -175,10 +175,10 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
             )
             request: PendingRequest[Any] = line.begin(lambda _: message)  # noqa: B023 - at once
             asked.append((number, request, new_name))
-        elif how == "event":
+        elif action == "event":
             holder.says({**SHOWN, "ms": k}, 0)
             told.append(k)
-        elif asked and how == "progress":
+        elif asked and action == "progress":
             answered, request, _ = rng.choice(asked)
             holder.says({"id": answered, "done_bytes": k}, 0)
             listen(POLL_INTERVAL_S)
@@ -212,7 +212,7 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
     assert events == [*told, 99]
     for look in (
         lambda: line.event(0),
-        lambda: line.wait(line.begin(lambda one: one.status())),
+        lambda: line.wait(line.begin(lambda requests: requests.status())),
     ) * 2:
         with pytest.raises(ConnectionLost) as lost:
             look()

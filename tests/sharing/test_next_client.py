@@ -112,9 +112,9 @@ class Client:
         with suppress(OSError):
             self.socket.send(protocol.encode_message(message))
 
-    def asks(self, do: str, **more: object) -> None:
+    def asks(self, do: str, **fields: object) -> None:
         self._number += 1
-        self.says({"do": do, "id": self._number, "limit_ms": 6000, **more})
+        self.says({"do": do, "id": self._number, "limit_ms": 6000, **fields})
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):
@@ -192,19 +192,19 @@ REQUEST_NAMES = ("upload", "upload", "live", "status", "trim", "identify")
 STORED_PROGRAM_REQUESTS = ("start", "undo")  # these report the previous client to the next one
 
 
-def send_request(rng: random.Random, client: Client, what: str) -> None:
+def send_request(rng: random.Random, client: Client, verb: str) -> None:
     text = draw_program(rng)
-    if what == "upload":
+    if verb == "upload":
         is_detached = rng.random() < 0.2
         client.has_detached |= is_detached
         client.asks("upload", **upload(text, is_detached))
-    elif what == "live":
+    elif verb == "live":
         seconds = rng.choice((0.4, 60))
         code = image_of(f"SI|{MARK}F({seconds}, 30)").code
         client.asks("live", code=code.hex(), kit=TINIBOT.fingerprint)
     else:
         given_fields: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
-        client.asks(what, **given_fields.get(what, {}))
+        client.asks(verb, **given_fields.get(verb, {}))
 
 
 def stop_and_leave(client: Client) -> None:
@@ -235,29 +235,29 @@ def play_first_client(rng: random.Random, desk: Desk) -> str:
         for _ in range(rng.choice((1, 1, 3))):
             send_request(rng, client, rng.choice(("upload", "live")))
         desk.steps(rng.choice((0, 20, 40, 60, 400)))
-    ends = rng.choice([*END_ACTIONS])
-    END_ACTIONS[ends](rng, client)
-    if ends == "breaks off":
+    end_name = rng.choice([*END_ACTIONS])
+    END_ACTIONS[end_name](rng, client)
+    if end_name == "breaks off":
         desk.steps(rng.choice((20, 300)))
         client.socket.close()
     robot = desk.line.robot_itself
     robot.codes()
     if rng.random() < 0.5:
         desk.steps(rng.choice((60, 400, 900)))
-        return ends
-    if ends != "is silent":
+        return end_name
+    if end_name != "is silent":
         desk.steps(400)
-        assert client.has_detached or not desk.line.session.is_running, f"{ends}: not at once"
-        assert len(robot.codes()) <= 1, f"{ends}: more begins than what was under way"
+        assert client.has_detached or not desk.line.session.is_running, f"{end_name}: not at once"
+        assert len(robot.codes()) <= 1, f"{end_name}: more begins than what was under way"
     desk.steps(2500)
     if desk.line.session.is_running:
-        assert client.has_detached, f"{ends}: the run of a client that has gone goes on"
+        assert client.has_detached, f"{end_name}: the run of a client that has gone goes on"
         other_client = desk.join("stop")
         other_client.says({"do": "stop"})
         desk.steps(400)
         other_client.socket.close()
         desk.steps(400)
-    return ends
+    return end_name
 
 
 def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[str]]:
@@ -287,13 +287,13 @@ def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[
 
 def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
     with desk(monkeypatch) as at:
-        ends = play_first_client(random.Random(seed), at)
+        end_name = play_first_client(random.Random(seed), at)
         heard_lines, actions = play_second_client(random.Random(-seed), at)
     with desk(monkeypatch) as at:
         want, its = play_second_client(random.Random(-seed), at)
-    explanation = f"seed {seed} {ends}\n{heard_lines}\n{actions}\nnot\n{want}\n{its}"
+    explanation = f"seed {seed} {end_name}\n{heard_lines}\n{actions}\nnot\n{want}\n{its}"
     assert actions == its and heard_lines == want, explanation
-    return ends if len(its) > 1 else "little"
+    return end_name if len(its) > 1 else "little"
 
 
 @pytest.mark.sampled("part")
@@ -316,31 +316,31 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
         told: list[tuple[str, str]] = []
         for _ in range(40):
             client = rng.choice([*verbs]) if verbs else None
-            how = rng.choice(
+            end_kind = rng.choice(
                 (*["comes"] * 4, *["starts"] * 3, "asks", "stops", "leaves", "is silent")
             )
-            if client is None or how == "comes":
+            if client is None or end_kind == "comes":
                 verb = rng.choice(("upload", "live", "monitor", protocol.LOOKING_VERB))
                 client = made_desk.join(verb)
                 verbs[client] = verb
                 told += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
-            elif how == "starts":
+            elif end_kind == "starts":
                 is_detached = rng.random() < 0.2
                 client.asks("upload", **upload("SI|F(60, 50)", is_detached))
                 owner = "itself" if is_detached else client
-            elif how == "asks":
+            elif end_kind == "asks":
                 client.asks("status")
-            elif how == "stops":
+            elif end_kind == "stops":
                 client.says({"do": "stop"})
                 owner = ""
             else:
                 verb = verbs.pop(client)
-                END_ACTIONS[how](rng, client)
-                told += [("LEFT", verb)] * (how == "leaves" and verb != protocol.LOOKING_VERB)
+                END_ACTIONS[end_kind](rng, client)
+                told += [("LEFT", verb)] * (end_kind == "leaves" and verb != protocol.LOOKING_VERB)
                 owner = "" if owner is client else owner
-            made_desk.steps(1600 if how == "is silent" else 300)
-            assert made_desk.line.session.is_running == (owner != ""), how
-            assert made_desk.line.posted == told, how
+            made_desk.steps(1600 if end_kind == "is silent" else 300)
+            assert made_desk.line.session.is_running == (owner != ""), end_kind
+            assert made_desk.line.posted == told, end_kind
 
 
 DROPPED: dict[str, Event] = {

@@ -73,7 +73,7 @@ def test_the_kernel_reports_an_end_that_nobody_owns() -> None:
 
 
 @linux
-@pytest.mark.parametrize(("own", "user", "inode", "is_let_in"), [
+@pytest.mark.parametrize(("own_uid", "user", "inode", "is_let_in"), [
     (1234, 1234, 5, True),
     (1234, 1234, 0, False),
     (1234, 0, 5, True),  # root has every right
@@ -85,10 +85,12 @@ def test_the_kernel_reports_an_end_that_nobody_owns() -> None:
     (0, NOBODY_UID, 5, False),
 ])  # fmt: skip
 def test_which_ends_are_let_in(
-    monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
+    monkeypatch: pytest.MonkeyPatch, own_uid: int, user: int, inode: int, is_let_in: bool
 ) -> None:
-    monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_socket_owner", lambda peer, own: peers.SocketOwner(user, inode))
+    monkeypatch.setattr(os, "geteuid", lambda: own_uid)
+    monkeypatch.setattr(
+        peers, "_socket_owner", lambda peer, own_address: peers.SocketOwner(user, inode)
+    )
     own_end, other_end = connected_pair()
     with own_end, other_end:
         assert peers.is_of_this_user(own_end) == is_let_in
@@ -96,7 +98,7 @@ def test_which_ends_are_let_in(
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing_owner(number: int) -> object:
-        def other_end(peer: object, own: object) -> peers.SocketOwner:
+        def other_end(peer: object, own_address: object) -> peers.SocketOwner:
             raise OSError(number, "no")
 
         return other_end
@@ -113,22 +115,22 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 
 @linux
 @pytest.mark.root
-@pytest.mark.parametrize("how", ["stays", "leaves", "reset"])
-def test_another_user_moves_nothing(how: str) -> None:
+@pytest.mark.parametrize("attack", ["stays", "leaves", "reset"])
+def test_another_user_moves_nothing(attack: str) -> None:
     with robot("--listen", "0") as running_robot:
         number = running_robot.port.rpartition(":")[2]
-        words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, how, LINE.hex()]
+        words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, attack, LINE.hex()]
         for _ in range(3):
             completed = subprocess.run(words, capture_output=True, text=True, timeout=HANG_LIMIT_S)
             assert completed.returncode == 0, completed.stderr
-            assert completed.stdout.strip() == ("0" if how == "stays" else "")
+            assert completed.stdout.strip() == ("0" if attack == "stays" else "")
         time.sleep(1)
-        with visitor(running_robot.port) as own:
-            own.settimeout(HANG_LIMIT_S)
-            own.sendall(LINE)
+        with visitor(running_robot.port) as client:
+            client.settimeout(HANG_LIMIT_S)
+            client.sendall(LINE)
             heard_bytes = b""
             while not heard_bytes.endswith(b"// DONE\r\n"):
-                heard_bytes += own.recv(1000)
+                heard_bytes += client.recv(1000)
         assert running_robot.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
 
 

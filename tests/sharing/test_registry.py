@@ -170,10 +170,10 @@ def test_whoever_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one()
     """Somebody has emptied the cache."""
     old_lock = lock()
     registry.lock_path(PORT).unlink()
-    second = lock()
-    assert old_lock is not None and second is not None
+    second_lock = lock()
+    assert old_lock is not None and second_lock is not None
     old_lock.close()
-    check_one_owner([second])
+    check_one_owner([second_lock])
 
 
 @pytest.mark.parametrize("other_host", ["school2", "school-2", "s", "school.local"])
@@ -186,12 +186,12 @@ def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
     monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     registry.write(foreign)
     monkeypatch.setattr(registry, "gethostname", lambda: "school")
-    own = registration(foreign.number, "live")
+    own_registration = registration(foreign.number, "live")
     acts: dict[str, Callable[[], object]] = {
         "tidies": registry.tidy,
         "finds": registry.find_all,
-        "registers": lambda: registry.write(own),
-        "leaves": lambda: registry.remove(own),
+        "registers": lambda: registry.write(own_registration),
+        "leaves": lambda: registry.remove(own_registration),
     }
     acts[does]()
     monkeypatch.setattr(registry, "gethostname", lambda: other_host)

@@ -157,11 +157,11 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
 
 @pytest.mark.usefixtures("_knows_nod")
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_fields",
     [{"times": -1}, {"times": 256}, {"times": True}, {"turn": -129}, {"turn": 128}, {"turn": "1"},
      {"which": 1 << 32}, {"which": 0.5}, {"said": ""}, {"said": "61626364"}, {"said": None},
      {"do": "NOD"}, {"do": "stop"}, {"do": "data"}, {"do": "_ask"}],
 )  # fmt: skip
-def test_a_field_of_such_a_message_keeps_to_its_range(wrong: dict[str, Any]) -> None:
+def test_a_field_of_such_a_message_keeps_to_its_range(wrong_fields: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
-        request_maker(of("nod", 1, 2, 3, b"a") | wrong, 700)
+        request_maker(of("nod", 1, 2, 3, b"a") | wrong_fields, 700)

@@ -127,19 +127,23 @@ def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
         assert command.wait(request).status == CANCELLED
         command.begin(lambda requests: requests.status())
         until(lambda: bool(line.asked), "the request arrives")
-        assert [cast(ClientRequest[Any], one).message["do"] for one in line.asked] == ["status"]
+        assert [cast(ClientRequest[Any], request).message["do"] for request in line.asked] == [
+            "status"
+        ]
         assert not server.may_have_run
 
 
 def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     line.address = "socket://127.0.0.1:7007"
     with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
-        own = server.registration
+        own_registration = server.registration
         assert [
-            registration for registration in registry.find_all() if registration.token == own.token
-        ] == [own]
+            registration
+            for registration in registry.find_all()
+            if registration.token == own_registration.token
+        ] == [own_registration]
         registration = registry.find_registration(line.address)
-        assert registration is not None and registration.token == own.token
+        assert registration is not None and registration.token == own_registration.token
 
 
 def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(

@@ -252,8 +252,10 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
 ) -> None:
     """It runs through the first command, whose own work is over."""
     first_command = start_endless_upload(pty_robot)
-    second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
-    second.wait_for_result().gives(0, out="Done.")
+    second_command = Command(
+        "upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port
+    )
+    second_command.wait_for_result().gives(0, out="Done.")
     result = first_command.wait_for_result().gives(
         3, "another command started a program", "holds the port until the other command has ended."
     )
@@ -266,13 +268,15 @@ def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
 
 def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
     first_command = start_endless_upload(pty_robot)
-    second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-    second.until("running")
+    second_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+    second_command.until("running")
     first_command.until("holds the port", is_aside=True)
     first_command.signal(signal.SIGINT)
     assert first_command.wait_for_result().code == 2
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    result = second.wait_for_result()  # it hears of the stop, or that the port's holder has ended
+    result = (
+        second_command.wait_for_result()
+    )  # it hears of the stop, or that the port's holder has ended
     assert result.code == 3
     assert "was stopped from a computer" in result.out or "has ended" in result.err, result
 
@@ -281,12 +285,12 @@ def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     pty_robot: PtyRobot,
 ) -> None:
     first_command = start_endless_upload(pty_robot)
-    second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-    second.until("running")
+    second_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+    second_command.until("running")
     first_command.until("holds the port", is_aside=True)
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
-    second.wait_for_result().gives(3, out="The robot was stopped from a computer.")
+    second_command.wait_for_result().gives(3, out="The robot was stopped from a computer.")
     first_command.wait_for_result().gives(3, "another command started a program")
 
 

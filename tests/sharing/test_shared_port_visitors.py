@@ -61,9 +61,9 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
     for path in folder.iterdir():
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
     command = start_endless_upload(pty_robot)
-    for wrong in ({"token": "0" * 32}, {"token": 5}, {"verb": "x" * 99}):
+    for wrong_fields in ({"token": "0" * 32}, {"token": 5}, {"verb": "x" * 99}):
         with visitor(registration) as peer:
-            peer.sendall(greeting(registration, **wrong))
+            peer.sendall(greeting(registration, **wrong_fields))
             assert is_let_go(peer)
     assert pty_robot.moves
     silent = [visitor(registration) for _ in range(100)]
@@ -77,15 +77,19 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
 def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
     """`test_requests.py` lists the wrong messages."""
     with Shared() as (pty_robot, registration):
-        for wrong in ({"do": "fly"}, {"do": "name", "name": "zz"}, {"do": "ping", "id": "1"}):
+        for wrong_message in (
+            {"do": "fly"},
+            {"do": "name", "name": "zz"},
+            {"do": "ping", "id": "1"},
+        ):
             with visitor(registration) as peer:
-                request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong})
+                request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong_message})
                 peer.sendall(greeting(registration) + request)
                 reply = b""
                 while part := _receive_rest(peer):
                     reply += part
             answer = {"tsc": __version__, "answer": registration.answer}
-            assert reply == protocol.encode_message(answer), wrong
+            assert reply == protocol.encode_message(answer), wrong_message
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture
-def own(server: serving.Server) -> str:
+def server_host(server: serving.Server) -> str:
     """The name in a request of the `server` that a file has."""
     return f"{serving.HOST}:{server.server_port}"
 
@@ -88,5 +88,5 @@ def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
     pages, current_page = only_page
     studio.begin_anew(current_page)
     yield current_page
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.wrong[:] = pages.wrong[:], []
+    assert not errors

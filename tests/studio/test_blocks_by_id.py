@@ -78,10 +78,16 @@ class Ana:
                 nodes += self.inside(own)
         return nodes
 
-    def step(self, is_heard: bool = True, **more: Any) -> Json:
+    def step(self, is_heard: bool = True, **extra_fields: Any) -> Json:
         """Ask for the next answer; one that is not heard comes too late."""
         news = [self.news(self.answer["since"], self.answer["epoch"])]
-        fields = {"from": self.answer["version"], "caret": 0, "hot": False, "news": news, **more}
+        fields = {
+            "from": self.answer["version"],
+            "caret": 0,
+            "hot": False,
+            "news": news,
+            **extra_fields,
+        }
         answer = page_together.step(fields, self.text.encode())
         if is_heard:
             self.takes(json.loads(json.dumps(answer)))
@@ -103,7 +109,7 @@ def program_of(text: str = TEXT) -> SharedProgram:
 
 def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
     """Change blocks at random; return the ids of those that were touched."""
-    bodies = [body, *(own for data in body for own in data["bodies"])]
+    bodies = [body, *(inner_body for data in body for inner_body in data["bodies"])]
     filled_bodies = [body for body in bodies if body]
     if not filled_bodies:
         return set()
@@ -217,12 +223,12 @@ def test_a_deleted_block_that_somebody_has_put_something_into_stays() -> None:
 
 def test_of_two_that_are_equal_the_one_is_changed_that_was_touched() -> None:
     program = program_of("W(1);\nB(1, 40);\nB(1, 40);\nW(2);\n")
-    [_, one, other_id, _] = (id for id in program.tree[ROOT].children if id != START)
+    [_, changed_id, other_id, _] = (id for id in program.tree[ROOT].children if id != START)
     ana = Ana(program)
     del ana.form["body"][1]
     ana.writes()
     ana.sends()
-    assert one not in program.tree
+    assert changed_id not in program.tree
     assert other_id in program.tree
     ana.form["body"].reverse()
     ana.writes()

@@ -99,8 +99,8 @@ def test_every_sentence_is_said_somewhere() -> None:
     for key in keys:
         if key.partition("/")[0] not in OTHERS:
             rest = [key[len(head) :] for head in heads if key.startswith(head)]
-            own = key.removesuffix("_sure")  # a button that is pressed twice
-            assert own in names or words & {own, *rest}, key
+            base_key = key.removesuffix("_sure")  # a button that is pressed twice
+            assert base_key in names or words & {base_key, *rest}, key
 
 
 def test_every_block_says_something_and_nothing_else_does() -> None:

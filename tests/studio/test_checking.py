@@ -258,9 +258,9 @@ def test_a_variable_is_a_yes_no_however_its_value_gets_there(
     assert {variable.name for variable in variables if variable.is_yes_no} == set(yes_no)
 
 
-@pytest.mark.parametrize("wrong", ["", "F(1, 800)"])
+@pytest.mark.parametrize("wrong_end", ["", "F(1, 800)"])
 def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
-    monkeypatch: pytest.MonkeyPatch, wrong: str
+    monkeypatch: pytest.MonkeyPatch, wrong_end: str
 ) -> None:
     """For a program with a hundred warnings; the buttons' effects are tried during a pause."""
     texts: list[bytes] = []
@@ -270,10 +270,13 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
         return compile_source(data, *arguments, **keyword_arguments)
 
     monkeypatch.setattr(checking, "compile_source", count_compilation)
-    text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
+    text = (
+        ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101))
+        + f";\n{wrong_end}"
+    )
     findings = checking.check(text.encode(), "tinibot", "en").findings
     assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
-        1 if wrong else MOST_OFFERS
+        1 if wrong_end else MOST_OFFERS
     )
     which = next(k for k, finding in enumerate(findings) if finding.may_repair)
     assert checking.repair(text.encode(), "tinibot", which)

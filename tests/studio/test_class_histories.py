@@ -56,10 +56,10 @@ class History:
     def state(self) -> Json:
         return self.room.teaches("class")
 
-    def answer(self, who: Page, do: str, **more: Any) -> Json | None:
+    def answer(self, who: Page, do: str, **fields: Any) -> Json | None:
         """Send a request as a page; None if it was removed."""
         try:
-            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **more})
+            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **fields})
         except BadRequest:
             self.leaves(who)
             return None
@@ -120,7 +120,9 @@ class History:
                     self.version(page) > version_before
                 )  # otherwise the teacher sees the previous program
                 self.brought.discard(page.text)
-                for name in [name for name, one in self.gone.items() if one.text == page.text]:
+                for name in [
+                    name for name, page_gone in self.gone.items() if page_gone.text == page.text
+                ]:
                     del self.gone[name]
 
     def version(self, page: Page) -> int:
@@ -302,14 +304,18 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         driven_fake_robots = [page.robot for page in old if page.robot and history.has_turn(page)]
         room = history.room
         code, settings = room.made.code, {}
-        before = room.teaches("class")
+        old_settings = room.teaches("class")
         anew = room.teaches("class_anew")
         assert anew["code"] != code and all(
             robot.has_ended for robot in driven_fake_robots if robot
         )
         fresh = Room(0).teaches("class")
-        settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
-        ports = [{**robot, "pupil": "", "left_s": 0} for robot in before["robots"]]
+        settings = {
+            "code": anew["code"],
+            "turn_s": old_settings["turn_s"],
+            "places": old_settings["places"],
+        }
+        ports = [{**robot, "pupil": "", "left_s": 0} for robot in old_settings["robots"]]
         name_by_port = {robot["port"]: robot["name"] for robot in anew["robots"]}
         assert anew == fresh | settings | {
             "robots": [{**port, "name": name_by_port[port["port"]]} for port in ports]

@@ -168,15 +168,15 @@ def test_another_turn_is_reached_by_no_name() -> None:
     ana, eve = room.joins("Ana"), room.joins("Eve")
     room.checks_in(ana, True)
     room.connects(ana)
-    own = room.hosting.asked[-1]["page"]
+    last_page = room.hosting.asked[-1]["page"]
     assert room.made.answer(
-        eve, PUPIL_ADDRESS, {"do": "connect", "page": own, "port": "port0"}
+        eve, PUPIL_ADDRESS, {"do": "connect", "page": last_page, "port": "port0"}
     ) == {"failure": "turn_none"}
     for do in ("beat", "leave", "stop", "stop_all"):
         room.made.answer(
-            eve, PUPIL_ADDRESS, {"do": do, "page": own, "asked": [{"do": "upload", "id": 1}]}
+            eve, PUPIL_ADDRESS, {"do": do, "page": last_page, "asked": [{"do": "upload", "id": 1}]}
         )
-    assert own not in [request["page"] for request in room.hosting.asked[1:]]
+    assert last_page not in [request["page"] for request in room.hosting.asked[1:]]
     assert {request["do"] for request in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
     assert room.hosting.asked[-1]["asked"] == []
 
@@ -254,7 +254,7 @@ def test_names_are_plain(name: str, shown_text: str) -> None:
 def test_whoever_comes_back_to_a_computer_is_not_a_second_one() -> None:
     room = Room()
     room.joins("Ana")
-    second = room.joins("Ana", "198.51.100.1")
+    second_token = room.joins("Ana", "198.51.100.1")
 
     def names() -> list[str]:
         return [pupil["name"] for pupil in room.teaches("class")["pupils"]]
@@ -266,7 +266,7 @@ def test_whoever_comes_back_to_a_computer_is_not_a_second_one() -> None:
     room.joins("Ana")
     assert names() == ["Ana (2)", "Ana (3)", "Ana"]
     room.now_s += 6
-    room.checks_in(second)
+    room.checks_in(second_token)
     room.joins("Ana", "198.51.100.1")  # another pupil of this name, who is present
     assert names() == ["Ana (2)", "Ana (3)", "Ana", "Ana (4)"]
 
@@ -295,11 +295,11 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room.now_s += 1
     for k in range(1, class_keeping.MOST_PUPILS):
         room.joins(f"p{k}", f"198.51.100.{k}")
-    more = {"do": "join", "code": room.made.code, "name": "more"}
+    join_message = {"do": "join", "code": room.made.code, "name": "more"}
     room.now_s += 30
-    assert room.made.answer("", PUPIL_ADDRESS, more) == {"failure": "class_full"}
+    assert room.made.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.now_s += 31
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
+    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_message)
     assert len(room.teaches("class")["pupils"]) == class_keeping.MOST_PUPILS
     assert room.made.most_bytes(token) > 0  # it is her turn
 
@@ -333,12 +333,12 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     pupil = room.teaches("class")["pupils"][0]
     assert len(pupil["lessons"]) == class_keeping.MOST_LESSONS
     assert (pupil["is_right"], pupil["hand"] > 0) == (False, True)
-    for wrong in (
+    for wrong_fields in (
         {"lessons": "01"}, {"lessons": ["<b>"]}, {"lessons": ["x" * 61]}, {"lessons": [5]},
         {"robot": "x"}, {"robot": ["liner"]}, {"text": 5},
     ):  # fmt: skip
         with pytest.raises(BadRequest):
-            room.checks_in(eve, **wrong)
+            room.checks_in(eve, **wrong_fields)
     own = {"name": "Pip\u202e" * 20, "colour": 3}
     room.checks_in(eve, own_robot=own)
     own_robot = room.teaches("class")["pupils"][0]["own_robot"]
@@ -406,22 +406,22 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
 def test_work_is_brought_once_and_only_while_there_is_room() -> None:
     room = Room()
     work = {"name": "Ana", **SENT_WORK}
-    for wrong in (
+    for wrong_fields in (
         {"name": " "}, {"name": 5}, {"name": "\u3164"}, {"text": None}, {"robot": "x"},
         {"lessons": [1]},
     ):  # fmt: skip
         with pytest.raises(BadRequest):
-            room.teaches("class_bring", **{**work, **wrong})
+            room.teaches("class_bring", **{**work, **wrong_fields})
     for _ in range(2):  # a file is opened twice
         for k in range(class_keeping.MOST_WORKS):
             room.teaches("class_bring", **{**work, "name": f"p{k}"})
     assert len(room.teaches("class")["kept"]) == class_keeping.MOST_WORKS
     with pytest.raises(BadRequest):
         room.teaches("class_bring", **{**work, "name": "more"})
-    more = {"do": "join", "code": room.made.code, "name": "more"}
-    assert room.made.answer("", PUPIL_ADDRESS, more) == {"failure": "class_full"}
+    join_message = {"do": "join", "code": room.made.code, "name": "more"}
+    assert room.made.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.teaches("class_forget", key=key_of(room))
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
+    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_message)
 
 
 def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
@@ -432,10 +432,10 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     right = {"key": key, "text": SENT_WORK["text"]}
     room.checks_in(ana, took=right)  # it was not offered
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
-    wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
-    wrong += [{**right, "key": other_key} for other_key in ("0" * 32, [key])]
-    for text in wrong:
+    wrong_receipts: list[object] = [True, None, 5, [], {}, {"key": key}]
+    wrong_receipts += [{**right, "text": text} for text in ("F(1, 51)", None)]
+    wrong_receipts += [{**right, "key": other_key} for other_key in ("0" * 32, [key])]
+    for text in wrong_receipts:
         assert room.checks_in(ana, took=text)["given"]["key"] == key
     assert "given" not in room.checks_in(eve, took=right)  # another pupil cannot confirm it
     assert texts_of(room) == ["F(1, 50)"]
@@ -454,11 +454,13 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     assert room.checks_in(token)["given"]["key"] == key
     room.teaches("class_remove", pupil=room.number("Ana"))
-    second = room.joins("Ana", "198.51.100.1")
-    assert "given" not in room.checks_in(second)
+    second_token = room.joins("Ana", "198.51.100.1")
+    assert "given" not in room.checks_in(second_token)
     assert room.teaches("class")["kept"][0]["given"] == 0
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert "given" not in room.checks_in(second, took=take_change(room.checks_in(second)["given"]))
+    assert "given" not in room.checks_in(
+        second_token, took=take_change(room.checks_in(second_token)["given"])
+    )
     assert texts_of(room) == ["F(1, 50)"]
 
 
@@ -567,8 +569,8 @@ def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None
         request = {"do": "join", "code": room.made.code, "name": name, "before": token}
         return room.made.answer("", PUPIL_ADDRESS, request)
 
-    second = return_to_class()  # a second tab of the same pupil
-    assert second["name"] == "ana (2)"
+    second_join = return_to_class()  # a second tab of the same pupil
+    assert second_join["name"] == "ana (2)"
     room.teaches("class_remove", pupil=room.number("ana (2)"))
     room.now_s += classroom.PLACE_S + 1
     assert return_to_class() == {"token": ana, "name": "Ana"}
@@ -582,8 +584,8 @@ def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None
     assert texts_of(room) == ["F(1, 50)"]
     assert return_to_class() == {"token": ana, "name": "Ana"}
     assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
-    wrong = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
-    assert room.made.answer("", PUPIL_ADDRESS, wrong) == {"failure": "class_wrong"}
+    join_message = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
+    assert room.made.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_wrong"}
 
 
 def test_who_was_removed_finds_the_work_again() -> None:
@@ -896,9 +898,9 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
     for places in (1, 60):
         assert room.teaches("class_places", places=places)["places"] == places
     assert "token" in enters("more")
-    for wrong in (0, 61, "4", None):
+    for wrong_count in (0, 61, "4", None):
         with pytest.raises(BadRequest):
-            room.teaches("class_places", places=wrong)
+            room.teaches("class_places", places=wrong_count)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -914,11 +916,11 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
         is_up = chance.random() < 0.7
         room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
-        for one, before, after in zip(tokens, seen, pupils, strict=True):
-            is_other = one == token and works[one] != text
-            assert (after["version"] != before["version"]) == is_other
+        for pupil_token, old_view, after in zip(tokens, seen, pupils, strict=True):
+            is_other = pupil_token == token and works[pupil_token] != text
+            assert (after["version"] != old_view["version"]) == is_other
         seen, works[token] = pupils, text
-        hands = [one for one in hands if one != token or is_up]
+        hands = [pupil_token for pupil_token in hands if pupil_token != token or is_up]
         hands += [token] * (is_up and token not in hands)
         raised_hands = [pupil for pupil in pupils if pupil["hand"]]
         raised_hands.sort(key=lambda pupil: pupil["hand"])
@@ -965,20 +967,20 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_fields",
     [
         {"part": 1}, {"part": None}, {"from": 1}, {"from": -1}, {"from": "0"}, {"is_last": 1},
         {"part": "x" * (recordings.MOST_BYTES + 1)},
     ],
 )  # fmt: skip
-def test_parts_that_do_not_fit_are_refused(wrong: Json) -> None:
+def test_parts_that_do_not_fit_are_refused(wrong_fields: Json) -> None:
     room = Room()
     ana = room.joins("Ana")
     ask_for_run(room, 1, True)
     run_number = room.checks_in(ana)["run"]
     right = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**right, **wrong})
+        room.made.answer(ana, PUPIL_ADDRESS, {**right, **wrong_fields})
     room.made.answer(ana, PUPIL_ADDRESS, right)
     with pytest.raises(BadRequest):
         room.made.answer(ana, PUPIL_ADDRESS, {**right, "from": 1})

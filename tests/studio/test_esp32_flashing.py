@@ -43,9 +43,9 @@ def image(board: str, size: int = 70_001) -> bytes:
     return bytes(data)
 
 
-def flash(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
+def flash(board: str, firmware: bytes, **options: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
-    case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
+    case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **options}
     lines = in_node(TEST_FOLDER / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
     outcome: dict[str, Any] = json.loads(lines[-1])
     assert outcome["sums"]
@@ -67,7 +67,7 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("how", "ended_text"),
+    ("options", "ended_text"),
     [
         ({"isDeaf": True}, "flash_nobody_esp"),
         ({"chip": "esp32c3"}, "flash_other_esp"),
@@ -77,22 +77,26 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
         ({"heldUntil": "cancel"}, "flash_not_begun"),
     ],
 )
-def test_a_board_that_is_not_the_one_stays_as_it_is(how: dict[str, Any], ended_text: str) -> None:
-    outcome = flash("esp32dev", image("esp32dev", 20_000), **how)
+def test_a_board_that_is_not_the_one_stays_as_it_is(
+    options: dict[str, Any], ended_text: str
+) -> None:
+    outcome = flash("esp32dev", image("esp32dev", 20_000), **options)
     assert (outcome["ended"], outcome["is_untouched"]) == (ended_text, True)
 
 
-@pytest.mark.sampled("how", "ended_text")
+@pytest.mark.sampled("options", "ended_text")
 @pytest.mark.parametrize(
-    ("how", "ended_text"),
+    ("options", "ended_text"),
     [
         ({"breaksAt": 3}, "flash_broken_off"),
         ({"cancelAt": 0.3}, "flash_cancelled"),
         ({"spoils": True}, "flash_differs"),
     ],
 )
-def test_half_a_firmware_is_never_called_a_whole_one(how: dict[str, Any], ended_text: str) -> None:
-    assert flash("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended_text
+def test_half_a_firmware_is_never_called_a_whole_one(
+    options: dict[str, Any], ended_text: str
+) -> None:
+    assert flash("esp32dev", image("esp32dev", 20_000), **options)["ended"] == ended_text
 
 
 def test_firmware_of_another_board_is_not_written() -> None:

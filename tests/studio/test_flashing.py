@@ -53,8 +53,8 @@ def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
     """A board is found that answers one of eight times; then each answer may take its second."""
     rows = [json.loads(line) for line in in_node(SLOW_SCRIPT, "120")]
     assert len(rows) == 120
-    ends = {row["ended"] for row in rows if row["slow_ms"] < SYNC_MS}
-    assert ends == {"done", "flash_broken_off", "flash_nobody"}
+    outcomes = {row["ended"] for row in rows if row["slow_ms"] < SYNC_MS}
+    assert outcomes == {"done", "flash_broken_off", "flash_nobody"}
     for row in rows:
         assert (row["ended"] == "done") == (row["last"] == 1 and row["isSame"]), row
         if row["losses"] < TRY_COUNT and row["slow_ms"] < SYNC_MS and not row["silent"]:
@@ -186,9 +186,9 @@ def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
     assert board.commands[-1] == 0x51
 
 
-@pytest.mark.sampled("bends", "how", keep=5)
+@pytest.mark.sampled("bends", "ended_text", keep=5)
 @pytest.mark.parametrize(
-    ("bends", "how"),
+    ("bends", "ended_text"),
     [
         (changed_answer(0x30, by=b"", times=1), "flash_nobody"),
         (changed_answer(0x30, by=b"\x00\xff" * 40, times=1), "flash_nobody"),
@@ -206,12 +206,12 @@ def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
          "pulled while reading", "differs", "begins at once"],
 )  # fmt: skip
 def test_how_it_may_end(
-    bends: Callable[[int, bytes], bytes | None], how: str, tmp_path: Path
+    bends: Callable[[int, bytes], bytes | None], ended_text: str, tmp_path: Path
 ) -> None:
     board = FakeBoard(bends)
     with plug_in(board) as port:
-        assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
-    if how in ("flash_nobody", "flash_other_chip", "port_gone"):
+        assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == ended_text
+    if ended_text in ("flash_nobody", "flash_other_chip", "port_gone"):
         assert set(board.flash) == {255}  # no byte was written
 
 
@@ -219,11 +219,11 @@ def test_it_can_be_cancelled(tmp_path: Path) -> None:
     """Before the first byte the board stays as it is; in the middle it is left without firmware;
     after the last byte it cannot be cancelled any more."""
     file = hex_file(tmp_path, b"\x01" * 1000)
-    for part, how in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
+    for part, ended_text in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
                       ("0.75", "flash_cancelled"), ("1", "done")):  # fmt: skip
         board = FakeBoard()
         with plug_in(board) as port:
-            assert flash(port, "uno", file, part) == how
+            assert flash(port, "uno", file, part) == ended_text
         page_count = board.commands.count(0x64)
         assert page_count == {"-1": 0, "0.25": 4}.get(part, 8)
 

@@ -47,12 +47,12 @@ class Mate:
         self.thread = Thread(target=self._beats, daemon=True)
         self.thread.start()
 
-    def ask(self, do: str, **more: Any) -> Json:
-        return self.group.room.answer(self.token, self.name, {"do": do, **more})
+    def ask(self, do: str, **fields: Any) -> Json:
+        return self.group.room.answer(self.token, self.name, {"do": do, **fields})
 
-    def drive(self, do: str, **more: Any) -> Json:
+    def drive(self, do: str, **fields: Any) -> Json:
         return self.ask(do, page=self.name, connection=self.connection, seen=self.newest_number,
-                        stops=self.presses, **more)  # fmt: skip
+                        stops=self.presses, **fields)  # fmt: skip
 
     def _beats(self) -> None:
         while not self.group.is_over:

@@ -161,9 +161,9 @@ def waiting(runs: GroupRuns) -> int:
 def is_running(page: Page) -> bool:
     """Return whether a program runs as far as the page knows."""
     names = [item["event"] for item in page.heard]
-    ends = {"OVER", *(end.get("event", "OVER") for end in END_MESSAGES)}
+    end_names = {"OVER", *(end.get("event", "OVER") for end in END_MESSAGES)}
     return next(
-        (name == "STARTED" for name in reversed(names) if name in {"STARTED", *ends}), False
+        (name == "STARTED" for name in reversed(names) if name in {"STARTED", *end_names}), False
     )
 
 

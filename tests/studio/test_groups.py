@@ -59,24 +59,24 @@ class Member:
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
 
-    def joins(self, group: str, text: str = TEXT, before: str = "") -> Json:
-        return self.asks("group_join", name=group, text=text, before=before)
+    def joins(self, group: str, text: str = TEXT, old_token: str = "") -> Json:
+        return self.asks("group_join", name=group, text=text, before=old_token)
 
-    def asks(self, do: str, **more: Any) -> Json:
-        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": do, **more})
+    def asks(self, do: str, **fields: Any) -> Json:
+        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": do, **fields})
 
-    def request(self, **more: Any) -> Json:
+    def request(self, **fields: Any) -> Json:
         page = self.page
         since = -1 if page.is_astray else page.number
-        return {"page": page.name, "since": since, "epoch": page.epoch, "saw": self.saw, **more}
+        return {"page": page.name, "since": since, "epoch": page.epoch, "saw": self.saw, **fields}
 
-    def sends(self, **more: Any) -> Json:
+    def sends(self, **fields: Any) -> Json:
         """Send pending changes, and receive news."""
         changes = [
             data_of_change(change) for change in self.page.pending_changes[: groups.MOST_CHANGES]
         ]
         answer: Json = json.loads(
-            json.dumps(self.asks("group", **self.request(changes=changes, **more)))
+            json.dumps(self.asks("group", **self.request(changes=changes, **fields)))
         )
         assert "left" not in answer
         self.page.receive(answer)
@@ -103,8 +103,8 @@ class Teacher(Member):
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
 
-    def asks(self, do: str, **more: Any) -> Json:
-        return self.school.made.teach({"do": do, **more})
+    def asks(self, do: str, **fields: Any) -> Json:
+        return self.school.made.teach({"do": do, **fields})
 
 
 @pytest.fixture
@@ -333,13 +333,13 @@ def test_nobody_sends_as_another_page(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     luz.types("80", "95")
     forged = [data_of_change(change) for change in luz.page.pending_changes]
-    wrong: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
-    for changes in wrong:
+    wrong_changes: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
+    for changes in wrong_changes:
         with pytest.raises(BadRequest):
             ana.asks("group", **ana.request(changes=changes))
-    for more in ({"since": "0"}, {"since": -2}, {"epoch": 5}, {"saw": None}):
+    for fields in ({"since": "0"}, {"since": -2}, {"epoch": 5}, {"saw": None}):
         with pytest.raises(BadRequest):
-            ana.asks("group", **{**ana.request(), **more})
+            ana.asks("group", **{**ana.request(), **fields})
     assert ana.asks("group", **{**ana.request(), "page": luz.page.name}) == {"left": True}
 
 
@@ -390,18 +390,18 @@ def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
     ana.sends()
     luz.types("B(1", "B(7")  # text not sent yet
     [seen] = school.teaches("class")["groups"]
-    before = school.teaches("class_text", group=seen["key"])
+    text_before = school.teaches("class_text", group=seen["key"])
     for _ in range(2):
         school.crashes()
-        assert school.teaches("class_text", group=seen["key"]) == before
+        assert school.teaches("class_text", group=seen["key"]) == text_before
     luz.sends()
     ana.sends()
     assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
     teo = Member(school, "Teo", text="S\n")
     assert teo.page.name not in (ana.page.name, luz.page.name)
-    answer = ana.joins("Red", before=ana.page.name)  # her page is loaded again
+    answer = ana.joins("Red", old_token=ana.page.name)  # her page is loaded again
     assert answer["page"] == ana.page.name
-    assert luz.joins("Red", before=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
+    assert luz.joins("Red", old_token=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
 
 
 def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School) -> None:
@@ -541,8 +541,8 @@ def test_whoever_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: Sc
     )
     with pytest.raises(BadRequest):
         ana.asks("group_visit", group=group["key"], name="Teacher")
-    for wrong in (None, 5, "", "x" * 32):
-        request = {"do": "group_visit", "group": wrong, "name": "Teacher"}
+    for wrong_group in (None, 5, "", "x" * 32):
+        request = {"do": "group_visit", "group": wrong_group, "name": "Teacher"}
         assert school.made.teach(request) == {"failure": "group_gone"}
     with pytest.raises(BadRequest):
         school.made.teach({"do": "group_visit", "group": group["key"], "name": None})
@@ -658,7 +658,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
         turn = school.made._turn_of(school.made._mates(school.made._pupil_by_token[member.token]))
         assert turn is not None and turn.pupil is not None
         robot = school.hosting.robots[turn.pupil.hosting_page]
-        before = robot.stopped
+        stops_before = robot.stopped
         deed = chance.choice(("stop", "stop", "connect", "beat", "reload"))
         if deed == "connect":
             if turn.pupil.token != member.token:
@@ -675,7 +675,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
         elif deed == "beat":
             member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
         elif deed == "reload":
-            member.joins("Red", before=member.page.name)
+            member.joins("Red", old_token=member.page.name)
             presses[member] = 0
         else:
             presses[member] += 1
@@ -683,7 +683,7 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
             is_own = turn.pupil.token == member.token
             last_request = school.hosting.asked[-1]
             assert (last_request["do"], last_request["page"]) == ("stop", page_of(school, member))
-            assert is_own or robot.stopped == before + 1
+            assert is_own or robot.stopped == stops_before + 1
 
 
 def page_of(school: School, member: Member) -> str:

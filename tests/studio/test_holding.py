@@ -73,20 +73,24 @@ def test_variables_are_told_where_it_is_held() -> None:
     assert simulation.state()["variables"] == [5, 0.001]  # values left by the program
 
 
-@pytest.mark.parametrize("how", ["steps", "breakpoints"])
+@pytest.mark.parametrize("mode", ["steps", "breakpoints"])
 @pytest.mark.parametrize(("name", "robot", "world"), EXAMPLES)
-def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str, how: str) -> None:
+def test_a_program_that_was_held_does_the_same(
+    name: str, robot: str, world: str, mode: str
+) -> None:
     """The events and times are the same, with steps and at 1,000 breakpoints."""
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
     plain = Simulation(robot, worlds.load(world), result.image)
     plain.advance(2500)
     wanted_events = plain.robot.take_events()
     parts = tuple(place.offset for place in result.places)
-    marks = Marks(parts, (*parts, *range(1000)) if how == "breakpoints" else (), 0, how == "steps")
+    marks = Marks(
+        parts, (*parts, *range(1000)) if mode == "breakpoints" else (), 0, mode == "steps"
+    )
     held_simulation = Simulation(robot, worlds.load(world), result.image, marks)
     pauses = 0
     while held_simulation.robot.now_ms < plain.robot.now_ms:
-        if how == "steps":
+        if mode == "steps":
             held_simulation.step(plain.robot.now_ms - held_simulation.robot.now_ms)
         else:
             held_simulation.go_on()
@@ -210,12 +214,12 @@ def test_a_program_that_never_waits_is_held_too() -> None:
 
 def test_its_button_starts_a_program_that_can_be_held_again() -> None:
     simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", held_parts=(1,))
-    for ends in (simulation.stop, simulation.go_on):
+    for end_action in (simulation.stop, simulation.go_on):
         simulation.advance(100)
         simulation.push()
         simulation.advance(1000)
         assert simulation.held_at is not None
-        ends()
+        end_action()
         simulation.advance(1000)
         assert not simulation.robot.is_running
 

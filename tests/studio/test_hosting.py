@@ -353,7 +353,7 @@ def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
 
 
 def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
-    wrong: list[dict[str, Any]] = [
+    wrong_requests: list[dict[str, Any]] = [
         {},
         {"do": "fly"},
         {"do": "connect"},
@@ -364,7 +364,7 @@ def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
         {"do": "beat", "page": ["p"]},
         {"do": "beat", "page": 0},
     ]
-    for request in wrong:
+    for request in wrong_requests:
         with pytest.raises(BadRequest):
             hosting.answer(request)
             pytest.fail(f"not refused: {request}")
@@ -387,10 +387,10 @@ def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
 )
 def test_a_wrong_request_harms_nothing(page: Page, request: dict[str, Any]) -> None:
     """It does not harm the request after it in the same beat either."""
-    wrong = page.count + 1
+    wrong_id = page.count + 1
     page.count += 2
-    page.beat({"id": wrong, **request}, {"id": page.count, "do": "identify"})
-    assert page.until(lambda item: item.get("id") == wrong)["failure"] == "bad_request"
+    page.beat({"id": wrong_id, **request}, {"id": page.count, "do": "identify"})
+    assert page.until(lambda item: item.get("id") == wrong_id)["failure"] == "bad_request"
     assert page.until(lambda item: item.get("id") == page.count)["ok"]
 
 

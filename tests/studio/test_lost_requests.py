@@ -71,9 +71,9 @@ class SteppedRobot:
         self.link = CountedLink(self._note)
         self.has_ended = self.is_parting = False
 
-    def _note(self, what: str, stops: int) -> None:
+    def _note(self, action: str, stops: int) -> None:
         World.actions.append(
-            (what, self.attending.stop_count if what == "stop" else stops, World.now_ms)
+            (action, self.attending.stop_count if action == "stop" else stops, World.now_ms)
         )
 
     def leave(self) -> None:
@@ -130,10 +130,10 @@ class TornPage:
             request = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
             self._asked.append(request)
 
-    def _send(self, do: str, **more: object) -> None:
+    def _send(self, do: str, **fields: object) -> None:
         request = {"do": do, "page": "me", "connection": self._connection, "port": "p",
                    "robot": "tinibot", "language": "en", "seen": self._seen,
-                   "stops": self._stops, **more}  # fmt: skip
+                   "stops": self._stops, **fields}  # fmt: skip
         times = self.chance.choice((0, 1, 1, 1, 2))
         self._under_way += [(World.now_ms + self.chance.choice((1, 10, 700, 2500)), request)
                             for _ in range(times)]  # fmt: skip
@@ -162,15 +162,17 @@ class TornPage:
                     self.is_there = False
                 elif item["number"] > self._seen:
                     self._seen = item["number"]
-                    self._asked = [one for one in self._asked if one["id"] != item.get("id")]
+                    self._asked = [
+                        request for request in self._asked if request["id"] != item.get("id")
+                    ]
 
 
 def check_stops_kept(page: TornPage) -> None:
     """Check this for all events so far."""
     newest = 0
     accepted_count = 0
-    for what, stops, _ in World.actions:
-        if what == "stop":
+    for action, stops, _ in World.actions:
+        if action == "stop":
             assert stops > newest, "once for each press"
             assert stops > accepted_count, "what was started later goes on"
             newest = stops
@@ -178,8 +180,8 @@ def check_stops_kept(page: TornPage) -> None:
             assert stops >= newest, "it was asked for before"
             accepted_count = max(accepted_count, stops)
     for number in page.heard:
-        after = [at_ms for what, _, at_ms in World.actions
-                 if what == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
+        after = [at_ms for action, _, at_ms in World.actions
+                 if action == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
         assert after or accepted_count >= number, f"press {number} was told, and stopped nothing"
 
 
@@ -209,7 +211,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
             page.press_run()
         elif does < 0.032 or (not page.is_there and does < 0.05):
             page.connect()
-    kinds = {what for what, _, _ in World.actions}
+    kinds = {action for action, _, _ in World.actions}
     assert kinds == {"stop", "run"}  # both kinds of requests were lost
 
 
@@ -217,10 +219,10 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
 def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
     stepped_hosting: Hosting, runs: bool
 ) -> None:
-    def send_request(do: str, connection: int, *asked: Json, **more: object) -> None:
+    def send_request(do: str, connection: int, *asked: Json, **fields: object) -> None:
         stepped_hosting.answer({"do": do, "page": "me", "connection": connection, "port": "p",
                                 "seen": 0, "robot": "tinibot", "language": "en", "asked": [*asked],
-                        **more})  # fmt: skip
+                        **fields})  # fmt: skip
         cast(SteppedRobot, stepped_hosting.robot_of("me")).step()
 
     send_request("connect", 1)
@@ -231,7 +233,7 @@ def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
         send_request("beat", 2)
     send_request("stop", 1, stops=1)
     send_request("stop", 1, stops=1)
-    assert [what for what, _, _ in World.actions] == ["run" if runs else "stop"]
+    assert [action for action, _, _ in World.actions] == ["run" if runs else "stop"]
 
 
 PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")

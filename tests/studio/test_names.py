@@ -11,23 +11,23 @@ from tiniscript.studio.names import are_alike, free_name, plain_name
 
 
 @pytest.mark.parametrize(
-    ("one", "other_name"),
+    ("name", "other_name"),
     [("José", "José"), ("Ana", "Аnа"), ("Ana", "Αna"), ("Ana", "𝐀𝐧𝐚"), ("Ana", "Ａｎａ"),
      ("Ana", "ana"), ("Luis", "LUIS"), ("Luis", "Iuis"), ("Inés", "1nés"), ("mia", "rnia"),
      ("Ola", "0la"), ("Ana", "A\ufe00na"), ("Ana", "An\u034fa"), ("Ana (2)", "Ana (２)"),
      ("O’Neil", "O'Neil"), ("Ana-Luz", "Ana‑Luz"), ("Maße", "MASSE")],
 )  # fmt: skip
-def test_names_that_look_alike_are_one_name(one: str, other_name: str) -> None:
-    assert are_alike(one, other_name) and are_alike(other_name, one)
+def test_names_that_look_alike_are_one_name(name: str, other_name: str) -> None:
+    assert are_alike(name, other_name) and are_alike(other_name, name)
 
 
 @pytest.mark.parametrize(
-    ("one", "other_name"),
+    ("name", "other_name"),
     [("Ana", "Anna"), ("José", "Jose"), ("Ana", "Ana 2"), ("Núria", "Nuria"), ("Luz", "Lua"),
      ("张伟", "王伟"), ("Ана", "Яна"), ("p1", "p2"), ("🤖", "🐈")],
 )  # fmt: skip
-def test_others_are_others(one: str, other_name: str) -> None:
-    assert not are_alike(one, other_name)
+def test_others_are_others(name: str, other_name: str) -> None:
+    assert not are_alike(name, other_name)
 
 
 @pytest.mark.parametrize(

@@ -78,10 +78,10 @@ def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("more", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
-def test_keys_that_are_somebody_elses(page_data: Path, more: dict[str, Any]) -> None:
+@pytest.mark.parametrize("fields", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
+def test_keys_that_are_somebody_elses(page_data: Path, fields: dict[str, Any]) -> None:
     """Keys of a text field, of the browser, or held before."""
-    assert sent_to_robot(page_data, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
+    assert sent_to_robot(page_data, WHOLE, ["keydown", "ArrowUp", fields], ["passes", 500]) == []
 
 
 def test_a_button_that_has_the_focus_is_held_by_the_space_bar(page_data: Path) -> None:

@@ -164,13 +164,13 @@ class Scene:
         self._begin(fault)
         page.click(BUTTONS[action])
         has_ended = self._until(END_PATTERNS[action], LONGEST_END_S, page)
-        wrong = [] if has_ended else ["it has no end"]
+        errors = [] if has_ended else ["it has no end"]
         page.wait_for_timeout(500)
         self._mend(fault)
         timed_messages: list[tuple[float, str]] = page.evaluate("window.told")
         texts = [text for _, text in timed_messages]
-        wrong += [f"said twice: {text}" for text, after in pairwise(texts) if text == after]
-        wrong += self._next_try()
+        errors += [f"said twice: {text}" for text, after in pairwise(texts) if text == after]
+        errors += self._next_try()
         times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
         gaps = [(after - start_ms) / 1000 for k, (start_ms, after) in enumerate(pairwise(times))
                 if not k or not UNFINISHED_MESSAGE.search(texts[k - 1])]  # fmt: skip
@@ -181,7 +181,7 @@ class Scene:
             (end_times_ms[0] if end_times_ms else begun_ms + 1000 * LONGEST_END_S) - begun_ms
         ) / 1000
         return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
-                           tuple(wrong), tuple(texts))  # fmt: skip
+                           tuple(errors), tuple(texts))  # fmt: skip
 
     def _prepare(self, action: str, fault: Fault | Between) -> None:
         if isinstance(fault, Fault):

@@ -87,7 +87,9 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     page = pages.open()
     start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
     first_box = box_of(block(page, "when it starts"))  # a program is seen from its beginning
-    pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
+    pane, words = (
+        page.locator(selector).bounding_box() for selector in ("#blocks", ".blocklyToolbox")
+    )
     assert pane is not None and words is not None
     assert first_box["x"] > words["x"] + words["width"] and first_box["y"] > pane["y"]
     forms = [
@@ -256,8 +258,8 @@ def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(pa
 
 def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
     """The preview before the drop shows it; a block that already has content does not do this."""
-    before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
-    start(page, before)
+    text_before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
+    start(page, text_before)
     page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
     source = page.locator(FLYOUT).filter(has_text="times").first
     source.wait_for()
@@ -276,7 +278,7 @@ def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
     wrapped = "SI|F(2, 80);\nLOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\n"
     wait_for_text(page, wrapped)
     page.click("#undo")
-    wait_for_text(page, before)
+    wait_for_text(page, text_before)
     page.click("#redo")
     wait_for_text(page, wrapped)
     place, top = box_of(block(page, "times")), box_of(block(page, "when it starts"))
@@ -869,11 +871,11 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
     wanted_texts = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
     texts = page_texts("en")
-    own = {key: texts[key] for key in texts if key.startswith("blockly/")}
-    assert own == {
+    blockly_texts = {key: texts[key] for key in texts if key.startswith("blockly/")}
+    assert blockly_texts == {
         key: wanted_texts[key]
         for key in wanted_texts
-        if key in own or not UNUSED_MESSAGE.search(key)
+        if key in blockly_texts or not UNUSED_MESSAGE.search(key)
     }
 
 

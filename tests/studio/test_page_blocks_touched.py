@@ -259,13 +259,15 @@ def test_an_editor_stands_over_its_own_field(page: Page) -> None:
     start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
     for k in range(6):
         field = page.locator(f"{PROGRAM} .blocklyNumberField").nth(k)
-        own = field.evaluate("e => e.closest('.blocklyBlock').getBoundingClientRect().toJSON()")
+        block_box = field.evaluate(
+            "e => e.closest('.blocklyBlock').getBoundingClientRect().toJSON()"
+        )
         field.click()
         editor = page.locator(".blocklyWidgetDiv input")
         editor.wait_for()
         over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
-        assert over["top"] == pytest.approx(own["top"], abs=4)
-        assert over["bottom"] == pytest.approx(own["bottom"], abs=4)
+        assert over["top"] == pytest.approx(block_box["top"], abs=4)
+        assert over["bottom"] == pytest.approx(block_box["bottom"], abs=4)
         page.keyboard.press("Escape")
         editor.wait_for(state="detached")
 
@@ -285,15 +287,15 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         bubble_box = bubble.locator("rect").first.evaluate(
             "e => e.getBoundingClientRect().toJSON()"
         )
-        own = box_of(page.locator(f"{PROGRAM} .wrong").last)
+        block_box = box_of(page.locator(f"{PROGRAM} .wrong").last)
         others = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
         boxes = others.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
         if isolated:
-            assert 0 < bubble_box["left"] - own["right"] < LARGEST_GAP_PX
+            assert 0 < bubble_box["left"] - block_box["right"] < LARGEST_GAP_PX
             assert not [box for box in boxes if meet(box, bubble_box)]
         tail = page.locator("#blocks .blocklyBubbleTail")
         begin = tail.evaluate("e => e.getBoundingClientRect().left")
-        assert begin > own["right"] - 14 and tail.is_visible()
+        assert begin > block_box["right"] - 14 and tail.is_visible()
 
 
 @drawn
@@ -343,8 +345,8 @@ def test_the_keys_are_those_of_a_piano() -> None:
         nearest = (
             min(ahead, key=lambda frequency: abs(frequency - step["hertz"])) if ahead else None
         )
-        ends = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
-        assert step["to"] == (nearest if nearest is not None else ends[0]), step
+        outer_keys = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
+        assert step["to"] == (nearest if nearest is not None else outer_keys[0]), step
 
 
 def pitch(page: Page, hertz: str = "440") -> Locator:

@@ -81,8 +81,8 @@ class Radio:
         self._emulated.evaluate("async () => { isDeaf = true; await reading; }")
         self._ask("simulateGATTDisconnection", address=ADDRESS)
 
-    def _ask(self, what: str, **fields: Any) -> Any:
-        return self._whole.send(f"BluetoothEmulation.{what}", fields)
+    def _ask(self, command: str, **fields: Any) -> Any:
+        return self._whole.send(f"BluetoothEmulation.{command}", fields)
 
     def _choose(self, prompt: Any) -> None:
         # The prompt comes twice; a second answer ends the browser.

@@ -112,8 +112,8 @@ def shared_pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
 @pytest.fixture
 def pages(shared_pages: Pages) -> Iterator[Pages]:
     yield shared_pages
-    wrong, shared_pages.wrong[:] = shared_pages.wrong[:], []
-    assert not wrong
+    errors, shared_pages.wrong[:] = shared_pages.wrong[:], []
+    assert not errors
 
 
 @pytest.fixture(scope="module")
@@ -226,8 +226,8 @@ def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
         ana.unroute_all(behavior="wait")
         ana.click("#link_leave")
         ana.locator("[data-text=class_ask]").wait_for()
-    wrong, shared_pages.wrong[:] = shared_pages.wrong[:], []
-    assert all("ERR_FAILED" in error or "500" in error for error in wrong)
+    errors, shared_pages.wrong[:] = shared_pages.wrong[:], []
+    assert all("ERR_FAILED" in error or "500" in error for error in errors)
 
 
 def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
@@ -671,8 +671,8 @@ def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     assert tile(teacher, "Noa").count() == 1
     page.close()
     remove_all_but_ana(shared_class)
-    wrong = [error for error in pages.wrong if "403" not in error]
-    assert wrong == []
+    errors = [error for error in pages.wrong if "403" not in error]
+    assert errors == []
     pages.wrong.clear()
 
 

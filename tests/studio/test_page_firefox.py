@@ -66,8 +66,8 @@ def page(firefox_page: tuple[Pages, Page]) -> Iterator[Page]:
     pages, current_page = firefox_page
     studio.begin_anew(current_page)
     yield current_page
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.wrong[:] = pages.wrong[:], []
+    assert not errors
 
 
 def test_blocks_and_text_are_the_same_program(page: Page) -> None:

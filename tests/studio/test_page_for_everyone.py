@@ -109,10 +109,10 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         if screen == "programs":
             assert page.evaluate(DIALOG_SCRIPT) == [], size
             page.locator("#share").evaluate("e => { e.open = true; }")
-            for how in ("link", "line"):
-                page.click(f"#share_{how}")
+            for share_kind in ("link", "line"):
+                page.click(f"#share_{share_kind}")
                 page.locator("#programs:not([data-shared=asked])").wait_for()
-                assert page.evaluate(DIALOG_SCRIPT) == [], (how, size)
+                assert page.evaluate(DIALOG_SCRIPT) == [], (share_kind, size)
         if size in axed[screen]:
             assert axe(page) == [], (screen, size)
     page.emulate_media(color_scheme="null")
@@ -217,16 +217,16 @@ TRY_REQUEST_SCRIPT = """async (address) => {
 
 def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     """The page does not reach another address, and no text becomes code."""
-    wrong = only_page[0].wrong
+    errors = only_page[0].wrong
     with socket.create_server(("127.0.0.1", 0)) as other_server:
         address = f"http://127.0.0.1:{other_server.getsockname()[1]}/"
         tried: dict[str, Any] = page.evaluate(TRY_REQUEST_SCRIPT, address)
-        assert [name for name, how in tried.items() if how != "refused"] == []
+        assert [name for name, outcome in tried.items() if outcome != "refused"] == []
         other_server.setblocking(False)
         with pytest.raises(BlockingIOError):
             other_server.accept()
-    assert sum("Content Security Policy" in error for error in wrong) >= 5
-    wrong.clear()
+    assert sum("Content Security Policy" in error for error in errors) >= 5
+    errors.clear()
 
 
 # Waits until files of a language are kept.

@@ -316,17 +316,17 @@ def connect_again(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
 
 
-@pytest.mark.sampled("how", keep=2)
-@pytest.mark.parametrize("how", ["stop", "Escape", "button", "restart"])
-def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how: str) -> None:
+@pytest.mark.sampled("end_kind", keep=2)
+@pytest.mark.parametrize("end_kind", ["stop", "Escape", "button", "restart"])
+def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, end_kind: str) -> None:
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     page.click("#link_upload")
     halts(page, 4)
-    if how == "stop":
+    if end_kind == "stop":
         page.click("#stop")
-    elif how == "Escape":
+    elif end_kind == "Escape":
         page.keyboard.press("Escape")
-    elif how == "button":
+    elif end_kind == "button":
         robot.push()
     else:
         robot.switch_off_and_on()
@@ -336,9 +336,9 @@ def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, how:
     assert page.locator("#link_go_on").is_disabled() and page.locator("#link_step").is_enabled()
 
 
-@pytest.mark.parametrize("what", ["upload", "break"])
+@pytest.mark.parametrize("end_kind", ["upload", "break"])
 def test_a_program_that_is_stopped_on_its_way_never_starts(
-    page: Page, robot: PtyRobot, what: str
+    page: Page, robot: PtyRobot, end_kind: str
 ) -> None:
     """Its places come between the program and its start."""
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
@@ -350,7 +350,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
             request["do"] for request in (route.request.post_data_json or {}).get("asked", [])
         ]
         response = route.fetch()
-        if what in questions and not pressed:
+        if end_kind in questions and not pressed:
             pressed.append(True)
             page.evaluate("document.getElementById('stop').click()")
         route.fulfill(response=response)

@@ -50,10 +50,10 @@ class Held:
     """Requests that stay unanswered until they are released; later ones are then answered at
     once."""
 
-    def __init__(self, page: Page, what: str) -> None:
+    def __init__(self, page: Page, url: str) -> None:
         self.routes: list[Route] = []
         self._has_end = False
-        page.context.route(what, self._hold)
+        page.context.route(url, self._hold)
 
     def _hold(self, route: Route) -> None:
         self.routes.append(route)
@@ -92,13 +92,13 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
     held_robot = Held(page, f"**/{FILE}")
-    for count, ends in enumerate(("cancel", "nothing"), 1):
+    for count, action in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
         wait_for(page, partial(held_robot.has, count), "it is fetched")
         wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         wait_for_message(page, "The firmware has not arrived.")
-        if ends == "cancel":
+        if action == "cancel":
             page.click("#flash_cancel")
             wait_for_message(page, "Cancelled. Nothing was written: the board has not changed.")
         else:

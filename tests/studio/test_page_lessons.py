@@ -50,12 +50,12 @@ def page(page: Page) -> Page:
 def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, part: int) -> None:
     """The results of `tsc lesson check` are tested with the lessons."""
     for number, folder in list(enumerate(FOLDERS, 1))[part::6]:
-        _, wrong = catalogue.answers(folder)
+        _, wrong_answers = catalogue.answers(folder)
         choose_lesson(page, number)
-        verdict = check_answer(page, wrong[0].program)
+        verdict = check_answer(page, wrong_answers[0].program)
         assert verdict == (
             "failed",
-            [wrong[0].sentence_by_language["en"], *later_sentences(page)],
+            [wrong_answers[0].sentence_by_language["en"], *later_sentences(page)],
         ), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
@@ -140,8 +140,8 @@ def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Conf
     choose_lesson(page, 4)
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
     page.select_option("#speed", "1")
-    ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
-    for view, end in sample_of(pytestconfig, "ends of a run", ends, 2):
+    view_ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
+    for view, end in sample_of(pytestconfig, "ends of a run", view_ends, 2):
         page.click(view)
         page.click("#lesson_check")
         page.locator("#lesson_end", has_text="Skip").wait_for()
@@ -257,8 +257,8 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
 @drawn
 def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     choose_lesson(page, 12)
-    _, wrong = catalogue.answers(FOLDERS[11])
-    assert check_answer(page, wrong[0].program)[0] == "failed"
+    _, wrong_answers = catalogue.answers(FOLDERS[11])
+    assert check_answer(page, wrong_answers[0].program)[0] == "failed"
     message = page.inner_text("#lesson_said")
     assert page.input_value("#robot") == "liner"
     label = page.locator("#world option:checked").inner_text()
@@ -378,12 +378,12 @@ def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
 @pytest.mark.parametrize("number", [1, 11])
 def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, number: int) -> None:
     """It brings its own robot and an empty program; the other program returns after the lesson."""
-    robot, own = (
+    robot, program = (
         ("liner", "SI|IF(LINE_L);S;END_IF") if number == 1 else ("tinibot", "SI|SHOW(DISTANCE)")
     )
     page.click("#side_virtual")
     page.select_option("#robot", robot)
-    write(page, own)
+    write(page, program)
     page.click("#side_lessons")
     choose_lesson(page, 2)
     choose_lesson(page, number)
@@ -391,11 +391,11 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     wait_for_note(page, "Your program is kept, and comes back after the lesson.")
     page.locator("#lesson:enabled").wait_for()
     wait_for(page, lambda: page.input_value("#robot") == lesson.robot, "its robot")
-    page.locator(".cm-content", has_text=own).wait_for(state="detached")
+    page.locator(".cm-content", has_text=program).wait_for(state="detached")
     wait_until_checked(page)
     assert page.locator("#messages li").count() == 0
     page.click("#side_virtual")  # without work, there is nothing to lose
-    page.locator(".cm-content", has_text=own).wait_for()
+    page.locator(".cm-content", has_text=program).wait_for()
     assert page.input_value("#robot") == robot
     page.click("#side_lessons")
     wait_for_note(page, "Your program is kept, and comes back after the lesson.")
@@ -405,7 +405,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     assert "F(1, 80)" in page.inner_text(".cm-content")  # the lesson continues
     page.click("#home")
     page.click("#start_write")
-    page.locator(".cm-content", has_text=own).wait_for()
+    page.locator(".cm-content", has_text=program).wait_for()
     assert page.input_value("#robot") == robot
     assert page.locator("#world option", has_text="Lesson").count() == 0
     page.click("#my_programs")
@@ -441,8 +441,8 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
 @drawn
 def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
     """Programs of lessons are in the list; the person's own program returns."""
-    own, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
-    write(page, own)
+    program, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
+    write(page, program)
     choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
@@ -457,7 +457,7 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
     wait_for_note(page, "The program of the previous lesson is in My programs.")
     page.click("#home")
     page.click("#start_write")
-    page.locator(".cm-content", has_text=own).wait_for()
+    page.locator(".cm-content", has_text=program).wait_for()
     page.click("#my_programs")
     versions = page.locator("#versions button", has_text=catalogue.load(FOLDERS[0]).title("en"))
     versions.first.click()  # a slow page may also have kept the earlier text
@@ -467,15 +467,15 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
 @drawn
 def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
-    own, first_text, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
+    own_text, first_text, second_text = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
-    write(page, own)
+    write(page, own_text)
     choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
     write(page, first_text)
     choose_lesson(page, 2)
-    write(page, second)  # in the existing program
+    write(page, second_text)  # in the existing program
     page.select_option("#lesson", "1")
     wait_for_note(page, "Here is your program for this lesson again.")
     assert editor.inner_text() == first_text
@@ -483,35 +483,35 @@ def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     assert not page.locator("#note").is_visible()  # the program has no note yet
     page.click("#home")
     page.click("#start_write")
-    editor.filter(has_text=own).wait_for()
+    editor.filter(has_text=own_text).wait_for()
     page.click("#home")
     page.click("#start_lessons")
     choose_lesson(page, 1)
     editor.filter(has_text=first_text).wait_for()
     choose_lesson(page, 2)
-    editor.filter(has_text=second).wait_for()
+    editor.filter(has_text=second_text).wait_for()
     page.reload()
     wait_until_checked(page)
-    assert editor.inner_text() == second
+    assert editor.inner_text() == second_text
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
     choose_lesson(page, 1)
     editor.filter(has_text=first_text).wait_for()
     page.click("#home")
     page.click("#start_write")
-    editor.filter(has_text=own).wait_for()
+    editor.filter(has_text=own_text).wait_for()
 
 
 def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
     """Wrong programs stay unchanged too, and so do those that name their robot."""
-    for own in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
-        write(page, own)
+    for program in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
+        write(page, program)
         for number in (1, 11):
             choose_lesson(page, number)
-            if number == 11 and "LINE_L" not in own and "robot:" not in own:
+            if number == 11 and "LINE_L" not in program and "robot:" not in program:
                 label = page.locator("#robot option:checked").inner_text()
                 wait_for_note(page, f"This lesson’s robot is {label}.")
-        assert page.inner_text(".cm-content").splitlines()[-1] == own.splitlines()[-1]
+        assert page.inner_text(".cm-content").splitlines()[-1] == program.splitlines()[-1]
 
 
 def test_a_room_that_a_lesson_calls_dark_is_dark(page: Page) -> None:

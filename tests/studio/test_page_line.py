@@ -304,13 +304,13 @@ def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_fields",
     [{"keys": 64}, {"keys": -1}, {"x": 101}, {"y": -101}, {"x": 1.5}, {"keys": True}, {"y": None}],
     ids=str,
 )
-def test_what_nobody_can_hold_is_refused(page: Page, wrong: dict[str, Any]) -> None:
+def test_what_nobody_can_hold_is_refused(page: Page, wrong_fields: dict[str, Any]) -> None:
     with pytest.raises(BadRequest):
-        page.page.link.ask({"do": "keys", "id": 1, "keys": 0, "x": 0, "y": 0, **wrong})
+        page.page.link.ask({"do": "keys", "id": 1, "keys": 0, "x": 0, "y": 0, **wrong_fields})
 
 
 def test_a_robot_without_a_remote_control_is_told_nothing(page: Page) -> None:

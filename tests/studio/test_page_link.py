@@ -129,9 +129,9 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     robot.until(lambda: not robot.moves, "it stands")
     wait_for_message(page, "tsc studio has stopped responding")
     page.context.set_offline(False)
-    wrong = first[0].wrong
-    assert wrong and all("ERR_INTERNET_DISCONNECTED" in error for error in wrong)
-    wrong.clear()
+    errors = first[0].wrong
+    assert errors and all("ERR_INTERNET_DISCONNECTED" in error for error in errors)
+    errors.clear()
 
 
 @drawn
@@ -501,8 +501,8 @@ def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
 @drawn
 def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     """Both are held at the first line, then one continues, then the other one."""
-    first_row, second = "W(0.1)", "F(60, 80)"
-    write(page, f"{first_row};\n{second}")
+    first_row, second_row = "W(0.1)", "F(60, 80)"
+    write(page, f"{first_row};\n{second_row}")
     page.click("#side_virtual")
     breakpoint = page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last
     breakpoint.click()
@@ -513,15 +513,15 @@ def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     page.locator("html[data-halt='read']").wait_for()
     wait_for_running(page, first_row)
     page.click("#link_go_on")
-    wait_for_running(page, second)
+    wait_for_running(page, second_row)
     page.click("#side_virtual")
     wait_for_running(page, first_row)
     page.click("#pause")  # continues
-    wait_for_running(page, second)
+    wait_for_running(page, second_row)
     page.click("#stop")
     breakpoint.click()  # no later program is to halt
     page.click("#side_real")
     page.click("#link_upload")
-    wait_for_running(page, second)
+    wait_for_running(page, second_row)
     page.click("#link_leave")
     wait_for_no_mark(page)

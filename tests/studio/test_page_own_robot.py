@@ -37,8 +37,10 @@ def name_robot(page: Page, name: str, colour: int) -> None:
     page.get_by_role("button", name="Close").click()
 
 
-def store(page: Page, place: str, what: object) -> None:
-    page.evaluate("([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(what)])
+def store(page: Page, place: str, value: object) -> None:
+    page.evaluate(
+        "([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(value)]
+    )
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
@@ -63,9 +65,9 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
     assert PINK_COLOUR in colors and GREEN_COLOUR not in colors
 
 
-@pytest.mark.sampled("what")
+@pytest.mark.sampled("value")
 @pytest.mark.parametrize(
-    "what",
+    "value",
     [
         5,
         "x",
@@ -76,10 +78,10 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
         {"<b>": 1},
     ],
 )
-def test_what_is_kept_may_be_damaged(pages: Pages, what: object) -> None:
+def test_what_is_kept_may_be_damaged(pages: Pages, value: object) -> None:
     page = pages.open("start")
     for place in (OWN_ROBOT_KEY, STARS_KEY):
-        store(page, place, what)
+        store(page, place, value)
     store(page, LESSONS_KEY, [])
     page.reload()
     enter(page, page.url)

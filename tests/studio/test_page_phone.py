@@ -79,9 +79,9 @@ def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
 
 @drawn
 def test_the_messages_can_be_put_away(phone: Page) -> None:
-    for wrong in ("F(-2, 80)", "F(-3, 80)"):
-        write(phone, wrong)
-        assert phone.locator("#messages li").is_visible() == (wrong == "F(-2, 80)")
+    for wrong_text in ("F(-2, 80)", "F(-3, 80)"):
+        write(phone, wrong_text)
+        assert phone.locator("#messages li").is_visible() == (wrong_text == "F(-2, 80)")
         if phone.get_attribute("#sheet", "aria-expanded") == "true":
             phone.click("#sheet")
         assert not phone.locator("#messages li").is_visible()

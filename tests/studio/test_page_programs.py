@@ -265,8 +265,8 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     page.fill("#public", "https://school.example/studio/")
     page.locator("#public").blur()
     page.locator("#shared_picture").wait_for()
-    for how in ("link", "line"):
-        shared_text = share(page, how)
+    for share_kind in ("link", "line"):
+        shared_text = share(page, share_kind)
         assert read_picture(page) == shared_text != ""
     page.fill("#public", "")
     page.locator("#public").blur()

@@ -82,12 +82,12 @@ def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
     page.evaluate("document.querySelector('#start_title').append(' in English')")
     assert page.evaluate(PLAIN_TEXTS_SCRIPT) == [" in English"]
     page.evaluate("document.querySelector('#start_title').lastChild.remove()")
-    wrong = {}
+    cut_texts = {}
     for screen, size in each_screen(page, lambda screen: SIZES):
-        wrong[screen, size] = page.evaluate(CUT_TEXTS_SCRIPT)
+        cut_texts[screen, size] = page.evaluate(CUT_TEXTS_SCRIPT)
         if size == SIZES[0]:
-            wrong[screen, size] += page.evaluate(PLAIN_TEXTS_SCRIPT)
-    assert {where: value for where, value in wrong.items() if value} == {}
+            cut_texts[screen, size] += page.evaluate(PLAIN_TEXTS_SCRIPT)
+    assert {where: value for where, value in cut_texts.items() if value} == {}
 
 
 def check_narrow_button_is_noticed(page: Page, button: str) -> None:

@@ -209,17 +209,17 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
             page.click("#stop")
             wait_for_phase(page, "ended")
         page.evaluate(SETTLED_SCRIPT)
-        before = page.evaluate(PLACES)
+        places_before = page.evaluate(PLACES)
         page.click("#run")
         page.locator("#push").wait_for()
-        assert page.evaluate(PLACES) == before
+        assert page.evaluate(PLACES) == places_before
         page.click("#push")
         wait_for_running(page)
         page.locator("#values").get_by_text("X", exact=True).wait_for()
-        assert page.evaluate(PLACES) == before
+        assert page.evaluate(PLACES) == places_before
         page.click("#stop")
         wait_for_phase(page, "ended")
-        assert page.evaluate(PLACES) == before
+        assert page.evaluate(PLACES) == places_before
     page.set_viewport_size({"width": 1366, "height": 768})
 
 

@@ -191,12 +191,12 @@ def test_a_file_that_is_not_a_run_says_why_and_nothing_is_lost(
     page: Page, tmp_path: Path, data: bytes, message: str
 ) -> None:
     run_to_end(page, "SI|SHOW(77)", "SHOW 77")
-    before = run_names(page)
+    names_before = run_names(page)
     page.click("#runs_close")
     open_run(page, data, tmp_path / "run.tsr")
     page.locator("#runs_said", has_text=message).wait_for()
     page.click("#runs_close")
-    assert run_names(page) == before
+    assert run_names(page) == names_before
     page.click("#runs_close")
     assert status_text(page) == "It has ended."
     assert running(page) == ""

@@ -76,13 +76,13 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     current_page.click("#side_real")
     current_page.locator("#link_leave").dispatch_event("click")
     current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.wrong[:] = pages.wrong[:], []
+    assert not errors
 
 
-def wait_for_action(page: Page, what: str) -> None:
+def wait_for_action(page: Page, action: str) -> None:
     """Wait until the page says that the robot does so."""
-    page.locator(f"#link_doing[data-does={what}]").wait_for()
+    page.locator(f"#link_doing[data-does={action}]").wait_for()
 
 
 def senses(page: Page, robot: PtyRobot, *values: int) -> None:

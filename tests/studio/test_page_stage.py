@@ -194,8 +194,8 @@ def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> N
     editor.wait_for()
     page.evaluate(SETTLED_SCRIPT)
     over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
-    own = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
-    assert over["left"] <= own["left"] + 1 and over["right"] >= own["right"] - 1
+    text_box = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
+    assert over["left"] <= text_box["left"] + 1 and over["right"] >= text_box["right"] - 1
 
 
 # Running blocks that the edges of the program cut off.
@@ -299,7 +299,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
 
     drag(200, 60, 1)
     whole, width = scale(), page.evaluate("blocks.clientWidth")
-    for steps, ends, right in (
+    for steps, end_action, right in (
         (1, "click", -30),
         (9, "Escape", 30),
         (0, "click", -30),
@@ -308,7 +308,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
         page.click("#run")
         wait_for_phase(page, "running")
         wait_for(page, lambda: scale() != whole, "smaller beside the robot")
-        page.click("#stop") if ends == "click" else page.keyboard.press(ends)
+        page.click("#stop") if end_action == "click" else page.keyboard.press(end_action)
         wait_for_phase(page, "ended")
         page.wait_for_timeout(AFTER_RUN_MS)
         if not steps:

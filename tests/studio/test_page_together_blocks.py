@@ -60,7 +60,7 @@ def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
 
 
 @pytest.fixture(scope="module")
-def both(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
+def loaded_pair(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     return group_of(pages, shared_class)
 
 
@@ -88,15 +88,15 @@ def others_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
 
 
 @pytest.fixture
-def two(both: tuple[Page, Page]) -> tuple[Page, Page]:
+def page_pair(loaded_pair: tuple[Page, Page]) -> tuple[Page, Page]:
     """Both have the program."""
-    ana, luz = both
+    ana, luz = loaded_pair
     write(luz, PROGRAM)
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     wait_for_lines(luz, *ROWS)
     until(lambda: text_of(ana) == PROGRAM, "Ana has the program")
     wait_for_blocks(ana)
-    return both
+    return loaded_pair
 
 
 def text_of(page: Page) -> str:
@@ -137,16 +137,16 @@ def change_rows(*pairs: tuple[str, str]) -> list[str]:
     return [dict(pairs).get(row, row) for row in ROWS]
 
 
-def test_a_changed_field_is_a_change_of_its_line_alone(two: tuple[Page, Page]) -> None:
-    ana, _ = two
+def test_a_changed_field_is_a_change_of_its_line_alone(page_pair: tuple[Page, Page]) -> None:
+    ana, _ = page_pair
     field(ana, "back")
     type_slowly(ana, "7\n")
-    ends(two, *change_rows(("B(1, 40);", "B(7, 40);")))
+    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")))
 
 
 @drawn
-def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+def test_a_half_typed_field_is_none_and_stays_open(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "6")
     go_to_line(luz, "S;")
@@ -156,13 +156,15 @@ def test_a_half_typed_field_is_none_and_stays_open(two: tuple[Page, Page]) -> No
     type_slowly(ana, "5")  # the field is where it was
     assert "B(1, 40);" in text_of(luz)
     ana.keyboard.press("Enter")
-    ends(two, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
+    ends(page_pair, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
     block(ana, "wait").wait_for()
 
 
 @drawn
-def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+def test_what_is_dragged_while_others_write_comes_to_its_place(
+    page_pair: tuple[Page, Page],
+) -> None:
+    ana, luz = page_pair
     source_box, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
     ana.mouse.move(source_box["x"] + 8, source_box["y"] + 10)
     ana.mouse.down()
@@ -173,23 +175,23 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(two: tuple[Page, 
     ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
     ana.mouse.up()
     first_row, loop, end_loop, *rest = ROWS[:-1]
-    ends(two, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
+    ends(page_pair, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
 
 
 @drawn
-def test_of_two_of_one_block_the_later_one_wins_whole(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+def test_of_two_of_one_block_the_later_one_wins_whole(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "6")
     change_power(luz, "B(1, 40)")
     until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
     ana.keyboard.press("Enter")
-    ends(two, *change_rows(("B(1, 40);", "B(6, 40);")))
+    ends(page_pair, *change_rows(("B(1, 40);", "B(6, 40);")))
 
 
 @drawn
-def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+def test_what_hangs_on_nothing_is_on_the_own_page_alone(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     drag(ana, "Move", "left", None)
     go_to_line(luz, "S;")
     type_slowly(luz, "\nw(2)\n")
@@ -211,8 +213,8 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(two: tuple[Page, Page]) 
 
 
 @drawn
-def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+def test_undo_in_blocks_takes_back_the_own_change(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "7\n")
     wait_for_lines(luz, *change_rows(("B(1, 40);", "B(7, 40);")))
@@ -222,19 +224,19 @@ def test_undo_in_blocks_takes_back_the_own_change(two: tuple[Page, Page]) -> Non
     wait_for_blocks(ana)
     ana.locator("#speed").focus()
     ana.keyboard.press("Control+z")
-    ends(two, *ROWS, "W(2);")
+    ends(page_pair, *ROWS, "W(2);")
     ana.click("#redo")
-    ends(two, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
+    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
     change_power(luz, "B(7, 40)")
     until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
     wait_for_blocks(ana)
     ana.click("#undo")  # his block has a new owner
-    ends(two, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
+    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
 
 
 @drawn
-def test_each_sees_at_which_block_the_other_is(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+def test_each_sees_at_which_block_the_other_is(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     go_to_line(luz, "B(1, 40)")
     mark = block(ana, "back").locator("> .mate_mark")
     mark.filter(has_text="Luz").wait_for()
@@ -305,17 +307,17 @@ def race(members: Sequence[Page], count: int, seed: int) -> None:
         assert block_count >= len([row for row in text.splitlines() if row and "END_" not in row])
 
 
-def test_both_end_with_the_same_program(two: tuple[Page, Page]) -> None:
-    race(two, 12, 1)
+def test_both_end_with_the_same_program(page_pair: tuple[Page, Page]) -> None:
+    race(page_pair, 12, 1)
 
 
 @pytest.mark.long
 def test_four_end_with_the_same_program(
-    two: tuple[Page, Page], pages: Pages, shared_class: Class
+    page_pair: tuple[Page, Page], pages: Pages, shared_class: Class
 ) -> None:
-    more = others_of(pages, shared_class)
-    race((*two, *more), 16, 2)
-    for page in more:
+    other_pages = others_of(pages, shared_class)
+    race((*page_pair, *other_pages), 16, 2)
+    for page in other_pages:
         page.click("[data-text=group_leave]")
         page.locator("[data-text=group_join]").wait_for()
 

@@ -117,10 +117,10 @@ def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
     assert "B(2, 20)" in other_page.evaluate(
         "localStorage['tiniscript.work']"
     )  # kept for the next tab
-    newest, before = other_page.evaluate(
+    newest, older_texts = other_page.evaluate(
         "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
     )
-    assert [text.count("[[walls]]") for text in (newest, *before)] == [2, 1]
+    assert [text.count("[[walls]]") for text in (newest, *older_texts)] == [2, 1]
 
 
 def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:

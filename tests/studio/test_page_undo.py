@@ -39,8 +39,8 @@ def page(only_page: tuple[Pages, Page]) -> Any:
     current_page.set_viewport_size({"width": 1366, "height": 768})
     speak(current_page, "en")
     yield current_page
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.wrong[:] = pages.wrong[:], []
+    assert not errors
 
 
 def state_of(page: Page) -> BlocksState:

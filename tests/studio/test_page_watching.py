@@ -54,8 +54,8 @@ def count(page: Page, color: str) -> int:
     pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
     return sum(
         all(
-            abs(one - other_value) < COLOUR_TOLERANCE
-            for one, other_value in zip(pixel, wanted_bytes, strict=True)
+            abs(channel - other_value) < COLOUR_TOLERANCE
+            for channel, other_value in zip(pixel, wanted_bytes, strict=True)
         )
         for pixel in pixels
     )
@@ -169,14 +169,14 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
     page = listening
     write(page, "BEEP(30, 440)")
     for button, phase in (("pause", "paused"), ("stop", "ended")):
-        before = page.evaluate("window.stopped")
+        stops_before = page.evaluate("window.stopped")
         page.click("#run")
         wait_for_phase(page, "running")
         until(lambda: page.evaluate("window.heard.length"), "a sound")
         page.evaluate("window.heard = []")
         page.click(f"#{button}")
         wait_for_phase(page, phase)
-        assert page.evaluate("window.stopped") == before + 1
+        assert page.evaluate("window.stopped") == stops_before + 1
 
 
 @drawn

@@ -183,13 +183,13 @@ def test_a_browser_that_asks_for_a_strangers_worker_is_told_that_it_goes() -> No
         serving.WORKER_FILE: serving.File(b"y", "z"),
     }
     with page_server.serves(serving.Server(page, 0)) as server:
-        own = f"{serving.HOST}:{server.server_port}"
+        server_host = f"{serving.HOST}:{server.server_port}"
         for path in ("/evil.js", "/", "/index.html", "/a/b.js?c"):
-            answer, data = page_server.ask(own, path, headers={"Service-Worker": "script"})
+            answer, data = page_server.ask(server_host, path, headers={"Service-Worker": "script"})
             assert answer.status == 200 and b"registration.unregister()" in data
             assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
         response = page_server.ask(
-            own, f"/{serving.WORKER_FILE}", headers={"Service-Worker": "script"}
+            server_host, f"/{serving.WORKER_FILE}", headers={"Service-Worker": "script"}
         )
         assert response[1] == b"y"
-        assert page_server.ask(own, "/evil.js")[0].status == 404
+        assert page_server.ask(server_host, "/evil.js")[0].status == 404

@@ -190,8 +190,8 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     floor.locator("#world_heading").fill("-90")
     press("Enter")
     assert save_world(floor).start.heading == -90
-    for wrong in ("", "1e9"):
-        floor.locator("#world_x_cm").fill(wrong)
+    for wrong_number in ("", "1e9"):
+        floor.locator("#world_x_cm").fill(wrong_number)
         press("Enter")
         assert 0 <= save_world(floor).start.x_cm <= 220
     floor.select_option("#world_part", label="Floor")

@@ -31,16 +31,16 @@ LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 
 TINIBOT = robots.load("tinibot")
 
 
-def first_line(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
+def first_line(text: str = LOOKS, of: str = recordings.REAL, **fields: Any) -> str:
     if of == recordings.VIRTUAL:
-        more = {"world": "obstacles", **more}
-    return header_line(of, text, TINIBOT, compile(text).checksum, **more)
+        fields = {"world": "obstacles", **fields}
+    return header_line(of, text, TINIBOT, compile(text).checksum, **fields)
 
 
-def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
+def file(*events: tuple[int, str], text: str = LOOKS, **fields: Any) -> bytes:
     rows = [Row(*event) for event in events]
     end_ms = rows[-1].ms if rows else 0
-    return encode(first_line(text, **more), rows, end_ms).encode()
+    return encode(first_line(text, **fields), rows, end_ms).encode()
 
 
 def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
@@ -104,8 +104,8 @@ def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -
 
 def test_whoever_goes_on_alone_is_told() -> None:
     assert recording_of(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
-    more = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
-    assert more[:2] == ("value", 1)  # DONE in place of the second one
+    divergence = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
+    assert divergence[:2] == ("value", 1)  # DONE in place of the second one
     assert recording_of((100, "SHOW 1"), text="W(9);SHOW(1)")[0] == "robot_more"
 
 
@@ -364,8 +364,8 @@ def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
             rows = reading_rows.rows(event, ms + rng.randrange(300))
             assert (rows[-1].ms, rows[-1].is_reading) == (ms, True)
             if len(rows) == 2:
-                before = ms_of.get("DISTANCE", [-1])[-1]
-                assert rows[0] == Row(before + 1, "UNREAD DISTANCE")
+                last_ms = ms_of.get("DISTANCE", [-1])[-1]
+                assert rows[0] == Row(last_ms + 1, "UNREAD DISTANCE")
             ms_of.setdefault("DISTANCE", []).append(ms)
         assert reading_rows.incomplete_names in ([], ["DISTANCE"])
     assert ReadingRows(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"

@@ -49,15 +49,15 @@ class Robot:
     def event(self, limit_s: float) -> tuple[int, Event] | None:
         return (0, self.events.pop(0)) if self.events else None
 
-    def ends(self, how: str) -> None:
+    def ends(self, event_name: str) -> None:
         """Report that a run has ended so: the current one or, as a late message, an earlier one."""
         self.runs_own = None
-        if how == "DONE":
+        if event_name == "DONE":
             self.events.append(DoneEvent(self.run))
-        elif how == "FAULT":
+        elif event_name == "FAULT":
             self.events.append(FaultEvent(self.run, 1, 0, PROGRAM))
         else:
-            self.events.append(event("STOPPED") if how == "STOPPED" else LostEvent())
+            self.events.append(event("STOPPED") if event_name == "STOPPED" else LostEvent())
 
     def begins(self, is_own: bool, look_at_end: Callable[[], object] | None = None) -> None:
         """A run begins; the answer about its starter may come after its end."""
@@ -106,14 +106,16 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
                 robot.begins(is_own=False)
             case "end":
                 robot.ends(chance.choice(("DONE", "FAULT", "STOPPED")))
-            case "lost" | "restart" as how:
+            case "lost" | "restart" as event_name:
                 link.news()  # earlier reports have arrived
-                robot.ends("LOST") if how == "lost" else robot.restarts()
+                robot.ends("LOST") if event_name == "lost" else robot.restarts()
                 link.news()  # no run begins soon after it
             case _:
                 continue
         if chance.random() < 0.7:
-            boot_and_runs = [(robot.boot, one.run) for one in robot.events if one.name == "STARTED"]
+            boot_and_runs = [
+                (robot.boot, event.run) for event in robot.events if event.name == "STARTED"
+            ]
             told = [news["is_program"] for news in link.news() if news.get("event") == "STARTED"]
             assert told == [run in own_programs for run in boot_and_runs]
             assert link.has_run == (robot.pending is not None or robot.runs_own is True)

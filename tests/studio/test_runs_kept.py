@@ -47,16 +47,16 @@ def test_the_newest_runs_are_kept_as_far_as_there_is_room_and_the_oldest_goes_fi
     lines = in_node(SCRIPT, given=json.dumps(histories))
     for history, line in zip(histories, lines, strict=True):
         kept: list[tuple[int, int]] = []  # numbers and sizes, the oldest first
-        for number, (at_start, at_end, size, own) in enumerate(json.loads(line), 1):
+        for number, (at_start, at_end, size, run_size) in enumerate(json.loads(line), 1):
             if number > 1 and not history[number - 2][0]:
                 by_nothing += 1
                 kept.pop()
             kept = trimmed([*kept, (number, 0)])
             assert at_start == [known for known, _ in reversed(kept)]
             rows, characters, file = history[number - 1]
-            assert own == rows * (characters + ROW_CHARACTERS) + file
-            before, kept = kept, trimmed([*kept[:-1], (number, own)])
-            by_size += len(kept) < len(before)
+            assert run_size == rows * (characters + ROW_CHARACTERS) + file
+            kept_before, kept = kept, trimmed([*kept[:-1], (number, run_size)])
+            by_size += len(kept) < len(kept_before)
             by_count += len(kept) == MOST_RUNS < number
             assert at_end == [known for known, _ in reversed(kept)]
             assert size == sum(each for _, each in kept)

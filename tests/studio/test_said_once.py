@@ -59,13 +59,13 @@ def list_repetitions(parts: Parts) -> list[str]:
     for k, (is_block, label) in enumerate(parts):
         if not is_block:
             continue
-        own = {stem(word) for word in words(label) if len(word) >= STEM}
+        label_stems = {stem(word) for word in words(label) if len(word) >= STEM}
         text_before, text_after = (
             parts[k + step][1] if 0 <= k + step < len(parts) else "" for step in (-1, 1)
         )
         near = words(re.split(r"[.?!:;]", text_before)[-1])[-NEAR:]
         near += words(re.split(r"[.?!:;]", text_after)[0])[:NEAR]
-        repeated_words += [word for word in near if stem(word) in own]
+        repeated_words += [word for word in near if stem(word) in label_stems]
     return repeated_words
 
 
@@ -84,9 +84,11 @@ def found_sentences(language: str) -> Iterator[str]:
         if not key.startswith("said/"):
             continue
         for word in ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",):
-            own = {"word": word, "question": "DISTANCE < 15"}
+            question_values = {"word": word, "question": "DISTANCE < 15"}
             yield sentence(
-                Finding("", key.removeprefix("said/"), {**values, **own}, {language: "X"}),
+                Finding(
+                    "", key.removeprefix("said/"), {**values, **question_values}, {language: "X"}
+                ),
                 language,
                 BLOCKS,
             )
@@ -117,9 +119,12 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, lang
              for sentence in found_sentences(language)]  # fmt: skip
     parts = shown_parts(page_data, language, rows)
     assert sum(is_block for row in parts for is_block, _ in row) > 100
-    wrong = {"".join(f"[{text}]" if is_block else text for is_block, text in row): repeated_words
-             for row in parts if (repeated_words := list_repetitions(row))}  # fmt: skip
-    assert wrong == {}
+    repeated_by_text = {
+        "".join(f"[{text}]" if is_block else text for is_block, text in row): repeated_words
+        for row in parts
+        if (repeated_words := list_repetitions(row))
+    }
+    assert repeated_by_text == {}
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

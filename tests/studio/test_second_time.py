@@ -169,11 +169,11 @@ class ComingPage:
         self._is_there = self._sleeps = False
         self._asked: list[Json] = []
 
-    def _ask(self, do: str, **more: object) -> Json:
+    def _ask(self, do: str, **fields: object) -> Json:
         return self.hosting.answer({
             "do": do, "page": self.name, "tab": self.tab, "connection": self._connection,
             "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen,
-            "stops": self.stops, **more,
+            "stops": self.stops, **fields,
         })  # fmt: skip
 
     def _connect(self) -> None:
@@ -227,7 +227,9 @@ class ComingPage:
                 assert item["over"] == (self.end or item["over"])
             elif item["number"] > self._seen:
                 self._seen = item["number"]
-                self._asked = [one for one in self._asked if one["id"] != item.get("id")]
+                self._asked = [
+                    request for request in self._asked if request["id"] != item.get("id")
+                ]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -253,7 +255,7 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
-        runs = [what for what, _ in Room.actions[action_count_before:] if what == "run"]
+        runs = [action for action, _ in Room.actions[action_count_before:] if action == "run"]
         assert not (runs and Room.now_ms < latched_until_ms), (Room.now_ms, latched_until_ms)
         late_runs += len(runs) if stops else 0
     assert stops > 3 and late_runs > 10
@@ -276,11 +278,11 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
             robot.step()
         driving = [robot for robot in Room.robots if not robot.has_ended and not robot.is_parting]
         for page in pages:
-            own = [robot for robot in driving if robot.tab == page.tab and page.is_beating]
-            if own and chance.random() < 0.01:
-                own[-1].fail()
+            page_robots = [robot for robot in driving if robot.tab == page.tab and page.is_beating]
+            if page_robots and chance.random() < 0.01:
+                page_robots[-1].fail()
                 page.end = "port_gone"
-                driving.remove(own[-1])
+                driving.remove(page_robots[-1])
         if chance.random() < 0.005:
             states = hosting.answer({"do": "stop_all"})["robots"]
             assert sorted(state["name"] for state in states) == sorted(
@@ -336,7 +338,7 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
             is_silent = attending.silent_s > ATTENDED_S
             attending.attend(cast(RobotLink, link), 0)
             assert link.has_run == (was_driving and not is_silent)
-            stops = [what for what, _ in Room.actions[call_count:]]
+            stops = [action for action, _ in Room.actions[call_count:]]
             assert stops == (["stop"] if was_driving and is_silent else [])
             silences += len(stops)
     assert silences > 3 and ATTENDED_S < LEFT_S
@@ -420,14 +422,16 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
     """
     token = server.entrances.token
 
-    def ask_server(connection: HTTPConnection, what: str, padding: int) -> tuple[int, bytes, bool]:
+    def ask_server(
+        connection: HTTPConnection, request: str, padding: int
+    ) -> tuple[int, bytes, bool]:
         given_fields = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
         given_fields["X-Padding"] = " " + "x " * (padding // 2)
-        if what.startswith("/"):
-            connection.request("GET", what, None, given_fields)
+        if request.startswith("/"):
+            connection.request("GET", request, None, given_fields)
         else:
-            body = what.encode()
-            shown_token = "" if what == STRANGE else token
+            body = request.encode()
+            shown_token = "" if request == STRANGE else token
             connection.request(
                 "POST",
                 serving.ROBOTS_PATH,
@@ -452,14 +456,14 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
     longest = request_count = 0
     for _ in range(40):
         is_odd = chance.random() < 0.06
-        what = chance.choice(
+        request = chance.choice(
             ("/nothing", "{}", STRANGE) if is_odd else ("/", "/main.js", BEAT.decode())
         )
         padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
         fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-        expected = ask(fresh, what, padding)
+        expected = ask(fresh, request, padding)
         fresh.close()
-        assert ask(httpconnection, what, padding) == expected, (what, padding)
+        assert ask(httpconnection, request, padding) == expected, (request, padding)
         request_count += 1
         longest = max(longest, request_count)
         if expected[2]:

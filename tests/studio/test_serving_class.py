@@ -121,7 +121,7 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
     pupil = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
-    kept_socket, before = pupil.sock, active_count()
+    kept_socket, threads_before = pupil.sock, active_count()
     source = kept_socket.getsockname()[0] if is_same else OTHER_HOST
     with ExitStack() as strangers:
         for _ in range(0, STRANGER_COUNT, 500):
@@ -134,7 +134,7 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
             assert pupil.getresponse().read()
             assert ask(host_header(served_class))[0].status == 200
         assert pupil.sock is kept_socket
-        assert active_count() - before <= serving.MOST_CLASS_CONNECTIONS + 30
+        assert active_count() - threads_before <= serving.MOST_CLASS_CONNECTIONS + 30
     pupil.close()
 
 

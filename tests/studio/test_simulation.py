@@ -222,8 +222,8 @@ def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> No
 def test_the_page_says_what_is_held_of_a_remote_control() -> None:
     """A new run begins without held keys."""
 
-    def motors(do: str, data: bytes = b"", **more: object) -> object:
-        return json.loads(worker.answer(json.dumps({"do": do, **more}), data))["motors"]
+    def motors(do: str, data: bytes = b"", **fields: object) -> object:
+        return json.loads(worker.answer(json.dumps({"do": do, **fields}), data))["motors"]
 
     answer = json.loads(
         worker.answer(

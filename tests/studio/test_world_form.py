@@ -25,13 +25,13 @@ PARTS_SCRIPT = Path(__file__).with_name("world_parts_in_node.mjs")
 HISTORIES = 24
 
 
-def is_near(one: Any, other_value: Any) -> bool:
+def is_near(value: Any, other_value: Any) -> bool:
     """Return whether two values are equal, except for rounding."""
-    if isinstance(one, float | int) and not isinstance(one, bool):
-        return isinstance(other_value, float | int) and abs(one - other_value) < 0.002
-    if isinstance(one, tuple):
-        return len(one) == len(other_value) and all(map(is_near, one, other_value))
-    return bool(one == other_value)
+    if isinstance(value, float | int) and not isinstance(value, bool):
+        return isinstance(other_value, float | int) and abs(value - other_value) < 0.002
+    if isinstance(value, tuple):
+        return len(value) == len(other_value) and all(map(is_near, value, other_value))
+    return bool(value == other_value)
 
 
 def list_shipped_worlds() -> list[World]:

@@ -21,12 +21,12 @@ class Built(NamedTuple):
     log: str  # output of the builder, including warnings
 
 
-def firmware(board: str, own: Path, shared_path: Path) -> Built:
+def firmware(board: str, build_folder: Path, shared_path: Path) -> Built:
     """Return the sketch for a board, built once for all workers of a session."""
     built = Built(shared_path / f"builder-{board}.hex", "")
     log = built.hex.with_suffix(".log")
     if not log.exists():
-        build = _build(board, own)
+        build = _build(board, build_folder)
         mine = shared_path / f"builder-{board}.{os.getpid()}"
         for text, target in ((build.hex.read_text(), built.hex), (build.log, log)):
             mine.write_text(text, encoding="utf-8")

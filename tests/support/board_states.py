@@ -24,10 +24,10 @@ def robot_with(motors: str) -> Robot:
     return read(text, "test")
 
 
-def bridge(driver: str, more: str = "") -> str:
+def bridge(driver: str, extra_toml: str = "") -> str:
     return (
         f'driver = "{driver}"\nleft_pwm = 5\nleft_forward = 7\nleft_backward = 8\n'
-        f"right_pwm = 6\nright_forward = 9\nright_backward = 10\n{more}"
+        f"right_pwm = 6\nright_forward = 9\nright_backward = 10\n{extra_toml}"
     )
 
 
@@ -74,8 +74,8 @@ def robot_with_driver(name: str) -> Robot:
     return robot_with(DRIVERS[name][0])
 
 
-def start_board(robot: Robot, text: str, more: str = "") -> Board:
-    board = Board(robot, text, more)
+def start_board(robot: Robot, text: str, extra_toml: str = "") -> Board:
+    board = Board(robot, text, extra_toml)
     board.press(PRESS, START - STEADY)
     return board
 

@@ -34,8 +34,8 @@ class Table:
         self.program = 0
         self.is_reset_down = False
 
-    def send(self, text: str, **how: bool) -> None:
-        send(self.robot, self.session, text, **how)
+    def send(self, text: str, **options: bool) -> None:
+        send(self.robot, self.session, text, **options)
 
     def upload_program(self, power: int, is_saved: bool = True) -> None:
         self.send(f"SB|F(600, {power})", saves=is_saved)

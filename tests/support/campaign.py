@@ -38,8 +38,8 @@ def each_seed(check: Callable[[int], object], options: Namespace) -> None:
     print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - begun_s:.0f} s")
 
 
-def failure_text(wrong: AssertionError) -> str:
+def failure_text(error: AssertionError) -> str:
     """Return the message of an assertion, or its place and code if it has none."""
-    frame = extract_tb(wrong.__traceback__)[-1]
+    frame = extract_tb(error.__traceback__)[-1]
     place = f"{Path(frame.filename).name}:{frame.lineno}: {frame.line}"
-    return f"{place}: {wrong}" if str(wrong) else place
+    return f"{place}: {error}" if str(error) else place

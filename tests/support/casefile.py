@@ -117,9 +117,9 @@ def _fold(text: str) -> str:
 
 def _split_by_message(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
     """Yield a case with its messages, and one for each row that names its subject."""
-    before, *titled = TITLE_LINE.split(text)
-    parts = [(case, before)] if before or not titled else []
-    if case.parts and titled and not before:
+    preamble, *titled = TITLE_LINE.split(text)
+    parts = [(case, preamble)] if preamble or not titled else []
+    if case.parts and titled and not preamble:
         yield case  # the case of the heading above, whose text is complete
     line = end - sum(block.count("\n") for block in titled) - len(titled) // 2
     for title, part_text in zip(titled[::2], titled[1::2], strict=True):

@@ -42,8 +42,8 @@ class Authority:
              "-subj", f"/CN={name}", "-addext", f"subjectAltName=DNS:{name},IP:127.0.0.1",
              "-addext", "basicConstraints=critical,CA:FALSE")  # fmt: skip
         if is_chain:
-            own = file.read_text(encoding="ascii")
-            file.write_text(own + self.file.read_text(encoding="ascii"), encoding="ascii")
+            acl_text = file.read_text(encoding="ascii")
+            file.write_text(acl_text + self.file.read_text(encoding="ascii"), encoding="ascii")
         return f"certfile {file}\nkeyfile {key}"
 
     def sign(self, name: str) -> Path:

@@ -75,8 +75,8 @@ class Room:
         answer = self.made.answer("", address, {"do": "join", "code": self.made.code, "name": name})
         return str(answer["token"])
 
-    def checks_in(self, token: str, wants: bool | None = None, **more: Any) -> Json:
-        request = {"do": "here", **more} | ({} if wants is None else {"wants": wants})
+    def checks_in(self, token: str, wants: bool | None = None, **fields: Any) -> Json:
+        request = {"do": "here", **fields} | ({} if wants is None else {"wants": wants})
         return self.made.answer(token, PUPIL_ADDRESS, request)
 
     def connects(self, token: str) -> FakeRobot:
@@ -86,8 +86,8 @@ class Room:
         )
         return self.hosting.robots[self.hosting.asked[-1]["page"]]
 
-    def teaches(self, do: str, **more: Any) -> Json:
-        return self.made.teach({"do": do, **more})
+    def teaches(self, do: str, **fields: Any) -> Json:
+        return self.made.teach({"do": do, **fields})
 
     def number(self, name: str) -> int:
         return next(int(pupil["number"]) for pupil in self.teaches("class")["pupils"]

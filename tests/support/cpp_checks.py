@@ -324,30 +324,30 @@ def check_way_codes(machine: Process, seed: int, count: int) -> None:
     """Check that verdicts agree whatever the image needs; accepted code without tasks runs
     alike.
     """
-    ends: Counter[str] = Counter()
+    count_by_end: Counter[str] = Counter()
     codes = way_codes(seed, count)
-    codes += [bytes(code) for code in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
+    codes += [bytes(code) for code in ((ESCAPE,), *((ESCAPE, opcode) for opcode in range(256)))]
     pushed_bytes = simple("PUSH_NUM_2") * 2
-    codes += [pushed_bytes + bytes((ESCAPE, second)) for second in range(256)]
+    codes += [pushed_bytes + bytes((ESCAPE, opcode)) for opcode in range(256)]
     for needs in (0, TASKS, GO, ALL_NEEDS):
         accepted_bytes = compare_verdicts(machine, codes, *SIZES, needs)
         if needs != GO:
             continue
         for code in accepted_bytes:
-            ends[compare_runs(machine, code, WIDE_KIT, Senses({}, MAX_MS, MAX_STEPS))] += 1
-    assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(ends), ends
-    assert "BAD_CODE" not in ends
+            count_by_end[compare_runs(machine, code, WIDE_KIT, Senses({}, MAX_MS, MAX_STEPS))] += 1
+    assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(count_by_end), count_by_end
+    assert "BAD_CODE" not in count_by_end
 
 
 def check_way_programs(machine: Process, first_seed: int, count: int) -> None:
     """Random programs with ways, with tasks and without, run alike."""
-    ends: Counter[str] = Counter()
+    count_by_end: Counter[str] = Counter()
     for image, kit, senses in some_way_programs(first_seed, count):
         run = machine.run(image, kit, senses)
         want = run_in_python(image, kit, senses)
         assert machine.agrees(run, want, senses.max_ms), image.hex(" ")
-        ends[run.trace.split()[-1]] += 1
-    assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
+        count_by_end[run.trace.split()[-1]] += 1
+    assert {"DONE", "LIMIT", "NO_POWER"} <= set(count_by_end), count_by_end
 
 
 def some_way_programs(first_seed: int, count: int) -> list[tuple[bytes, Kit, Senses]]:

@@ -41,9 +41,9 @@ class Debugged:
     def start(self, is_detached: bool = False) -> None:
         assert self.robot.until(self.session, self.session.start(is_detached)) == OK
 
-    def go(self, how: int = RESUME_GO) -> bool:
+    def go(self, mode: int = RESUME_GO) -> bool:
         """Go on; return whether it was halted."""
-        reply = self.robot.complete(self.session, self.session.resume(how))
+        reply = self.robot.complete(self.session, self.session.resume(mode))
         return bool(reply.was_halted)
 
     def step(self) -> bool:

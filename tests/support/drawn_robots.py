@@ -25,5 +25,5 @@ def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> l
     return drawings
 
 
-def shapes(drawing: Drawing, how: str, color: str) -> list[list[float]]:
-    return [numbers for kind, numbers, fill in drawing if (kind, fill) == (how, color)]
+def shapes(drawing: Drawing, style: str, color: str) -> list[list[float]]:
+    return [numbers for kind, numbers, fill in drawing if (kind, fill) == (style, color)]

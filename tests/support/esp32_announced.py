@@ -38,17 +38,17 @@ class Announced:
         self._network.close()
 
     def _follow(self) -> None:
-        before: Any = None
+        last_state: Any = None
         while not self._is_over.wait(LOOK_S):
             radios, number = self._read_radios()
             now = _info(radios, number) if radios.service else None
-            if now == before:
+            if now == last_state:
                 continue
-            if before is not None:
-                self._network.unregister_service(before)
+            if last_state is not None:
+                self._network.unregister_service(last_state)
             if now is not None:
                 self._network.register_service(now)
-            before = now
+            last_state = now
 
     def _read_radios(self) -> tuple[Radios, int]:
         packets: list[tuple[Radios, int]] = []

@@ -185,12 +185,15 @@ def announce_computer(robot: Esp32Robot, name: str, address: str, wait_ms: int =
 
 
 def talk(
-    robot: Esp32Robot, ends: Sequence[tuple[End | None, Client]], milliseconds: int, flags: int = 0
+    robot: Esp32Robot,
+    clients: Sequence[tuple[End | None, Client]],
+    milliseconds: int,
+    flags: int = 0,
 ) -> None:
     """Let all of them talk with the robot for a while; None is the end of the cable."""
     for _ in range(milliseconds):
         cable = b""
-        for end, client in ends:
+        for end, client in clients:
             data = client.poll(robot.now_ms)
             if end is None:
                 cable += data
@@ -198,7 +201,7 @@ def talk(
                 end.send(data)
         heard_bytes = robot.step(cable, flags, TICKS)
         flags = 0
-        for end, client in ends:
+        for end, client in clients:
             client.receive(heard_bytes if end is None else end.take(), robot.now_ms)
 
 

@@ -260,11 +260,11 @@ class FakeBluez:
             self.bus.export(ADAPTER, self.adapter)
         await self.bus.request_name("org.bluez")
 
-    def do(self, what: Callable[[], Any]) -> None:
+    def do(self, function: Callable[[], Any]) -> None:
         """Do something in the bus's thread."""
 
         async def work() -> None:
-            what()
+            function()
 
         asyncio.run_coroutine_threadsafe(work(), self.loop).result(STEP_S)
 

@@ -352,7 +352,7 @@ def computer_of(case: LinkCase) -> HandSender | SessionSide:
 
 def has_session(case: LinkCase) -> bool:
     rows = [row.split()[:2] for row in case.rows]
-    return not any(["host", what] in rows for what in ("sends", "bytes", "types"))
+    return not any(["host", kind] in rows for kind in ("sends", "bytes", "types"))
 
 
 class CppSide:

@@ -25,11 +25,13 @@ STEP_S = 0.0005  # one millisecond of the chip; the broker runs in real time
 class Mosquitto:
     """A broker. With `password`, it admits only `user`."""
 
-    def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
+    def __init__(
+        self, folder: Path, user: str = "", password: str = "", extra_lines: str = ""
+    ) -> None:
         need("" if PROGRAM else "needs the broker mosquitto")
         assert PROGRAM
         self.clients: list[Broker] = []
-        lines = ["persistence false", f"user {_user_name()}", more]
+        lines = ["persistence false", f"user {_user_name()}", extra_lines]
         if user:
             passwords = folder / "passwords"
             passwords.touch(mode=0o600)

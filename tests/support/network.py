@@ -50,8 +50,10 @@ class Network:
                 for end in (client, server):
                     end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                     self._ends.append(end)
-                for ends in ((client, server, False), (server, client, True)):
-                    threading.Thread(target=self._pass, args=(*ends, number), daemon=True).start()
+                for direction in ((client, server, False), (server, client, True)):
+                    threading.Thread(
+                        target=self._pass, args=(*direction, number), daemon=True
+                    ).start()
 
     def _pass(self, source: socket.socket, sink: socket.socket, is_back: bool, number: int) -> None:
         with contextlib.suppress(OSError):

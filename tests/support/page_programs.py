@@ -22,12 +22,12 @@ def unfold(page: Page) -> None:
     page.locator("#programs[data-shared]:not([data-shared=asked])").wait_for()
 
 
-def share(page: Page, how: str = "link") -> str:
+def share(page: Page, kind: str = "link") -> str:
     """Open the window if necessary, and return the shared link."""
     if not page.locator("#programs").is_visible():
         page.click("#my_programs")
     unfold(page)
-    page.click(f"#share_{how}")
+    page.click(f"#share_{kind}")
     page.locator("#programs:not([data-shared=asked])").wait_for()
     return str(page.input_value("#shared"))
 

@@ -74,11 +74,11 @@ def build_changed_sketch(
     return project / ".pio" / "build" / environment / "firmware.elf"
 
 
-def firmware(board: str, own: Path, shared_path: Path) -> Path:
+def firmware(board: str, build_folder: Path, shared_path: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
 
     def make(path: Path) -> None:
-        project = copy_sketch(own)
+        project = copy_sketch(build_folder)
         pio(project, "run", "-e", board).gives(0)
         shutil.copy(project / ".pio" / "build" / board / "firmware.elf", path)
 

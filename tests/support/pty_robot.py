@@ -77,10 +77,10 @@ class PtyRobot(PtyPort):
         """Write data to the port in the robot's place."""
         os.write(self.ours, data)
 
-    def ask(self, what: Callable[[HostFirmware], object]) -> None:
+    def ask(self, function: Callable[[HostFirmware], object]) -> None:
         with self._lock:
             assert self._robot
-            what(self._robot)
+            function(self._robot)
 
     def push(self) -> None:
         """Push the button, and let it go."""
@@ -134,9 +134,9 @@ class PtyRobot(PtyPort):
         if self._robot:
             self._robot.close()
 
-    def until(self, is_so: Callable[[], bool], what: str) -> None:
+    def until(self, is_so: Callable[[], bool], description: str) -> None:
         """Wait until something is so."""
-        waiting.until(is_so, what)
+        waiting.until(is_so, description)
 
     def stands_after_ms(self, began_ms: int) -> int:
         """Wait until the motors are off; return how long that took of the robot's own time.

@@ -85,9 +85,9 @@ class RobotFleet:
         for pupil in self.pupils:
             pupil.close()
 
-    def until(self, is_so: Callable[[], bool], what: str) -> None:
+    def until(self, is_so: Callable[[], bool], description: str) -> None:
         """Wait until something is so."""
-        waiting.until(is_so, what)
+        waiting.until(is_so, description)
 
     def _run(self) -> None:
         by_end = {pupil.ours: pupil for pupil in self.pupils}

@@ -30,8 +30,8 @@ def computer(nonce: int = 1) -> Session:
     return Session(nonce, 9600, KIT.fingerprint)
 
 
-def send(robot: HostFirmware, session: Session, text: str, **how: bool) -> None:
-    assert robot.until(session, session.upload(image_of(text), **how)) == OK
+def send(robot: HostFirmware, session: Session, text: str, **options: bool) -> None:
+    assert robot.until(session, session.upload(image_of(text), **options)) == OK
 
 
 T = TypeVar("T")

@@ -50,10 +50,12 @@ def sensed_run(
         robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
         events += robot.talk(rng.randint(1, most_ms))
     rows = (line.split(" ", 1) for line in robot.robot.did[first_row:])
-    return SensedRun([(float(ms), what) for ms, what in rows], events, readings)
+    return SensedRun([(float(ms), action) for ms, action in rows], events, readings)
 
 
 def is_steady(text: str, seed: int) -> bool:
     """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
-    usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
+    usual, *others = (
+        sensed_run(text, seed, False, BYTE_TICKS + tick_shift).did for tick_shift in (0, -1, 1)
+    )
     return all(largest_difference_ms(usual, other_run) <= LARGEST_DELAY_MS for other_run in others)

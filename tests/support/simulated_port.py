@@ -108,22 +108,22 @@ class SimulatedPort:
 
 
 @contextmanager
-def simulate(*ends: PtyPort) -> Iterator[None]:
+def simulate(*pty_ports: PtyPort) -> Iterator[None]:
     """Within it, ports opened by this process use the time of their other end."""
     actual = serial_transport._open
-    by_port = {end.port: end for end in ends}
+    by_port = {end.port: end for end in pty_ports}
 
     def open_port(port: str, baud: int) -> serial.SerialBase | SimulatedPort:
         device = actual(port, baud)
         return SimulatedPort(by_port[port], device) if port in by_port else device
 
     def now_s() -> float:
-        port = ends[0].simulated
+        port = pty_ports[0].simulated
         return port.now_ms() / 1000 if port else time.monotonic()
 
     with ExitStack() as stack:
         stack.enter_context(mock.patch.object(serial_transport, "_open", open_port))
-        if len(ends) == 1:
+        if len(pty_ports) == 1:
             for module in (recorder, run_monitor):
                 stack.enter_context(mock.patch.object(module, "monotonic", now_s))
             stack.enter_context(mock.patch.object(examination, "perf_counter", now_s))

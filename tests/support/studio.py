@@ -140,10 +140,12 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 
 
 @contextmanager
-def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Iterator[Browser]:
+def browser(
+    playwright: Playwright, *more_options: str, is_whole: bool = False
+) -> Iterator[Browser]:
     """A browser; the complete one is the one that people have. `more` are options of it."""
     path, options = (chromium(), BROWSER_OPTIONS) if is_whole else (headless(), OPTIONS)
-    browser = playwright.chromium.launch(executable_path=path, args=[*options, *more])
+    browser = playwright.chromium.launch(executable_path=path, args=[*options, *more_options])
     try:
         yield browser
     finally:
@@ -355,11 +357,11 @@ def wait_for_phase(page: Page, phase: str) -> None:
     page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
 
 
-def wait_for(page: Page, is_so: Callable[[], object], what: str) -> None:
+def wait_for(page: Page, is_so: Callable[[], object], description: str) -> None:
     """Wait until something is so that a page tells of while it is waited for."""
     end_s = monotonic() + HANG_LIMIT_S
     while not is_so():
-        assert monotonic() < end_s, f"not after {HANG_LIMIT_S} s: {what}"
+        assert monotonic() < end_s, f"not after {HANG_LIMIT_S} s: {description}"
         page.wait_for_timeout(20)
 
 

@@ -34,10 +34,10 @@ def check_line(text: str, kit: Kit) -> None:
     text_codes, line_codes = (
         sorted(
             diagnostic.code.number
-            for diagnostic in one.diagnostics
+            for diagnostic in result.diagnostics
             if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
         )
-        for one in (compilation, compiled_line)
+        for result in (compilation, compiled_line)
     )
     assert text_codes == line_codes
     assert line_of(Source(line)) == line

@@ -22,35 +22,37 @@ class Thief:
 
     def frame(self, epoch: int, seq: int) -> tuple[str, bytes]:
         chance = self.chance
-        how = chance.choice(
+        attack = chance.choice(
             ("replayed", "reflected", "other session", "cut", "changed", "unsealed", "moved",
              "forged", "sealed by another key")
         )  # fmt: skip
         mine = chance.choice(self.sent)
         frame = decode_frame(mine)
         assert frame
-        if how == "replayed":
-            return how, mine
-        if how == "reflected":
+        if attack == "replayed":
+            return attack, mine
+        if attack == "reflected":
             reply = decode_frame(chance.choice(self.replies))
-            return how, encoded(reply._replace(is_reply=False)) if reply else mine
-        if how == "other session":
-            return how, chance.choice(self.old)
-        if how == "cut":
-            return how, encoded(frame._replace(payload=frame.payload[: -chance.randrange(1, 13)]))
-        if how == "changed":
+            return attack, encoded(reply._replace(is_reply=False)) if reply else mine
+        if attack == "other session":
+            return attack, chance.choice(self.old)
+        if attack == "cut":
+            return attack, encoded(
+                frame._replace(payload=frame.payload[: -chance.randrange(1, 13)])
+            )
+        if attack == "changed":
             changed_bytes = bytearray(frame.payload)
             changed_bytes[chance.randrange(len(changed_bytes))] ^= 1 << chance.randrange(8)
-            return how, encoded(frame._replace(payload=bytes(changed_bytes)))
-        if how == "unsealed":
+            return attack, encoded(frame._replace(payload=bytes(changed_bytes)))
+        if attack == "unsealed":
             payload = frame.payload[5:-8]
-            return how, encoded(frame._replace(payload=payload, seq=seq, is_sealed=False))
-        if how == "moved":  # changes the number of the request, the message or the counter
+            return attack, encoded(frame._replace(payload=payload, seq=seq, is_sealed=False))
+        if attack == "moved":  # changes the number of the request, the message or the counter
             count = chance.choice((seq, chance.randrange(256))) if chance.random() < 0.5 else 0
             rising = frame.payload[:1] + (2**32 - 1).to_bytes(4, "little") + frame.payload[5:]
             number = chance.choice((frame.number, 7, 8, 9, 19))
             payload = chance.choice((frame.payload, rising))
-            return how, encoded(frame._replace(payload=payload, seq=count, number=number))
+            return attack, encoded(frame._replace(payload=payload, seq=count, number=number))
         acting = [
             message for message in MESSAGES if 6 <= message.number < 32 and message.number != 17
         ]
@@ -58,13 +60,13 @@ class Thief:
         low = sum(field.least_bytes for field in message.request)
         high = min(sum(field.most_bytes for field in message.request), SEALED_PAYLOAD_BYTES)
         asked_frame = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
-        if how == "forged":
+        if attack == "forged":
             counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
             whole = b"\0" + counter + asked_frame.payload + chance.randbytes(8)
-            return how, encoded(asked_frame._replace(payload=whole, is_sealed=True))
+            return attack, encoded(asked_frame._replace(payload=whole, is_sealed=True))
         seal = Seal(chance.randbytes(16))
         seal.sent_counter = 10_000
-        return how, encoded(seal.seal_frame(asked_frame))
+        return attack, encoded(seal.seal_frame(asked_frame))
 
 
 def encoded(frame: Frame) -> bytes:

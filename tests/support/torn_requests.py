@@ -10,14 +10,14 @@ if TYPE_CHECKING:
 
 
 def tear_requests(
-    page: Page, what: str, tear: Callable[[Route], None], times: int = 1
+    page: Page, verb: str, tear: Callable[[Route], None], times: int = 1
 ) -> list[str]:
     """Tear this many requests that contain `what`; return the list of those."""
     torn: list[str] = []
 
     def handle(route: Route) -> None:
         data = route.request.post_data or ""
-        if f'"do":"{what}"' not in data or len(torn) >= times:
+        if f'"do":"{verb}"' not in data or len(torn) >= times:
             route.continue_()
             return
         torn.append(data)

@@ -73,12 +73,12 @@ def parsed_trace(trace: str) -> tuple[list[Setting], list[float]]:
 def lasting(settings: list[Setting]) -> list[Setting]:
     """Return the settings that are different from the one before, and last; the last one does."""
     settings = [
-        setting for before, setting in pairwise([Setting(-1.0, 101, 0), *settings])
-        if before[1:] != setting[1:]
+        setting for earlier_setting, setting in pairwise([Setting(-1.0, 101, 0), *settings])
+        if earlier_setting[1:] != setting[1:]
     ]  # fmt: skip
-    ends = [setting.ms for setting in settings[1:]] + [float("inf")]
+    end_times_ms = [setting.ms for setting in settings[1:]] + [float("inf")]
     lasting_settings = [Setting(-1.0, 0, 0)]
-    for setting, end_ms in zip(settings, ends[: len(settings)], strict=True):
+    for setting, end_ms in zip(settings, end_times_ms[: len(settings)], strict=True):
         if end_ms - setting.ms >= SHORT_MS and setting[1:] != lasting_settings[-1][1:]:
             lasting_settings.append(setting)
     return lasting_settings[1:]
@@ -89,8 +89,8 @@ def simulate_pings(distances: list[float]) -> list[float]:
     that jumps.
     """
     heard_cm = distances[:1] * 3
-    for before, now in pairwise(distances):
-        is_far = abs(now - before) > max(3, before / 5)
+    for last_distance, now in pairwise(distances):
+        is_far = abs(now - last_distance) > max(3, last_distance / 5)
         heard_cm += [now] * (1 + is_far)
     return heard_cm
 
@@ -138,8 +138,10 @@ def check_pins(case: Case, uno: Uno) -> None:
         expected = [setting for setting in expected if setting.ms < end_ms]
     assert [setting[1:] for setting in settings] == [setting[1:] for setting in expected]
     for pins, line in zip(settings, expected, strict=True):
-        before = sum(read_ms <= line.ms for read_ms in reads)
-        late_ms = OFF_MS + READING_MS * before + (FIRST_READING_MS - READING_MS) * bool(before)
+        read_count = sum(read_ms <= line.ms for read_ms in reads)
+        late_ms = (
+            OFF_MS + READING_MS * read_count + (FIRST_READING_MS - READING_MS) * bool(read_count)
+        )
         assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
     if is_over:
         lines = [line.split(" ", 1)[1] for line in trace.splitlines()]

@@ -9,11 +9,11 @@ from pathlib import Path
 HANG_LIMIT_S = 120.0
 
 
-def until(is_so: Callable[[], bool], what: str, limit_s: float = HANG_LIMIT_S) -> None:
+def until(is_so: Callable[[], bool], description: str, limit_s: float = HANG_LIMIT_S) -> None:
     """Wait until something is so."""
     end_s = time.monotonic() + limit_s
     while not is_so():
-        assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
+        assert time.monotonic() < end_s, f"not after {limit_s} s: {description}"
         time.sleep(0.01)
 
 

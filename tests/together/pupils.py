@@ -103,23 +103,23 @@ class Pupil:
         k = round(self._chance.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
         return ids[max(0, min(len(ids) - 1, k))]
 
-    def _at(self, view: Tree, one: str) -> Place:
-        if not one or self._chance.random() < 0.1:
+    def _at(self, view: Tree, block_id: str) -> Place:
+        if not block_id or self._chance.random() < 0.1:
             return Place(ROOT, START if view[START].text else "")
-        if view[one].kind == BLOCK and self._chance.random() < 0.4:
-            return Place(one, "")
-        return Place(view[one].parent, one)
+        if view[block_id].kind == BLOCK and self._chance.random() < 0.4:
+            return Place(block_id, "")
+        return Place(view[block_id].parent, block_id)
 
-    def _insert(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+    def _insert(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         new = tuple(Subtree(self.page.new_id(), self._simple())
                     for _ in range(self._chance.choice((1, 1, 1, 2, 3))))  # fmt: skip
         if self._chance.random() < 0.25:
             new = (Subtree(self.page.new_id(), self._make_head(), children=new),)
-        return [Insert(self._at(view, one), new)]
+        return [Insert(self._at(view, block_id), new)]
 
-    def _run(self, view: Tree, one: str, most: int, has_arms: bool = True) -> list[str]:
-        siblings = view[view[one].parent].children
-        k = siblings.index(one)
+    def _run(self, view: Tree, block_id: str, most: int, has_arms: bool = True) -> list[str]:
+        siblings = view[view[block_id].parent].children
+        k = siblings.index(block_id)
         run = []
         for id in siblings[k : k + self._chance.randint(1, most)]:
             if id == START or (not has_arms and view[id].kind == ARM):
@@ -127,29 +127,29 @@ class Pupil:
             run.append(id)
         return run
 
-    def _delete(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
-        run = self._run(view, one, 3)
+    def _delete(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
+        run = self._run(view, block_id, 3)
         arms = tuple(id for id in run if view[id].kind == ARM and view.ids_of_arm(id)
                      and set(view.ids_of_arm(id)) <= set(run))  # fmt: skip
         return [Delete(tuple(child_id for id in run for child_id in view.subtree_ids(id)), arms)]
 
-    def _move(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
-        run = self._run(view, one, 3, has_arms=False)
+    def _move(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
+        run = self._run(view, block_id, 3, has_arms=False)
         to = self._near(ids)
         if not run or any(view.is_in(to, id) for id in run):
             return []
         return [Move(tuple(run), self._at(view, to))]
 
-    def _wrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
-        run = self._run(view, one, 4, has_arms=False)
+    def _wrap(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
+        run = self._run(view, block_id, 4, has_arms=False)
         return [Wrap(tuple(run), Subtree(self.page.new_id(), self._make_head()))] if run else []
 
-    def _unwrap(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+    def _unwrap(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         blocks = [id for id in ids if view[id].kind == BLOCK]
         return [Unwrap(self._chance.choice(blocks))] if blocks else []
 
-    def _replace(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
-        node, k = view[one], next(self._numbers)
+    def _replace(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
+        node, k = view[block_id], next(self._numbers)
         if node.kind == INSTRUCTION:
             text = self._simple()
         elif node.kind == BLOCK:
@@ -158,14 +158,14 @@ class Pupil:
             text = self._own(f"// c{k}")
         else:
             return []
-        return [Replace(one, (("text", text),))]
+        return [Replace(block_id, (("text", text),))]
 
-    def _note(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
-        if view[one].kind == NOTE:
+    def _note(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
+        if view[block_id].kind == NOTE:
             return []
-        return [Replace(one, (("note", self._own(f"// n{next(self._numbers)}")),))]
+        return [Replace(block_id, (("note", self._own(f"// n{next(self._numbers)}")),))]
 
-    def _arm(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+    def _arm(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         ifs = [id for id in ids if view[id].text.startswith("IF")]
         if not ifs:
             return []
@@ -174,12 +174,12 @@ class Pupil:
         place = Place(block, self._chance.choice(["", *view[block].children]))
         return [Insert(place, (Subtree(self.page.new_id(), self._own(arm)),))]
 
-    def _comment(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+    def _comment(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         text, is_apart = self._own(f"// c{next(self._numbers)}"), self._chance.random() < 0.5
         new = Subtree(self.page.new_id(), text, apart=is_apart)
-        return [Insert(self._at(view, one), (new,))]
+        return [Insert(self._at(view, block_id), (new,))]
 
-    def _start(self, view: Tree, ids: list[str], one: str) -> list[Operation]:
+    def _start(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         return [Replace(START, (("text", self._chance.choice(("SI|", "SB|"))),))]
 
     # -- with the keyboard ------------------------------------------------------------------------
@@ -265,7 +265,7 @@ class Pupil:
             text.insert(k + 1, "")
             return text, k + 1, True
 
-        def more(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def next_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             nonlocal row_number
             row_number += 1
             if not text:
@@ -276,7 +276,7 @@ class Pupil:
             text.insert(caret + 1, "")
             return text, caret + 1, True
 
-        return [first_step, *[more] * (len(rows) - 1)]
+        return [first_step, *[next_step] * (len(rows) - 1)]
 
     def _plan_around(self) -> list[Stage]:
         head = self._make_head()

@@ -142,11 +142,11 @@ def edit_rows(chance: Random, rows: list[str]) -> list[str]:
 def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
     chance, tried = Random(seed), Counter[str]()
     while sum(tried.values()) < PROGRAMS:
-        before = program(chance, chance.randint(0, 20))
-        after = edit_rows(chance, before) if chance.random() < 0.8 else program(chance, 12)
+        tree_before = program(chance, chance.randint(0, 20))
+        after = edit_rows(chance, tree_before) if chance.random() < 0.8 else program(chance, 12)
         numbers, new_numbers = count(1), count(1)
         try:
-            old = parse_tree("\n".join(before), lambda: f"o.{next(numbers)}")  # noqa: B023
+            old = parse_tree("\n".join(tree_before), lambda: f"o.{next(numbers)}")  # noqa: B023
             new = parse_tree("\n".join(after))
         except Unparsed:
             continue

@@ -121,11 +121,11 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
         assert resumed is not None and resumed.number >= kept_number
 
     def checked_call(call: Callable[..., Any]) -> Callable[..., Any]:
-        def write_before(*arguments: Any, **more: Any) -> Any:
+        def write_before(*arguments: Any, **keywords: Any) -> Any:
             look()
             if is_full:
                 raise OSError(errno.ENOSPC, "full")
-            return call(*arguments, **more)
+            return call(*arguments, **keywords)
 
         return write_before
 

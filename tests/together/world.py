@@ -94,13 +94,13 @@ class World:
         self.off_until_s = dict.fromkeys(names, 0.0)
         self.turn = dict.fromkeys(names, 0)
 
-    def at(self, after_s: float, do: Callable[..., None], *what: Any) -> None:
-        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), do, what))
+    def at(self, after_s: float, do: Callable[..., None], *arguments: Any) -> None:
+        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), do, arguments))
 
     def run(self, is_over: Callable[[], bool]) -> None:
         while self._queue and not is_over():
-            self.now_s, _, do, what = heapq.heappop(self._queue)
-            do(*what)
+            self.now_s, _, do, arguments = heapq.heappop(self._queue)
+            do(*arguments)
 
     def _send_and_parse(self, data: Json) -> Json:
         copy: Json = json.loads(json.dumps(data))
@@ -142,18 +142,18 @@ class World:
         for row in sent_data:
             change, program = change_of(row), self.program
             page, _ = page_and_count(change.uid)
-            decided, before = program.last_count_by_page.get(page, 0), program.tree
+            decided, tree_before = program.last_count_by_page.get(page, 0), program.tree
             if program.submit([change]):
                 self.all_taken.append(program.taken_changes[-1])
-                self._count_unseen(before, page, change.seen_number)
+                self._count_unseen(tree_before, page, change.seen_number)
             elif program.last_count_by_page.get(page, 0) > decided:
                 self.why[program.refusals_by_page[page][-1][1]] += 1
 
-    def _count_unseen(self, before: Tree, page: str, since: int) -> None:
+    def _count_unseen(self, tree_before: Tree, page: str, since: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
         for operation in self.all_taken[-1].operations:
-            if isinstance(operation, Replace) and operation.id in before:
-                by = before[operation.id].mark(operation.fields[0][0])
+            if isinstance(operation, Replace) and operation.id in tree_before:
+                by = tree_before[operation.id].mark(operation.fields[0][0])
                 self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
                     change.uid == by and change.number > since for change in self.all_taken[-50:]
                 )  # fmt: skip
@@ -180,13 +180,13 @@ class World:
 
     def crash(self) -> None:
         """The class's computer goes on from its journal."""
-        before = self.program
+        old_program = self.program
         self.program = program_of(self._snapshot, self._keep)
         self.program.replay(self._rows)
-        assert self.program.tree.checksum() == before.tree.checksum()
+        assert self.program.tree.checksum() == old_program.tree.checksum()
         assert (self.program.number, self.program.last_count_by_page) == (
-            before.number,
-            before.last_count_by_page,
+            old_program.number,
+            old_program.last_count_by_page,
         )
         self.counts["crashes"] += 1
         self.program.epoch = f"e{self.counts['crashes']}"
@@ -217,11 +217,15 @@ class World:
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks form the same program.
         round_tripped = format_blocks(read_blocks(text, KIT)).text
-        one, other_result = (
+        result, other_result = (
             compile_text(_with_x_set(text), KIT),
             compile_text(_with_x_set(round_tripped), KIT),
         )
-        assert one.image and one.image == other_result.image, (text, round_tripped, one.diagnostics)
+        assert result.image and result.image == other_result.image, (
+            text,
+            round_tripped,
+            result.diagnostics,
+        )
         # No two pupils' values were mixed; no node is there twice.
         for node in tree.node_by_id.values():
             assert node.text in self.typed or node.id in (ROOT, START), node.text
@@ -234,11 +238,11 @@ class World:
 
     def _check_instructions(self, tree: Tree, text: str, body: Sequence[Instruction]) -> None:
         """Each node is one instruction of the AST, in order, with the text that it has."""
-        own = [tree[id] for id in tree.subtree_ids()[1:] if id != START]
-        own = [node for node in own if node.kind in (INSTRUCTION, BLOCK)]
+        nodes = [tree[id] for id in tree.subtree_ids()[1:] if id != START]
+        nodes = [node for node in nodes if node.kind in (INSTRUCTION, BLOCK)]
         walked = list(_walk(body))
-        assert len(own) == len(walked), text
-        for node, (instruction, kind) in zip(own, walked, strict=True):
+        assert len(nodes) == len(walked), text
+        for node, (instruction, kind) in zip(nodes, walked, strict=True):
             assert node.kind == kind
             if kind == INSTRUCTION and not isinstance(instruction, Break):
                 span = instruction.span
