@@ -232,8 +232,8 @@ def test_a_robot_that_cannot_halt_gets_nothing(
 
 
 # Arrows, also with Ctrl; F1 to F5, on a console, too; Delete; Alt with a letter.
-SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{last}" for last in "PQRS"), "\x1b[15~",
-             *(f"\x1b[[{last}" for last in "ABCDE"), "\x1b[3~", "\x1bs", "\x1bg"]  # fmt: skip
+SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{final}" for final in "PQRS"), "\x1b[15~",
+             *(f"\x1b[[{final}" for final in "ABCDE"), "\x1b[3~", "\x1bs", "\x1bg"]  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", range(50))

@@ -176,13 +176,13 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
 )  # fmt: skip
 def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
     """None of its output is read: text, bytes, or mistakes."""
-    ours, theirs = os.pipe()
-    os.close(ours)
+    read_end, write_end = os.pipe()
+    os.close(read_end)
     try:
-        completed = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
-                              stderr=theirs, timeout=HANG_LIMIT_S)  # fmt: skip
+        completed = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=write_end,
+                              stderr=write_end, timeout=HANG_LIMIT_S)  # fmt: skip
     finally:
-        os.close(theirs)
+        os.close(write_end)
     assert completed.returncode == EXIT_OF_CLOSED_PIPE
 
 

@@ -70,12 +70,12 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
 def test_an_invalid_certificate_is_reported_before_the_robot_is_asked(tmp_path: Path) -> None:
     authority, other_authority = Authority(tmp_path), Authority(tmp_path, "Otra")
     text = authority.file.read_bytes()
-    begin = text.index(b"-----BEGIN")
+    pem_start = text.index(b"-----BEGIN")
     files = {
-        "none": b"", "text": b"hello\n", "cut": text[: begin + 200], "der": authority.der[:-1],
+        "none": b"", "text": b"hello\n", "cut": text[: pem_start + 200], "der": authority.der[:-1],
         "two der": authority.der + other_authority.der,
         "two": text + other_authority.file.read_bytes(), "junk": text.replace(b"M", b"!"),
-        "long": text[:begin] + bytes(5000), "key": (tmp_path / "Aula.key").read_bytes(),
+        "long": text[:pem_start] + bytes(5000), "key": (tmp_path / "Aula.key").read_bytes(),
     }  # fmt: skip
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)

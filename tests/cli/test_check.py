@@ -160,12 +160,12 @@ def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) 
 
 def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None:
     for end, bom, has_last in product(("\n", "\r\n", "\r"), (b"", b"\xef\xbb\xbf"), (False, True)):
-        last = end if has_last else ""
-        text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last}"
+        last_line_end = end if has_last else ""
+        text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last_line_end}"
         (folder / "b.ts").write_bytes(bom + text.encode())
-        assert tsc("check", "--fix", "b.ts").code == 0, (end, bom, last)
-        right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
-        assert (folder / "b.ts").read_bytes() == bom + right.encode()
+        assert tsc("check", "--fix", "b.ts").code == 0, (end, bom, last_line_end)
+        repaired_text = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last_line_end}"
+        assert (folder / "b.ts").read_bytes() == bom + repaired_text.encode()
 
 
 def test_binary_data_and_a_line_with_a_checksum_stay_as_they_are(folder: Path, tsc: Tsc) -> None:

@@ -46,7 +46,7 @@ from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
-drawn = pytest.mark.sampled(of="commands for a class", keep=1)
+few = pytest.mark.sampled(of="commands for a class", keep=1)
 
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
@@ -175,7 +175,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(0)
 
 
-@drawn
+@few
 def test_whoever_only_looks_changes_nothing(room: Class) -> None:
     """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
@@ -219,7 +219,7 @@ def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
         assert {name: options.get(name, "none") for name in lacks} == lacks
 
 
-@drawn
+@few
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
@@ -411,7 +411,7 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
-@drawn
+@few
 def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> None:
     access = Access("robots", SECRET.decode())
     topic = f"{ROOT}/3b/{SEEDS[0] ^ 1:08x}"

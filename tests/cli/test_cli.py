@@ -180,13 +180,13 @@ def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
 
 
 def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
-    for text, steps, last in (
+    for text, steps, last_line in (
         ("W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "50", "2000 LIMIT"),
         ("X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP", "100", "60000 LIMIT"),
         ("LOOP(FOREVER);W(0);END_LOOP", "100", "0 LIMIT"),
     ):
         result = tsc("run", "-e", text, "--max-steps", steps)
-        assert (result.code, result.out.splitlines()[-1]) == (0, last), text
+        assert (result.code, result.out.splitlines()[-1]) == (0, last_line), text
 
 
 def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
@@ -227,11 +227,11 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
     with its number."""
     target = tmp_path / "a.bin"
     tsc("compile", "-e", OBSTACLE, "-o", target)
-    whole = target.read_bytes()
+    image = target.read_bytes()
     for data, word in (
-        (whole[:-1], "missing"),
-        (whole + b"x", "longer"),
-        (whole[:-1] + b"\xff", "damaged"),
+        (image[:-1], "missing"),
+        (image + b"x", "longer"),
+        (image[:-1] + b"\xff", "damaged"),
         (b"", "not a compiled"),
         (b"SI|F(2,80)", "not a compiled"),
         (bytes.fromhex("54530100000000000300101604fa443250"),

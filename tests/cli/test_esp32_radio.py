@@ -162,10 +162,10 @@ def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> 
     place = f"socket://127.0.0.1:{bad.port}"
     for _ in range(3):
         run_in_process("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    assert run_in_process("compile", "-e", LONG, "-o", ours).code == 0
-    assert run_in_process("show", "-o", theirs, "--port", place).code == 0
-    assert ours.read_bytes() == theirs.read_bytes()
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    assert run_in_process("compile", "-e", LONG, "-o", compiled_file).code == 0
+    assert run_in_process("show", "-o", robot_file, "--port", place).code == 0
+    assert compiled_file.read_bytes() == robot_file.read_bytes()
     command = start_endless_upload(robot_in_network, place)
     assert process("stop", "--port", place).code == 0
     assert not robot_in_network.moves

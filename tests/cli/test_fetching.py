@@ -186,7 +186,7 @@ def clone(tmp_path: Path) -> Clone:
 
 
 @pytest.fixture
-def begin(clone: Clone) -> Iterator[Begin]:
+def start_fetching(clone: Clone) -> Iterator[Begin]:
     """Start commands of a person, which end with the test."""
     with ExitStack() as stack:
 
@@ -205,19 +205,25 @@ def begin(clone: Clone) -> Iterator[Begin]:
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
 def test_a_page_that_is_missing_is_built_after_a_yes(
-    clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, expected: str
+    clone: Clone,
+    start_fetching: Begin,
+    words: list[str],
+    size: str,
+    asks: str,
+    yes: str,
+    expected: str,
 ) -> None:
     """Without a yes, nothing happens; without a person, it prints the instructions."""
     clone.install_node()
     clone.works("time.sleep(0.5)")
     clone.run_without_terminal(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
     for answer in ("n", "", "what?"):
-        person = begin(clone.studio())
+        person = start_fetching(clone.studio())
         person.sees("[y/N]")
         person.types(answer)
         assert person.wait_for_exit() == 2, answer
         assert "nothing was downloaded" in person.output and not clone.page.exists()
-    person = begin(clone.studio(*words))
+    person = start_fetching(clone.studio(*words))
     assert size in person.sees(asks) and "node.js" not in person.output
     assert not clone.page.exists()
     person.types(yes)
@@ -239,37 +245,37 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     ([], "is out of date: the sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
 def test_a_page_of_other_sources_is_told(
-    clone: Clone, begin: Begin, words: list[str], expected: str
+    clone: Clone, start_fetching: Begin, words: list[str], expected: str
 ) -> None:
     clone.install_node()
     build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
     subprocess.run(build, env=clone.variables(), cwd=clone.root, check=True)
-    for new in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
-        path = clone.put(new, "") if new else None
-        person = begin(clone.studio(*words))
+    for source_name in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
+        path = clone.put(source_name, "") if source_name else None
+        person = start_fetching(clone.studio(*words))
         output = person.sees("http://127.0.0.1:")
-        assert (expected in output) is (" ".join(build) in output) is bool(new), output
+        assert (expected in output) is (" ".join(build) in output) is bool(source_name), output
         if path:
             path.unlink()
 
 
-def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> None:
+def test_a_wheel_begins_with_the_same_question(clone: Clone, start_fetching: Begin) -> None:
     """A separate process builds the wheel, without this package."""
     clone.install_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
     for no, expected in (("n\n", "nothing was downloaded"), ("\x03", "")):
-        person = begin(command)
+        person = start_fetching(command)
         person.sees("[y/N]")
         person.type(no)
         assert person.wait_for_exit() == 2 and expected in person.output and not clone.page.exists()
-    person = begin(command)
+    person = start_fetching(command)
     person.sees("[y/N]")
     person.types("y")
     assert person.wait_for_exit() == 0 and clone.page.exists()
 
 
-def test_node_is_fetched_where_there_is_none(clone: Clone, begin: Begin) -> None:
-    person = begin(clone.studio())
+def test_node_is_fetched_where_there_is_none(clone: Clone, start_fetching: Begin) -> None:
+    person = start_fetching(clone.studio())
     output = person.sees("[y/N]")
     assert (
         f"about {building.NODE_MB + building.NPM_MB} MB" in output and "node.js from PyPI" in output
@@ -339,11 +345,11 @@ def test_what_fails_has_a_sentence_and_leaves_no_page(
     assert not clone.page.exists()
 
 
-def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) -> None:
+def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, start_fetching: Begin) -> None:
     clone.install_node()
     path = clone.root / "told"
     clone.works(f"Path({str(path)!r}).write_text(str(os.getpid())); time.sleep(600)")
-    person = begin(clone.studio("--yes"))
+    person = start_fetching(clone.studio("--yes"))
     until(lambda: path.exists() and bool(path.read_text()), "the build has begun")
     person.interrupt()
     assert person.wait_for_exit() == 2 and "Stopped." in person.output
@@ -359,16 +365,16 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) ->
     ([], "about 54 MB", "Continue? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
 def test_platformio_is_installed_after_a_yes(
-    clone: Clone, begin: Begin, words: list[str], size: str, asks: str
+    clone: Clone, start_fetching: Begin, words: list[str], size: str, asks: str
 ) -> None:
     """Then its compiler alone is asked for, if it is not there, and once."""
-    person = begin(clone.firmware())
+    person = start_fetching(clone.firmware())
     person.sees("[y/N]")
     person.types("n")
     assert person.wait_for_exit() == 2 and "nothing was downloaded" in person.output
     clone.run_without_terminal(clone.firmware()).gives(2, "--yes")
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
-    person = begin(clone.firmware(*words))
+    person = start_fetching(clone.firmware(*words))
     output = person.sees(asks)
     assert size in output and "4 MB" in output and "50 MB" in output
     person.types("y")

@@ -175,19 +175,19 @@ def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A stick that is pulled has the old file or the new one."""
-    old, writes = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
-    old.write_bytes(b"TS\2old")
+    old_file, writes = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
+    old_file.write_bytes(b"TS\2old")
     sync = os.fsync
 
     def look(number: int) -> None:
-        [new] = tmp_path.glob(f".*{files.NEW_ENDING}")
-        writes.append((old.read_bytes(), new.read_bytes()))
+        [new_file] = tmp_path.glob(f".*{files.NEW_ENDING}")
+        writes.append((old_file.read_bytes(), new_file.read_bytes()))
         sync(number)
 
     monkeypatch.setattr(os, "fsync", look)
-    outputs.write(old, b"TS\2new", "unwritable")
+    outputs.write(old_file, b"TS\2new", "unwritable")
     assert writes == [(b"TS\2old", b"TS\2new")]
-    assert old.read_bytes() == b"TS\2new"
+    assert old_file.read_bytes() == b"TS\2new"
 
 
 def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
@@ -226,16 +226,16 @@ def test_one_place_replaces_files() -> None:
 def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
     folder = files.cache_folder() / "maps"
     folder.mkdir(parents=True)
-    old, new = folder / ".x.json.00.new", folder / ".y.json.00.new"
+    old_path, new_path = folder / ".x.json.00.new", folder / ".y.json.00.new"
     older = folder / "0badcafe.1234"  # a name in the form of older versions
-    for path in (old, new, older):
+    for path in (old_path, new_path, older):
         path.write_bytes(b"")
-    for path in (old, older):
+    for path in (old_path, older):
         os.utime(path, (time() - 7200, time() - 7200))
     assert tsc("compile", "-e", PROGRAM, "-o", tmp_path / "x.bin").code == 0
     names = {path.name for path in folder.iterdir()}
-    assert {old.name, older.name} & names == set()
-    assert new.name in names, "another command may be writing it now"
+    assert {old_path.name, older.name} & names == set()
+    assert new_path.name in names, "another command may be writing it now"
     empty = folder / "00000001.json"
     empty.write_bytes(b"")
     assert source_map.recall(1) is None

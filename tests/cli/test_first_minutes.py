@@ -65,7 +65,7 @@ LOOKS = 300  # most events to look at while a command may need time to save
 @pytest.fixture
 def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that looks at events long after its time is over fails: it would never end."""
-    whole, look_count = Connection.event, 0
+    wait_for_event, look_count = Connection.event, 0
 
     def count_and_wait(
         connection: Connection, limit_s: float = POLL_INTERVAL_S
@@ -73,7 +73,7 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
         nonlocal look_count
         look_count += connection.is_time_over
         assert look_count < LOOKS, "its time is over, and it goes on"
-        return whole(connection, limit_s)
+        return wait_for_event(connection, limit_s)
 
     monkeypatch.setattr(Connection, "event", count_and_wait)
 

@@ -70,12 +70,12 @@ def step_calls(
     after: int,
 ) -> None:
     """Make calls of a function, whose first argument contains a port, pass two stages."""
-    whole: Callable[..., Any] = getattr(owner, name)
+    step: Callable[..., Any] = getattr(owner, name)
 
     def interrupt_step(target: Any, *words: Any, **keyword_arguments: Any) -> Any:
         port = target if isinstance(target, str) else target.port
         room.at(early_stage, port)
-        outcome = whole(target, *words, **keyword_arguments)
+        outcome = step(target, *words, **keyword_arguments)
         room.at(after, port)
         return outcome
 

@@ -142,12 +142,12 @@ def test_a_terminal_that_becomes_wider_or_narrower_gets_all_of_it() -> None:
     [(0, 1000), (3_000, 97_000), (412_000, 419_000), (-5000, 5000), (7, 7), (0, 1), (-9, 10**9)],
 )
 def test_an_axis_has_round_marks_around_the_values(low: int, high: int) -> None:
-    begin, end, step = scale(low, high)
-    assert begin <= low and end >= high
-    assert begin % step == 0 and end % step == 0
+    low_end, end, step = scale(low, high)
+    assert low_end <= low and end >= high
+    assert low_end % step == 0 and end % step == 0
     digits = str(step).rstrip("0")
     assert digits in ("1", "2", "5"), step
-    assert 1 <= (end - begin) // step <= 6
+    assert 1 <= (end - low_end) // step <= 6
 
 
 def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:

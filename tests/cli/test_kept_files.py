@@ -235,21 +235,21 @@ def expected_values(kept_memory: Kept, counts_before: list[int], number: int) ->
 @each_kept_file
 def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
     kept_memory = KEPT_FILES[name]
-    for most in (0, 1, 10, 60):
+    for free_bytes in (0, 1, 10, 60):
         saved_numbers = restore(kept_memory, tmp_path)
 
-        def cut(most: int = most) -> None:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        def cut(free_bytes: int = free_bytes) -> None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (free_bytes, free_bytes))
             with suppress(BadKeys, CommandError, OSError):
                 kept_memory.add(SECOND_NUMBER)
 
         assert wait_for_child(fork_child(cut)) == 0
-        assert kept_memory.all() == saved_numbers, most
+        assert kept_memory.all() == saved_numbers, free_bytes
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
         kept_memory.add(SECOND_NUMBER)
         assert sorted(kept_memory.all()) == expected_values(
             kept_memory, saved_numbers, SECOND_NUMBER
-        ), most
+        ), free_bytes
 
 
 @pytest.mark.sampled("name", keep=2)

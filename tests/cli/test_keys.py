@@ -215,13 +215,13 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     key_file = KeyFile()
     for _ in range(6):
         key_file.create_pending_key(OWNER_KEY.id, OWNER_KEY.which, "TINI")
-        last = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.which, "TINI")
+        last_key = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.which, "TINI")
     other_key = key_file.create_pending_key(7, 0, "")
-    assert last and other_key
-    key_file.mark_stale(last)
+    assert last_key and other_key
+    key_file.mark_stale(last_key)
     robot_keys = key_file.keys_of_robot(OWNER_KEY.id)
     assert sorted(key.which for key in robot_keys) == [0, 0, 1, 1]
-    assert robot_keys[-1] == last._replace(is_stale=True) and key_file.keys_of_robot(7) == [
+    assert robot_keys[-1] == last_key._replace(is_stale=True) and key_file.keys_of_robot(7) == [
         other_key
     ]
 

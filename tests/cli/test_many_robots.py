@@ -86,8 +86,8 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
 def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -> None:
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
-    *others, last = class_.pupils
-    last.babble = babble
+    *others, last_robot = class_.pupils
+    last_robot.babble = babble
     result = run_in_process("upload", "-e", FOREVER, "--all", "--detach", "--json")
     rows = results(result)
     assert result.code == 3 and len(result.out) < 10_000
@@ -107,15 +107,15 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
-    *others, last = class_.pupils
+    *others, last_robot = class_.pupils
     assert run_in_process("upload", "-e", FOREVER, "--all", "--detach").code == 0
-    holder = ports.open_port(last.port, 115_200)
+    holder = ports.open_port(last_robot.port, 115_200)
     with monkeypatch.context() as short, closing(holder):
         short.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
             result = run_in_process("stop", *options, "--json")
             rows = results(result)
-            assert result.code == 3 and not rows[last.port]["is_done"]
+            assert result.code == 3 and not rows[last_robot.port]["is_done"]
             assert all(rows[pupil.port]["is_done"] for pupil in others)
             assert not any(pupil.moves for pupil in others)
             run_in_process("start", "--port", others[0].port, "--detach")

@@ -108,11 +108,13 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
 
 def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
     """Variables without room to be shown are forgotten; a longer line gets a message about it."""
-    most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with the event about X
-    result = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
+    longest_line = (
+        "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"
+    )  # 38 bytes, and 46 with the event about X
+    result = on(pty_robot, "live", "-", data=f"{longest_line}\nSHOW(X)\n".encode())
     assert result.code == 0 and result.out.count("X 1\n") == 1
     assert claim_with_button(pty_robot).code == 0
-    on(pty_robot, "live", "-", data=most.encode()).gives(0, "are lost", out="")
+    on(pty_robot, "live", "-", data=longest_line.encode()).gives(0, "are lost", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     result = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
     assert "42" in result.err

@@ -42,9 +42,9 @@ def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed_text: str, name
     for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
         assert keys.keys_at(20.66 + k / 25 - 0.01) == (held_state if k else NOTHING_PRESSED)
         keys.press_typed(typed_text, 20.66 + k / 25)
-    last = 20.66 + 19 / 25
-    assert keys.keys_at(last + REPEAT_HOLD_S - 0.01) == held_state
-    assert keys.keys_at(last + REPEAT_HOLD_S) == NOTHING_PRESSED
+    last_s = 20.66 + 19 / 25
+    assert keys.keys_at(last_s + REPEAT_HOLD_S - 0.01) == held_state
+    assert keys.keys_at(last_s + REPEAT_HOLD_S) == NOTHING_PRESSED
 
 
 def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
@@ -93,7 +93,7 @@ OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
     """Keys may be split anywhere, after any input: no part of a key is left for the next."""
     chance = random.Random(seed)
-    whole, cut = HeldKeys(), HeldKeys()
+    whole_keys, cut = HeldKeys(), HeldKeys()
     for k in range(20):
         typed_text, now_s = (
             chance.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
@@ -104,8 +104,8 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
             cut.press_typed(piece, now_s)
             for piece in (typed_text[:offset], "", typed_text[offset:], "")
         ]
-        assert any(leaves) == whole.press_typed(typed_text, now_s), (k, typed_text)
-        assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed_text)
+        assert any(leaves) == whole_keys.press_typed(typed_text, now_s), (k, typed_text)
+        assert cut.keys_at(now_s) == whole_keys.keys_at(now_s), (k, typed_text)
 
 
 @pytest.mark.parametrize("seed", range(20))

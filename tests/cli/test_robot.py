@@ -71,8 +71,8 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
         assert "lost the connection to the robot" in result.err
         pty_robot.switch_on()
         assert on(pty_robot, "show", "-o", tmp_path / "new.bin").code == 0
-    old = compile_text("SB|F(0.1, 40)", KIT).image
-    assert (tmp_path / "new.bin").read_bytes() == old
+    old_image = compile_text("SB|F(0.1, 40)", KIT).image
+    assert (tmp_path / "new.bin").read_bytes() == old_image
 
 
 # -- presence of a robot --------------------------------------------------------------------------

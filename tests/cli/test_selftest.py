@@ -121,11 +121,11 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     findings = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
     _, parts = find_with_selftest(pty_robot, "--robot", "liner")
     assert parts["store"]["cause"] == "unsaved"
-    ours = {finding["cause"]: finding for finding in parts.values()}
+    finding_by_cause = {finding["cause"]: finding for finding in parts.values()}
     assert {finding["cause"] for finding in findings} >= {"low_supply", "wrong_kit", "lossy"}
     for finding in findings:
         if finding["is_wrong"]:
-            its = ours[finding["cause"]]
+            its = finding_by_cause[finding["cause"]]
             assert (its["verdict"], its["next"]) == ("wrong", finding["next"])
             assert its["said"] == finding["said"]
 
@@ -175,11 +175,11 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
     assert wrong_findings and [finding["cause"] for finding in reported] == [
         finding["cause"] for finding in wrong_findings
     ]
-    for ours, its in zip(reported, wrong_findings, strict=True):
-        assert [ours[key] for key in ("said", "seen", "next")] == [
+    for reported_finding, its in zip(reported, wrong_findings, strict=True):
+        assert [reported_finding[key] for key in ("said", "seen", "next")] == [
             its[key] for key in ("said", "seen", "next")
         ]
-        assert ours["next"] != "tsc doctor"
+        assert reported_finding["next"] != "tsc doctor"
         assert all(sentence in text for sentence in (its["said"], its["seen"], its["next"]))
 
 
@@ -457,13 +457,13 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
         lambda talk: talk.turn_motor("left"),
         lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", ANSWER_AGAIN),
     ]
-    for last in ways:
+    for final_step in ways:
         typed = iter(["1\n"] * answers)
         talk = Conversation(cast(Connection, SimpleNamespace(language="en")))
         for _ in range(answers):
             ways[1](talk)
         with pytest.raises(NoPerson):
-            last(talk)
+            final_step(talk)
         typed = iter(["1\n"] * 10)  # more answers than questions
         actions.clear()
         capsys.readouterr()

@@ -73,19 +73,19 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
     """Noise on the line costs only time."""
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    ours.write_bytes(compile_text(LONG, KIT).image)
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    compiled_file.write_bytes(compile_text(LONG, KIT).image)
     for damages in (0, 211):
         pty_robot.damages = damages
-        result = on(pty_robot, "upload", ours, "--no-run", "--no-save")
+        result = on(pty_robot, "upload", compiled_file, "--no-run", "--no-save")
         assert (result.code, pty_robot.actions) == (0, [])
         assert "only in RAM   SI: waiting" in result.out
-        assert on(pty_robot, "show", "-o", theirs).code == 0
-        assert theirs.read_bytes() == ours.read_bytes(), damages
+        assert on(pty_robot, "show", "-o", robot_file).code == 0
+        assert robot_file.read_bytes() == compiled_file.read_bytes(), damages
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
         assert bool(fields["damaged"]) == bool(damages)
     listing = on(pty_robot, "show").out
-    assert listing.split("\n", 1)[1] == run_in_process("show", ours).out.split("\n", 1)[1]
+    assert listing.split("\n", 1)[1] == run_in_process("show", compiled_file).out.split("\n", 1)[1]
 
 
 def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:

@@ -200,8 +200,10 @@ def test_each_restart_counts_once(restarts_ms: int) -> None:
     first_values = hello_values(hello)
     assert hello is not None and first_values is not None
     (finding,) = examine(robot, hello, Expectations(KIT, "tinibot", NAMES.get), 20_000)
-    last = end.hello["nonce"]
-    assert isinstance(last, int) and finding.values["count"] == str(last - first_values.nonce)
+    last_nonce = end.hello["nonce"]
+    assert isinstance(last_nonce, int) and finding.values["count"] == str(
+        last_nonce - first_values.nonce
+    )
 
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])

@@ -215,7 +215,7 @@ def source_bytes(clone: Path) -> dict[str, bytes]:
 ROW = ":0400000001020304F2\n"
 
 
-@pytest.mark.parametrize(("text", "whole"), [
+@pytest.mark.parametrize(("text", "is_whole"), [
     (ROW + ":00000001FF\n", True),
     (ROW, False),  # a disk that was full
     ("", False),
@@ -223,13 +223,13 @@ ROW = ":0400000001020304F2\n"
     (ROW + ":0000", False),
     ("<p>no file</p>", False),
 ])  # fmt: skip
-def test_a_file_that_is_not_whole_is_built_anew(text: str, whole: bool) -> None:
+def test_a_file_that_is_not_whole_is_built_anew(text: str, is_whole: bool) -> None:
     folder = ready.firmware_cache()
     folder.mkdir(parents=True)
     (folder / ready.file_name_of("mine", "uno", "12")).write_text(text)
-    assert (ready.find("mine", "uno", "12") is not None) == whole
+    assert (ready.find("mine", "uno", "12") is not None) == is_whole
     assert ready.find("mine", "uno", "13") is None
-    assert len(ready.files(folder)) == whole
+    assert len(ready.files(folder)) == is_whole
 
 
 def test_the_cache_does_not_grow_for_ever() -> None:

@@ -126,10 +126,10 @@ def test_the_sentence_says_what_to_do() -> None:
 def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """The signal is heard before anybody knows the program."""
     processes: list[subprocess.Popen[bytes]] = []
-    begin = subprocess.Popen
+    real_popen = subprocess.Popen
 
     def interrupt_first(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
-        processes.append(begin(*arguments, **options))  # type: ignore[call-overload]
+        processes.append(real_popen(*arguments, **options))  # type: ignore[call-overload]
         if len(processes) == 1:  # Windows starts another program to end it
             signal.raise_signal(signal.SIGINT)
         return processes[-1]

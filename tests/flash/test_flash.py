@@ -94,10 +94,10 @@ def test_a_board_without_a_bootloader_stays_as_it_is(
         assert not [event for event in uno.events if event.kind == "crash"]
 
 
-def changed_optiboot(folder: Path, old: str, new: str) -> Bootloader:
+def changed_optiboot(folder: Path, old_text: str, new_text: str) -> Bootloader:
     source = (FOLDER / "optiboot" / "optiboot.c").read_text(encoding="utf-8", errors="replace")
-    assert old in source
-    return bootloader("uno")._replace(file=optiboot(folder, source.replace(old, new)))
+    assert old_text in source
+    return bootloader("uno")._replace(file=optiboot(folder, source.replace(old_text, new_text)))
 
 
 def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:

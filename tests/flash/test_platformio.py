@@ -42,9 +42,9 @@ def change_file(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
     """Change a file of the copy, and put it back afterwards."""
     text_before = path.read_text(encoding="utf-8")
     before_after = text_before
-    for old, new in changes:
-        assert old in before_after, f"{path.name} has no {old}"
-        before_after = before_after.replace(old, new)
+    for old_text, new_text in changes:
+        assert old_text in before_after, f"{path.name} has no {old_text}"
+        before_after = before_after.replace(old_text, new_text)
     path.unlink()
     path.write_text(before_after, encoding="utf-8")
     try:

@@ -77,11 +77,11 @@ def test_a_long_program_arrives_whole(
     """This holds for any negotiated size, and for late notifications."""
     ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
     bluez.add(ble)
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    run_in_process("compile", "-e", LONG, "-o", ours)
-    assert run_in_process("upload", ours, "--no-run", "--port", ADDRESS_PORT).code == 0
-    assert run_in_process("show", "-o", theirs, "--port", ADDRESS_PORT).code == 0
-    assert theirs.read_bytes() == ours.read_bytes()
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    run_in_process("compile", "-e", LONG, "-o", compiled_file)
+    assert run_in_process("upload", compiled_file, "--no-run", "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("show", "-o", robot_file, "--port", ADDRESS_PORT).code == 0
+    assert robot_file.read_bytes() == compiled_file.read_bytes()
     longest = max(len(data) for _, data in ble.written)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
     assert max(map(len, ble.sent)) <= mtu - 3
@@ -160,11 +160,11 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
 # -- which robot --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("late", [0, 4])
-def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, late: int) -> None:
+@pytest.mark.parametrize("delay_ms", [0, 4])
+def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, delay_ms: int) -> None:
     """Also where one says its name later."""
     twin = Peripheral("TINI 1", OTHER)
-    twin.late = late
+    twin.late = delay_ms
     bluez.add(twin)
     run_in_process("upload", "-e", DRIVE, "--port", NAME).gives(
         3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER}"

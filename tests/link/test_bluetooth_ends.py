@@ -64,10 +64,10 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     assert f"lost the Bluetooth connection to {ADDRESS_PORT}" in result.err
     ble.parts_after = None
     wait_for_dead_man_stop(ble)
-    ours = tmp_path / "ours.bin"
-    run_in_process("compile", "-e", LONG, "-o", ours)
+    compiled_file = tmp_path / "ours.bin"
+    run_in_process("compile", "-e", LONG, "-o", compiled_file)
     assert run_in_process("show", "-o", after, "--port", ADDRESS_PORT).code == 0
-    assert after.read_bytes() in (old_path.read_bytes(), ours.read_bytes())
+    assert after.read_bytes() in (old_path.read_bytes(), compiled_file.read_bytes())
     assert run_in_process("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
 
 
@@ -125,10 +125,10 @@ def test_a_flood_is_not_a_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatc
         def begin(self) -> None:
             self.flood(2000)
 
-        def flood(self, left: int) -> None:
+        def flood(self, frame_count: int) -> None:
             self.tell(bytes(range(1, 21)))
-            if left:
-                self.loop.call_soon(self.flood, left - 1)
+            if frame_count:
+                self.loop.call_soon(self.flood, frame_count - 1)
 
     bluez.add(Flood("flood"))
     run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).gives(3, "not TiniScript")

@@ -134,17 +134,17 @@ def flush(client: Broker) -> None:
 
 def retained_topics(mosquitto: Mosquitto) -> list[str]:
     """Return the topics of all that a broker retains."""
-    late = mosquitto.connect_client()
+    late_client = mosquitto.connect_client()
     texts: list[str] = []
 
     def keep(_: Any, __: Any, message: Any) -> None:
         texts.append(message.topic)
 
-    late._client.on_message = keep
-    late._client.subscribe("#")
-    late._client.publish(LAST, b"")  # retained messages precede later ones
+    late_client._client.on_message = keep
+    late_client._client.subscribe("#")
+    late_client._client.publish(LAST, b"")  # retained messages precede later ones
     until(lambda: LAST in texts, "all that is retained has come")
-    late.close()
+    late_client.close()
     return texts[: texts.index(LAST)]
 
 

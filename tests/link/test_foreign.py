@@ -70,9 +70,9 @@ def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording)
         also |= {"micropython"}
     chance = random.Random(recording.shown_text)
     for _ in range(400):
-        start, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
-        board = identify_board(recording.data[start:last])
-        assert (board and board.name) in also, recording.data[start:last]
+        start, end = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
+        board = identify_board(recording.data[start:end])
+        assert (board and board.name) in also, recording.data[start:end]
 
 
 @each_recording
@@ -157,8 +157,8 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 def test_a_piece_of_a_robot_s_bytes_is_not_a_board(piece: int) -> None:
     chance = random.Random(piece)
     data = b"".join(chance.choices(OWN_ROWS, k=5))
-    start, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
-    assert identify_board(data[start:last]) is None
+    start, end = sorted(chance.randrange(len(data) + 1) for _ in range(2))
+    assert identify_board(data[start:end]) is None
 
 
 def test_bytes_of_a_computer_are_not_those_of_a_robot() -> None:

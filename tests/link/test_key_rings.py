@@ -157,13 +157,13 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
         kept_keys = {key.key for key in ring.keys_of_robot(1)}
         assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
-        for which, right in robot.keys.items():
+        for which, robot_key in robot.keys.items():
             key_proof = authority.show_keys(
                 ring, robot.info, NONCE, lambda: 0, which, is_needed=False
             )
             reply = robot.does(key_proof)
             assert reply is not None and reply.status == OK
-            [own_key] = [key for key in ring.keys_of_robot(1) if key.key == right]
-            sealing_keys |= {right} if robot.has_seals else set()
+            [own_key] = [key for key in ring.keys_of_robot(1) if key.key == robot_key]
+            sealing_keys |= {robot_key} if robot.has_seals else set()
             assert (own_key.which, own_key.is_pending, own_key.is_stale) == (which, False, False)
-            assert own_key.uses_seals == (right in sealing_keys)
+            assert own_key.uses_seals == (robot_key in sealing_keys)

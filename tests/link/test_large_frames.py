@@ -93,8 +93,8 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
 
 
 def test_live_code_of_a_large_frame_runs() -> None:
-    most = payload_bytes(LARGE_FRAME) - 1
-    for length in (54, 55, 56, 57, 58, most):
+    max_bytes = payload_bytes(LARGE_FRAME) - 1
+    for length in (54, 55, 56, 57, 58, max_bytes):
         for is_late in (False, True):
             robot = open_link()
             code = large_upload.program(length).code
@@ -126,8 +126,8 @@ def with_checksum(body: bytes) -> bytes:
     return wire
 
 
-@pytest.mark.parametrize(("is_large", "most"), [(True, 239), (False, 53)])
-def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: int) -> None:
+@pytest.mark.parametrize(("is_large", "max_bytes"), [(True, 239), (False, 53)])
+def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, max_bytes: int) -> None:
     robot = open_link(is_large=is_large)
     session = Session(7, BAUD, KIT)
     pending_request = session.upload(IMAGE, runs=False)
@@ -141,14 +141,14 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: i
     hello = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 8)
     list_answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
-    whole = len(pack("SI", 0, CODE))
-    while len(image) < whole:
+    image_bytes = len(pack("SI", 0, CODE))
+    while len(image) < image_bytes:
         (wire,) = sent_by(robot, Frame(FETCH, 2, 0, struct.pack("<H", len(image))))
         frame = decode_frame(wire)
         assert frame and frame.payload[0] == OK
-        assert struct.unpack("<H", frame.payload[1:3])[0] == whole
-        assert len(frame.payload) - 3 == min(most, whole - len(image))
-        assert len(wire) <= (LARGE_PACKET if most > 53 else SMALL_PACKET)
+        assert struct.unpack("<H", frame.payload[1:3])[0] == image_bytes
+        assert len(frame.payload) - 3 == min(max_bytes, image_bytes - len(image))
+        assert len(wire) <= (LARGE_PACKET if max_bytes > 53 else SMALL_PACKET)
         image += frame.payload[3:]
     assert image == pack("SI", 0, CODE)
 
@@ -278,8 +278,8 @@ def test_a_stop_ends_the_pieces() -> None:
     assert request.outcome is not None
     assert robot.session.poll(robot.now_ms).strip(b"\0") == b""
     seq = robot.data[0][0]
-    late = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
-    robot.session.receive(encode_frame(late), robot.now_ms)  # the answer arrives anyway
+    late_reply = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
+    robot.session.receive(encode_frame(late_reply), robot.now_ms)  # the answer arrives anyway
     assert robot.session.poll(robot.now_ms + 50).strip(b"\0") == b""
 
 

@@ -78,8 +78,8 @@ def test_every_payload_fits_a_frame() -> None:
             (message.reply, message.number < FIRST_EVENT),
         ):
             fills = any(field.fills_frame for field in fields)
-            most = size_before + sizes(fields)[1]
-            assert most == large if fills else most <= PAYLOAD_BYTES, message.name
+            max_bytes = size_before + sizes(fields)[1]
+            assert max_bytes == large if fills else max_bytes <= PAYLOAD_BYTES, message.name
     assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55
     assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)
 

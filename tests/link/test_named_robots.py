@@ -90,11 +90,11 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
     from tiniscript.link.transports.network import SERVICE
 
     packet = DNSOutgoing(_FLAGS_QR_RESPONSE)
-    for whole in (f"{name}.{SERVICE}" for name in names):
-        packet.add_answer_at_time(DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, whole), 0)
-        service = DNSService(whole, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, FAR_HOST)
+    for service_name in (f"{name}.{SERVICE}" for name in names):
+        packet.add_answer_at_time(DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, service_name), 0)
+        service = DNSService(service_name, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, FAR_HOST)
         packet.add_answer_at_time(service, 0)
-        packet.add_answer_at_time(DNSText(whole, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
+        packet.add_answer_at_time(DNSText(service_name, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
     address = DNSAddress(FAR_HOST, _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
     packet.add_answer_at_time(address, 0)
     for k in range(lonely):

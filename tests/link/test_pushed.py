@@ -61,11 +61,11 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
             why = why or END_REASON
         else:
             size = rng.choice((1, 20, 4096))
-            late = rng.randbytes(5) if action == "while it waits" else b""
-            waits.then = [late] if late else []
+            late_bytes = rng.randbytes(5) if action == "while it waits" else b""
+            waits.then = [late_bytes] if late_bytes else []
             has_to_wait = not (unread or is_cancelled or why)
             if has_to_wait:
-                unread += late
+                unread += late_bytes
             count_before = waits.count
             if why and not unread:
                 with pytest.raises(OSError, match=why):

@@ -75,8 +75,8 @@ def check(seed: int) -> str:
     assert robot.codes() == [], explanation
     assert all(request.outcome is not None for request in pending_requests), explanation
     assert robot.complete(session, session.status()).state == STATE_STOPPED, explanation
-    new = session.live(image_of("SI|F(0.2, 100)").code)
-    status = robot.until(session, new)
+    new_request = session.live(image_of("SI|F(0.2, 100)").code)
+    status = robot.until(session, new_request)
     if status != OK:
         assert robot.until(session, session.hello()) == OK
         assert robot.until(session, session.live(image_of("SI|F(0.2, 100)").code)) == OK, (

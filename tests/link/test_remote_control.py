@@ -531,9 +531,9 @@ def test_what_is_out_of_range_is_refused_and_changes_nothing(payload: bytes) -> 
 
 def test_a_word_of_an_earlier_epoch_is_stale() -> None:
     wire = Wire()
-    late = wire.keys(KEY_UP)
+    late_word = wire.keys(KEY_UP)
     wire.robot.wait(10, bytes(4))
-    assert wire.answer(late) == "STALE"
+    assert wire.answer(late_word) == "STALE"
     assert wire.robot.remote() == RELEASED
     assert wire.answer(wire.keys(KEY_UP, wire.epoch + 1)) == "OK"
     assert wire.robot.is_latched
@@ -547,10 +547,10 @@ def test_a_word_that_comes_twice_counts_once() -> None:
     assert wire.answer(wire.keys(NOTHING_PRESSED)) == "OK"
     assert wire.answer(word) == "STALE"
     assert wire.robot.remote() == RELEASED
-    last = wire.keys(KEY_A)
-    assert wire.answer(last) == "OK"
+    last_word = wire.keys(KEY_A)
+    assert wire.answer(last_word) == "OK"
     wire.robot.wait(HOLD_MS - 100)
-    assert wire.answer(last) == "OK"
+    assert wire.answer(last_word) == "OK"
     wire.robot.wait(100)
     assert wire.robot.remote() == RELEASED
 
@@ -582,10 +582,10 @@ def test_keys_between_the_pieces_of_a_program() -> None:
     """They end no upload, and it ends them no more than any other."""
     wire = Wire()
     sent_image = image("SI|" + "SHOW(1);" * 30)
-    begin = bytes((0x10, *sent_image.isa, 0, 15)) + pack(
+    begin_payload = bytes((0x10, *sent_image.isa, 0, 15)) + pack(
         "<HH", sent_image.devices, len(sent_image.code)
     )
-    assert wire.answer(wire.frame("BEGIN", begin)) == "OK"
+    assert wire.answer(wire.frame("BEGIN", begin_payload)) == "OK"
     rest = bytes([sent_image.needs]) + sent_image.code
     for offset in range(0, len(rest), 40):
         assert wire.answer(wire.keys(KEY_UP)) == "OK"

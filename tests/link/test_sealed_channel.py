@@ -90,14 +90,14 @@ class SealedWorld(World):
     def forge_frame(self) -> bytes:
         draw = self.draw
         forgery = draw.randrange(7)
-        old = draw.choice(self.frames)
+        old_frame = draw.choice(self.frames)
         if forgery == 6 and self.asked is not None:
             return self.answer_unsealed(self.asked)
         if forgery == 0:
-            return damage_frame(old, draw)
-        frame = decode_frame(old.rstrip(b"\0"))
+            return damage_frame(old_frame, draw)
+        frame = decode_frame(old_frame.rstrip(b"\0"))
         if forgery < 3 or frame is None:
-            return old
+            return old_frame
         if forgery == 3:  # a seal is removed, added, or moved to an expected frame
             number = draw.choice((frame.number, BY_NAME["LIVE"].number))
             frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
@@ -108,9 +108,9 @@ class SealedWorld(World):
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))
         requests = [message for message in MESSAGES if message.number < 32]
         message = draw.choice(requests if self.has_hello else requests[1:])
-        most = sum(field.most_bytes for field in message.request)
+        max_bytes = sum(field.most_bytes for field in message.request)
         least = sum(field.least_bytes for field in message.request)
-        payload = draw.randbytes(draw.randint(least, most))
+        payload = draw.randbytes(draw.randint(least, max_bytes))
         seq, epoch = draw.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
 

@@ -174,8 +174,8 @@ def check(seed: int) -> str:
     actual = second_use(random.Random(seed), used.session, used.robot)
     want = second_use(random.Random(seed), session, other_use.robot)
     assert actual.what == want.what, f"seed {seed}\n{actual.what}\nnot\n{want.what}"
-    late = [a - b for a, b in zip(actual.took_ms, want.took_ms, strict=True)]
-    assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"
+    delays_ms = [a - b for a, b in zip(actual.took_ms, want.took_ms, strict=True)]
+    assert all(abs(delay_ms) < LATER_MS for delay_ms in delays_ms), f"seed {seed} {delays_ms}"
     return "it runs" if "DoneEvent" in str(want) else "it stands"
 
 

@@ -24,12 +24,12 @@ class Line(NamedTuple):
 
 @pytest.fixture(params=[True, False], ids=["alone", "past a lock"])
 def line(request: pytest.FixtureRequest) -> Iterator[Line]:
-    end, theirs = pty.openpty()
-    tty.setraw(theirs)
-    device = serial.open_port(os.ttyname(theirs), 9600, 20.0, is_exclusive=request.param)
-    os.close(theirs)
-    with FileIO(end, "r+") as ours:
-        yield Line(ours, device)
+    end, device_end = pty.openpty()
+    tty.setraw(device_end)
+    device = serial.open_port(os.ttyname(device_end), 9600, 20.0, is_exclusive=request.param)
+    os.close(device_end)
+    with FileIO(end, "r+") as our_end:
+        yield Line(our_end, device)
     device.close()
 
 

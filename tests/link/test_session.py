@@ -148,10 +148,10 @@ def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_second
     assert len(list_packets(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
     assert [event.name for event in session.events()] == ["LOST"]
     assert early.outcome and early.outcome.status == LOST
-    late = session.ping()
+    late_request = session.ping()
     data = session.poll(CONFIRM_MS + 1)
     session.receive(answer(data, {"state": 0, "run": 0}), CONFIRM_MS + 2)
-    assert late.outcome and late.outcome.status == 0
+    assert late_request.outcome and late_request.outcome.status == 0
 
 
 def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:

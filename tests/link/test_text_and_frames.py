@@ -75,12 +75,12 @@ class Line:
 def random_frame(draw: random.Random) -> Frame:
     """Return a frame of a computer or of a robot, of any length."""
     is_reply, is_sealed = draw.random() < 0.5, draw.random() < 0.4
-    most = payload_bytes(draw.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
-    payload = draw.randbytes(draw.randint(0, most))
+    max_bytes = payload_bytes(draw.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
+    payload = draw.randbytes(draw.randint(0, max_bytes))
     if draw.random() < 0.3:
         payload = bytes(draw.choice(b"\0\0\r\n S~") for _ in payload)
     if is_sealed:
-        payload = b"\0" + payload[: most - 1]
+        payload = b"\0" + payload[: max_bytes - 1]
     number = draw.choice(REQUESTS + EVENTS * is_reply)
     return Frame(number, draw.randrange(256), draw.randrange(256), payload, is_reply, is_sealed)
 

@@ -55,9 +55,9 @@ def test_few_damaged_frames_stop() -> None:
 if __name__ == "__main__":
     given = make_options(1_000_000, 1_000_000)
     for both in (False, True):
-        for begin in range(0, given.count, PREFIXES):
-            some = min(PREFIXES, given.count - begin)
-            cpp_damage(both).type_after(given.seed, begin, some)
+        for start_index in range(0, given.count, PREFIXES):
+            some = min(PREFIXES, given.count - start_index)
+            cpp_damage(both).type_after(given.seed, start_index, some)
     looked_at, stops = false_stops(cpp_damage(), 100 * given.count, given.seed)
     assert stops == 0, f"{stops} of {looked_at} undamaged frames stop"
     of, stops = false_stops(cpp_damage(), FRAMES, given.seed, is_damaged=True, is_odd=False)

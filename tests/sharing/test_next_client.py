@@ -112,9 +112,9 @@ class Client:
         with suppress(OSError):
             self.socket.send(protocol.encode_message(message))
 
-    def asks(self, do: str, **fields: object) -> None:
+    def asks(self, action: str, **fields: object) -> None:
         self._number += 1
-        self.says({"do": do, "id": self._number, "limit_ms": 6000, **fields})
+        self.says({"do": action, "id": self._number, "limit_ms": 6000, **fields})
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):

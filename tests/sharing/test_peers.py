@@ -208,9 +208,9 @@ def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch
 
     def open_group_pty() -> tuple[int, int]:
         """Open a listener with the usual settings."""
-        ours, theirs = open_pty()
-        os.fchmod(theirs, 0o620)
-        return ours, theirs
+        our_end, device_end = open_pty()
+        os.fchmod(device_end, 0o620)
+        return our_end, device_end
 
     monkeypatch.setattr(pty, "openpty", open_group_pty)
     transports = Transports(has_terminal=True)

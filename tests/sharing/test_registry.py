@@ -120,9 +120,9 @@ def check_one_owner(owners: list[IO[bytes] | None]) -> None:
     for file in (*holders, next_one):
         if file is not None:
             file.close()
-    last = lock()
-    assert last is not None
-    last.close()
+    last_lock = lock()
+    assert last_lock is not None
+    last_lock.close()
     assert not registry.lock_path(PORT).exists()
 
 

@@ -59,11 +59,11 @@ def test_commands_share_a_session_that_is_begun_once(
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
     assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG, "-o", ours)
-    assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
-    assert on(pty_robot, "show", "-o", theirs).code == 0
-    assert theirs.read_bytes() == ours.read_bytes()
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", compiled_file)
+    assert on(pty_robot, "upload", compiled_file, "--no-run", "--no-save").code == 0
+    assert on(pty_robot, "show", "-o", robot_file).code == 0
+    assert robot_file.read_bytes() == compiled_file.read_bytes()
     assert (
         json.loads(on(pty_robot, "start", "--previous", "--json").out)["saved"] == "STORED"
     )  # the program was not saved

@@ -101,7 +101,7 @@ def main() -> int:
     ):
         pages = Pages(browser, server.address, patience_s=300)
         page = pages.open()
-        right = sum(
+        right_count = sum(
             compare(page, min(100, options.count - start), options.seed + start)
             for start in range(0, options.count, 100)
         )
@@ -109,7 +109,7 @@ def main() -> int:
         pages.close()
     seconds = time.monotonic() - start_s
     print(
-        f"{options.count} programs, {right} right: from text and from blocks"
+        f"{options.count} programs, {right_count} right: from text and from blocks"
         f" the image of tsc compile: {seconds:.0f} s"
     )
     return 0

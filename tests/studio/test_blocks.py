@@ -65,16 +65,16 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
 @pytest.mark.parametrize("first_seed", range(0, 1000, 250))
 def test_random_programs_are_the_same_from_their_blocks(first_seed: int) -> None:
     for seed in range(first_seed, first_seed + 250):
-        theirs, kit = KITS[seed % len(KITS)]
-        check_blocks(oracle_programs.program(random.Random(seed), theirs), kit)
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        check_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit)
 
 
 @pytest.mark.parametrize("first_seed", range(0, 500, 250))
 def test_nothing_of_a_broken_text_is_lost(first_seed: int) -> None:
     for seed in range(first_seed, first_seed + 250):
         rng = random.Random(seed)
-        theirs, kit = KITS[seed % len(KITS)]
-        text = oracle_programs.break_text(rng, oracle_programs.program(rng, theirs))
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        text = oracle_programs.break_text(rng, oracle_programs.program(rng, oracle_kit))
         if re.search(r"[~.]|\b0\d", text):  # checksums are made anew, and numbers are shorter
             format_blocks(read_blocks(text, kit))
         else:
@@ -280,20 +280,20 @@ def test_a_very_long_program_stays_text() -> None:
 @each_row("program", programs())
 def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> None:
     form = read_blocks(program.text, robots.load(program.robot).kit)
-    whole = in_order(form.body)
-    for most in (1, 2, 7, 40, size_of(form)):
-        beginning = first_blocks(form, most)
-        assert size_of(beginning) <= most
+    all_blocks = in_order(form.body)
+    for max_blocks in (1, 2, 7, 40, size_of(form)):
+        beginning = first_blocks(form, max_blocks)
+        assert size_of(beginning) <= max_blocks
         first = in_order(beginning.body)
-        if size_of(form) <= most:
+        if size_of(form) <= max_blocks:
             assert beginning == form
             continue
         assert first.pop() == LEFT_OUT and beginning.loose == ()
         assert [(block.kind, block.word) for block in first] == [
-            (block.kind, block.word) for block in whole[: len(first)]
+            (block.kind, block.word) for block in all_blocks[: len(first)]
         ]
         assert [len(block.bodies) for block in first] == [
-            len(block.bodies) for block in whole[: len(first)]
+            len(block.bodies) for block in all_blocks[: len(first)]
         ]
 
 

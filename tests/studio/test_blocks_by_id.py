@@ -55,8 +55,8 @@ class Ana:
         return answer
 
     def takes(self, answer: Json) -> None:
-        for start, last, text in reversed(answer["changes"]):
-            self.text = self.text[:start] + text + self.text[last:]
+        for start, end, text in reversed(answer["changes"]):
+            self.text = self.text[:start] + text + self.text[end:]
         self.answer = answer
 
     def show(self) -> None:
@@ -107,7 +107,7 @@ def program_of(text: str = TEXT) -> SharedProgram:
     return SharedProgram(parse_tree(text, lambda: f"i.{next(numbers)}"), "e")
 
 
-def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
+def changes(body: list[Json], rng: Random, next_id: Any) -> set[str]:
     """Change blocks at random; return the ids of those that were touched."""
     bodies = [body, *(inner_body for data in body for inner_body in data["bodies"])]
     filled_bodies = [body for body in bodies if body]
@@ -129,7 +129,7 @@ def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
         target.insert(rng.randrange(len(target) + 1), data)
         return {data["id"]}
     block = {"kind": "move", "word": "L", "values": [[["NUMBER", "1"]], [["NUMBER", "60"]]],
-             "bodies": [], "note": "", "is_apart": False, "id": new()}  # fmt: skip
+             "bodies": [], "note": "", "is_apart": False, "id": next_id()}  # fmt: skip
     where.insert(rng.randrange(len(where) + 1), block)
     return set()
 
@@ -172,13 +172,13 @@ def test_what_others_do_meanwhile_stays(seed: int) -> None:
     program = program_of()
     ana = Ana(program)
     loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
-    last = program.tree[ROOT].children[-1]
+    last_id = program.tree[ROOT].children[-1]
     change = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
     program.submit([change])
     ana.step()
     changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     ana.writes()
-    program.submit([Made("z:2", (Replace(last, (("text", "W(7.25)"),)),))])
+    program.submit([Made("z:2", (Replace(last_id, (("text", "W(7.25)"),)),))])
     ana.step()
     changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     ana.writes()
@@ -186,7 +186,7 @@ def test_what_others_do_meanwhile_stays(seed: int) -> None:
     assert ana.text == text_of(program.tree)
     is_loop_there = loop in program.tree
     assert ("BEEP(0.25, 990)" in ana.text) is is_loop_there
-    assert last not in program.tree or program.tree[last].text != "W(2)"
+    assert last_id not in program.tree or program.tree[last_id].text != "W(2)"
 
 
 def test_an_empty_place_is_nobody_elses() -> None:

@@ -123,8 +123,8 @@ def test_a_button_does_what_the_message_names(program: str, wanted_text: str) ->
         assert finding.message not in check(wanted_text)
         assert not [message for message in check(wanted_text) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
-    left = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
-    assert wanted_text.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
+    repaired = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
+    assert wanted_text.startswith("B(") or repaired.text == program  # -2 seconds forward are 2 back
 
 
 def test_each_of_many_mistakes_has_its_own_button() -> None:

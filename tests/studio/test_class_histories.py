@@ -56,10 +56,10 @@ class History:
     def state(self) -> Json:
         return self.room.teaches("class")
 
-    def answer(self, who: Page, do: str, **fields: Any) -> Json | None:
+    def answer(self, who: Page, action: str, **fields: Any) -> Json | None:
         """Send a request as a page; None if it was removed."""
         try:
-            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **fields})
+            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": action, **fields})
         except BadRequest:
             self.leaves(who)
             return None
@@ -300,8 +300,10 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         history = History(Random(1000 + seed))
         for _ in range(history.chance.randrange(STEPS)):
             history.act()
-        old = list(history.pages.values())
-        driven_fake_robots = [page.robot for page in old if page.robot and history.has_turn(page)]
+        old_pages = list(history.pages.values())
+        driven_fake_robots = [
+            page.robot for page in old_pages if page.robot and history.has_turn(page)
+        ]
         room = history.room
         code, settings = room.made.code, {}
         old_settings = room.teaches("class")
@@ -321,15 +323,15 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
             "robots": [{**port, "name": name_by_port[port["port"]]} for port in ports]
         }
         assert room.teaches("class_work")["pupils"] == []
-        for page in old:
+        for page in old_pages:
             with pytest.raises(BadRequest):
                 room.checks_in(page.token)
             with pytest.raises(BadRequest):
                 room.made.answer(page.token, "192.0.2.9", {"do": "connect"})
         answer = room.made.answer("", "192.0.2.9", {
             "do": "join", "code": anew["code"], "name": "Ana",
-            "before": old[0].token if old else "",
+            "before": old_pages[0].token if old_pages else "",
         })  # fmt: skip
-        assert answer["name"] == "Ana" and answer["token"] not in {page.token for page in old}
+        assert answer["name"] == "Ana" and answer["token"] not in {page.token for page in old_pages}
         assert room.checks_in(answer["token"])["hand"] is False
         room.now_s += PLACE_S

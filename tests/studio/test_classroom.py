@@ -172,9 +172,11 @@ def test_another_turn_is_reached_by_no_name() -> None:
     assert room.made.answer(
         eve, PUPIL_ADDRESS, {"do": "connect", "page": last_page, "port": "port0"}
     ) == {"failure": "turn_none"}
-    for do in ("beat", "leave", "stop", "stop_all"):
+    for action in ("beat", "leave", "stop", "stop_all"):
         room.made.answer(
-            eve, PUPIL_ADDRESS, {"do": do, "page": last_page, "asked": [{"do": "upload", "id": 1}]}
+            eve,
+            PUPIL_ADDRESS,
+            {"do": action, "page": last_page, "asked": [{"do": "upload", "id": 1}]},
         )
     assert last_page not in [request["page"] for request in room.hosting.asked[1:]]
     assert {request["do"] for request in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
@@ -182,15 +184,15 @@ def test_another_turn_is_reached_by_no_name() -> None:
 
 
 @pytest.mark.parametrize(
-    "do",
+    "action",
     ["ports", "class", "class_over", "class_text", "class_work", "class_bring", "class_give_back",
      "class_forget", "class_anew", "class_hand", "fly", None, ["stop"]],
 )  # fmt: skip
-def test_what_only_the_teacher_may_ask(do: object) -> None:
+def test_what_only_the_teacher_may_ask(action: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
-        room.made.answer(eve, PUPIL_ADDRESS, {"do": do, "erases": True, "pupil": 1})
+        room.made.answer(eve, PUPIL_ADDRESS, {"do": action, "erases": True, "pupil": 1})
     assert room.hosting.asked == [] and not room.made.has_ended
 
 
@@ -214,12 +216,12 @@ def test_a_robot_stays_the_teachers(asked: object) -> None:
 
 def test_codes_are_not_guessed() -> None:
     room = Room()
-    code, right = room.made.code, 0
+    code, refused_count = room.made.code, 0
     for k in range(5000):
         guess = {"do": "join", "code": f"{k:06}", "name": "Eve"}
-        right += room.made.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
+        refused_count += room.made.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
         room.now_s += 0.01
-    assert right <= 20 + 50 / 3 + 1
+    assert refused_count <= 20 + 50 / 3 + 1
     # From that address, even the right code is refused; from others it is accepted.
     join_request = {"do": "join", "code": code, "name": "Eve"}
     assert room.made.answer("", PUPIL_ADDRESS, join_request) == {"failure": "class_slow"}
@@ -429,18 +431,18 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana, eve = room.joins("Ana"), room.joins("Eve")
     key = key_of(room)
-    right = {"key": key, "text": SENT_WORK["text"]}
-    room.checks_in(ana, took=right)  # it was not offered
+    valid_receipt = {"key": key, "text": SENT_WORK["text"]}
+    room.checks_in(ana, took=valid_receipt)  # it was not offered
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
     wrong_receipts: list[object] = [True, None, 5, [], {}, {"key": key}]
-    wrong_receipts += [{**right, "text": text} for text in ("F(1, 51)", None)]
-    wrong_receipts += [{**right, "key": other_key} for other_key in ("0" * 32, [key])]
+    wrong_receipts += [{**valid_receipt, "text": text} for text in ("F(1, 51)", None)]
+    wrong_receipts += [{**valid_receipt, "key": other_key} for other_key in ("0" * 32, [key])]
     for text in wrong_receipts:
         assert room.checks_in(ana, took=text)["given"]["key"] == key
-    assert "given" not in room.checks_in(eve, took=right)  # another pupil cannot confirm it
+    assert "given" not in room.checks_in(eve, took=valid_receipt)  # another pupil cannot confirm it
     assert texts_of(room) == ["F(1, 50)"]
     # The page has it: so it is her work from then on, even before she reports it.
-    assert "given" not in room.checks_in(ana, took=right)
+    assert "given" not in room.checks_in(ana, took=valid_receipt)
     assert room.teaches("class")["kept"] == [] and texts_of(room) == ["F(1, 50)"]
     assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)
 
@@ -659,10 +661,10 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)", robot="tinibot")
     keeper.keep(room.made.state_to_keep())
-    whole = json.loads(kept_at.read_text())
-    row = whole["pupils"][0]
+    class_data = json.loads(kept_at.read_text())
+    row = class_data["pupils"][0]
     bad = [5, {**row, "token": "x"}, {**row, "name": " "}, {**row, "address": 5}, {"name": "Eve"}]
-    damaged = {**whole, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
+    damaged = {**class_data, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
     odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
     kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     room_after = Room(0)
@@ -670,7 +672,7 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
     assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
     many = [{**row, "token": f"{k:032x}"} for k in range(99)]
-    kept_at.write_text(json.dumps({**whole, "pupils": many, "kept": many}))
+    kept_at.write_text(json.dumps({**class_data, "pupils": many, "kept": many}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == class_keeping.MOST_PUPILS
     works = len(room_after.teaches("class_work")["pupils"])
@@ -712,16 +714,16 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)")
     keeper.keep(room.made.state_to_keep())
-    whole = json.loads(kept_at.read_text())
+    class_data = json.loads(kept_at.read_text())
     for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
-        kept_at.write_text(json.dumps({**whole, "kept_s": whole["kept_s"] - passed_s}))
+        kept_at.write_text(json.dumps({**class_data, "kept_s": class_data["kept_s"] - passed_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 1
         assert (
             room_after.checks_in(token)["name"] == "Ana" and room_after.made.code == room.made.code
         )
-    for kept_s in (whole["kept_s"] - 3700, 5, -5, None, "x", 1e400):
-        kept_at.write_text(json.dumps({**whole, "kept_s": kept_s}))
+    for kept_s in (class_data["kept_s"] - 3700, 5, -5, None, "x", 1e400):
+        kept_at.write_text(json.dumps({**class_data, "kept_s": kept_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 0
         assert texts_of(room_after) == ["F(1, 50)"]
@@ -758,11 +760,11 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
 
     with monkeypatch.context() as patched:
         patched.setattr(os, "open", fail_full_disk)
-        early, late = Keeper(), Keeper()
-    with closing(early), closing(late):
+        early, late_keeper = Keeper(), Keeper()
+    with closing(early), closing(late_keeper):
         early.keep(room.made.state_to_keep())
         assert kept_at.exists()
-        late.keep(None)
+        late_keeper.keep(None)
         assert kept_at.exists()
 
 
@@ -812,9 +814,9 @@ def test_robots_come_and_go() -> None:
 
 def test_a_new_code_and_another_turn() -> None:
     room = Room()
-    old = room.made.code
-    assert room.teaches("class_code")["code"] == room.made.code != old
-    assert room.made.answer("", PUPIL_ADDRESS, {"do": "join", "code": old, "name": "Eve"}) == {
+    old_code = room.made.code
+    assert room.teaches("class_code")["code"] == room.made.code != old_code
+    assert room.made.answer("", PUPIL_ADDRESS, {"do": "join", "code": old_code, "name": "Eve"}) == {
         "failure": "class_wrong"
     }
     assert room.teaches("class_turn", seconds=300)["turn_s"] == 300
@@ -839,8 +841,8 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     assert room.checks_in(luz, True) == {"over": over}
     assert room.made.has_ended
     assert [robot["pupil"] for robot in room.teaches("class")["robots"]] == [""]
-    late = {"do": "join", "code": room.made.code, "name": "Teo"}
-    assert room.made.answer("", PUPIL_ADDRESS, late) == {"failure": "class_over"}
+    late_request = {"do": "join", "code": room.made.code, "name": "Teo"}
+    assert room.made.answer("", PUPIL_ADDRESS, late_request) == {"failure": "class_over"}
 
 
 def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
@@ -860,9 +862,9 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
     answered: list[str] = []
 
     def ask() -> None:
-        for do in ("stop", "beat", "here"):
-            room.made.answer(ana, PUPIL_ADDRESS, {"do": do})
-            answered.append(do)
+        for action in ("stop", "beat", "here"):
+            room.made.answer(ana, PUPIL_ADDRESS, {"do": action})
+            answered.append(action)
 
     def list_slowly() -> list[Json]:
         asking = Thread(target=ask, daemon=True)
@@ -978,12 +980,12 @@ def test_parts_that_do_not_fit_are_refused(wrong_fields: Json) -> None:
     ana = room.joins("Ana")
     ask_for_run(room, 1, True)
     run_number = room.checks_in(ana)["run"]
-    right = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
+    valid_part = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**right, **wrong_fields})
-    room.made.answer(ana, PUPIL_ADDRESS, right)
+        room.made.answer(ana, PUPIL_ADDRESS, {**valid_part, **wrong_fields})
+    room.made.answer(ana, PUPIL_ADDRESS, valid_part)
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**right, "from": 1})
+        room.made.answer(ana, PUPIL_ADDRESS, {**valid_part, "from": 1})
     assert ask_for_run(room, 1) == "x"
 
 

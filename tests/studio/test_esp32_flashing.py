@@ -100,12 +100,12 @@ def test_half_a_firmware_is_never_called_a_whole_one(
 
 
 def test_firmware_of_another_board_is_not_written() -> None:
-    whole = image("esp32dev", 20_000)
+    firmware = image("esp32dev", 20_000)
     for board, data in (
-        ("esp32dev", whole[0x1000:]),  # the image alone, without the part before it
+        ("esp32dev", firmware[0x1000:]),  # the image alone, without the part before it
         ("esp32dev", b":00000001FF\n"),
-        ("esp32dev", whole + bytes(0x400000)),
-        ("esp32c3", whole),
+        ("esp32dev", firmware + bytes(0x400000)),
+        ("esp32c3", firmware),
         ("esp32c3", b"\xe9" + bytes(11) + b"\0" + bytes(99)),  # firmware for another chip
     ):
         outcome = flash(board, data)
@@ -158,8 +158,8 @@ def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Pat
 
 
 def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Path) -> None:
-    whole = image("esp32dev", 12_000)
-    (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(whole)
+    firmware = image("esp32dev", 12_000)
+    (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(firmware)
     with teacher_page(browser, tmp_path) as page:
         page.locator("#flash_write").wait_for()
         assert page.locator("#flash_board option").all_inner_texts() == ["ESP32"]
@@ -169,5 +169,7 @@ def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Pat
         page.click("#flash_write")
         page.get_by_text("Connecting").first.wait_for()
         until(lambda: page.evaluate("window.rom.starts") == 1, "it starts")
-        assert page.evaluate(f"[...window.rom.flash.subarray(0, {len(whole)})]") == list(whole)
+        assert page.evaluate(f"[...window.rom.flash.subarray(0, {len(firmware)})]") == list(
+            firmware
+        )
         page.get_by_text("Nothing responds.").wait_for()  # the simulated chip is no robot

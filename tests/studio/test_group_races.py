@@ -47,11 +47,11 @@ class Mate:
         self.thread = Thread(target=self._beats, daemon=True)
         self.thread.start()
 
-    def ask(self, do: str, **fields: Any) -> Json:
-        return self.group.room.answer(self.token, self.name, {"do": do, **fields})
+    def ask(self, action: str, **fields: Any) -> Json:
+        return self.group.room.answer(self.token, self.name, {"do": action, **fields})
 
-    def drive(self, do: str, **fields: Any) -> Json:
-        return self.ask(do, page=self.name, connection=self.connection, seen=self.newest_number,
+    def drive(self, action: str, **fields: Any) -> Json:
+        return self.ask(action, page=self.name, connection=self.connection, seen=self.newest_number,
                         stops=self.presses, **fields)  # fmt: skip
 
     def _beats(self) -> None:

@@ -120,11 +120,11 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     runs, robot = GroupRuns(lambda: 0.0), Robot(chance)
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
     page.looks()
-    most = chance.choice((1, 5, 60))
+    max_count = chance.choice((1, 5, 60))
     connections: list[Json] = []
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
-        for _ in range(chance.randint(1, most)):
+        for _ in range(chance.randint(1, max_count)):
             count_before = len(robot.meant)
             news = robot.tells()
             values_by_driver[robot.driver] += robot.meant[count_before:]
@@ -149,7 +149,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     for row in page.heard:
         value = str(row.get("value", row.get("text")))
         assert "nth" not in row or row["nth"] == robot.nth[value]
-    if most == 1:
+    if max_count == 1:
         assert page.values == robot.meant
         assert len(connections) == robot.connections
 
@@ -216,15 +216,15 @@ def count_values(page: Page) -> int:
 
 def test_whoever_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     runs = GroupRuns(lambda: 0.0)
-    begin = {"event": "STARTED", "program": "a", "is_program": True}
+    started_event = {"event": "STARTED", "program": "a", "is_program": True}
     value = {"event": "SHOW", "value": "5"}
-    runs.add_news("ana", [begin, value, {"event": "DONE"}])
+    runs.add_news("ana", [started_event, value, {"event": "DONE"}])
     assert Page(runs, "teo").looks() == []
-    runs.add_news("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
+    runs.add_news("ana", [started_event, value, {"event": "PLACE", "at": 4, "program": "a"}])
     heard_events = [item["event"] for item in Page(runs, "eva").looks()]
     assert heard_events == ["STARTED", "SHOW", "PLACE"]
     new_runs = GroupRuns(lambda: 0.0)
-    new_runs.add_news("ana", [begin])
+    new_runs.add_news("ana", [started_event])
     page = Page(runs, "luz")
     page.looks()
     page.runs = new_runs  # after a crash of the class

@@ -62,8 +62,8 @@ class Member:
     def joins(self, group: str, text: str = TEXT, old_token: str = "") -> Json:
         return self.asks("group_join", name=group, text=text, before=old_token)
 
-    def asks(self, do: str, **fields: Any) -> Json:
-        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": do, **fields})
+    def asks(self, action: str, **fields: Any) -> Json:
+        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": action, **fields})
 
     def request(self, **fields: Any) -> Json:
         page = self.page
@@ -83,8 +83,8 @@ class Member:
         self.saw = answer["saw"]
         return answer
 
-    def types(self, old: str, new: str) -> None:
-        rows = [row.replace(old, new) for row in self.page.lines]
+    def types(self, old_text: str, new_text: str) -> None:
+        rows = [row.replace(old_text, new_text) for row in self.page.lines]
         assert rows != self.page.lines
         self.page.type(rows, 0)
         self.page.flush()
@@ -103,8 +103,8 @@ class Teacher(Member):
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
 
-    def asks(self, do: str, **fields: Any) -> Json:
-        return self.school.made.teach({"do": do, **fields})
+    def asks(self, action: str, **fields: Any) -> Json:
+        return self.school.made.teach({"do": action, **fields})
 
 
 @pytest.fixture
@@ -141,13 +141,13 @@ def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
 
 def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -> None:
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
-    late = school.joins("Late")
+    late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late, PUPIL_ADDRESS, request) == {"failure": "group_full"}
+    assert school.made.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     school.now_s += groups.ABSENCE_S + 1
     for member in members[1:]:
         member.sends()
-    assert school.made.answer(late, PUPIL_ADDRESS, request)["group"] == "Red"
+    assert school.made.answer(late_token, PUPIL_ADDRESS, request)["group"] == "Red"
     assert members[0].asks("group", **members[0].request()) == {"left": True}
 
 
@@ -285,8 +285,8 @@ def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) 
     assert other_robot.witness is not None
 
 
-def start_thread(do: Callable[[], object]) -> Thread:
-    thread = Thread(target=do, daemon=True)
+def start_thread(function: Callable[[], object]) -> Thread:
+    thread = Thread(target=function, daemon=True)
     thread.start()
     return thread
 
@@ -374,11 +374,11 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
         with suppress(BadRequest):
             school.made.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
         if k % 50 == 0:
-            old, new = ("80", "95") if "80" in ana.text else ("95", "80")
-            ana.types(old, new)
+            old_power, new_power = ("80", "95") if "80" in ana.text else ("95", "80")
+            ana.types(old_power, new_power)
             ana.sends()
             luz.sends()
-            assert ana.text == luz.text and new in luz.text
+            assert ana.text == luz.text and new_power in luz.text
         school.now_s += 0.1
     assert school.checks_in(luz.token)["group"] == "Red"
     assert {group["name"] for group in school.teaches("class")["groups"]} >= {"Red"}
@@ -471,9 +471,9 @@ def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
     teacher = Teacher(school, group["key"])
     for k in range(groups.MOST_MEMBERS - 1):
         Member(school, f"P{k}")
-    late = school.joins("Late")
+    late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late, PUPIL_ADDRESS, request) == {"failure": "group_full"}
+    assert school.made.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     assert teacher.sends()["others"][0]["name"] == ana.name
 
 

@@ -44,8 +44,8 @@ def part(text: str, simulation: Simulation) -> str:
     return text.split("\n")[place.line - 1][place.column - 1 : end]
 
 
-def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
-    for _ in range(most):
+def steps(text: str, simulation: Simulation, max_count: int = 100) -> Iterable[str]:
+    for _ in range(max_count):
         if simulation.held_at is None:
             return
         yield part(text, simulation)

@@ -39,8 +39,8 @@ class Page:
                    "language": "es", **fields}  # fmt: skip
         return self.hosting.answer(request)
 
-    def beat(self, *requests: dict[str, Any], do: str = "beat") -> None:
-        request = {"do": do, "page": self.name, "seen": self._seen, "asked": list(requests)}
+    def beat(self, *requests: dict[str, Any], action: str = "beat") -> None:
+        request = {"do": action, "page": self.name, "seen": self._seen, "asked": list(requests)}
         for item in self.hosting.answer(request)["news"]:
             self._seen = max(self._seen, item["number"])
             self.news.append(item)
@@ -59,10 +59,10 @@ class Page:
             time.sleep(BEAT_S)
             self.beat()
 
-    def ask(self, do: object, **fields: object) -> dict[str, Any]:
+    def ask(self, action: object, **fields: object) -> dict[str, Any]:
         self.count += 1
         number = self.count
-        self.beat({"do": do, "id": number, **fields})
+        self.beat({"do": action, "id": number, **fields})
         return self.until(lambda item: item.get("id") == number)
 
     def upload(self, text: str, robot: str = "tinibot", **fields: object) -> dict[str, Any]:
@@ -122,12 +122,12 @@ def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
 def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
     """A page records programs, but not a line that is tried."""
     image = compile("SHOW(1)").image.hex()
-    for do, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
-        fields = {} if do == "start" else {"image": image, "robot": "tinibot"}
+    for action, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
+        fields = {} if action == "start" else {"image": image, "robot": "tinibot"}
         page.news.clear()
-        page.ask(do, **fields, **({"runs": True} if do == "upload" else {}))
+        page.ask(action, **fields, **({"runs": True} if action == "upload" else {}))
         started = page.until(lambda item: item.get("event") == "STARTED")
-        assert started["is_program"] is is_program, do
+        assert started["is_program"] is is_program, action
         page.until(lambda item: item.get("event") == "DONE")
 
 
@@ -192,7 +192,7 @@ def test_nobody_pings_for_a_page_that_is_silent(
 def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
     """Also one that counts wrongly, before it is refused."""
     start_drive(page, robot)
-    page.beat(do="stop")
+    page.beat(action="stop")
     assert page.until(lambda item: item.get("event") == "STOPPED")["cause"] == "SEQUENCE"
     assert not robot.moves
     for stops in (-1, 0.5, "1", 2**40):
@@ -220,7 +220,7 @@ def test_the_end_of_a_page_and_of_the_server_stops_robots(
 ) -> None:
     start_drive(page, robot)
     if leaves:
-        page.beat(do="leave")
+        page.beat(action="leave")
         robot.until(lambda: not robot.moves, "it stands")
     else:
         hosting.close()
@@ -238,7 +238,7 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
         "upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port
     )
     other_command.until("running")
-    page.beat(do="leave")
+    page.beat(action="leave")
     began_ms = robot.robot_ms
     robot.until(lambda: robot.robot_ms > began_ms + 2000, "it goes on")
     assert robot.moves and other_command.process.poll() is None
@@ -246,7 +246,7 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     second_page = Page(hosting, "another")
     assert second_page.connect(robot.port) == {}
     second_page.until(lambda item: "connected" in item)
-    second_page.beat(do="leave")
+    second_page.beat(action="leave")
     began_ms = robot.robot_ms
     robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
     assert robot.moves and other_command.process.poll() is None
@@ -278,7 +278,7 @@ def test_a_port_has_one_page(
     assert response["failure"] == "stopped_elsewhere" and not robot.moves
     result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
     assert result.code != 0 and not robot.moves, result.out
-    page.beat(do="leave")
+    page.beat(action="leave")
     until(lambda: other_page.connect(robot.port) == {}, "the port is free")
     other_page.until(lambda item: "connected" in item)
 

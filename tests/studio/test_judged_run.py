@@ -55,7 +55,7 @@ def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
 def test_what_is_packed_of_a_page_has_the_same_steps(
     number: int, language: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = page_lessons.steps(number, language)
+    whole_steps = page_lessons.steps(number, language)
     pages: list[tuple[str, str]] = []
 
     def pack_page(path: Path) -> str:
@@ -66,7 +66,7 @@ def test_what_is_packed_of_a_page_has_the_same_steps(
         return pages[-1][1]
 
     monkeypatch.setattr(catalogue, "_text", pack_page)
-    assert page_lessons.steps(number, language) == whole
+    assert page_lessons.steps(number, language) == whole_steps
     assert all("[print]" in text and "[print]" not in less for text, less in pages) and pages
 
 

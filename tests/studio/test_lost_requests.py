@@ -130,8 +130,8 @@ class TornPage:
             request = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
             self._asked.append(request)
 
-    def _send(self, do: str, **fields: object) -> None:
-        request = {"do": do, "page": "me", "connection": self._connection, "port": "p",
+    def _send(self, action: str, **fields: object) -> None:
+        request = {"do": action, "page": "me", "connection": self._connection, "port": "p",
                    "robot": "tinibot", "language": "en", "seen": self._seen,
                    "stops": self._stops, **fields}  # fmt: skip
         times = self.chance.choice((0, 1, 1, 1, 2))
@@ -219,8 +219,8 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
 def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
     stepped_hosting: Hosting, runs: bool
 ) -> None:
-    def send_request(do: str, connection: int, *asked: Json, **fields: object) -> None:
-        stepped_hosting.answer({"do": do, "page": "me", "connection": connection, "port": "p",
+    def send_request(action: str, connection: int, *asked: Json, **fields: object) -> None:
+        stepped_hosting.answer({"do": action, "page": "me", "connection": connection, "port": "p",
                                 "seen": 0, "robot": "tinibot", "language": "en", "asked": [*asked],
                         **fields})  # fmt: skip
         cast(SteppedRobot, stepped_hosting.robot_of("me")).step()

@@ -105,11 +105,11 @@ def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
     for name in ("tinibot", "liner", "grabber"):
         drawing = drawings_of(*((name, None, {**STANDING_STILL, "face": face}) for face in looks))
         assert len({json.dumps(calls) for calls in drawing}) == len(looks), name
-        ahead, left = drawings_of(
+        ahead, turned_drawing = drawings_of(
             (name, None, {**STANDING_STILL, "face": {**calm, "ahead": 1}}),
             (name, None, {**STANDING_STILL, "face": {**calm, "aside": 1}}),
         )
-        pupils = [shapes(calls, "fill", "#20242a") for calls in (drawing[0], ahead, left)]
+        pupils = [shapes(calls, "fill", "#20242a") for calls in (drawing[0], ahead, turned_drawing)]
         still, to_front, to_left = (
             [row for row in drawn_shapes if len(row) == 5] for drawn_shapes in pupils
         )

@@ -378,9 +378,9 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
     print("| page | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
     for action, mine in rows.items():
         quiet = max(mine, key=lambda tried_action: tried_action.silence_s)
-        late = max(mine, key=lambda tried_action: tried_action.took_s)
+        slowest_action = max(mine, key=lambda tried_action: tried_action.took_s)
         print(f"| {action} | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
-              f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
+              f" {slowest_action.took_s:.1f} ({slowest_action.fault}) |")  # fmt: skip
 
 
 def test_a_sample_of_what_is_pressed_keeps_the_laws(

@@ -60,7 +60,7 @@ from tools.builds.studio import BLOCKLY, unusable_reason
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-drawn = pytest.mark.sampled(of="details of blocks", keep=4)
+few = pytest.mark.sampled(of="details of blocks", keep=4)
 
 SAMPLE_SIZE = 8  # random programs
 # Whether a text field handles the undo key itself.
@@ -97,8 +97,8 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
         for program in programs()[part::10]
     ]
     for seed in range(part, 300, 10):
-        theirs, kit = KITS[seed % len(KITS)]
-        forms.append(read_blocks(oracle_programs.program(random.Random(seed), theirs), kit))
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        forms.append(read_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
     for k, (want, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
         assert actual == want, k
@@ -174,7 +174,7 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
-@drawn
+@few
 def test_an_undo_keeps_the_place(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
     long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
@@ -240,7 +240,7 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
-@drawn
+@few
 def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(page: Page) -> None:
     """Also one without values."""
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
@@ -363,8 +363,10 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     icons.first.click()
     bubble.wait_for()
     named_text, mended_text = "here “forward” takes 0", "Try: “back 2 s at 80 %”"
-    whole = "".join((bubble.text_content() or "").split())
-    assert "".join(named_text.split()) in whole and "".join(mended_text.split()) in whole
+    bubble_text = "".join((bubble.text_content() or "").split())
+    assert (
+        "".join(named_text.split()) in bubble_text and "".join(mended_text.split()) in bubble_text
+    )
     assert named_text in (first_message.text_content() or "")
     assert row.locator(".on_block").all_inner_texts() == ["forward", "back 2 s at 80 %"]
     assert page.locator("#messages .repair").count() == 1
@@ -377,7 +379,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     assert icons.count() == 0
 
 
-@drawn
+@few
 def test_a_message_stands_on_no_block(page: Page) -> None:
     """A message without room is hidden."""
     bubble = page.locator("#blocks .blocklyBubble")
@@ -399,7 +401,7 @@ def test_a_message_stands_on_no_block(page: Page) -> None:
     bubble.wait_for(state="detached")
 
 
-@drawn
+@few
 def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
     start(page, "SI|S;\nF(FOREVER, 20) UNTIL(FALSE);\nW(1);\n", "all")
     page.click("#run")
@@ -425,7 +427,7 @@ def flyout(page: Page, group: str) -> str:
     return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
-@drawn
+@few
 def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Config) -> None:
     for name in sample_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
@@ -443,7 +445,7 @@ def texts_on_blocks(page: Page) -> set[str]:
     return {" ".join(text.split()) for text in texts if not text.isdigit()}
 
 
-@drawn
+@few
 def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert texts_on_blocks(page) == {
@@ -467,7 +469,7 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
     assert "stop" in texts_on_blocks(page)
 
 
-@drawn
+@few
 def test_a_move_is_so_long_or_so_far(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
     for field, choice, says, text in (
@@ -482,7 +484,7 @@ def test_a_move_is_so_long_or_so_far(page: Page) -> None:
         assert texts_on_blocks(page) == {"when it starts", "at", "%", *says}
 
 
-@drawn
+@few
 def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -> None:
     page.click("#view_text")
     write(page, "S;" * 1600)
@@ -639,7 +641,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
     assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == "0"
 
 
-@drawn
+@few
 def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     """Dragged out, chosen later, and back; a number stays where it still fits."""
     page.select_option("#robot", "grabber")
@@ -655,7 +657,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
 
-@drawn
+@few
 def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
     for group, words, own in (
@@ -674,7 +676,7 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
         assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
 
 
-@drawn
+@few
 def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
     first_hat, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
     text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{then}"
@@ -683,26 +685,26 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     drag(page, "Move", "back", block(page, "stop"))
     moved_text = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
     wait_for_text(page, moved_text)  # a hat that was not moved stays after its block
-    upper, last = (
+    upper, last_hat = (
         page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
     )
-    box, above = box_of(last), box_of(upper)
+    box, above = box_of(last_hat), box_of(upper)
     page.mouse.move(box["x"] + 12, box["y"] + 16)
     page.mouse.down()
     page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
     page.mouse.up()
     moved = moved_text.replace(first_hat + then, then + first_hat)
     wait_for_text(page, moved)
-    place = box_of(last)
+    place = box_of(last_hat)
     assert place["x"] > above["right"] and place["y"] < above["y"]
     page.click("#undo")
     wait_for_text(page, moved_text)
     page.click("#redo")
     wait_for_text(page, moved)
-    assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
+    assert box_of(last_hat)["x"] == pytest.approx(place["x"], abs=1)
 
 
-@drawn
+@few
 def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
     """An existing hat stays if somebody put it, even out of sight."""
     word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
@@ -792,7 +794,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     assert page.locator("#lesson_said").get_attribute("data-verdict") == "passed", text_of(page)
 
 
-@drawn
+@few
 def test_more_cases_of_an_if(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
     for name, wanted_text in (
@@ -806,18 +808,20 @@ def test_more_cases_of_an_if(page: Page) -> None:
         wait_for_text(page, f"SI|{wanted_text}")
 
 
-@drawn
+@few
 def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     start(page, "SI|DEF HOP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nHOP(2);\nHOP(3);\n", "usual")
     canvas = page.locator("#blocks .blocklyBlockCanvas")
     canvas.locator("image[*|href$='more.svg']").first.click()
     page.locator("#blocks[data-state=shown]").wait_for()
-    begin = "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
-    wait_for_text(page, begin.format(*"AAAA"))
+    hop_text = (
+        "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
+    )
+    wait_for_text(page, hop_text.format(*"AAAA"))
     canvas.locator(".blocklyEditableField", has_text=re.compile("^A$")).last.click()
     page.keyboard.type("size")
     page.keyboard.press("Enter")
-    wait_for_text(page, begin.format(*["SIZE"] * 4))
+    wait_for_text(page, hop_text.format(*["SIZE"] * 4))
     texts = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
     assert {"SIZE", "C"} <= texts
     body = "  F(SIZE, 50);\n  SIZE = SIZE + 1;\nEND_DEF;\n"
@@ -827,7 +831,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
         wait_for_text(page, f"SI|DEF {head};\n{body}{calls}")
 
 
-@drawn
+@few
 def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
     text = "SI|DEF A{};\n  F(1, 50);\nEND_DEF;\n"
     start(page, text.format(""), "usual")
@@ -884,7 +888,7 @@ def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
 
 
-@drawn
+@few
 def test_a_fault_is_said_at_its_block(page: Page) -> None:
     start(page, "X = 0;\nSHOW(1 / X);\nS;\n")
     page.select_option("#speed", "20")

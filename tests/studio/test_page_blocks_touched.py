@@ -38,7 +38,7 @@ from tests.support.studio import (
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-drawn = pytest.mark.sampled(of="touched blocks", keep=3)
+few = pytest.mark.sampled(of="touched blocks", keep=3)
 
 SCRIPT = Path(__file__).with_name("tones_in_node.mjs")
 LARGEST_GAP_PX = 30  # pixels between a block and its message
@@ -112,7 +112,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     page.click("#runs_close")
 
 
-@drawn
+@few
 def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
     start(page, LONG_PROGRAM)
     page.select_option("#speed", "1")
@@ -232,7 +232,7 @@ ARROWS_SCRIPT = """all => all.map((arrow) => {
 })"""
 
 
-@drawn
+@few
 def test_each_move_has_its_arrow(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     arrows = page.locator(f"{PROGRAM} path.arrow")
@@ -245,7 +245,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     wait_for_text(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     evaluate_all_after = arrows.evaluate_all(ARROWS_SCRIPT)
     assert [evaluate_all_before[text] for text, _ in evaluate_all_after] == [
-        drawn for _, drawn in evaluate_all_after
+        drawn_moves for _, drawn_moves in evaluate_all_after
     ]
     assert [text for text, _ in evaluate_all_after].count("turn left") == 2
     gap = arrows.first.evaluate(
@@ -254,7 +254,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     assert 0 < gap < 14
 
 
-@drawn
+@few
 def test_an_editor_stands_over_its_own_field(page: Page) -> None:
     start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
     for k in range(6):
@@ -272,7 +272,7 @@ def test_an_editor_stands_over_its_own_field(page: Page) -> None:
         editor.wait_for(state="detached")
 
 
-@drawn
+@few
 def test_a_message_is_at_its_block(page: Page) -> None:
     """It is as near as possible without covering another block, with a line from the block."""
     wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
@@ -294,11 +294,11 @@ def test_a_message_is_at_its_block(page: Page) -> None:
             assert 0 < bubble_box["left"] - block_box["right"] < LARGEST_GAP_PX
             assert not [box for box in boxes if meet(box, bubble_box)]
         tail = page.locator("#blocks .blocklyBubbleTail")
-        begin = tail.evaluate("e => e.getBoundingClientRect().left")
-        assert begin > block_box["right"] - 14 and tail.is_visible()
+        tail_left = tail.evaluate("e => e.getBoundingClientRect().left")
+        assert tail_left > block_box["right"] - 14 and tail.is_visible()
 
 
-@drawn
+@few
 def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None:
     """An unfinished program has many of them, so blocks keep their size."""
     for size in ((1366, 768), (390, 844)):
@@ -355,7 +355,7 @@ def pitch(page: Page, hertz: str = "440") -> Locator:
     return field
 
 
-@drawn
+@few
 def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
     for language, name in (("en", "E"), ("es", "mi"), ("pt", "mi")):
         speak(page, language)
@@ -402,7 +402,7 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
     wait_for_text(page, text)
 
 
-@drawn
+@few
 def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     start(page, "SI|BEEP(0.5, 440);\nS;\n")
     pitch(page).first.click()
@@ -492,7 +492,7 @@ IS_SEEN_SCRIPT = """(path) => {
 }"""
 
 
-@drawn
+@few
 def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     start(page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all")
     value, pile = block(page, "distance"), block(page, "new word")

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import APIResponse, Browser, Locator, Page, Route
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-drawn = pytest.mark.sampled(of="details of a class", keep=2)
+few = pytest.mark.sampled(of="details of a class", keep=2)
 
 KIT = robots.load("tinibot").kit
 WALL_FITS_SCRIPT = (
@@ -212,7 +212,7 @@ def test_three_pupils_share_a_robot(
     luz.close()
 
 
-@drawn
+@few
 def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
     ana: Page, shared_pages: Pages
 ) -> None:
@@ -311,29 +311,29 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     pages.wrong.clear()
 
 
-@drawn
+@few
 def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_class: Class) -> None:
     """A wall that looks while a pupil is removed does not show the pupil again."""
     room = shared_class.room
     for name in ("Eva", "Noa"):
         room.answer("", "192.0.2.7", {"do": "join", "code": room.code, "name": name})
-    late: list[tuple[Route, APIResponse]] = []
+    late_answers: list[tuple[Route, APIResponse]] = []
 
     def hold(route: Route) -> None:
-        if not late and '"do":"class"' in (route.request.post_data or ""):
-            late.append((route, route.fetch()))
+        if not late_answers and '"do":"class"' in (route.request.post_data or ""):
+            late_answers.append((route, route.fetch()))
         else:
             route.continue_()
 
     tile(teacher, "Eva").wait_for()
     teacher.evaluate(NO_TIMEOUT_SCRIPT)
     teacher.route("**/*", hold)
-    wait_for(teacher, lambda: late, "the wall looks")
+    wait_for(teacher, lambda: late_answers, "the wall looks")
     tile(teacher, "Eva").hover()
     tile(teacher, "Eva").locator(".out").click()
     tile(teacher, "Eva").wait_for(state="detached")
     teacher.evaluate(NOTES)
-    route, response = late[0]
+    route, response = late_answers[0]
     route.fulfill(response=response)
     teacher.unroute_all(behavior="wait")
     for pupil in room.teach({"do": "class"})["pupils"]:
@@ -344,7 +344,7 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_clas
     teacher.evaluate("() => { AbortSignal.timeout = window.limit; }")
 
 
-@drawn
+@few
 def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Class) -> None:
     """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
     room = shared_class.room
@@ -370,7 +370,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Cl
     remove_all_but_ana(shared_class)
 
 
-@drawn
+@few
 def test_a_picture_is_seen_large_while_the_next_one_is_made(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
@@ -441,7 +441,7 @@ COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
   URL.createObjectURL = (blob) => (window.drawn.push(newest), make(blob)); }"""
 
 
-@drawn
+@few
 def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
     """Whatever the page writes meanwhile, the newest is drawn then. Others have no wait."""
     teacher = open_teacher_page(pages, shared_class)
@@ -454,19 +454,23 @@ def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_clas
         teacher.evaluate(f"() => {{ window.now += {passed_ms}; }}")
         return text in teacher.evaluate(names)
 
-    whole = "F(1, 51)"
+    shown_program = "F(1, 51)"
 
     def add_line() -> str:
         """Write one line more, at once; return the whole."""
-        nonlocal whole
-        whole += "\nW(1)"
+        nonlocal shown_program
+        shown_program += "\nW(1)"
         first.locator(".cm-content").focus()
         first.keyboard.press("Control+End")
         first.keyboard.insert_text("\nW(1)")
-        return whole
+        return shown_program
 
-    write(first, whole)
-    wait_for(teacher, lambda: is_shown("drawn", whole, 1000), "what waits, and was written between")
+    write(first, shown_program)
+    wait_for(
+        teacher,
+        lambda: is_shown("drawn", shown_program, 1000),
+        "what waits, and was written between",
+    )
     teacher.evaluate("() => { window.now += 1000; }")
     newest = add_line()
     wait_for(teacher, lambda: is_shown("drawn", newest), "after a second it is drawn at once")
@@ -502,7 +506,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
     red.wait_for(state="detached")
 
 
-@drawn
+@few
 def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     click_ask(ana)
     wait_for_link(ana, "Connected: ")
@@ -518,7 +522,7 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
     teacher.click("#class_window [data-text=close]")
 
 
-@drawn
+@few
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     click_ask(ana)
@@ -653,7 +657,7 @@ def opened_row(teacher: Page, name: str) -> Locator:
     return row
 
 
-@drawn
+@few
 def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
@@ -676,7 +680,7 @@ def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     pages.wrong.clear()
 
 
-@drawn
+@few
 def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
@@ -701,7 +705,7 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana.click("#side_real")
 
 
-@drawn
+@few
 @pytest.mark.parametrize("erases", [True, False])
 def test_the_end(browser: Browser, erases: bool) -> None:
     with studio.serve_class([]) as taught:

@@ -275,13 +275,13 @@ def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
         enter(tab, server.address)
         tab.evaluate("navigator.serviceWorker.ready.then(() => 1)")
         tab.click("#view_text")
-        for name, old, new in (
+        for name, old_text, new_text in (
             ("index.html", b"<html ", b'<html data-build="2" '),
             ("service_worker.js", b'VERSION = "', b'VERSION = "newer'),
         ):
-            data = page[name].data.replace(old, new, 1)
+            data = page[name].data.replace(old_text, new_text, 1)
             assert data != page[name].data
-            page[name] = page[name]._replace(data=data, etag=f'"{new.hex()}"')
+            page[name] = page[name]._replace(data=data, etag=f'"{new_text.hex()}"')
         tab.evaluate(UPDATE_SCRIPT)
         write(tab, "SI|F(3, 30)")  # the old one continues
         tab.reload()

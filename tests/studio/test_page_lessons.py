@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 FOLDERS = catalogue.folders()
-drawn = pytest.mark.sampled(of="details of lessons", keep=3)
+few = pytest.mark.sampled(of="details of lessons", keep=3)
 
 NIGHT_COLOUR = "39,50,75"
 BUSY_PROGRAM = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
@@ -63,9 +63,9 @@ def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, pa
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
 def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
-    right, _ = catalogue.answers(FOLDERS[number - 1])
+    right_answers, _ = catalogue.answers(FOLDERS[number - 1])
     choose_lesson(page, number)
-    assert check_answer(page, right[0].program) == ("passed", [])
+    assert check_answer(page, right_answers[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.world_count} worlds" if lesson.world_count > 1 else ""
     wanted_text = f"Done! You solved lesson {number}{worlds}."
@@ -78,7 +78,7 @@ def later_sentences(page: Page) -> list[str]:
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 
-@drawn
+@few
 def test_any_program_can_be_checked(page: Page) -> None:
     choose_lesson(page, 1)
     for program, verdict in (
@@ -90,7 +90,7 @@ def test_any_program_can_be_checked(page: Page) -> None:
         assert (shown_verdict, len(sentences)) == (verdict, verdict == "failed"), program
 
 
-@drawn
+@few
 def test_a_check_can_be_ended(page: Page) -> None:
     choose_lesson(page, 9)
     write(page, BUSY_PROGRAM)
@@ -100,12 +100,12 @@ def test_a_check_can_be_ended(page: Page) -> None:
     assert page.inner_text("#lesson_said") == "You stopped the check, so there is no result."
     assert page.evaluate("document.activeElement.id") == "lesson_check"
     choose_lesson(page, 1)
-    right, _ = catalogue.answers(FOLDERS[0])
+    right_answers, _ = catalogue.answers(FOLDERS[0])
     # The verdict is not that of the other check.
-    assert check_answer(page, right[0].program) == ("passed", [])
+    assert check_answer(page, right_answers[0].program) == ("passed", [])
 
 
-@drawn
+@few
 def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     """The robot stays at the wall that it touched; then the answer appears."""
     choose_lesson(page, 1)
@@ -122,7 +122,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     assert page.locator("html[data-phase=ended]").count() == 1
 
 
-@drawn
+@few
 def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
     choose_lesson(page, 2)
     write(page, "F(3, 80); W(9)")
@@ -167,7 +167,7 @@ CUT_NAMES_SCRIPT = """() => {
 }"""
 
 
-@drawn
+@few
 def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     for language, word in (("es", "Detente"), ("pt", "Pare antes"), ("en", "Stop before")):
         speak(page, language)
@@ -185,8 +185,8 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     assert page.locator("#lesson_next").is_hidden()
     page.click("#lesson_hint summary")
     assert "Three instructions" in page.inner_text("#lesson_hint_said")
-    right, _ = catalogue.answers(FOLDERS[1])
-    assert check_answer(page, right[0].program)[0] == "passed"
+    right_answers, _ = catalogue.answers(FOLDERS[1])
+    assert check_answer(page, right_answers[0].program)[0] == "passed"
     page.get_by_role("button", name="Next lesson").click()
     page.locator("#lesson_page", has_text="behind a block of houses").wait_for()
     assert page.input_value("#lesson") == "3"
@@ -213,12 +213,12 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         for button in page.locator("#lesson_steps button").all():
             button.click()
-            height, whole = page.evaluate(
+            height, total_height = page.evaluate(
                 "(({clientHeight, scrollHeight}) => [clientHeight, scrollHeight])"
                 "(document.querySelector('#lesson_page'))"
             )
-            assert height >= min(PAGES[size], whole), (number, button.inner_text())
-            assert size[0] != 1366 or height == whole
+            assert height >= min(PAGES[size], total_height), (number, button.inner_text())
+            assert size[0] != 1366 or height == total_height
             if page.locator("#lesson_hint").is_visible() and size == (1024, 600):
                 page.click("#lesson_hint summary")
                 height = page.evaluate("document.querySelector('#lesson_page').clientHeight")
@@ -239,8 +239,8 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
 
 def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     choose_lesson(page, 1)
-    right, _ = catalogue.answers(FOLDERS[0])
-    assert check_answer(page, right[0].program)[0] == "passed"
+    right_answers, _ = catalogue.answers(FOLDERS[0])
+    assert check_answer(page, right_answers[0].program)[0] == "passed"
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
     page.locator("#lesson_said[data-verdict=before]").wait_for()
@@ -254,7 +254,7 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     assert page.locator("#lesson_said[data-verdict]").count() == 0
 
 
-@drawn
+@few
 def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     choose_lesson(page, 12)
     _, wrong_answers = catalogue.answers(FOLDERS[11])
@@ -279,7 +279,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     page.locator("#world option:checked", has_text="12").wait_for(state="attached")
 
 
-@drawn
+@few
 def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
     choose_lesson(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
@@ -308,7 +308,7 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
     pages.wrong.clear()
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-    right, _ = catalogue.answers(FOLDERS[1])
+    right_answers, _ = catalogue.answers(FOLDERS[1])
     kept_state = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
     locator = page.locator("#lesson option", has_text="✓")
     for k, lesson in enumerate(kept_state):
@@ -320,7 +320,7 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
         assert locator.count() == int(k == 0)
     choose_lesson(page, 2)
     page.select_option("#speed", "20")
-    assert check_answer(page, right[0].program)[0] == "passed"
+    assert check_answer(page, right_answers[0].program)[0] == "passed"
     assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
     counts = (0, 2, len(FOLDERS))
     for count in sample_of(
@@ -340,9 +340,9 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     page = pages.open("start")
     axe_of = [axe(page)]
 
-    def press(where: str, most: int = 3) -> None:
+    def press(where: str, max_presses: int = 3) -> None:
         """Go on with Tab to an element, past few others, and press Enter."""
-        for _ in range(most):
+        for _ in range(max_presses):
             if page.evaluate("where => document.activeElement.matches(where)", where):
                 return page.keyboard.press("Enter")
             page.keyboard.press("Tab")
@@ -363,7 +363,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     assert axe_of == [[], []]
 
 
-@drawn
+@few
 def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
     """Also from a page with a drawn floor, and with Back from a panel in front of it."""
     page.click("#side_virtual")
@@ -414,7 +414,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     assert lesson.title("en").replace(":", "") in names
 
 
-@drawn
+@few
 def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     """The start page shows no verdict, and after a change of language the reason is translated."""
     choose_lesson(page, 7)
@@ -425,8 +425,8 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     page.locator("#lesson_said", has_text="No hay resultado").wait_for()
     speak(page, "en")
     choose_lesson(page, 1)
-    right, _ = catalogue.answers(FOLDERS[0])
-    write(page, right[0].program)
+    right_answers, _ = catalogue.answers(FOLDERS[0])
+    write(page, right_answers[0].program)
     page.select_option("#speed", "1")
     page.click("#lesson_check")
     wait_for_phase(page, "running")
@@ -438,7 +438,7 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     page.click("#start_write")
 
 
-@drawn
+@few
 def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
     """Programs of lessons are in the list; the person's own program returns."""
     program, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
@@ -464,7 +464,7 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
     page.locator(".cm-content", has_text=of_lesson).wait_for()
 
 
-@drawn
+@few
 def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
     own_text, first_text, second_text = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"

@@ -49,9 +49,9 @@ class Page:
                 self.file = answer.get("keys", self.file)
             self._back += self.robot.step(now_ms, sent_bytes)
 
-    def ask(self, do: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
+    def ask(self, action: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
         self._count += 1
-        self.advance(1, {"do": do, "id": self._count, **fields})
+        self.advance(1, {"do": action, "id": self._count, **fields})
         for _ in range(limit_ms):
             answers = [item for item in self.news if item.get("id") == self._count]
             if answers:

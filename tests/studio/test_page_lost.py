@@ -20,7 +20,7 @@ from tiniscript.studio.attending import LEFT_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
 
-drawn = pytest.mark.sampled(of="lost requests", keep=3)
+few = pytest.mark.sampled(of="lost requests", keep=3)
 
 CONFIRMED_MESSAGE = "Stopped: the robot has confirmed the stop."
 HIDDEN_MESSAGE = "The robot was stopped because this page was hidden. Come back here to drive it."
@@ -81,7 +81,7 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
         page.unroute_all(behavior="wait")
 
 
-@drawn
+@few
 def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
@@ -105,7 +105,7 @@ def test_a_connect_that_is_lost_comes_again(
     start_drive(page, robot)
 
 
-@drawn
+@few
 def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -186,7 +186,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE, LATE_MESSAGE]
 
 
-@drawn
+@few
 def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
@@ -204,7 +204,7 @@ def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
 
 
-@drawn
+@few
 def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -252,7 +252,7 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE]
 
 
-@drawn
+@few
 def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     """Its requests and the link end. A slow page, which is not heard for a while, first stops the
     run under way, and reports that, too.
@@ -269,7 +269,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     assert [text for text in texts if text == "The robot has stopped responding"] == texts[-1:]
 
 
-@drawn
+@few
 def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -282,7 +282,7 @@ def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 
-@drawn
+@few
 def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -294,7 +294,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     wait_for_message(page, "tsc studio heard nothing from this page for a while")
 
 
-@drawn
+@few
 def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
     page: Page, robot: PtyRobot
 ) -> None:

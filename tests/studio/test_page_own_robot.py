@@ -120,11 +120,11 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
     page.select_option("#speed", "20")
     page.click("#side_lessons")
     folder = catalogue.folders()[1]
-    right, _ = catalogue.answers(folder)
+    right_answers, _ = catalogue.answers(folder)
     worlds = catalogue.load(folder).world_count
     for _ in range(2):
         choose_lesson(page, 2)
-        assert check_answer(page, right[0].program)[0] == "passed"
+        assert check_answer(page, right_answers[0].program)[0] == "passed"
         assert f"You have {3 + worlds} stars." in page.inner_text("#lesson_said")
     assert page.evaluate("window.fell") == (0 if way == "still" else 2)
     tune = [523, 659, 784, 1047]

@@ -43,7 +43,7 @@ from tools.builds.studio import find_tools
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-drawn = pytest.mark.sampled(of="details of programs", keep=2)
+few = pytest.mark.sampled(of="details of programs", keep=2)
 
 TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 
@@ -86,7 +86,7 @@ ADDRESSES_BY_REACH = {
 }
 
 
-@drawn
+@few
 def test_a_program_gets_a_name(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
@@ -109,7 +109,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
     page.click("#programs_close")
 
 
-@drawn
+@few
 def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
@@ -160,7 +160,7 @@ WRONG_LINKS = {
 }
 
 
-@drawn
+@few
 @each_row("name", WRONG_LINKS)
 def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
@@ -174,7 +174,7 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     assert page.locator("img").count() == 0
 
 
-@drawn
+@few
 def test_what_cannot_be_shared_says_why(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
@@ -255,7 +255,7 @@ def read_picture(page: Page) -> str:
     return str(completed.stdout)
 
 
-@drawn
+@few
 def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     """A phone cannot open an address that only this computer has, so such a link gets no
     picture."""
@@ -273,7 +273,7 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-@drawn
+@few
 def test_the_window_opens_on_programs(page: Page) -> None:
     """Each with a picture, a large plus before them, and how one is shared is folded away."""
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
@@ -317,7 +317,7 @@ def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
     return colours(page, Path(download.value.path()).read_bytes())
 
 
-@drawn
+@few
 def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     """This works from the text view, too, unless there are too many blocks."""
     for view in ("text", "blocks"):
@@ -346,7 +346,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-@drawn
+@few
 def test_what_is_shared_can_be_copied(page: Page) -> None:
     write(page, "SI|F(1, 80)")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])

@@ -252,7 +252,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
         transform = canvas.get_attribute("transform") or ""
         return [round(100 * float(number)) for number in re.findall(r"[-\d.e]+(?=[,)])", transform)]
 
-    whole, cut = place(), page.evaluate(CUT_HATS_SCRIPT)
+    start_place, cut = place(), page.evaluate(CUT_HATS_SCRIPT)
     assert size[0] != 1366 or cut == []
     page.click("#run")
     wait_for_phase(page, "running")
@@ -266,7 +266,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     page.wait_for_timeout(AFTER_RUN_MS)
     assert page.evaluate(CUT_HATS_SCRIPT) == cut, "what was seen before the run is seen"
     page.hover("#views")
-    wait_for(page, lambda: place() == whole, "as before")
+    wait_for(page, lambda: place() == start_place, "as before")
     page.click("#view_text")
 
 
@@ -284,13 +284,13 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
     def scale() -> str:
         return (canvas.get_attribute("transform") or "").rpartition("scale")[2]
 
-    def drag(right: float, down: float, steps: int) -> tuple[float, float]:
+    def drag(x_shift: float, down: float, steps: int) -> tuple[float, float]:
         box = box_of(hat)
         x, y = box["x"] + 20, box["y"] + 20
         page.mouse.move(x, y, steps=steps)
         page.evaluate(SETTLED_SCRIPT)
         page.mouse.down()
-        page.mouse.move(x + right, y + down, steps=4)
+        page.mouse.move(x + x_shift, y + down, steps=4)
         page.wait_for_timeout(AFTER_RUN_MS)
         now = box_of(hat)
         page.mouse.up()
@@ -298,8 +298,8 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
         return now["x"] - box["x"], now["y"] - box["y"]
 
     drag(200, 60, 1)
-    whole, width = scale(), page.evaluate("blocks.clientWidth")
-    for steps, end_action, right in (
+    full_scale, width = scale(), page.evaluate("blocks.clientWidth")
+    for steps, end_action, x_shift in (
         (1, "click", -30),
         (9, "Escape", 30),
         (0, "click", -30),
@@ -307,17 +307,17 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
     ):
         page.click("#run")
         wait_for_phase(page, "running")
-        wait_for(page, lambda: scale() != whole, "smaller beside the robot")
+        wait_for(page, lambda: scale() != full_scale, "smaller beside the robot")
         page.click("#stop") if end_action == "click" else page.keyboard.press(end_action)
         wait_for_phase(page, "ended")
         page.wait_for_timeout(AFTER_RUN_MS)
         if not steps:
             page.hover("#views")
             wait_for(page, lambda: page.evaluate("blocks.clientWidth") == width, "its room")
-            assert scale() == whole
-        assert drag(right, 20, steps or 1) == pytest.approx((right, 20), abs=4)
+            assert scale() == full_scale
+        assert drag(x_shift, 20, steps or 1) == pytest.approx((x_shift, 20), abs=4)
         wait_for(page, lambda: page.evaluate("blocks.clientWidth") == width, "the room that it had")
-        wait_for(page, lambda: scale() == whole, "as before")
+        wait_for(page, lambda: scale() == full_scale, "as before")
     page.click("#view_text")
 
 
@@ -439,22 +439,22 @@ def test_what_stands_on_the_floor_has_sides_from_behind_the_robot(page: Page) ->
 
 def test_each_start_picture_leads_to_its_world(page: Page) -> None:
     """A dance floor has tiles that light, and lamps shine in the dark."""
-    for begin, world in (
+    for start_name, world in (
         ("dance", "dance"), ("light", "light"), ("line", "line"), ("obstacle", "obstacles"),
         ("square", "free"),
     ):  # fmt: skip
         page.click("#home")
-        page.click(f"[data-begin={begin}]")
+        page.click(f"[data-begin={start_name}]")
         wait_for_phase(page, "running")
         assert page.input_value("#world") == world
-        if begin == "dance":
+        if start_name == "dance":
             assert {"251,238,252", "227,240,253", "255,243,207"} <= set(
                 page.evaluate(COLORS_SCRIPT)
             )
-        if begin == "light":
+        if start_name == "light":
             assert "39,50,75" in set(page.evaluate(COLORS_SCRIPT))
             assert "255,253,246" not in set(page.evaluate(COLORS_SCRIPT))
-        if begin == "square":  # a camera that follows shows that it drives
+        if start_name == "square":  # a camera that follows shows that it drives
             assert "230,220,196" in set(page.evaluate(COLORS_SCRIPT))
         page.click("#stop")
         wait_for_phase(page, "ended")

@@ -86,9 +86,9 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     # The next tab finds those of both; this one has its own.
     assert widths == {"localStorage": [101, 100, 101], "sessionStorage": [101, 100]}
     newest = read(other_page.evaluate("localStorage['tiniscript.world']"), "newest")
-    theirs = read(other_page.evaluate(kept_text, "localStorage")[-1], "theirs")
+    other_world = read(other_page.evaluate(kept_text, "localStorage")[-1], "theirs")
     assert (newest.width_cm, newest.start.x_cm) == (102, 45)
-    assert theirs.start.x_cm == 45  # without any earlier step
+    assert other_world.start.x_cm == 45  # without any earlier step
 
 
 def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:

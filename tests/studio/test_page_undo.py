@@ -114,15 +114,15 @@ def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
     """After it was dragged in, or the program was written as text: in the blocks and by the key."""
     start(page, "SI|F(2, 80);\n")
     drag(page, "Events", "each time", None)
-    whole = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
-    wait_for_text(page, whole)
+    text = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
+    wait_for_text(page, text)
     for begins in ("dragged", "written"):
         if begins == "written":
-            start(page, whole)
+            start(page, text)
         state_before = state_of(page)
         move(page, "each time", (520, 560))
         state_after = state_of(page)
-        assert state_after[0] == whole and state_after != state_before
+        assert state_after[0] == text and state_after != state_before
         page.click("#undo")
         wait_for_state(page, state_before)
         page.click("#redo")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="what is heard and seen", keep=3)
+few = pytest.mark.sampled(of="what is heard and seen", keep=3)
 
 # The computer's sound, noted as often as it is opened. `rest` closes it after a while: the test
 # decides when, since a run on a slow computer may take longer.
@@ -86,7 +86,7 @@ def run(page: Page, program: str) -> None:
     wait_for_phase(page, "ended")
 
 
-@drawn
+@few
 def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page) -> None:
     page = listening
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
@@ -143,7 +143,7 @@ def test_an_empty_program_says_so_before_and_after_its_run(page: Page, text: str
     assert "It has ended." in page.inner_text("#doing")
 
 
-@drawn
+@few
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. A page must wait before it closes
     this."""
@@ -164,7 +164,7 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
         assert page.evaluate("window.closings") == closings + 1
 
 
-@drawn
+@few
 def test_stop_and_pause_silence_it(listening: Page) -> None:
     page = listening
     write(page, "BEEP(30, 440)")
@@ -179,7 +179,7 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
         assert page.evaluate("window.stopped") == stops_before + 1
 
 
-@drawn
+@few
 def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page) -> None:
     page = listening
     noted_text = "[window.heard.length, window.started, window.shaken]"
@@ -190,14 +190,16 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
     run(page, CRASH_PROGRAM)
     assert page.evaluate(noted_text) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
-    first_message, *_, last = page.evaluate("window.told")
+    first_message, *_, last_message = page.evaluate("window.told")
     assert first_message.startswith("The robot has bumped into something. The robot is ")
-    assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
+    assert last_message.startswith("Collisions: 1. The robot is ") and last_message.endswith(
+        "to the right."
+    )
     run(page, "W(1)")
     assert page.evaluate(noted_text) == [1, 1, 1]
 
 
-@drawn
+@few
 def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     page = listening
     page.emulate_media(reduced_motion="reduce")
@@ -207,7 +209,7 @@ def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     assert count(page, "ffd84d") > 20
 
 
-@drawn
+@few
 def test_ways_stay_until_they_are_erased(listening: Page) -> None:
     page = listening
     page.select_option("#world", "obstacles")
@@ -241,7 +243,7 @@ y_cm = 50
 """
 
 
-@drawn
+@few
 def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     page = listening
     page.set_input_files(
@@ -281,7 +283,7 @@ power_percent = 0
 RIVAL_COLOUR, DARK_COLOUR = "9a4fc0", "3b434c"
 
 
-@drawn
+@few
 def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
     page = listening
     page.set_input_files(

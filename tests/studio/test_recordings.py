@@ -93,8 +93,8 @@ def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
     assert (divergence.what, divergence.agreed, divergence.line) == ("value", 3, 5)
     assert divergence.robot == Row(2060, "SHOW 9")
     assert divergence.virtual is not None and divergence.virtual.event == "SHOW 8"
-    late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
-    assert recording_of(*late) == ("time", 2, 3)
+    late_rows = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
+    assert recording_of(*late_rows) == ("time", 2, 3)
 
 
 def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -> None:
@@ -225,7 +225,7 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
     """No file of anybody ends in another error."""
     rng = random.Random(1)
     world = {"form": 1}
-    whole = [
+    recordings_data = [
         file(*LINES),
         file((289, "START"), (300, "KEYS 5 -100 0"), (400, "SHOW 1"), **VIRTUAL),
         file(**VIRTUAL, world=world),
@@ -233,7 +233,7 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
     ]
     outcomes = set()
     for _ in range(3000):
-        data = bytearray(rng.choice(whole))
+        data = bytearray(rng.choice(recordings_data))
         for _ in range(rng.randint(1, 3)):
             offset = rng.randrange(len(data))
             piece = bytes(

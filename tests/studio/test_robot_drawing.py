@@ -39,12 +39,14 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
         for robot, turned in both
     ]
-    ahead, right = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
-    (cone,), (turned_cone,) = (shapes(drawn, "fill", "#e0452f33") for drawn in (ahead, right))
+    ahead, turned_drawing = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
+    (cone,), (turned_cone,) = (
+        shapes(drawing, "fill", "#e0452f33") for drawing in (ahead, turned_drawing)
+    )
     assert [a - b for a, b in zip(turned_cone[-2:], cone[-2:], strict=True)] == pytest.approx(
         [-math.pi / 4] * 2
     )
-    jaws = [shapes(drawn, "stroke", "#37434f") for drawn in (ahead, right)]
+    jaws = [shapes(drawing, "stroke", "#37434f") for drawing in (ahead, turned_drawing)]
     assert len(jaws[0]) == len(jaws[1]) + 2
 
 
@@ -87,8 +89,8 @@ def test_what_is_on_is_seen() -> None:
 
 def test_the_jaws_are_as_open_as_they_are() -> None:
     def gap(drawing: Drawing) -> float:
-        right, left = shapes(drawing, "stroke", "#37434f")
-        return left[-1] - right[-1]
+        right_jaw, left = shapes(drawing, "stroke", "#37434f")
+        return left[-1] - right_jaw[-1]
 
     states = [state_after(f"GRIPPER({angle});W(1)", "grabber", 300) for angle in (0, 90, 180)]
     closed, half, wide = map(

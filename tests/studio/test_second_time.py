@@ -169,9 +169,9 @@ class ComingPage:
         self._is_there = self._sleeps = False
         self._asked: list[Json] = []
 
-    def _ask(self, do: str, **fields: object) -> Json:
+    def _ask(self, action: str, **fields: object) -> Json:
         return self.hosting.answer({
-            "do": do, "page": self.name, "tab": self.tab, "connection": self._connection,
+            "do": action, "page": self.name, "tab": self.tab, "connection": self._connection,
             "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen,
             "stops": self.stops, **fields,
         })  # fmt: skip

@@ -36,9 +36,9 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
     talk = Talk(other_robot)
     talk.upload(text)
     talk.wait(8000)
-    ours, theirs = trace_of(simulation), trace(other_robot.take_events())
-    shorter = min(len(ours), len(theirs)) - 5  # the two were uploaded at other times
-    assert shorter > 10 and ours[:shorter] == theirs[:shorter]
+    page_trace, virtual_trace = trace_of(simulation), trace(other_robot.take_events())
+    shorter = min(len(page_trace), len(virtual_trace)) - 5  # the two were uploaded at other times
+    assert shorter > 10 and page_trace[:shorter] == virtual_trace[:shorter]
 
 
 def test_it_is_told_which_part_of_the_text_runs() -> None:
@@ -222,8 +222,8 @@ def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> No
 def test_the_page_says_what_is_held_of_a_remote_control() -> None:
     """A new run begins without held keys."""
 
-    def motors(do: str, data: bytes = b"", **fields: object) -> object:
-        return json.loads(worker.answer(json.dumps({"do": do, **fields}), data))["motors"]
+    def motors(action: str, data: bytes = b"", **fields: object) -> object:
+        return json.loads(worker.answer(json.dumps({"do": action, **fields}), data))["motors"]
 
     answer = json.loads(
         worker.answer(

@@ -118,9 +118,9 @@ def test_afterwards_a_page_drives_again() -> None:
     early = meeting.upload(0)
     meeting.advance(300)
     assert meeting.answer(early)["failure"] == "stopped_elsewhere"
-    late = meeting.upload(0)
+    late_request = meeting.upload(0)
     meeting.advance(1500)
-    assert meeting.answer(late)["ok"] and meeting.robot.is_running
+    assert meeting.answer(late_request)["ok"] and meeting.robot.is_running
 
 
 def test_a_robot_that_hears_no_stop_is_told() -> None:

@@ -21,9 +21,9 @@ class AskingPage:
         self.news: list[Json] = []
         self._number = 0
 
-    def asks(self, do: str, *asked: Json, connection: int = 1, **fields: object) -> Json:
+    def asks(self, action: str, *asked: Json, connection: int = 1, **fields: object) -> Json:
         number = max((item["number"] for item in self.news), default=0)
-        request = {"do": do, "page": "me", "connection": connection, "port": self.port,
+        request = {"do": action, "page": "me", "connection": connection, "port": self.port,
                    "robot": "tinibot", "language": "en", "seen": number, "asked": list(asked),
                    **fields}  # fmt: skip
         answer = self.answer(request)

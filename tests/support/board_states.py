@@ -83,9 +83,9 @@ def start_board(robot: Robot, text: str, extra_toml: str = "") -> Board:
 def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
     """A shipped robot on another board, or wired in another way."""
     text = re.sub(r'^chip *= *"\w+"', f'chip = "{chip}"', TEXTS[name], flags=re.M)
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new, 1)
+    for old_text, new_text in changes:
+        assert old_text in text
+        text = text.replace(old_text, new_text, 1)
     return read(text, name)
 
 

@@ -86,8 +86,8 @@ class Room:
         )
         return self.hosting.robots[self.hosting.asked[-1]["page"]]
 
-    def teaches(self, do: str, **fields: Any) -> Json:
-        return self.made.teach({"do": do, **fields})
+    def teaches(self, action: str, **fields: Any) -> Json:
+        return self.made.teach({"do": action, **fields})
 
     def number(self, name: str) -> int:
         return next(int(pupil["number"]) for pupil in self.teaches("class")["pupils"]

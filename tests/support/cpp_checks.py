@@ -73,13 +73,15 @@ def compare_verdicts(
     machine: Process, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0
 ) -> list[bytes]:
     """Assert that both machines agree on each code; return the accepted codes."""
-    theirs = machine.verdicts(codes, sensors, actuators, needs)
+    machine_verdicts = machine.verdicts(codes, sensors, actuators, needs)
     accepted = []
-    for code, (rule, offset) in zip(codes, theirs, strict=True):
-        ours = python_verdict(code, sensors, actuators, needs)
+    for code, (rule, offset) in zip(codes, machine_verdicts, strict=True):
+        verdict_in_python = python_verdict(code, sensors, actuators, needs)
         # The offset of accepted code is its length.
         verdict = (rule, offset if rule else 0)
-        assert ours == verdict, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {verdict}"
+        assert verdict_in_python == verdict, (
+            f"{code.hex(' ')} for {sensors}, {actuators}: {verdict_in_python}, not {verdict}"
+        )
         if not rule:
             accepted.append(code)
     return accepted
@@ -88,9 +90,11 @@ def compare_verdicts(
 def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that both machines run accepted code alike; return the ending."""
     image = image_for(code, kit)
-    ours, theirs = run_in_python(image, kit, senses), machine.run(image, kit, senses)
-    assert machine.agrees(theirs, ours, senses.max_ms), f"{code.hex(' ')}:\n{ours}\nnot\n{theirs}"
-    return theirs.trace.split()[-1]
+    python_run, machine_run = run_in_python(image, kit, senses), machine.run(image, kit, senses)
+    assert machine.agrees(machine_run, python_run, senses.max_ms), (
+        f"{code.hex(' ')}:\n{python_run}\nnot\n{machine_run}"
+    )
+    return machine_run.trace.split()[-1]
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -128,11 +132,11 @@ def run_late(
     """Return the trace of Python's machine where the tick after each wait comes so late."""
     robot = TracedRobot(kit, lists_of(kit, senses))
     machine = machine_of(unpack(image).code, robot, len(kit.readings), senses.seed)
-    for late in late_ms:
+    for delay_ms in late_ms:
         status = machine.tick(robot.now_ms, LATE_BUDGET)
         if status != WAITING or machine.wake_ms - robot.now_ms >= NEVER_MS:
             break
-        robot.now_ms = max(machine.wake_ms, robot.now_ms) + late
+        robot.now_ms = max(machine.wake_ms, robot.now_ms) + delay_ms
     return "".join(f"{event}\n" for event in robot.events)
 
 
@@ -203,10 +207,10 @@ def check_arithmetic(machine: Process, name: str, count: int) -> None:
     pairs += ROUNDED_TOO_LARGE
     pairs += [(any_number(rng), any_number(rng)) for _ in range(count - len(pairs))]
     code = BY_NAME[name].code
-    theirs = machine.results((code, a, b) for a, b in pairs)
-    for (a, b), result in zip(pairs, theirs, strict=True):
-        ours = python_result(name, a, b)
-        assert ours == result, f"{name} {a} {b}: {ours}, not {result}"
+    machine_results = machine.results((code, a, b) for a, b in pairs)
+    for (a, b), result in zip(pairs, machine_results, strict=True):
+        wanted_result = python_result(name, a, b)
+        assert wanted_result == result, f"{name} {a} {b}: {wanted_result}, not {result}"
 
 
 # -- tasks --------------------------------------------------------------------------------------
@@ -355,13 +359,13 @@ def some_way_programs(first_seed: int, count: int) -> list[tuple[bytes, Kit, Sen
     codes = []
     for seed in range(first_seed, first_seed + count):
         rng = random.Random(seed)
-        theirs, kit = KITS[seed // 2 % 2]
+        oracle_kit, kit = KITS[seed // 2 % 2]
         if seed % 2:
             text, readings = task_program(rng, ways=True)
             kit, max_ms = KIT, TASK_MS
         else:
-            text = programs.program(rng, theirs, ways=True)
-            readings, max_ms = programs.senses(rng, theirs), MAX_MS
+            text = programs.program(rng, oracle_kit, ways=True)
+            readings, max_ms = programs.senses(rng, oracle_kit), MAX_MS
         image = compile_text(text, kit).image
         codes.append((image, kit, Senses(readings, max_ms, 2000, seed + 1)))
     return codes
@@ -380,20 +384,20 @@ def python_refusal(data: bytes) -> int:
 
 def short_headers() -> Iterator[bytes]:
     """Yield images whose headers are too short by each number of bytes, and otherwise valid."""
-    whole = pack("SI", 0, b"")
+    header = pack("SI", 0, b"")
     for length in range(HEADER_BYTES):
-        yield with_checksum(whole[:5] + bytes([length]) + whole[6:])
+        yield with_checksum(header[:5] + bytes([length]) + header[6:])
 
 
 def check_images(machine: Process, seed: int, count: int) -> None:
     """Headers are refused for the same reasons, and each for some image."""
     images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX", *short_headers()]
-    theirs = machine.refusals(images)
-    for image, reason in zip(images, theirs, strict=True):
-        ours = python_refusal(image)
-        assert ours == reason, f"{image.hex(' ')}: {ours}, not {reason}"
+    machine_refusals = machine.refusals(images)
+    for image, reason in zip(images, machine_refusals, strict=True):
+        wanted_refusal = python_refusal(image)
+        assert wanted_refusal == reason, f"{image.hex(' ')}: {wanted_refusal}, not {reason}"
     headers = {number for name, (number, _) in REFUSALS.items() if name != "OTHER_KIT"}
-    assert {*theirs} == {0, *headers}
+    assert {*machine_refusals} == {0, *headers}
 
 
 def refusal_of(load: Callable[[], object]) -> str:
@@ -412,8 +416,12 @@ def check_whole_images(machine: Process, seed: int, count: int) -> None:
     refusals = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
-            ours = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
-            theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
-            assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
-            refusals.add(ours.partition(" ")[2].partition(" ")[0])
+            wanted_refusal = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
+            machine_refusal = refusal_of(
+                lambda data=image, kit=robot: machine.run(data, kit, senses)  # type: ignore[misc]
+            )
+            assert wanted_refusal == machine_refusal, (
+                f"{image.hex(' ')}: {wanted_refusal!r}, not {machine_refusal!r}"
+            )
+            refusals.add(wanted_refusal.partition(" ")[2].partition(" ")[0])
     assert {"", "OTHER_KIT", "NO_SUCH_DEVICE", "OTHER_VERSION", "DAMAGED"} <= refusals, refusals

@@ -40,10 +40,10 @@ def crowd(
     """Open so many connections to each port, which send one of `says` in turn."""
     with ExitStack() as stack:
         for port in ports:
-            for begin in range(0, count, CONNECTIONS_PER_PROCESS):
+            for start_index in range(0, count, CONNECTIONS_PER_PROCESS):
                 stack.enter_context(
                     _open_connections(
-                        port, min(CONNECTIONS_PER_PROCESS, count - begin), says, host, source
+                        port, min(CONNECTIONS_PER_PROCESS, count - start_index), says, host, source
                     )
                 )
         yield

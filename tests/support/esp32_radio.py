@@ -68,9 +68,9 @@ class LowEnergy:
         self.robot.radio("s", self._number + bytes([has_subscribed]))
 
     def send(self, data: bytes) -> None:
-        most = self.mtu - 3
-        for k in range(0, len(data), most):
-            self.robot.radio("w", self._number + _text(data[k : k + most]))
+        max_bytes = self.mtu - 3
+        for k in range(0, len(data), max_bytes):
+            self.robot.radio("w", self._number + _text(data[k : k + max_bytes]))
 
     def take(self) -> bytes:
         answer = self.robot.radio("n", self._number)
@@ -173,9 +173,9 @@ def set_network_in_reach(robot: Esp32Robot, name: str, password: str) -> None:
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
-def limit_accepted_bytes(robot: Esp32Robot, most: int) -> None:
+def limit_accepted_bytes(robot: Esp32Robot, max_bytes: int) -> None:
     """Limit the bytes that a client in a network accepts at once; 0 accepts none for now."""
-    robot.radio("t", pack("<H", most))
+    robot.radio("t", pack("<H", max_bytes))
 
 
 def announce_computer(robot: Esp32Robot, name: str, address: str, wait_ms: int = 0) -> None:

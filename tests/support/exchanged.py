@@ -86,15 +86,15 @@ def _run_try(tried_test: Try, items: Sequence[pytest.Item]) -> str:
             return _run_in_child(items, _exchange(tried_test))
         except Elsewhere as why:
             return str(why)
-    right = path.read_bytes()
+    original_data = path.read_bytes()
     path.write_text(tried_test.text, encoding="utf-8")
     try:
         return _run_in_child(items, lambda: None)
     finally:
-        path.write_bytes(right)
+        path.write_bytes(original_data)
 
 
-def _run_in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
+def _run_in_child(items: Sequence[pytest.Item], begin_try: Callable[[], None]) -> str:
     """Run tests after `begin`; an endless loop fails."""
     child = os.fork()
     if child == 0:
@@ -102,7 +102,7 @@ def _run_in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> st
         try:
             os.setsid()
             resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
-            begin()
+            begin_try()
             rows = [runtestprotocol(item, log=False, nextitem=None) for item in items]
             reports = [test_report for row in rows for test_report in row]
             code = int(any(report.failed for report in reports if report.when == "call"))
@@ -122,10 +122,12 @@ def _exchange(tried_test: Try) -> Callable[[], None]:
     """Return a function that installs the mutant in the imported module."""
     name = tried_test.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
     module = importlib.import_module(name.removesuffix(".__init__"))
-    right = (ROOT / tried_test.file).read_text(encoding="utf-8")
+    original_text = (ROOT / tried_test.file).read_text(encoding="utf-8")
     function_by_code = {function.__code__: function for function in _functions(module, module)}
     pairs = list(
-        _pairs(*(compile(text, tried_test.file, "exec") for text in (right, tried_test.text)))
+        _pairs(
+            *(compile(text, tried_test.file, "exec") for text in (original_text, tried_test.text))
+        )
     )
     if not pairs or any(old_code not in function_by_code for old_code, _ in pairs):
         raise Elsewhere("a function that differs is not found")
@@ -139,11 +141,13 @@ def _exchange(tried_test: Try) -> Callable[[], None]:
 
 def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
     """Yield the functions that differ in the code of a module or a class, outermost ones."""
-    old, new = ([const for const in code.co_consts if isinstance(const, CodeType)]
-                for code in (old_code, becomes))  # fmt: skip
-    if _own_content(old_code) != _own_content(becomes) or len(old) != len(new):
+    old_functions, new_functions = (
+        [const for const in code.co_consts if isinstance(const, CodeType)]
+        for code in (old_code, becomes)
+    )
+    if _own_content(old_code) != _own_content(becomes) or len(old_functions) != len(new_functions):
         raise Elsewhere("what differs is in no function")
-    for pair in zip(old, new, strict=True):
+    for pair in zip(old_functions, new_functions, strict=True):
         if pair[0] != pair[1]:
             if pair[0].co_flags & inspect.CO_OPTIMIZED:
                 yield pair

@@ -105,11 +105,11 @@ def names_of(path: Path) -> dict[str, list[str]]:
 def accept(case: LinkCase, rows: list[str]) -> None:
     """Write the results into the case if they differ; git shows the changes."""
     now = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
-    old = case.path.read_text(encoding="utf-8").splitlines()
+    old_lines = case.path.read_text(encoding="utf-8").splitlines()
     is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
-    end = next(k for k in range(now.line, len(old)) if is_over(old[k]))
-    old[now.line : end] = shorten(rows, names_of(case.path))
-    case.path.write_text("\n".join(old) + "\n", encoding="utf-8")
+    end = next(k for k in range(now.line, len(old_lines)) if is_over(old_lines[k]))
+    old_lines[now.line : end] = shorten(rows, names_of(case.path))
+    case.path.write_text("\n".join(old_lines) + "\n", encoding="utf-8")
 
 
 def shorten(rows: list[str], named_mapping: Mapping[str, list[str]]) -> list[str]:
@@ -438,25 +438,25 @@ def packets_of(
     most_bytes, window = (LARGE_PACKET, LARGE_WINDOW) if is_large else (SMALL_PACKET, 1)
     receiver = Receiver(most_bytes, window)
     rows = []
-    left = 0
+    bytes_left = 0
     for now_ms, byte in stream:
-        if left:
-            left -= 1
-            if not left:
+        if bytes_left:
+            bytes_left -= 1
+            if not bytes_left:
                 receiver.take()
         if receiver.put(byte, now_ms):
             rows.append("stop")
         packet = receiver.packet
-        if packet is None or left:
+        if packet is None or bytes_left:
             continue
         row = f"{'text' if packet.is_text else 'frame'} {packet.length} {packet.data.hex(' ')}"
         if not packet.is_text:
             row += " damaged" if decode_frame(packet.data) is None else " whole"
         rows.append(row)
-        left = held_ms + 1
+        bytes_left = held_ms + 1
         if not held_ms:
             receiver.take()
-            left = 0
+            bytes_left = 0
     assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))
                <= most_bytes for row in rows if row[0] in "ft")  # fmt: skip
     return [*rows, f"damaged {receiver.damaged % 256}, dropped {receiver.dropped % 256}"]

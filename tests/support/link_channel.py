@@ -181,31 +181,33 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     draw = random.Random(seed)
     faults = draw.choice((0, 0.001, 0.01))
     world = world_of(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
-    old = pack("SI", 0, program(draw, cpp.is_large))
+    old_image = pack("SI", 0, program(draw, cpp.is_large))
     world.to_robot.faults = world.to_computer.faults = 0
     drops, world.drops = world.drops, 0
-    old_upload = world.session.upload(unpack(old), runs=False)
+    old_upload = world.session.upload(unpack(old_image), runs=False)
     world.run(old_upload)
-    assert old_upload.outcome and old_upload.outcome.status == 0 and cpp.fetch_image() == old
+    assert old_upload.outcome and old_upload.outcome.status == 0 and cpp.fetch_image() == old_image
     world.to_robot.faults = world.to_computer.faults = faults
     world.to_robot.is_split = world.to_computer.is_split = world.is_split
     world.drops = drops
     if cpp.is_large:
         world.to_robot.shuffles = world.to_computer.shuffles = draw.choice((0, 0, 0.02, 0.2))
 
-    new = pack("SI", 0, program(draw, cpp.is_large))
+    new_image = pack("SI", 0, program(draw, cpp.is_large))
     world.reconnect()
-    request = world.session.upload(unpack(new))
+    request = world.session.upload(unpack(new_image))
     world.run(request)
     assert request.outcome, f"seed {seed}: an upload has no end"
     status = request.outcome.status
     is_done = status == 0
     if is_done:
-        assert cpp.fetch_image() == new, (
+        assert cpp.fetch_image() == new_image, (
             f"seed {seed}: the upload says done, the robot has another one"
         )
-    assert cpp.fetch_image() in (old, new), f"seed {seed}: neither the old program nor the new one"
-    names = [f"TAKE {unpack(image).checksum:08x}" for image in (new, old)]
+    assert cpp.fetch_image() in (old_image, new_image), (
+        f"seed {seed}: neither the old program nor the new one"
+    )
+    names = [f"TAKE {unpack(image).checksum:08x}" for image in (new_image, old_image)]
     assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
     starts = sum(row.startswith("START") for row in world.did)
     assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"

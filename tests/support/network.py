@@ -89,8 +89,8 @@ class CuttingNetwork(Network):
 
     most = 7
 
-    def __init__(self, target: int, left: Sequence[int]) -> None:
-        self.bytes_left = list(left)
+    def __init__(self, target: int, piece_sizes: Sequence[int]) -> None:
+        self.bytes_left = list(piece_sizes)
         super().__init__(target)
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:

@@ -62,10 +62,10 @@ def spread_names(names: Sequence[str], count: int) -> list[int]:
         for k, name in enumerate(part_names):
             where[k % len(where)] += files.pop(name)
     quick = [k for row in files.values() for k in row]
-    left = len(names)
+    names_left = len(names)
     for index, part in enumerate(parts):
-        size = max(len(part), left // (count - index))
-        left -= size
+        size = max(len(part), names_left // (count - index))
+        names_left -= size
         room = size - len(part)
         part += quick[:room]
         del quick[:room]

@@ -39,8 +39,8 @@ def list_programs(page: Page) -> list[str]:
 
 def pack(content: bytes) -> str:
     compress = zlib.compressobj(9, zlib.DEFLATED, -15)
-    whole = compress.compress(content) + compress.flush()
-    return base64.urlsafe_b64encode(whole).decode().rstrip("=")
+    compressed_data = compress.compress(content) + compress.flush()
+    return base64.urlsafe_b64encode(compressed_data).decode().rstrip("=")
 
 
 def as_json(content: Any) -> str:

@@ -61,15 +61,15 @@ def shared_folder(factory: pytest.TempPathFactory) -> Path:
 
 
 def build_changed_sketch(
-    folder: Path, name: str, old: str, new: str, environment: str = "uno"
+    folder: Path, name: str, old_text: str, new_text: str, environment: str = "uno"
 ) -> Path:
     """Return the sketch with a change in a file of `src/`, built in a folder."""
     project = copy_sketch(folder)
     file = project / "src" / name
     text = file.read_text(encoding="utf-8")
-    assert text.count(old) == 1, f"{name} has another {old!r} now"
+    assert text.count(old_text) == 1, f"{name} has another {old_text!r} now"
     file.unlink()
-    file.write_text(text.replace(old, new), encoding="utf-8")
+    file.write_text(text.replace(old_text, new_text), encoding="utf-8")
     pio(project, "run", "-e", environment).gives(0)
     return project / ".pio" / "build" / environment / "firmware.elf"
 

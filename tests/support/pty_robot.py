@@ -158,7 +158,7 @@ class PtyRobot(PtyPort):
         self._robot = None
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        most = self.bytes_per_ms * milliseconds
+        max_bytes = self.bytes_per_ms * milliseconds
         with self._lock:
             self._there += data
             while milliseconds > 0:
@@ -177,7 +177,7 @@ class PtyRobot(PtyPort):
                     self._back += self._robot.wait(stride)
                 elif self._robot:
                     self._back += self._robot.step(data, flags)
-            sent_bytes, self._back = self._back[:most], self._back[most:]
+            sent_bytes, self._back = self._back[:max_bytes], self._back[max_bytes:]
             return self._through_noise(sent_bytes)
 
     def _run(self) -> None:

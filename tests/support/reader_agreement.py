@@ -60,11 +60,11 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     robot.
     """
     answer = reader_of(kit, room).read(data)
-    right = is_right(data, kit)
-    if right and CONTROL_CHARACTER.search(data):  # on a wire such characters are noise
+    is_accepted = is_right(data, kit)
+    if is_accepted and CONTROL_CHARACTER.search(data):  # on a wire such characters are noise
         assert not answer.is_program, f"{answer}\n{data!r}"
         return None
-    if right and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
+    if is_accepted and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
         # a word with fixed values is right where `line_of` writes it out
         problems = (
             "FULL",
@@ -73,14 +73,14 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
         )
         assert answer.problem in problems, f"{answer}\n{data!r}"
         return None
-    if right and lacks_values(data, kit):
+    if is_accepted and lacks_values(data, kit):
         assert answer.problem in PROBLEMS_WITHOUT_VALUES, f"{answer}\n{data!r}"
         return None
-    if right:
+    if is_accepted:
         check_code(data, kit, answer, room)
     if answer.problem == "FULL":
         return None
-    if answer.is_program != right:
+    if answer.is_program != is_accepted:
         assert answer.is_program and takes_more(data, kit), f"{answer}\n{data!r}"
     if answer.is_program:
         verify(answer.code, len(kit.readings), len(kit.actuators))

@@ -49,13 +49,15 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
             go_through(check_row, sets, lambda row: str(row.id or repr(row.values)))
 
         signature = inspect.signature(test)
-        left = [
+        parameters = [
             parameter
             for name, parameter in signature.parameters.items()
             if name not in wanted_texts
         ]
-        assert len(left) == len(signature.parameters) - len(wanted_texts), f"it takes no {names}"
-        whole.__signature__ = signature.replace(parameters=left)  # type: ignore[attr-defined]
+        assert len(parameters) == len(signature.parameters) - len(wanted_texts), (
+            f"it takes no {names}"
+        )
+        whole.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
         return whole
 
     return parametrize

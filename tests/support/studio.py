@@ -237,9 +237,9 @@ class Pages:
         return self._contexts[-1]
 
     def _lend_context(self) -> BrowserContext:
-        left = _LEFT_CONTEXTS.setdefault(self._browser, [])
-        if left:
-            context = left.pop()
+        left_contexts = _LEFT_CONTEXTS.setdefault(self._browser, [])
+        if left_contexts:
+            context = left_contexts.pop()
         else:
             context = self._own({})
             self._contexts.remove(context)
@@ -266,8 +266,8 @@ class Pages:
             for page in others:
                 page.close()
             session = context.new_cdp_session(still)
-            whole = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
-            session.send("Storage.clearDataForOrigin", whole)
+            clear_options = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
+            session.send("Storage.clearDataForOrigin", clear_options)
             session.detach()
             _LEFT_CONTEXTS[self._browser].append(context)
 

@@ -45,22 +45,22 @@ class Terminal:
         output: Path | None = None, env: Mapping[str, str] | None = None, types: bool = True,
     ) -> None:  # fmt: skip
         """Start the command; with `types`, standard input is the terminal, otherwise empty."""
-        self._ours, theirs = pty.openpty()
-        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
-        modes = termios.tcgetattr(theirs)
+        self._ours, device_end = pty.openpty()
+        fcntl.ioctl(device_end, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+        modes = termios.tcgetattr(device_end)
         modes[3] |= termios.NOFLSH  # without NOFLSH, Ctrl-C may drop later output
-        termios.tcsetattr(theirs, termios.TCSANOW, modes)
+        termios.tcsetattr(device_end, termios.TCSANOW, modes)
         variables = {
             name: value for name, value in os.environ.items() if name not in HIDDEN_VARIABLES
         }
-        with output.open("wb") if output else nullcontext(theirs) as out:
+        with output.open("wb") if output else nullcontext(device_end) as out:
             self.process = subprocess.Popen(
-                [*command, *map(str, words)], stdin=theirs if types else subprocess.DEVNULL,
-                stdout=out, stderr=theirs,
+                [*command, *map(str, words)], stdin=device_end if types else subprocess.DEVNULL,
+                stdout=out, stderr=device_end,
                 env={**variables, "TERM": "xterm-256color", **(env or {})},
                 start_new_session=True, preexec_fn=_take_terminal,
             )  # fmt: skip
-        os.close(theirs)
+        os.close(device_end)
         self.screen = pyte.HistoryScreen(*size, history=100_000)
         self.written = b""
         self._stream = pyte.ByteStream(self.screen)

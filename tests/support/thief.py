@@ -14,9 +14,9 @@ class Thief:
     too.
     """
 
-    def __init__(self, chance: random.Random, old: list[bytes]) -> None:
+    def __init__(self, chance: random.Random, old_frames: list[bytes]) -> None:
         self.chance = chance
-        self.old = old
+        self.old = old_frames
         self.sent: list[bytes] = []  # frames under the current seal
         self.replies: list[bytes] = []
 
@@ -62,8 +62,8 @@ class Thief:
         asked_frame = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
         if attack == "forged":
             counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
-            whole = b"\0" + counter + asked_frame.payload + chance.randbytes(8)
-            return attack, encoded(asked_frame._replace(payload=whole, is_sealed=True))
+            forged_payload = b"\0" + counter + asked_frame.payload + chance.randbytes(8)
+            return attack, encoded(asked_frame._replace(payload=forged_payload, is_sealed=True))
         seal = Seal(chance.randbytes(16))
         seal.sent_counter = 10_000
         return attack, encoded(seal.seal_frame(asked_frame))

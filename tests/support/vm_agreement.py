@@ -11,11 +11,11 @@ def are_equivalent(want: str, actual: str) -> bool:
     """
     if want == actual:
         return True
-    ours, theirs = actual.splitlines(), want.splitlines()
-    if not any(_is_cut(lines[-1]) for lines in (ours, theirs)):
+    actual_lines, wanted_lines = actual.splitlines(), want.splitlines()
+    if not any(_is_cut(lines[-1]) for lines in (actual_lines, wanted_lines)):
         return False
-    shorter = min(len(ours), len(theirs)) - 1
-    return ours[:shorter] == theirs[:shorter]
+    shorter = min(len(actual_lines), len(wanted_lines)) - 1
+    return actual_lines[:shorter] == wanted_lines[:shorter]
 
 
 def _is_cut(line: str) -> bool:

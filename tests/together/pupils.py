@@ -111,17 +111,17 @@ class Pupil:
         return Place(view[block_id].parent, block_id)
 
     def _insert(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
-        new = tuple(Subtree(self.page.new_id(), self._simple())
+        new_trees = tuple(Subtree(self.page.new_id(), self._simple())
                     for _ in range(self._chance.choice((1, 1, 1, 2, 3))))  # fmt: skip
         if self._chance.random() < 0.25:
-            new = (Subtree(self.page.new_id(), self._make_head(), children=new),)
-        return [Insert(self._at(view, block_id), new)]
+            new_trees = (Subtree(self.page.new_id(), self._make_head(), children=new_trees),)
+        return [Insert(self._at(view, block_id), new_trees)]
 
-    def _run(self, view: Tree, block_id: str, most: int, has_arms: bool = True) -> list[str]:
+    def _run(self, view: Tree, block_id: str, max_count: int, has_arms: bool = True) -> list[str]:
         siblings = view[view[block_id].parent].children
         k = siblings.index(block_id)
         run = []
-        for id in siblings[k : k + self._chance.randint(1, most)]:
+        for id in siblings[k : k + self._chance.randint(1, max_count)]:
             if id == START or (not has_arms and view[id].kind == ARM):
                 break
             run.append(id)
@@ -176,8 +176,8 @@ class Pupil:
 
     def _comment(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         text, is_apart = self._own(f"// c{next(self._numbers)}"), self._chance.random() < 0.5
-        new = Subtree(self.page.new_id(), text, apart=is_apart)
-        return [Insert(self._at(view, block_id), (new,))]
+        new_tree = Subtree(self.page.new_id(), text, apart=is_apart)
+        return [Insert(self._at(view, block_id), (new_tree,))]
 
     def _start(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         return [Replace(START, (("text", self._chance.choice(("SI|", "SB|"))),))]
@@ -226,12 +226,12 @@ class Pupil:
             text[k] = start + self._part_of(final[len(start) :])
             return text, k, True
 
-        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             if final and text:
                 text[caret] = final
             return text, caret, False
 
-        return [first_step, last]
+        return [first_step, last_step]
 
     def _plan_kept(self) -> list[Stage]:
         """Keep refused changes in the plan."""
@@ -247,12 +247,12 @@ class Pupil:
             text.insert(k, self._part_of(final))
             return text, k, True
 
-        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             if text:
                 text[caret] = final
             return text, caret, False
 
-        return [first_step, last]
+        return [first_step, last_step]
 
     def _plan_lines(self) -> list[Stage]:
         """Plan lines one below the other, each followed by Enter."""
@@ -288,12 +288,12 @@ class Pupil:
             text.insert(k, head)
             return text, k, False
 
-        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             rows = [k for k, row in enumerate(text) if row.strip() == head]
             text.insert(min(len(text), (rows[0] if rows else caret) + 1 + size), end)
             return text, caret, False
 
-        return [first_step, last]
+        return [first_step, last_step]
 
     def _plan_cut(self) -> list[Stage]:
         """One after the other, or pasted before anything is made of it."""
@@ -307,15 +307,15 @@ class Pupil:
             del text[k : k + size]
             return text, min(k, len(text) - 1), False
 
-        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._new_line(text)
             text[k:k] = self._cut
             self._cut = []
             return text, k, False
 
         if self._chance.random() < 0.5:
-            return [lambda text, caret: last(*first_step(text, caret)[:2])]
-        return [first_step, last]
+            return [lambda text, caret: last_step(*first_step(text, caret)[:2])]
+        return [first_step, last_step]
 
     def _plan_gone(self) -> list[Stage]:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
@@ -340,7 +340,7 @@ class Pupil:
             del text[k]
             return text, min(k, len(text) - 1), False
 
-        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             for k in range(max(0, caret), len(text)):
                 is_here = len(text[k]) - len(text[k].lstrip()) == indent
                 if is_here and text[k].strip().startswith("END"):
@@ -348,7 +348,7 @@ class Pupil:
                     break
             return text, caret, False
 
-        return [first_step, last]
+        return [first_step, last_step]
 
     def _plan_arm(self) -> list[Stage]:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
@@ -409,9 +409,9 @@ class Pupil:
             text[k] = final[:2]
             return text, k, True
 
-        def last(text: Text, caret: int) -> tuple[Text, int, bool]:
+        def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             if text:
                 text[caret] = final
             return text, caret, False
 
-        return [first_step, last]
+        return [first_step, last_step]

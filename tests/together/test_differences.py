@@ -82,12 +82,12 @@ def test_what_is_the_same_stays(
     what: str, before: str, after: str, wanted_operations: str, stay: int
 ) -> None:
     numbers, new_numbers = count(1), count(1)
-    old = parse_tree(before, lambda: f"o.{next(numbers)}")
-    operations = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
-    new = apply_change(old, Change("n:1", tuple(operations))).tree
-    assert new.shape() == parse_tree(after).shape()
+    old_tree = parse_tree(before, lambda: f"o.{next(numbers)}")
+    operations = find_operations(old_tree, after, lambda: f"n.{next(new_numbers)}")
+    new_tree = apply_change(old_tree, Change("n:1", tuple(operations))).tree
+    assert new_tree.shape() == parse_tree(after).shape()
     assert wanted_operations in ("*", describe(operations))
-    assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
+    assert sum(id.startswith("o.") for id in new_tree.subtree_ids()) == stay
 
 
 def program(chance: Random, size: int, depth: int = 0) -> list[str]:
@@ -118,24 +118,24 @@ def program(chance: Random, size: int, depth: int = 0) -> list[str]:
 
 
 def edit_rows(chance: Random, rows: list[str]) -> list[str]:
-    new = rows[:]
+    new_rows = rows[:]
     for _ in range(chance.randint(1, 4)):
-        kind, i = chance.random(), chance.randrange(len(new) + 1)
+        kind, i = chance.random(), chance.randrange(len(new_rows) + 1)
         if kind < 0.3:
-            new[i:i] = program(chance, chance.randint(1, 2), 1)
+            new_rows[i:i] = program(chance, chance.randint(1, 2), 1)
         elif kind < 0.5:
-            del new[i : i + chance.randint(1, 4)]
+            del new_rows[i : i + chance.randint(1, 4)]
         elif kind < 0.7:
-            cut = new[i : i + chance.randint(1, 6)]
-            del new[i : i + len(cut)]
-            k = chance.randrange(len(new) + 1)
-            new[k:k] = cut
+            cut = new_rows[i : i + chance.randint(1, 6)]
+            del new_rows[i : i + len(cut)]
+            k = chance.randrange(len(new_rows) + 1)
+            new_rows[k:k] = cut
         elif kind < 0.85:
-            new.insert(min(len(new), i + chance.randint(0, 5)), "END_LOOP")
-            new.insert(i, "LOOP(7)")
-        elif i < len(new):
-            new[i] = new[i].replace("(", "(1", 1)
-    return new
+            new_rows.insert(min(len(new_rows), i + chance.randint(0, 5)), "END_LOOP")
+            new_rows.insert(i, "LOOP(7)")
+        elif i < len(new_rows):
+            new_rows[i] = new_rows[i].replace("(", "(1", 1)
+    return new_rows
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -146,17 +146,17 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
         after = edit_rows(chance, tree_before) if chance.random() < 0.8 else program(chance, 12)
         numbers, new_numbers = count(1), count(1)
         try:
-            old = parse_tree("\n".join(tree_before), lambda: f"o.{next(numbers)}")  # noqa: B023
-            new = parse_tree("\n".join(after))
+            old_tree = parse_tree("\n".join(tree_before), lambda: f"o.{next(numbers)}")  # noqa: B023
+            new_tree = parse_tree("\n".join(after))
         except Unparsed:
             continue
-        operations = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        operations = find_operations(old_tree, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
         assert [operation_of(data_of(operation)) for operation in operations] == operations
-        outcome = apply_change(old, Change("n:1", tuple(operations)))
-        assert outcome.tree.shape() == new.shape()
-        assert text_of(outcome.tree) == text_of(new)
+        outcome = apply_change(old_tree, Change("n:1", tuple(operations)))
+        assert outcome.tree.shape() == new_tree.shape()
+        assert text_of(outcome.tree) == text_of(new_tree)
         restored = apply_change(outcome.tree, Change("n:2", outcome.inverse)).tree
-        assert text_of(restored) == text_of(old)
-        assert restored.subtree_ids() == old.subtree_ids()
+        assert text_of(restored) == text_of(old_tree)
+        assert restored.subtree_ids() == old_tree.subtree_ids()
         tried.update(type(operation).__name__ for operation in operations or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

@@ -178,8 +178,8 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
 def test_changes_make_the_new_text_of_the_old(seed: int) -> None:
     chance = Random(seed)
     rows = ["F(1, 80);", "f(1,80)", "", "  B(2, 40);", "// \U0001f916 a", "// b \x0b c", "W(1)"]
-    old, new = ("\n".join(chance.choices(rows, k=chance.randint(0, 8))) for _ in range(2))
-    units = old.encode("utf-16-le")
-    for start, end, put in reversed(page_together.changes(old, new)):
+    old_text, new_text = ("\n".join(chance.choices(rows, k=chance.randint(0, 8))) for _ in range(2))
+    units = old_text.encode("utf-16-le")
+    for start, end, put in reversed(page_together.changes(old_text, new_text)):
         units = units[: 2 * start] + put.encode("utf-16-le") + units[2 * end :]
-    assert units.decode("utf-16-le") == new
+    assert units.decode("utf-16-le") == new_text

@@ -102,9 +102,9 @@ def test_an_invalid_change_is_refused(value: Any) -> None:
         if data not in ({"uid": "m:1", "ops": []}, {"uid": "a:1", "ops": []}):
             with pytest.raises(Refused):
                 change_of(data)
-    for whole in (value, {"tree": value}, {"tree": {"id": "root"}, "gone": value}):
+    for tree_data in (value, {"tree": value}, {"tree": {"id": "root"}, "gone": value}):
         with pytest.raises(Refused):
-            tree_of(whole)
+            tree_of(tree_data)
 
 
 def test_deep_and_long_programs_are_refused() -> None:

@@ -58,13 +58,13 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     os.truncate(path, cut)
     resumed = Journal(path).resume("e2")
     assert resumed is not None
-    last = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (resumed.number, resumed.last_count_by_page) == states[last]
+    state_index = max(k for k, size in enumerate(sizes) if size <= cut)
+    assert (resumed.number, resumed.last_count_by_page) == states[state_index]
     assert resumed.epoch == "e2"
     change_program(resumed, 2000)
-    whole = Journal(path).resume("e3")
-    assert whole is not None
-    assert are_same(whole, resumed)
+    whole_program = Journal(path).resume("e3")
+    assert whole_program is not None
+    assert are_same(whole_program, resumed)
 
 
 def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
@@ -197,6 +197,6 @@ def test_the_newest_of_the_history_is_in_memory_and_the_rest_in_the_journal(tmp_
     assert program.taken_changes[-1].number == 99
     rows = [json.loads(row) for row in path.read_text().splitlines()]
     assert [row["n"] for row in rows if "uid" in row] == list(range(1, 100))
-    late = program.news("z", 3, "e1")  # a page absent for longer gets the whole program
-    assert late["whole"] == program.tree.snapshot() and "changes" not in late
+    late_news = program.news("z", 3, "e1")  # a page absent for longer gets the whole program
+    assert late_news["whole"] == program.tree.snapshot() and "changes" not in late_news
     assert len(program.news("z", 95, "e1")["changes"]) == 4

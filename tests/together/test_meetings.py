@@ -77,11 +77,11 @@ class PagePair:
         node = Subtree(page.new_id(), text)
         assert apply_edits(page, [Insert(Place(container, previous), (node,))])
 
-    def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
+    def types(self, page: Page, old_text: str, new_text: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""
-        [k] = [k for k, row in enumerate(page.lines) if old in row]
+        [k] = [k for k, row in enumerate(page.lines) if old_text in row]
         rows = page.lines[:]
-        rows[k] = rows[k].replace(old, new)
+        rows[k] = rows[k].replace(old_text, new_text)
         page.type(rows, k, is_hot)
         page.flush()
 
@@ -110,9 +110,9 @@ def test_an_arm_goes_with_all_that_is_in_it_or_not(pair: PagePair) -> None:
 
 
 def test_a_block_goes_around_what_was_put_between(pair: PagePair) -> None:
-    first_id, last = pair.find("B(1, 40)"), pair.find("R(1, 40)")
+    first_id, last_id = pair.find("B(1, 40)"), pair.find("R(1, 40)")
     pair.inserts(pair.ana, pair.find("LOOP(3)"), first_id)
-    apply_edits(pair.luz, [Wrap((first_id, last), Subtree(pair.luz.new_id(), "WHILE(X < 2)"))])
+    apply_edits(pair.luz, [Wrap((first_id, last_id), Subtree(pair.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in pair.meet()
 
 
@@ -209,8 +209,8 @@ def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(
 
 def test_a_half_typed_value_is_not_a_change_though_it_parses(pair: PagePair) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
-        old = next(row for row in pair.ana.lines if "L(1" in row)
-        pair.types(pair.ana, old, shown, is_hot=True)
+        old_row = next(row for row in pair.ana.lines if "L(1" in row)
+        pair.types(pair.ana, old_row, shown, is_hot=True)
     assert "L(1, 60)" in pair.meet()
     pair.ana.leave()
     assert "L(1, 95)" in pair.meet()
@@ -275,15 +275,15 @@ def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(see
     for k in range(chance.randint(1, 3)):
         two.types(two.ana, f"F({k + 1}, 80)" if k else "F(1, 80)", f"F({k + 2}, 80)")
         two.sends(two.ana)
-    last = k + 2
+    last_value = k + 2
     assert two.ana.undo()
     for _ in range(chance.randint(1, 2)):
         kept = json.loads(json.dumps(two.ana.store_data()))
         two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
-    assert f"F({last - 1}, 80)" in two.meet()
+    assert f"F({last_value - 1}, 80)" in two.meet()
     assert not two.ana.undo()
     assert two.ana.redo()
-    assert f"F({last}, 80)" in two.meet()
+    assert f"F({last_value}, 80)" in two.meet()
 
 
 def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(pair: PagePair) -> None:
@@ -348,13 +348,13 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
     for _ in range(40):
         if makes_copies:
             old_page, two.ana = two.ana, two.ana.copy()
-            for do in (
+            for function in (
                 old_page.undo,
                 old_page.redo,
                 partial(edits, old_page, other_chance),
                 old_page.undo,
             ):
-                do()
+                function()
         match chance.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
             case "edit":
                 edits(two.ana, chance)

@@ -94,13 +94,13 @@ class World:
         self.off_until_s = dict.fromkeys(names, 0.0)
         self.turn = dict.fromkeys(names, 0)
 
-    def at(self, after_s: float, do: Callable[..., None], *arguments: Any) -> None:
-        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), do, arguments))
+    def at(self, after_s: float, function: Callable[..., None], *arguments: Any) -> None:
+        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), function, arguments))
 
     def run(self, is_over: Callable[[], bool]) -> None:
         while self._queue and not is_over():
-            self.now_s, _, do, arguments = heapq.heappop(self._queue)
-            do(*arguments)
+            self.now_s, _, function, arguments = heapq.heappop(self._queue)
+            function(*arguments)
 
     def _send_and_parse(self, data: Json) -> Json:
         copy: Json = json.loads(json.dumps(data))
