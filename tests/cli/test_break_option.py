@@ -251,24 +251,26 @@ def test_the_first_key_at_a_halt_answers_it_and_no_other_key_does_anything(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At any halt, and while the program runs."""
-    rng, typed, asked, wanted = random.Random(seed), "", list[int](), list[int]()
+    rng, typed_keys, asked, wanted_commands = random.Random(seed), "", list[int](), list[int]()
     it = debugger.Debugger.__new__(debugger.Debugger)
     it.has_keys, it.is_halted, it.is_stepping, it.keys = True, False, False, Keys()
     session = SimpleNamespace(resume=asked.append)
-    it.connection = cast(Connection, SimpleNamespace(request=lambda make: make(session)))
-    monkeypatch.setattr(it.keys, "read_keys", lambda: typed)
+    it.connection = cast(
+        Connection, SimpleNamespace(request=lambda make_request: make_request(session))
+    )
+    monkeypatch.setattr(it.keys, "read_keys", lambda: typed_keys)
     is_halted = False
     for _ in range(60):
         if rng.random() < 0.3:
             it.is_halted = is_halted = True
-        typed = "".join(rng.choices("sgx", k=rng.choice((0, 1, 1, 2))))
+        typed_keys = "".join(rng.choices("sgx", k=rng.choice((0, 1, 1, 2))))
         it.poll_keys()
-        key = next((key for key in typed if key in "sg"), "")
+        key = next((key for key in typed_keys if key in "sg"), "")
         if key and is_halted:
-            wanted.append(RESUME_STEP if key == "s" else RESUME_GO)
+            wanted_commands.append(RESUME_STEP if key == "s" else RESUME_GO)
             is_halted = False
-        assert asked == wanted
-        assert it.is_stepping == (wanted[-1:] == [RESUME_STEP])
+        assert asked == wanted_commands
+        assert it.is_stepping == (wanted_commands[-1:] == [RESUME_STEP])
 
 
 # -- lines of `tsc live` -------------------------------------------------------------------------

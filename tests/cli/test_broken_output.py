@@ -31,9 +31,9 @@ from tiniscript.link.requests import Reply, reply_of
 SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
 
 
-def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
+def after_lines(count: int, *words: str, joins_err: bool = False) -> tuple[int, str]:
     """Read so many lines of a command, close its output; return its exit code and its errors."""
-    err = subprocess.STDOUT if both else subprocess.PIPE
+    err = subprocess.STDOUT if joins_err else subprocess.PIPE
     with subprocess.Popen([*TSC, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=err) as running:  # fmt: skip
         assert running.stdout
@@ -97,7 +97,7 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     port_option = ("--port", pty_robot.port)
-    assert after_lines(1, "upload", "-e", SHOWS, *port_option, both=True) == (
+    assert after_lines(1, "upload", "-e", SHOWS, *port_option, joins_err=True) == (
         EXIT_OF_CLOSED_PIPE,
         "",
     )
@@ -190,25 +190,27 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "which"), [(["set", "name", "TINI"], 1), (["set", "trim", "--reset"], 2)]
+    ("words", "request_number"), [(["set", "name", "TINI"], 1), (["set", "trim", "--reset"], 2)]
 )
 def test_a_port_that_vanishes_is_not_reported_as_a_bug(
-    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], request_number: int
 ) -> None:
     """The cable is pulled before the robot has confirmed a save."""
     real_call = connect.Connection.begin_request
     requests = []
 
-    def ask_and_pull(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
+    def ask_and_pull(
+        self: connect.Connection, make_request: Any, limit_ms: int | None = None
+    ) -> Any:
         if limit_ms is None:  # a request after HELLO
-            requests.append(make)
-        if len(requests) == which:
+            requests.append(make_request)
+        if len(requests) == request_number:
             pty_robot.pull()
-        return real_call(self, make, limit_ms)
+        return real_call(self, make_request, limit_ms)
 
     monkeypatch.setattr(connect.Connection, "begin_request", ask_and_pull)
     result = run_in_process(*words, "--port", pty_robot.port)
-    assert len(requests) == which
+    assert len(requests) == request_number
     assert result.code == 3
     assert "is gone" in result.err
 

@@ -380,7 +380,7 @@ def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
     """Its firmware refuses the step: the sentence about a bad value would not help."""
     connection = SimpleNamespace(
         name="Tini",
-        begin_request=lambda make: None,
+        begin_request=lambda make_request: None,
         error_for_reply=AssertionError,
         port="/dev/ttyUSB0",
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),

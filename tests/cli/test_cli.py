@@ -23,14 +23,14 @@ WAYS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("verb_options", WAYS)
 def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
-    tsc: Tsc, working_folder: Path, way: str
+    tsc: Tsc, working_folder: Path, verb_options: str
 ) -> None:
     """Nothing is written, run or sent."""
     program = working_folder / "drive.ts"
     program.write_text("SI|S = 5")
-    verb, *options = way.split()
+    verb, *options = verb_options.split()
     tsc(verb, program, *options).gives(1)
     assert [path.name for path in working_folder.glob("*.*")] == ["drive.ts"]
     assert program.read_text() == "SI|S = 5"

@@ -79,9 +79,9 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
     assert lines[top + len(trace) :] == drawn_lines and drawn_lines[0].startswith("── TiniBot")
     if size[0] >= 40:
         assert b"\x1b[36m" in written_bytes
-        way = drawn_lines if size[0] == 80 else drawn_lines[1:8]
-        assert any(arrow in line for line in way for arrow in sketch.ARROWS)
-        assert any("⠀" < c <= "⣿" for line in way for c in line)
+        picture_rows = drawn_lines if size[0] == 80 else drawn_lines[1:8]
+        assert any(arrow in line for line in picture_rows for arrow in sketch.ARROWS)
+        assert any("⠀" < c <= "⣿" for line in picture_rows for c in line)
         assert row(drawn_lines, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
         assert row(drawn_lines, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
         assert row(drawn_lines, "left motor")[2] == "0"
@@ -216,13 +216,13 @@ def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
 
 def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sketch, "MOST_CORNERS", 100)
-    way = sketch.Sketch(robots.load("tinibot"))
+    long_sketch = sketch.Sketch(robots.load("tinibot"))
     for k in range(3000):
-        way.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
+        long_sketch.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
         if k % 10 == 0:
-            drawn_text = "\n".join(line.plain for line in way.draw(30, 12, k * 500))
+            drawn_text = "\n".join(line.plain for line in long_sketch.draw(30, 12, k * 500))
             assert any(arrow in drawn_text for arrow in sketch.ARROWS)
-            assert len(way.way.corners) <= 100
+            assert len(long_sketch.way.corners) <= 100
 
 
 @pytest.mark.parametrize(("percent", "bar"), [

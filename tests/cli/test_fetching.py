@@ -199,8 +199,8 @@ def start_fetching(clone: Clone) -> Iterator[Begin]:
         yield start_person
 
 
-@pytest.mark.sampled("words", "size", "asks", "yes", "expected")
-@pytest.mark.parametrize(("words", "size", "asks", "yes", "expected"), [
+@pytest.mark.sampled("words", "size", "question", "yes", "expected")
+@pytest.mark.parametrize(("words", "size", "question", "yes", "expected"), [
     ([], "about 40 MB", "Continue? [y/N] ", "y", "no terminal."),
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
@@ -209,7 +209,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
     start_fetching: Begin,
     words: list[str],
     size: str,
-    asks: str,
+    question: str,
     yes: str,
     expected: str,
 ) -> None:
@@ -224,7 +224,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
         assert person.wait_for_exit() == 2, answer
         assert "nothing was downloaded" in person.output and not clone.page.exists()
     person = start_fetching(clone.studio(*words))
-    assert size in person.sees(asks) and "node.js" not in person.output
+    assert size in person.sees(question) and "node.js" not in person.output
     assert not clone.page.exists()
     person.types(yes)
     person.sees("[#")  # the progress
@@ -360,12 +360,12 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, start_fetching: 
 # -- PlatformIO and its compiler
 
 
-@pytest.mark.sampled("words", "size", "asks")
-@pytest.mark.parametrize(("words", "size", "asks"), [
+@pytest.mark.sampled("words", "size", "question")
+@pytest.mark.parametrize(("words", "size", "question"), [
     ([], "about 54 MB", "Continue? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
 def test_platformio_is_installed_after_a_yes(
-    clone: Clone, start_fetching: Begin, words: list[str], size: str, asks: str
+    clone: Clone, start_fetching: Begin, words: list[str], size: str, question: str
 ) -> None:
     """Then its compiler alone is asked for, if it is not there, and once."""
     person = start_fetching(clone.firmware())
@@ -375,7 +375,7 @@ def test_platformio_is_installed_after_a_yes(
     clone.run_without_terminal(clone.firmware()).gives(2, "--yes")
     assert not (clone.own / "platformio").exists() and not clone.core.exists()
     person = start_fetching(clone.firmware(*words))
-    output = person.sees(asks)
+    output = person.sees(question)
     assert size in output and "4 MB" in output and "50 MB" in output
     person.types("y")
     assert person.wait_for_exit() == 0, person.output
@@ -418,7 +418,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
         f"print({expected!r}, flush=True); time.sleep({lasts_s}); Path('whole').touch()"
     )
 
-    def look(so_far: str) -> None:
+    def check_wait(so_far: str) -> None:
         if expected in so_far:
             raise KeyboardInterrupt
 
@@ -426,7 +426,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
     monkeypatch.setattr(fetching, "run", lambda *given: arguments.extend(given))
     fetching.install(install_advice.STUDIO, page_build.NODE, "en")
     with pytest.raises(KeyboardInterrupt):
-        children.run([sys.executable, "-c", code], tmp_path, look, *arguments[4:])
+        children.run([sys.executable, "-c", code], tmp_path, check_wait, *arguments[4:])
     assert (tmp_path / "whole").exists() == (expected == fetching.INSTALLING_MESSAGE)
 
 
@@ -462,11 +462,13 @@ def test_each_failure_has_its_own_step_cause_and_log(
         cause = chance.choice([*CAUSES])
         log, exit_code = f"{k} {CAUSES[cause]}", chance.choice((0, 1, 7, None))
 
-        def pretended_run(command: object, folder: object, look: Any, *arguments: object) -> Any:
+        def pretended_run(
+            command: object, folder: object, on_output: Any, *arguments: object
+        ) -> Any:
             if exit_code is None:  # noqa: B023 - it runs at once
                 raise children.CannotStart(5, log)  # noqa: B023
             for count in range(len(keys)):  # noqa: B023
-                look("x" * count)
+                on_output("x" * count)
             return exit_code, log  # noqa: B023
 
         monkeypatch.setattr(children, "run", pretended_run)

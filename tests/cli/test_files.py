@@ -179,12 +179,12 @@ def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
     old_file.write_bytes(b"TS\2old")
     sync = os.fsync
 
-    def look(number: int) -> None:
+    def read_files(number: int) -> None:
         [new_file] = tmp_path.glob(f".*{files.NEW_ENDING}")
         writes.append((old_file.read_bytes(), new_file.read_bytes()))
         sync(number)
 
-    monkeypatch.setattr(os, "fsync", look)
+    monkeypatch.setattr(os, "fsync", read_files)
     outputs.write(old_file, b"TS\2new", "unwritable")
     assert writes == [(b"TS\2old", b"TS\2new")]
     assert old_file.read_bytes() == b"TS\2new"
@@ -281,19 +281,19 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
     old_lock = registry.lock_port("socket://x:1")
     assert old_lock is not None
     real_call = registry._lock
-    others: list[IO[bytes] | None] = []
+    other_locks: list[IO[bytes] | None] = []
 
     def lock(file: registry._Lock) -> bool:
-        if not others:
-            others.append(None)
+        if not other_locks:
+            other_locks.append(None)
             old_lock.close()
-            others.append(registry.lock_port("socket://x:1"))
+            other_locks.append(registry.lock_port("socket://x:1"))
         return real_call(file)
 
     monkeypatch.setattr(registry, "_lock", lock)
     assert registry.lock_port("socket://x:1") is None
-    assert others[1] is not None, "one has it"
-    others[1].close()
+    assert other_locks[1] is not None, "one has it"
+    other_locks[1].close()
 
 
 @pytest.mark.parametrize("is_of_folder", [False, True], ids=["the link itself", "of a folder"])
@@ -385,11 +385,11 @@ def test_what_is_read_is_a_file_of_no_more_than_so_many_bytes(tmp_path: Path) ->
     path = tmp_path / "data"
     path.write_bytes(b"12345")
     assert files.read_limited(path, 5) == b"12345"
-    others = [tmp_path, Path(os.devnull)]
+    not_files = [tmp_path, Path(os.devnull)]
     if sys.platform != "win32":
         os.mkfifo(tmp_path / "pipe")
-        others.append(tmp_path / "pipe")
-    for other in others:
+        not_files.append(tmp_path / "pipe")
+    for other in not_files:
         with pytest.raises(OSError):
             files.read_limited(other, 5)
     with pytest.raises(OSError):

@@ -305,9 +305,9 @@ def test_up_to_three_robots_are_named() -> None:
     kit = robots.load("liner").kit
     tinibot_kit = robots.load("tinibot").kit
     compilation = compile_text("LED(TRUE)", tinibot_kit)
-    others = {f"R{k}": kit for k in range(5)}
+    other_kits = {f"R{k}": kit for k in range(5)}
     (named_diagnostic,) = hints_among(
-        others, compilation.diagnostics, "LED(TRUE)", "tinibot", tinibot_kit
+        other_kits, compilation.diagnostics, "LED(TRUE)", "tinibot", tinibot_kit
     )
     assert named_diagnostic.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
@@ -497,8 +497,8 @@ def test_board_says_where_the_build_looks(
     (working_folder / "vm_arduino" / "platformio.ini").touch()
     result = tsc("firmware", "--board", "liner", "-o", "own.h")
     home_of_it = "vm_arduino/src/boards/kits/own.h"
-    then = "Then:  pio run -d vm_arduino -e"
-    assert f"tsc firmware --board liner -o {home_of_it}   {then}" in result.out
+    build_hint = "Then:  pio run -d vm_arduino -e"
+    assert f"tsc firmware --board liner -o {home_of_it}   {build_hint}" in result.out
     assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
     result = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
     assert result.out.endswith("To build the firmware:  pio run -d vm_arduino -e nano\n")

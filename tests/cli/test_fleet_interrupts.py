@@ -67,7 +67,7 @@ def step_calls(
     owner: object,
     name: str,
     early_stage: int,
-    after: int,
+    late_stage: int,
 ) -> None:
     """Make calls of a function, whose first argument contains a port, pass two stages."""
     step: Callable[..., Any] = getattr(owner, name)
@@ -76,7 +76,7 @@ def step_calls(
         port = target if isinstance(target, str) else target.port
         room.at(early_stage, port)
         outcome = step(target, *words, **keyword_arguments)
-        room.at(after, port)
+        room.at(late_stage, port)
         return outcome
 
     monkeypatch.setattr(owner, name, interrupt_step)
@@ -111,8 +111,8 @@ def test_after_ctrl_c_nothing_starts(
         if not room.pressed.is_set() and room.may_press():
             raise KeyboardInterrupt
 
-    def interrupt_and_note(its: Fleet) -> None:
-        interrupt(its)
+    def interrupt_and_note(interrupted_fleet: Fleet) -> None:
+        interrupt(interrupted_fleet)
         room.starts = room.starts or room.count_states()
         room.pressed.set()
 

@@ -51,9 +51,9 @@ def rows_of(help_text: str) -> list[str]:
 def flags_in_help(verb: str) -> list[str]:
     """Return the flags of a verb, without the silent ones."""
     used_names = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
-    silent = [option for option in options_of(verb) if option not in shown_of(verb)]
+    undocumented = [option for option in options_of(verb) if option not in shown_of(verb)]
     unsaid_texts = {
-        flag for option in silent if not option.is_argument for flag in option.flags.split()
+        flag for option in undocumented if not option.is_argument for flag in option.flags.split()
     }
     assert unsaid_texts <= used_names
     return sorted(used_names - unsaid_texts)
@@ -76,7 +76,10 @@ def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
     for argument in arguments:
         assert re.search(rf"\b{argument}\b", result.out.splitlines()[0])
     known_names = {
-        flag for of in PARSERS.values() for action in of._actions for flag in action.option_strings
+        flag
+        for parser in PARSERS.values()
+        for action in parser._actions
+        for flag in action.option_strings
     }
     assert set(re.findall(FLAG, result.out)) <= known_names | {"-N", "-Uz"}  # a number; of zsh
     for action in PARSERS[verb]._actions:

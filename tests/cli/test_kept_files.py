@@ -127,13 +127,13 @@ def _folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(variable, str(tmp_path / variable))
 
 
-def fork_child(does: Callable[[], object]) -> int:
+def fork_child(action: Callable[[], object]) -> int:
     """Return the number of a process of its own that does something and ends with 0."""
     number = os.fork()
     if number == 0:
         code = 1
         try:
-            does()
+            action()
             code = 0
         finally:
             os._exit(code)
@@ -145,7 +145,7 @@ def wait_for_child(number: int) -> int:
 
 
 def trace_until_line(
-    kept_memory: Kept, line: int, then: Callable[[], object]
+    kept_memory: Kept, line: int, action: Callable[[], object]
 ) -> Callable[[], None]:
     """Return a tracer that counts the executed lines of the writing code, and acts at one."""
     traced_files = {kept_memory.module.__file__, files.__file__}
@@ -157,7 +157,7 @@ def trace_until_line(
         if event == "line":
             lines_left[0] -= 1
             if lines_left[0] == 0:
-                then()
+                action()
         return trace
 
     return lambda: sys.settrace(trace)

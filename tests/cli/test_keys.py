@@ -188,12 +188,12 @@ def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Pat
     """The keys of a stranger would remove a person's own robots."""
     key_file, many = KeyFile(), tmp_path / "many.json"
     key_file.add([OWNER_KEY])
-    others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
-    many.write_bytes(encode_keys(others))
+    foreign_keys = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
+    many.write_bytes(encode_keys(foreign_keys))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
         tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
     assert key_file.all() == [OWNER_KEY]
-    assert key_file.add(others[1:]) == MOST_KEYS - 1
+    assert key_file.add(foreign_keys[1:]) == MOST_KEYS - 1
     assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (
         "no key is dropped for a new one"
     )
@@ -226,9 +226,9 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     ]
 
 
-@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("role", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("status", [OK, STATUSES["NOT_OWNER"]])
-def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, which: int, status: int) -> None:
+def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, role: int, status: int) -> None:
     """The other one it still has, and so has this computer; a refused one stays."""
     ring = [
         OWNER_KEY._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
@@ -237,13 +237,13 @@ def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, which: int, s
     ]
     key_file.add(ring)
     robot = DeviceInfo("TINI", OWNER_KEY.id, (2, 1), 0, 389, cast(HelloReply, None))
-    exchange = disown(key_file, robot, which)
+    exchange = disown(key_file, robot, role)
     next(exchange)
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
     key_ids = {(key.id, key.which) for key in key_file.all()}
     given_up_keys = {(key.id, key.which) for key in ring} - key_ids
-    assert given_up_keys == ({(OWNER_KEY.id, which)} if status == OK else set())
+    assert given_up_keys == ({(OWNER_KEY.id, role)} if status == OK else set())
 
 
 ROBOT_ADDRESS = "tcp://ana"

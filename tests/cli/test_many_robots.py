@@ -86,19 +86,19 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
 def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -> None:
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
-    *others, last_robot = class_.pupils
+    *other_pupils, last_robot = class_.pupils
     last_robot.babble = babble
     result = run_in_process("upload", "-e", FOREVER, "--all", "--detach", "--json")
     rows = results(result)
     assert result.code == 3 and len(result.out) < 10_000
     assert {port for port, row in rows.items() if row["is_done"]} == {
-        pupil.port for pupil in others
+        pupil.port for pupil in other_pupils
     }
-    assert all(pupil.moves for pupil in others)
+    assert all(pupil.moves for pupil in other_pupils)
     result = run_in_process("stop", "--all", "--json")
     rows = results(result)
     assert {port for port, row in rows.items() if row["is_done"]} >= {
-        pupil.port for pupil in others
+        pupil.port for pupil in other_pupils
     }
     assert not any(pupil.moves for pupil in class_.pupils)
 
@@ -107,7 +107,7 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
-    *others, last_robot = class_.pupils
+    *other_pupils, last_robot = class_.pupils
     assert run_in_process("upload", "-e", FOREVER, "--all", "--detach").code == 0
     holder = ports.open_port(last_robot.port, 115_200)
     with monkeypatch.context() as short, closing(holder):
@@ -116,9 +116,9 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
             result = run_in_process("stop", *options, "--json")
             rows = results(result)
             assert result.code == 3 and not rows[last_robot.port]["is_done"]
-            assert all(rows[pupil.port]["is_done"] for pupil in others)
-            assert not any(pupil.moves for pupil in others)
-            run_in_process("start", "--port", others[0].port, "--detach")
+            assert all(rows[pupil.port]["is_done"] for pupil in other_pupils)
+            assert not any(pupil.moves for pupil in other_pupils)
+            run_in_process("start", "--port", other_pupils[0].port, "--detach")
     run_in_process("stop", "--all").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
 

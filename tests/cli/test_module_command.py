@@ -99,8 +99,11 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert result.code == 3
-    silent = sentences_of(sure_finding("module_silent"), "en")
-    assert f"WRONG  module: {silent.finding}\n" in result.out and silent.advice in result.out
+    silent_sentences = sentences_of(sure_finding("module_silent"), "en")
+    assert (
+        f"WRONG  module: {silent_sentences.finding}\n" in result.out
+        and silent_sentences.advice in result.out
+    )
     assert result.err == ""
 
 
@@ -146,8 +149,8 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
     port = port_of(module) if is_locked else "/dev/not-there"
     with closing(open_port(port, 9600)) if is_locked else nullcontext():
         (finding,) = json.loads(tsc("doctor", "--port", port, "--json").out)["findings"]
-        out = tsc("doctor", "--module", "--port", port, "--name", "ANA").gives(3, "").out
-    assert out.splitlines() == [
+        module_output = tsc("doctor", "--module", "--port", port, "--name", "ANA").gives(3, "").out
+    assert module_output.splitlines() == [
         f"WRONG  module: {finding['said']}",
         f"       Seen: {finding['seen']}",
         f"       Try:  {finding['next']}",

@@ -169,10 +169,10 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
         for options in ([], ["--nonsense"], ["--lang", language]):
             result = tsc("--lang", language, name, *options).gives(2, out="")
             assert result.err.count("\n") == 1 and name in result.err
-            now = result.err.rstrip("\n").rpartition("  tsc ")[2]
-            verb, *words = shlex.split(now)
-            assert command_of(verb, words)[0] == FORMER_COMMANDS[name], now
-            assert "nonsense" not in now and find_unknown_word(now) is None
+            new_command = result.err.rstrip("\n").rpartition("  tsc ")[2]
+            verb, *words = shlex.split(new_command)
+            assert command_of(verb, words)[0] == FORMER_COMMANDS[name], new_command
+            assert "nonsense" not in new_command and find_unknown_word(new_command) is None
 
 
 @each_row("old, now", [

@@ -102,20 +102,22 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     assert {places[name] for name in known_options} == {*paths.WRITE_OPTIONS, "program", "programs"}
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["same", "dot", "link", "hard"])
+@pytest.mark.sampled("spelling")
+@pytest.mark.parametrize("spelling", ["same", "dot", "link", "hard"])
 @pytest.mark.parametrize(("verb", "output", "other_output"), PAIRS)
 def test_no_output_is_another_file_of_its_command(
     tsc: Tsc, working_folder: Path, verb: str, output: str, other_output: str,
-    way: str,
+    spelling: str,
 ) -> None:  # fmt: skip
     text = TEXTS.get(other_output, "what was there")
     precious = working_folder / "precious.ts"
     precious.write_text(text, encoding="utf-8")
-    path = {"same": precious, "dot": Path("./precious.ts")}.get(way, working_folder / "other name")
-    if way == "link":
+    path = {"same": precious, "dot": Path("./precious.ts")}.get(
+        spelling, working_folder / "other name"
+    )
+    if spelling == "link":
         path.symlink_to(precious)
-    elif way == "hard":
+    elif spelling == "hard":
         os.link(precious, path)
     files_before = sorted(os.listdir(working_folder))  # noqa: PTH208
     for language in ("en", "es"):

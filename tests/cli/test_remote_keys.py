@@ -147,11 +147,13 @@ class Table:
         self.is_entered = False
 
     def read_keys(self) -> str:
-        typed, self.typed = self.typed, ""
-        return typed
+        typed_keys, self.typed = self.typed, ""
+        return typed_keys
 
-    def begin_request(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
-        return make(self)
+    def begin_request(
+        self, make_request: Callable[[Any], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
+        return make_request(self)
 
     def press(self, *state: int) -> PendingRequest[Any]:
         self.words.append((self.now_s, RemoteState(*state)))
@@ -188,9 +190,9 @@ def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
             table.now_s += POLL_S
         assert table.is_entered
     assert not table.is_entered
-    for (before_s, earlier_word), (after_s, after) in pairwise(table.words):
-        is_due = after_s - before_s > SEND_INTERVAL_S - POLL_S and after != NOTHING_PRESSED
-        assert earlier_word != after or is_due
+    for (before_s, earlier_word), (after_s, later_word) in pairwise(table.words):
+        is_due = after_s - before_s > SEND_INTERVAL_S - POLL_S and later_word != NOTHING_PRESSED
+        assert earlier_word != later_word or is_due
 
 
 @pytest.mark.parametrize("name", ["NOT_OWNER", "NO_REMOTE", "LATCHED"])

@@ -84,11 +84,11 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
         middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
-        robot.ask(lambda its: its.sense(*map(int, middle)))
+        robot.ask(lambda host: host.sense(*map(int, middle)))
         code, parts = find_with_selftest(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
-        same = [{"robot": value} for value, its in kits.items() if its[:2] == kit[:2]]
+        same = [{"robot": value} for value, robot_kit in kits.items() if robot_kit[:2] == kit[:2]]
         assert parts["kit"]["values"] in same and {"robot": name} in same
         assert len([part for part in parts if part.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
@@ -125,9 +125,9 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
     assert {finding["cause"] for finding in findings} >= {"low_supply", "wrong_kit", "lossy"}
     for finding in findings:
         if finding["is_wrong"]:
-            its = finding_by_cause[finding["cause"]]
-            assert (its["verdict"], its["next"]) == ("wrong", finding["next"])
-            assert its["said"] == finding["said"]
+            own_finding = finding_by_cause[finding["cause"]]
+            assert (own_finding["verdict"], own_finding["next"]) == ("wrong", finding["next"])
+            assert own_finding["said"] == finding["said"]
 
 
 def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
@@ -175,12 +175,15 @@ def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str)
     assert wrong_findings and [finding["cause"] for finding in reported] == [
         finding["cause"] for finding in wrong_findings
     ]
-    for reported_finding, its in zip(reported, wrong_findings, strict=True):
+    for reported_finding, doctor_finding in zip(reported, wrong_findings, strict=True):
         assert [reported_finding[key] for key in ("said", "seen", "next")] == [
-            its[key] for key in ("said", "seen", "next")
+            doctor_finding[key] for key in ("said", "seen", "next")
         ]
         assert reported_finding["next"] != "tsc doctor"
-        assert all(sentence in text for sentence in (its["said"], its["seen"], its["next"]))
+        assert all(
+            sentence in text
+            for sentence in (doctor_finding["said"], doctor_finding["seen"], doctor_finding["next"])
+        )
 
 
 def test_only_the_port_of_the_self_test_is_opened(
@@ -269,8 +272,8 @@ def person(
     return answer
 
 
-def causes(out: str) -> set[str]:
-    return {finding["cause"] for finding in json.loads(out)["found"]}
+def causes(json_output: str) -> set[str]:
+    return {finding["cause"] for finding in json.loads(json_output)["found"]}
 
 
 def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
@@ -447,9 +450,9 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
 ) -> None:
     """Nothing moves after an unanswered question."""
     actions: list[str] = []
-    typed = iter(["1\n"] * answers)
+    typed_lines = iter(["1\n"] * answers)
     monkeypatch.setattr(Conversation, "run_line", lambda _, line: actions.append(line))
-    monkeypatch.setattr("tiniscript.cli.terminal.asking.ask", lambda _: next(typed, ""))
+    monkeypatch.setattr("tiniscript.cli.terminal.asking.ask", lambda _: next(typed_lines, ""))
     ways: list[Callable[[Conversation], object]] = [
         lambda talk: talk.ask_to_lift(),
         lambda talk: talk.ask("ask_free", name="X", values=""),
@@ -458,16 +461,16 @@ def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
         lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", ANSWER_AGAIN),
     ]
     for final_step in ways:
-        typed = iter(["1\n"] * answers)
+        typed_lines = iter(["1\n"] * answers)
         talk = Conversation(cast(Connection, SimpleNamespace(language="en")))
         for _ in range(answers):
             ways[1](talk)
         with pytest.raises(NoPerson):
             final_step(talk)
-        typed = iter(["1\n"] * 10)  # more answers than questions
+        typed_lines = iter(["1\n"] * 10)  # more answers than questions
         actions.clear()
         capsys.readouterr()
-        for way in ways:
+        for step in ways:
             with pytest.raises(NoPerson):
-                way(talk)
+                step(talk)
         assert actions == [] and capsys.readouterr().err == ""

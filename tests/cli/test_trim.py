@@ -179,10 +179,10 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
             given_bytes.append(data)
 
     class Connected:
-        def request(self, make: Callable[[Asked], None], taken: object) -> None:
+        def request(self, make_request: Callable[[Asked], None], taken: object) -> None:
             if stops:
                 raise CommandError(3, stops.pop())
-            make(Asked())
+            make_request(Asked())
 
     def refuse_step(wizard: trim_wizard.TrimWizard, trim_before: Trim) -> Trim:
         raise CommandError(3, key)

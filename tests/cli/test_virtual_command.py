@@ -221,14 +221,14 @@ def colours(data: bytes) -> dict[str, int]:
 
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
-    still, way = tmp_path / "still.png", tmp_path / "way.png"
+    still, way_picture = tmp_path / "still.png", tmp_path / "way.png"
     run_in_process("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
     result = run_in_process("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
-                            "--plot", way)  # fmt: skip
+                            "--plot", way_picture)  # fmt: skip
     assert result.code == 0
     assert "The time set with --for is over.\nSaved. The button starts it.\n" in result.out
-    assert f"and touched nothing. Picture: {way}\n" in result.out
-    colours_before, colours_after = colours(still.read_bytes()), colours(way.read_bytes())
+    assert f"and touched nothing. Picture: {way_picture}\n" in result.out
+    colours_before, colours_after = colours(still.read_bytes()), colours(way_picture.read_bytes())
     assert colours_before["way"] < 20 < 4000 < colours_after["way"]
     assert colours_before["robot"] > 200
     assert colours_before["box"] > 10_000

@@ -40,7 +40,7 @@ def watch_output(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+def silent_port(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A port without a robot; the computer soon gives up."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 200)
@@ -49,17 +49,17 @@ def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 
 def test_whoever_waits_for_a_robot_is_told(
-    tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, silent_port: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A short wait prints nothing, and a program that reads the output sees nothing."""
     watch_output(monkeypatch)
-    result = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
-    assert result.err.startswith(f"Esperando al robot en {silent} …\n")
+    result = tsc("doctor", "--identify", "--port", silent_port, "--lang", "es").gives(3)
+    assert result.err.startswith(f"Esperando al robot en {silent_port} …\n")
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
-    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
+    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent_port).err
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
-    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
+    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent_port).err
 
 
 def test_whoever_waits_for_a_board_is_told_until_it_is_written(
@@ -111,12 +111,12 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
 
 
 def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
-    tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, silent_port: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     watch_output(monkeypatch)
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
-    result = tsc("stop", "--port", silent).gives(3, "has not confirmed the stop")
-    assert result.err.count(f"Waiting for the robot on {silent} to confirm the stop …\n") == 1
+    result = tsc("stop", "--port", silent_port).gives(3, "has not confirmed the stop")
+    assert result.err.count(f"Waiting for the robot on {silent_port} to confirm the stop …\n") == 1
 
 
 def test_waits_without_news_are_one_silence(
@@ -172,19 +172,19 @@ def test_a_bar_writes_where_something_changes_and_leaves_nothing(
         now_s += chance.choice((0.0, 0.02, 0.1))
         if chance.random() < 0.2:
             bar.end()
-            wanted = ""
+            wanted_text = ""
         else:
             done = chance.randint(0, total)
             bar.draw(done)
             percent = f"{min(100 * done // total, 99)} %" if total else ""
             is_late = now_s - 100 >= progress.DRAW_DELAY_S and percent != newest
-            wanted = percent if is_late else line
-            newest = wanted or newest
+            wanted_text = percent if is_late else line
+            newest = wanted_text or newest
         output = capsys.readouterr().err
-        assert bool(output) == (wanted != line)
+        assert bool(output) == (wanted_text != line)
         shown_line = output.split("\r")[-1].strip() if output else line
-        assert shown_line.rpartition("] ")[2].strip() == wanted
-        line = wanted
+        assert shown_line.rpartition("] ")[2].strip() == wanted_text
+        line = wanted_text
 
 
 def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:

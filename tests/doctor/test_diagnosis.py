@@ -54,12 +54,12 @@ class Shared:
         self.replies = list(replies)
         self.is_closed = False
 
-    def begin(self, make: Callable[[Any], object]) -> object:
+    def begin(self, make_request: Callable[[Any], object]) -> object:
         class Session:
             def __getattr__(self, name: str) -> Callable[[], Namespace]:
                 return lambda: Namespace(name=name)
 
-        return make(Session())
+        return make_request(Session())
 
     def wait(self, request: Namespace) -> Reply[Any]:
         assert request.name in ("hello", "status", "ping", "trim") and request.limit_ms > 0
@@ -106,8 +106,8 @@ class Case:
         self.system.usb("usb1", "1d6b", "0002")
         return self
 
-    def failing(self, reason: str, why: str = "") -> Case:
-        self.failure = PortError(reason, why)
+    def failing(self, reason: str, detail: str = "") -> Case:
+        self.failure = PortError(reason, detail)
         return self
 
     def diagnosis(self, port: str | None = CABLE) -> Diagnosis:
@@ -152,23 +152,23 @@ Make = Callable[[Case], object]
 
 
 def _port_of_dialout(member: str) -> Make:
-    def make(case: Case) -> None:
+    def set_case(case: Case) -> None:
         case.with_port(CABLE)
         case.system.owners[CABLE] = (20, False)
         case.system.write("/etc/group", f"dialout:x:20:{member}\n")
 
-    return make
+    return set_case
 
 
 _member, _stranger = _port_of_dialout("somebody"), _port_of_dialout("")
 
 
 def _port_in_use(name: str) -> Make:
-    def make(case: Case) -> None:
+    def set_case(case: Case) -> None:
         case.with_port(CABLE)
         case.system.program(5, name, opens=CABLE)
 
-    return make
+    return set_case
 
 
 def _brltty(case: Case) -> None:
@@ -190,8 +190,8 @@ def _pair(reason: str, *names: str, is_off: bool = False) -> Make:
     return lambda case: case.with_bluetooth(*names, is_off=is_off).failing(reason)
 
 
-def _failing(reason: str, why: str = "") -> Make:
-    return lambda case: case.failing(reason, why)
+def _failing(reason: str, detail: str = "") -> Make:
+    return lambda case: case.failing(reason, detail)
 
 
 def _ports(*names: str) -> Make:
@@ -234,12 +234,12 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
 
 
 @pytest.mark.parametrize(
-    ("port", "make", "cause", "is_sure"), ROWS, ids=lambda value: str(value)[:20]
+    ("port", "set_case", "cause", "is_sure"), ROWS, ids=lambda value: str(value)[:20]
 )
 def test_each_cause_of_computer_and_port(
-    case: Case, port: str | None, make: Make, cause: str, is_sure: bool
+    case: Case, port: str | None, set_case: Make, cause: str, is_sure: bool
 ) -> None:
-    make(case)
+    set_case(case)
     assert case.cause(port) == (cause, is_sure)
 
 
@@ -266,9 +266,9 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
     assert finding.cause == "charging_cable"
     assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
     for language in ("en", "es"):
-        _, sentence, then = sentences_of(finding, language)
+        _, sentence, hint = sentences_of(finding, language)
         assert finding.values["ports"] in sentence
-        assert "tsc doctor --port" in then
+        assert "tsc doctor --port" in hint
 
 
 def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> None:
@@ -279,9 +279,9 @@ def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> No
     assert case.diagnosis(None).port == CABLE
 
 
-@pytest.mark.parametrize("make", [_stranger, _member, _port_in_use("minicom"), _other_tsc])
-def test_a_port_that_is_not_ours_is_not_opened(case: Case, make: Make) -> None:
-    make(case)
+@pytest.mark.parametrize("set_case", [_stranger, _member, _port_in_use("minicom"), _other_tsc])
+def test_a_port_that_is_not_ours_is_not_opened(case: Case, set_case: Make) -> None:
+    set_case(case)
     case.says_yes = True
     assert not case.diagnosis().is_opened
     assert case.opened == []

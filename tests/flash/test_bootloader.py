@@ -55,19 +55,31 @@ def needs_a_chip() -> None:
     skip_unless_available()
 
 
-def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
+def avrdude(uno: Uno, loader: Bootloader, file: Path) -> str:
     """Write a sketch and read it back, as the Arduino IDE and PlatformIO do."""
     if not shutil.which("avrdude"):
         need("no avrdude on this computer")
     completed = subprocess.run(
-        ["avrdude", "-c", of.programmer, "-p", of.part, "-P", uno.pty, "-b", str(of.baud), "-D",
-         "-U", f"flash:w:{file}:i"],
+        [
+            "avrdude",
+            "-c",
+            loader.programmer,
+            "-p",
+            loader.part,
+            "-P",
+            uno.pty,
+            "-b",
+            str(loader.baud),
+            "-D",
+            "-U",
+            f"flash:w:{file}:i",
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         timeout=120,
         check=False,
-    )  # fmt: skip
+    )
     assert completed.returncode == 0, completed.stdout
     return completed.stdout
 
@@ -85,14 +97,18 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
         subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, sketch], check=True)
     else:
         sketch = arduino_builder.firmware(board, tmp_path, common).hex
-    of = bootloader(board)
+    loader = bootloader(board)
     program = tmp_path / "drive.ts"
     program.write_text(DRIVE_PROGRAM, encoding="utf-8")
     with Uno(
-        nothing_but("nothing"), bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False
+        nothing_but("nothing"),
+        bootloader=loader.file,
+        names=NAMES,
+        baud=loader.baud,
+        tells_sleep=False,
     ) as uno:
         uno.go()
-        assert "bytes of flash verified" in avrdude(uno, of, sketch)
+        assert "bytes of flash verified" in avrdude(uno, loader, sketch)
         identified = process("doctor", "--identify", "--port", uno.pty).gives(0)
         assert identified.out.startswith(f"tinibot on {uno.pty}")
         assert states(uno) == OFF

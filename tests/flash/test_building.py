@@ -64,8 +64,8 @@ def own(tmp_path: Path) -> Path:
 def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
     """It is built once and stays ready until one of its sources changes."""
     skip_unless_available()
-    variables, why = prepare()
-    need(why or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
+    variables, reason = prepare()
+    need(reason or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
     with new_board(bootloader("uno")) as uno:
         result = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
         assert result.code == 0, result.err
@@ -138,8 +138,8 @@ def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -
     confused.
     """
     skip_unless_available()
-    variables, why = prepare()
-    need(why)
+    variables, reason = prepare()
+    need(reason)
     for _ in range(2):
         result = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
         assert result.code == 0, result.err

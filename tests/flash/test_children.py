@@ -62,21 +62,23 @@ def is_over(process: int) -> bool:
     return completed.stdout.strip()[:1] in ("", "Z")
 
 
-@pytest.mark.parametrize("way", CHILD_ENDS)
+@pytest.mark.parametrize("end_kind", CHILD_ENDS)
 def test_no_child_process_is_left(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end_kind: str
 ) -> None:
-    end, look, failure = CHILD_ENDS[way]
+    end, on_output, failure = CHILD_ENDS[end_kind]
     monkeypatch.setattr(children, "KILL_DELAY_S", 0.2)
     for round_ in range(2):  # the second one as the first one
         noted_path = tmp_path / f"{round_}"
         words = ["sh", "-c", PARENT_SCRIPT.format(end), "sh", str(noted_path)]
         if failure is None:
-            code, text = children.run(words, None, look)
-            assert text == "begun\n" and (code == 0) == (way == "it ends well")
+            code, text = children.run(words, None, on_output)
+            assert text == "begun\n" and (code == 0) == (end_kind == "it ends well")
         else:
             with pytest.raises(failure):
-                children.run(words, None, look, None, lambda _: way != FIRST_WAITS_FOR_END, 0.2)
+                children.run(
+                    words, None, on_output, None, lambda _: end_kind != FIRST_WAITS_FOR_END, 0.2
+                )
         child = int(noted_path.read_text(encoding="utf-8"))
         until(partial(is_over, child), "what it has started ends")
 

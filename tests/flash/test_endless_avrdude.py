@@ -32,12 +32,12 @@ def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProg
     program.write_text(body, encoding="utf-8")
     steps: list[StepProgress | None] = []
 
-    def look(progress: StepProgress | None) -> None:
+    def note_progress(progress: StepProgress | None) -> None:
         steps.append(progress)
         if progress:
             (folder / "seen").touch()
 
-    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, look), steps
+    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, note_progress), steps
 
 
 @pytest.mark.parametrize("message", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])

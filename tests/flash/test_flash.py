@@ -56,8 +56,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
     """PlatformIO works here, with the offline stand-ins where it needs them."""
-    variables, why = prepare()
-    need(why)
+    variables, reason = prepare()
+    need(reason)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
 
@@ -101,16 +101,16 @@ def changed_optiboot(folder: Path, old_text: str, new_text: str) -> Bootloader:
 
 
 def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
-    of = changed_optiboot(tmp_path, "putch(SIGNATURE_1)", "putch(0x94)")  # an ATmega168P's
-    with new_board(of) as uno:
+    loader = changed_optiboot(tmp_path, "putch(SIGNATURE_1)", "putch(0x94)")  # an ATmega168P's
+    with new_board(loader) as uno:
         result = tsc(package, "--port", uno.pty, "--lang", "es")
         assert result.code == 3
         assert f"la placa en {uno.pty} no es un uno" in result.err
 
 
 def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
-    of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
-    with new_board(of) as uno:
+    loader = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
+    with new_board(loader) as uno:
         tsc(package, "--port", uno.pty).gives(
             3, "the firmware on the board does not match what was written. Unplug"
         )
@@ -152,8 +152,8 @@ def fake(folder: Path, body: str) -> dict[str, str]:
 def test_a_nano_is_tried_with_both_of_its_bootloaders(
     package: Path, board: Uno, tmp_path: Path
 ) -> None:
-    silent = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
-    body = f'{silent}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
+    silent_body = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
+    body = f'{silent_body}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
     result = tsc(package, "--port", board.pty, "--chip", "nano", **fake(tmp_path, body))
     assert result.code == 3
     assert "trying an older Nano" in result.err and "Is it a nano" in result.err
@@ -188,10 +188,10 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     """Before the first byte there is no such warning, because the board is unchanged."""
 
     def write(*words: object) -> None:
-        look = cast("Callable[[StepProgress | None], None]", words[-1])
+        on_progress = cast("Callable[[StepProgress | None], None]", words[-1])
         steps = (StepProgress(avrdude.WRITING, 9 * k) for k in range(count))
         for progress in [None, None, *steps, None]:
-            look(progress)
+            on_progress(progress)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(avrdude, "write", write)

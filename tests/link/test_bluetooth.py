@@ -118,8 +118,8 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
 
 
 def test_two_at_once_take_turns(ble: BleRobot) -> None:
-    both = [Command("doctor", "--identify", "--port", port) for port in (NAME, ADDRESS_PORT)]
-    results = [command.wait_for_result() for command in both]
+    commands = [Command("doctor", "--identify", "--port", port) for port in (NAME, ADDRESS_PORT)]
+    results = [command.wait_for_result() for command in commands]
     assert 0 in [result.code for result in results]
     for result in results:
         assert (
@@ -173,7 +173,7 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, del
     assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
 
 
-@pytest.mark.parametrize(("name", "typed"), [
+@pytest.mark.parametrize(("name", "typed_name"), [
     ("Ñandú 7", "ñandú 7"),
     ("Mi robot", "mi robot"),
     ("a/b?c%20://d", "a/b?c%20://d"),
@@ -181,9 +181,9 @@ def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, del
     ("  spaced  ", "spaced"),
     ("Cafe\u0301", "Caf\u00e9"),
 ])  # fmt: skip
-def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed: str) -> None:
+def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed_name: str) -> None:
     bluez.add(BleRobot(pty_robot, name))
-    assert run_in_process("doctor", "--identify", "--port", f"ble://{typed}").code == 0
+    assert run_in_process("doctor", "--identify", "--port", f"ble://{typed_name}").code == 0
 
 
 def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: BleRobot) -> None:

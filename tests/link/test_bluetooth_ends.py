@@ -55,7 +55,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     ble: BleRobot, tmp_path: Path, heard_count: int
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
-    old_path, after = tmp_path / "before.bin", tmp_path / "after.bin"
+    old_path, new_path = tmp_path / "before.bin", tmp_path / "after.bin"
     assert run_in_process("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
     assert run_in_process("show", "-o", old_path, "--port", ADDRESS_PORT).code == 0
     ble.parts_after = len(ble.received_data) + heard_count
@@ -66,8 +66,8 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     wait_for_dead_man_stop(ble)
     compiled_file = tmp_path / "ours.bin"
     run_in_process("compile", "-e", LONG, "-o", compiled_file)
-    assert run_in_process("show", "-o", after, "--port", ADDRESS_PORT).code == 0
-    assert after.read_bytes() in (old_path.read_bytes(), compiled_file.read_bytes())
+    assert run_in_process("show", "-o", new_path, "--port", ADDRESS_PORT).code == 0
+    assert new_path.read_bytes() in (old_path.read_bytes(), compiled_file.read_bytes())
     assert run_in_process("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
 
 

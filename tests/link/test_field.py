@@ -125,10 +125,10 @@ def check_no_other_program(cpp: CppLink, seed: int) -> str:
     data = text.encode() + b"\n"
     offset = draw.randrange(len(data))
     # without its first byte a first line is another one, and the next ones are lines of their own
-    after = offset + (offset > 0 and draw.randrange(2))
+    text_end = offset + (offset > 0 and draw.randrange(2))
     wanted_programs = programs_of(cpp, text)
     robot = Robot(cpp)
-    robot.type(data[:offset] + b"\0" + data[after:])
+    robot.type(data[:offset] + b"\0" + data[text_end:])
     robot.wait(4200)
     assert robot.programs <= wanted_programs, f"seed {seed}: {text!r} with a 0x00 at {offset}"
     assert robot.programs or robot.answers, f"seed {seed}: silence for {text!r}, a 0x00 at {offset}"

@@ -19,7 +19,7 @@ from tiniscript.link.requests import ACCEPTING_STATUSES, OK, DeviceInfo, Exchang
 from tiniscript.link.seal import siphash
 from tiniscript.studio.page_line import PageKeys
 
-SLOTS = [(robot, which) for robot in (1, 2) for which in (KEY_OWNER, KEY_TEACHER)]
+SLOTS = [(robot, role) for robot in (1, 2) for role in (KEY_OWNER, KEY_TEACHER)]
 CHANGE_COUNT = 40
 CHALLENGE, NONCE = b"12345678", 7
 T = TypeVar("T")
@@ -109,29 +109,29 @@ class Robot:
             return cast(Reply[T], end.value)
 
     def _reply(self, request: Request) -> Reply[Any]:
-        which = int(request.values["which"])
+        role = int(request.values["which"])
         if request.name == "CLAIM":
-            status = self._take(which, cast(bytes, request.values["key"]))
+            status = self._take(role, cast(bytes, request.values["key"]))
             return Reply(status, 0, EmptyReply())
         assert request.name == "AUTHENTICATE"
-        tag, key = request.values["tag"], self.keys.get(which)
+        tag, key = request.values["tag"], self.keys.get(role)
         if not tag:
             return Reply(OK, 0, AuthenticateReply(0, CHALLENGE))
         self._is_stale = not self._is_stale and self.chance.random() < 0.2
         if self._is_stale:  # it was stopped in this moment
             return Reply(STATUSES["STALE"])
-        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, which])
+        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, role])
         is_right = key is not None and tag == siphash(key, message)
         return Reply(OK, 0, AuthenticateReply(0, b"")) if is_right else Reply(STATUSES["WRONG_KEY"])
 
-    def _take(self, which: int, key: bytes) -> int:
+    def _take(self, role: int, key: bytes) -> int:
         if not key:
-            self.keys.pop(which, None)
+            self.keys.pop(role, None)
             return OK
         statuses = [OK, *ACCEPTING_STATUSES, STATUSES["NOT_OWNER"]]
         status = self._status_by_key.setdefault(key, self.chance.choice(statuses))
         if status in (OK, *ACCEPTING_STATUSES):
-            self.keys[which] = key
+            self.keys[role] = key
         return status
 
 
@@ -147,23 +147,23 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
     robot = Robot(chance)
     sealing_keys = set[bytes]()
     for _ in range(CHANGE_COUNT):
-        robot.loss, which = chance.choice((0.0, 0.3)), chance.choice((KEY_OWNER, KEY_TEACHER))
+        robot.loss, role = chance.choice((0.0, 0.3)), chance.choice((KEY_OWNER, KEY_TEACHER))
         robot.has_seals = chance.random() < 0.5  # it may have older firmware
         if chance.random() < 0.7:
-            robot.does(authority.claim(ring, robot.info, which))
+            robot.does(authority.claim(ring, robot.info, role))
         else:
-            robot.does(authority.disown(ring, robot.info, which))
+            robot.does(authority.disown(ring, robot.info, role))
         robot.does(authority.show_keys(ring, robot.info, NONCE, lambda: 0, is_needed=False))
         kept_keys = {key.key for key in ring.keys_of_robot(1)}
         assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
-        for which, robot_key in robot.keys.items():
+        for role, robot_key in robot.keys.items():
             key_proof = authority.show_keys(
-                ring, robot.info, NONCE, lambda: 0, which, is_needed=False
+                ring, robot.info, NONCE, lambda: 0, role, is_needed=False
             )
             reply = robot.does(key_proof)
             assert reply is not None and reply.status == OK
             [own_key] = [key for key in ring.keys_of_robot(1) if key.key == robot_key]
             sealing_keys |= {robot_key} if robot.has_seals else set()
-            assert (own_key.which, own_key.is_pending, own_key.is_stale) == (which, False, False)
+            assert (own_key.which, own_key.is_pending, own_key.is_stale) == (role, False, False)
             assert own_key.uses_seals == (robot_key in sealing_keys)

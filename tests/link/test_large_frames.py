@@ -98,8 +98,8 @@ def test_live_code_of_a_large_frame_runs() -> None:
         for is_late in (False, True):
             robot = open_link()
             code = large_upload.program(length).code
-            live = Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)
-            step = robot.step(10, b"\0" + encode_frame(live), is_late)
+            live_frame = Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)
+            step = robot.step(10, b"\0" + encode_frame(live_frame), is_late)
             checksum = unpack(pack("SI", 0, code)).checksum
             assert f"TAKE live {checksum:08x}" in step.did, length
             assert sum(row.startswith("START") for row in step.did) == 1
@@ -185,7 +185,7 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the
 
 
 @pytest.mark.parametrize(
-    ("lost", "unanswered", "count"),
+    ("lost_numbers", "unanswered", "count"),
     [
         ((), (), 7),
         ((), (2, 3), 7),  # the next answer reports them
@@ -196,9 +196,9 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the
     ],
 )
 def test_what_is_lost_is_sent_again_and_no_more(
-    lost: tuple[int, ...], unanswered: tuple[int, ...], count: int
+    lost_numbers: tuple[int, ...], unanswered: tuple[int, ...], count: int
 ) -> None:
-    taking = InOrderReceiver(lost, unanswered)
+    taking = InOrderReceiver(lost_numbers, unanswered)
     robot = AnsweringRobot(taking)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert taking.received == WHOLE and robot.has_commit

@@ -103,14 +103,16 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
     is_over = threading.Event()
 
     def send() -> None:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
-            out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, bytes((127, 0, 0, 1)))
-            out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-            out.bind(("127.0.0.1", 5353))  # names from elsewhere are ignored
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as multicast_socket:
+            multicast_socket.setsockopt(
+                socket.IPPROTO_IP, socket.IP_MULTICAST_IF, bytes((127, 0, 0, 1))
+            )
+            multicast_socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            multicast_socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+            multicast_socket.bind(("127.0.0.1", 5353))  # names from elsewhere are ignored
             while not is_over.wait(0.1):
                 for data in packet.packets():
-                    out.sendto(data, ("224.0.0.251", 5353))
+                    multicast_socket.sendto(data, ("224.0.0.251", 5353))
 
     sender = threading.Thread(target=send, daemon=True)
     sender.start()
@@ -139,9 +141,9 @@ def tini() -> Iterator[Robot]:
 
 
 def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
-    for run, typed in ((process, "tcp://Ñ tini {}"), (run_in_process, "tcp://ñ tini {}.local"),
+    for run, address in ((process, "tcp://Ñ tini {}"), (run_in_process, "tcp://ñ tini {}.local"),
                        (run_in_process, "TCP://ñ TINI {}")):  # fmt: skip
-        port = typed.format(PROCESS_ID)
+        port = address.format(PROCESS_ID)
         result = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert known_ports.remembered_ports().last_port == port
@@ -286,7 +288,9 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
     with (
         robot() as running_robot,
         closing(
-            BadNetwork(number_of(running_robot.port), LATE_S, every=2000, lost=LOSS_PROBABILITY)
+            BadNetwork(
+                number_of(running_robot.port), LATE_S, every=2000, loss_rate=LOSS_PROBABILITY
+            )
         ) as network,
         announce(f"far-{PROCESS_ID}", "127.0.0.1", network.port),
     ):

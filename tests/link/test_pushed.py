@@ -44,7 +44,7 @@ def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Wa
 def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     rng = random.Random(seed)
     port, waits = port_and_waits(monkeypatch)
-    unread, is_cancelled, why = b"", False, ""
+    unread, is_cancelled, failure = b"", False, ""
     for _ in range(200):
         action = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
         if rng.random() < 0.002:
@@ -58,17 +58,17 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
             is_cancelled = True
         elif action == "end":
             port.end("")
-            why = why or END_REASON
+            failure = failure or END_REASON
         else:
             size = rng.choice((1, 20, 4096))
             late_bytes = rng.randbytes(5) if action == "while it waits" else b""
             waits.then = [late_bytes] if late_bytes else []
-            has_to_wait = not (unread or is_cancelled or why)
+            has_to_wait = not (unread or is_cancelled or failure)
             if has_to_wait:
                 unread += late_bytes
             count_before = waits.count
-            if why and not unread:
-                with pytest.raises(OSError, match=why):
+            if failure and not unread:
+                with pytest.raises(OSError, match=failure):
                     port.read(size)
             else:
                 assert port.read(size) == unread[:size]

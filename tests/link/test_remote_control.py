@@ -297,7 +297,7 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
     table.claim_session(keys)
     robot, session = table.robot, table.session(keys, nonce=4)
     requests: list[PendingRequest[Any]] = []
-    asks: list[Callable[[], PendingRequest[Any]]] = [
+    request_makers: list[Callable[[], PendingRequest[Any]]] = [
         session.hello, session.status, session.trim,
         lambda: session.live(image("W(0.1)").code),
     ]  # fmt: skip
@@ -305,7 +305,7 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
         if rng.random() < 0.2 and all(request.outcome for request in requests):
             robot.wait(AUTHORITY_MS + 100)
         for _ in range(rng.choice((0, 0, 1, 3))):
-            requests.append(rng.choice(asks)())
+            requests.append(rng.choice(request_makers)())
         if rng.random() < 0.7:
             session.press(rng.randint(0, 63), rng.randint(-100, 100))
         robot.talk(session, rng.choice((1, 3, 10, 30, 100, 300)))

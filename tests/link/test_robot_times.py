@@ -40,8 +40,8 @@ def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
 @pytest.mark.parametrize("start", [0, 0xFFFFFFFF - 2000])
 def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
     cpp = robot_with_session()
-    live = messages.encode_payload(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
-    cpp.step(start, b"\0" + encode_frame(Frame(8, 2, 10, live)))
+    live_payload = messages.encode_payload(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
+    cpp.step(start, b"\0" + encode_frame(Frame(8, 2, 10, live_payload)))
     cpp.step(start + 700, b"\0" + encode_frame(Frame(2, 3, 10)))
     cpp.step(start + 900, encode_frame(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
     assert ends_at(cpp, start + 900, start + 2000) == start + 700 + DEAD_MAN_MS

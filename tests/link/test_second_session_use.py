@@ -123,13 +123,20 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Sai
     took_ms: list[int] = []
     for _ in range(4):
         upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
-        live = partial(session.live, image_of(PROGRAMS[0]).code)
-        asks: list[Callable[[], PendingRequest[Any]]] = [
-            live, upload, session.start, session.status, session.ping, session.trim, session.undo,
-            session.fetch, session.identify,
-        ]  # fmt: skip
+        live_request = partial(session.live, image_of(PROGRAMS[0]).code)
+        request_makers: list[Callable[[], PendingRequest[Any]]] = [
+            live_request,
+            upload,
+            session.start,
+            session.status,
+            session.ping,
+            session.trim,
+            session.undo,
+            session.fetch,
+            session.identify,
+        ]
         began_ms = robot.now_ms
-        request = rng.choice(asks)()
+        request = rng.choice(request_makers)()
         status = robot.until(session, request)
         assert request.outcome
         results.append(f"{status} {request.outcome.values if status == OK else ''}")
@@ -172,11 +179,11 @@ def check(seed: int) -> str:
     session.tells_starts = True
     assert other_use.robot.until(session, session.hello()) == OK
     actual = second_use(random.Random(seed), used.session, used.robot)
-    want = second_use(random.Random(seed), session, other_use.robot)
-    assert actual.what == want.what, f"seed {seed}\n{actual.what}\nnot\n{want.what}"
-    delays_ms = [a - b for a, b in zip(actual.took_ms, want.took_ms, strict=True)]
+    wanted_use = second_use(random.Random(seed), session, other_use.robot)
+    assert actual.what == wanted_use.what, f"seed {seed}\n{actual.what}\nnot\n{wanted_use.what}"
+    delays_ms = [a - b for a, b in zip(actual.took_ms, wanted_use.took_ms, strict=True)]
     assert all(abs(delay_ms) < LATER_MS for delay_ms in delays_ms), f"seed {seed} {delays_ms}"
-    return "it runs" if "DoneEvent" in str(want) else "it stands"
+    return "it runs" if "DoneEvent" in str(wanted_use) else "it stands"
 
 
 def open_wire(rng: random.Random) -> Wire:

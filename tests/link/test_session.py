@@ -72,7 +72,7 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     assert abs(times[0] - first_wait_ms) <= 2
     gaps = [later - earlier for earlier, later in pairwise(times)]
     doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
-    assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
+    assert all(abs(gap - wanted_gap) <= 2 for gap, wanted_gap in zip(gaps, doubled, strict=True))
     assert len({data for _, data in packets}) == 1 and packets[0][1][:1] == b"\0"
     assert 20 <= len(packets) + 1 <= TRIES
     list_packets(session, 2 * EXCHANGE_TIMEOUT_MS)
@@ -100,10 +100,10 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
 
     assert measure_waits(600) == [127, 254]  # and 508, which is not over
     assert measure_waits(500) == []  # it stays, and this one is certain: 500 and 4 * 250
-    silent = session.ping()
+    silent_ping = session.ping()
     session.poll(now_ms)
     first_wait_ms = list_packets(session, now_ms + 2000)[0][0] - now_ms
-    assert silent.outcome is None
+    assert silent_ping.outcome is None
     # HELLO's round trip took no time: a mean of 500 / 8, a variation of 500 / 4
     assert first_wait_ms == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
 
@@ -111,9 +111,9 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
 def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_ends_it() -> None:
     """However long its answers have taken."""
     session = greet(115_200)
-    live = session.live(FORWARD)
+    live_request = session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
-    assert live.outcome and session.is_running
+    assert live_request.outcome and session.is_running
     for _ in range(3):
         begun_ms = session.next_wake_ms()
         assert begun_ms is not None
@@ -223,10 +223,10 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
     """The frame that does it is under way. Requests that were not sent, or were refused, have no
     effect."""
     session = greet()
-    live, waits = session.live(FORWARD), session.start()
+    live_request, waits = session.live(FORWARD), session.start()
     session.poll(0)
     session.stop(5)
-    assert [reason_of(NO_CONNECTION, it.outcome) for it in (live, waits) if it.outcome] == [
+    assert [reason_of(NO_CONNECTION, it.outcome) for it in (live_request, waits) if it.outcome] == [
         "stopped_midway", "stopped_elsewhere",
     ]  # fmt: skip
     for is_cleared in (False, True):  # the latch has to be released before the program
@@ -236,18 +236,20 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
         session.receive(
             answer(session.poll(0), {**DESCRIPTION, "state": STATE_STOPPED}, epoch=11), 0
         )
-        live = session.live(FORWARD)
+        live_request = session.live(FORWARD)
         clear = session.poll(10)
         if is_cleared:
             session.receive(answer(clear, {}, epoch=11), 20)
         session.poll(20)
         session.stop(25)
-        assert live.outcome and live.outcome.detail == (DETAIL_MIDWAY if is_cleared else 0)
+        assert live_request.outcome and live_request.outcome.detail == (
+            DETAIL_MIDWAY if is_cleared else 0
+        )
     session = greet()
-    live = session.live(FORWARD)
+    live_request = session.live(FORWARD)
     session.receive(answer(session.poll(0), {}, status=STATUSES["BUSY"]), 5)
     session.stop(10)
-    assert live.outcome and live.outcome.detail == 0
+    assert live_request.outcome and live_request.outcome.detail == 0
 
 
 def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
@@ -269,9 +271,9 @@ def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
     session.stop(0)
     session.poll(0)
     session.receive(event("STOPPED", 0, {"cause": 1}), 20)
-    live = session.live(FORWARD)
+    live_request = session.live(FORWARD)
     now_ms = 20
-    while live.outcome is None:
+    while live_request.outcome is None:
         now_ms += 5
         data = session.poll(now_ms)
         frame = decode_frame(data.strip(b"\0")) if data else None

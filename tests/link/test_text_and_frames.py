@@ -125,8 +125,8 @@ def check_torn_lines_arrive_when_repeated(sender: TextSender, draw: random.Rando
 
 def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> None:
     """Check a session that sends a program over a lossy line, stops and sends HELLO."""
-    lost = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
-    robot = AnsweringRobot(InOrderReceiver(lost), baud=draw.choice((9600, 115_200)))
+    lost_numbers = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
+    robot = AnsweringRobot(InOrderReceiver(lost_numbers), baud=draw.choice((9600, 115_200)))
     session = robot.session
     session._sender = sender
     sent_chunks: list[bytes] = []

@@ -25,12 +25,12 @@ Happens = Callable[[HostFirmware], HostFirmware]
 Ask = Callable[[Session], PendingRequest[ReceiptReply]]
 
 
-def busy_line(session: Session, robot: HostFirmware, asks: str) -> None:
+def busy_line(session: Session, robot: HostFirmware, kind: str) -> None:
     """Send a request that the robot does not hear."""
-    if asks == "heartbeat":
+    if kind == "heartbeat":
         robot.now_ms += 2000
     else:
-        getattr(session, asks)()
+        getattr(session, kind)()
     assert session.poll(robot.now_ms)
 
 
@@ -43,21 +43,21 @@ REQUEST_NAMES = ["heartbeat", "status", "fetch", "identify", "clear"]
 
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-@pytest.mark.parametrize("asks", REQUEST_NAMES)
-def test_it_is_done_after_a_reset(asks: str, make_request: Ask) -> None:
+@pytest.mark.parametrize("kind", REQUEST_NAMES)
+def test_it_is_done_after_a_reset(kind: str, make_request: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
         session, robot = open_session()
-        busy_line(session, robot, asks)
+        busy_line(session, robot, kind)
         request = make_request(session)
         robot = reset(robot, seed)
         assert robot.until(session, request) == OK, seed
 
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-@pytest.mark.parametrize("asks", REQUEST_NAMES)
-def test_it_is_void_after_a_stop(asks: str, make_request: Ask) -> None:
+@pytest.mark.parametrize("kind", REQUEST_NAMES)
+def test_it_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
     session, robot = running()
-    busy_line(session, robot, asks)
+    busy_line(session, robot, kind)
     requests = [make_request(session), make_request(session)]
     robot = stopped_by_hand(robot)
     robot.codes()

@@ -210,10 +210,10 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
         listen(POLL_INTERVAL_S)
     holder.is_gone = True
     assert events == [*told, 99]
-    for look in (
+    for check in (
         lambda: line.event(0),
         lambda: line.wait(line.begin(lambda requests: requests.status())),
     ) * 2:
-        with pytest.raises(ConnectionLost) as lost:
-            look()
-        assert (lost.value.detail, lost.value.is_server) == ("the cable", not is_port_lost)
+        with pytest.raises(ConnectionLost) as caught:
+            check()
+        assert (caught.value.detail, caught.value.is_server) == ("the cable", not is_port_lost)

@@ -72,8 +72,10 @@ class SteppedLine:
         assert isinstance(event, (JoinedEvent, LeftEvent))
         self.posted.append((event.name, event.verb.decode()))
 
-    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
-        return make(self.session)
+    def begin(
+        self, make_request: Callable[[Requester], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
+        return make_request(self.session)
 
     def runs(self, run: int) -> bool:
         return self.session.is_running and self.session.run == run
@@ -290,10 +292,12 @@ def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
         end_name = play_first_client(random.Random(seed), at)
         heard_lines, actions = play_second_client(random.Random(-seed), at)
     with desk(monkeypatch) as at:
-        want, its = play_second_client(random.Random(-seed), at)
-    explanation = f"seed {seed} {end_name}\n{heard_lines}\n{actions}\nnot\n{want}\n{its}"
-    assert actions == its and heard_lines == want, explanation
-    return end_name if len(its) > 1 else "little"
+        wanted_lines, action_lines = play_second_client(random.Random(-seed), at)
+    explanation = (
+        f"seed {seed} {end_name}\n{heard_lines}\n{actions}\nnot\n{wanted_lines}\n{action_lines}"
+    )
+    assert actions == action_lines and heard_lines == wanted_lines, explanation
+    return end_name if len(action_lines) > 1 else "little"
 
 
 @pytest.mark.sampled("part")

@@ -317,11 +317,11 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The port was taken again between looking at the note and removing it."""
-    registration_before, now = (
+    registration_before, new_registration = (
         Registration("/dev/x", number, "a" * 32, "b" * 32, "link", 9600, os.getpid())
         for number in (1, 2)
     )
-    registry.write(now)
+    registry.write(new_registration)
     real_read = registry._read
     paths = []
 
@@ -333,4 +333,4 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
         patch.setattr(registry, "_read", read)
         registry.remove(registration_before)
     assert len(paths) == 2
-    assert registry.find_registration("/dev/x") == now
+    assert registry.find_registration("/dev/x") == new_registration

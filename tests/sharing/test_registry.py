@@ -43,7 +43,9 @@ def dead() -> Registration:
         return registration(server.getsockname()[1], "upload")
 
 
-def call_at_line(wanted_line: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
+def call_at_line(
+    wanted_line: int, action: Callable[[], object], runs: Callable[[], object]
+) -> bool:
     """Call `runs`, and call `does` just before its line number `wanted` in the registry. Return
     whether it has so many lines."""
     lines = 0
@@ -56,7 +58,7 @@ def call_at_line(wanted_line: int, does: Callable[[], object], runs: Callable[[]
             lines += 1
             if lines == wanted_line:
                 sys.settrace(None)
-                does()
+                action()
         return trace
 
     gettrace_before = sys.gettrace()
@@ -76,8 +78,8 @@ def each_line(
     wanted_line, is_more = 0, True
     while is_more:
         wanted_line += 1
-        does, runs = prepare()
-        is_more = call_at_line(wanted_line, does, runs)
+        action, runs = prepare()
+        is_more = call_at_line(wanted_line, action, runs)
         yield is_more
     assert wanted_line > 5
 
@@ -86,7 +88,7 @@ def each_line(
 def test_a_server_that_registers_while_another_command_removes_is_found(
     number: int, other_action: str
 ) -> None:
-    live = registration(number, "live")
+    live_registration = registration(number, "live")
 
     def prepare() -> tuple[Callable[[], object], Callable[[], object]]:
         gone_registration = dead()
@@ -96,14 +98,14 @@ def test_a_server_that_registers_while_another_command_removes_is_found(
             if other_action == "tidies"
             else lambda: registry.remove(gone_registration)
         )
-        return (lambda: registry.write(live)), runs
+        return (lambda: registry.write(live_registration)), runs
 
     for has_registered in each_line(prepare):
         if not has_registered:
             continue
-        assert registry.find_registration(PORT) == live
-        assert registry.find_all() == [live]
-        registry.remove(live)
+        assert registry.find_registration(PORT) == live_registration
+        assert registry.find_all() == [live_registration]
+        registry.remove(live_registration)
         assert registry.find_all() == []
 
 
@@ -177,9 +179,9 @@ def test_whoever_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one()
 
 
 @pytest.mark.parametrize("other_host", ["school2", "school-2", "s", "school.local"])
-@pytest.mark.parametrize("does", ["tidies", "finds", "registers", "leaves"])
+@pytest.mark.parametrize("action_name", ["tidies", "finds", "registers", "leaves"])
 def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
-    does: str, other_host: str, monkeypatch: pytest.MonkeyPatch
+    action_name: str, other_host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Only the other computer can check whether a server listens at that port number."""
     foreign = dead()
@@ -193,6 +195,6 @@ def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
         "registers": lambda: registry.write(own_registration),
         "leaves": lambda: registry.remove(own_registration),
     }
-    acts[does]()
+    acts[action_name]()
     monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     assert registry.find_registration(PORT) == foreign

@@ -151,7 +151,7 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
     request_maker(Asked("nod", values).message(), 700)(session)
     ((name, passed_arguments, _),) = session.method_calls
     assert (name, passed_arguments) == ("nod", values)
-    given_fields = dict(zip((its.name for its in NOD_MESSAGE.request), values, strict=True))
+    given_fields = dict(zip((field.name for field in NOD_MESSAGE.request), values, strict=True))
     assert next(exchange_by_name("nod")(Mock(), **given_fields)) == Request("NOD", given_fields)
 
 

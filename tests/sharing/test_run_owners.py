@@ -47,8 +47,10 @@ class FakeLine:
     def post_event(self, event: Event) -> None:
         self._on_events([(0, event)])
 
-    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
-        self.asked.append(make(cast(Requester, ClientRequests())))
+    def begin(
+        self, make_request: Callable[[Requester], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
+        self.asked.append(make_request(cast(Requester, ClientRequests())))
         return self.asked[-1]
 
     def begin_run(self) -> None:

@@ -143,10 +143,10 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     monitor = Command("monitor", "--port", pty_robot.port, "--json")
     assert monitor.process.stderr
     monitor.process.stderr.readline()
-    live = Command("live", "--port", pty_robot.port)
-    assert live.process.stdin and live.process.stdout
-    live.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
-    result = live.wait_for_result()
+    live_command = Command("live", "--port", pty_robot.port)
+    assert live_command.process.stdin and live_command.process.stdout
+    live_command.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
+    result = live_command.wait_for_result()
     assert [line for line in result.out.splitlines() if line != "Done."] == ["X 3", "X 4"]
     assert monitor.process.stdout
     rows = [json.loads(monitor.process.stdout.readline()) for _ in range(5)]

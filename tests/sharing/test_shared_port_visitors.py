@@ -44,13 +44,13 @@ def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPa
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
     with Shared() as (_, registration), ExitStack() as opened_exit_stack:
-        silent = [
+        silent_peers = [
             opened_exit_stack.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)
         ]
-        assert all(is_let_go(peer) for peer in silent[:10])
-        silent[10].settimeout(0.2)
+        assert all(is_let_go(peer) for peer in silent_peers[:10])
+        silent_peers[10].settimeout(0.2)
         with pytest.raises(TimeoutError):
-            silent[10].recv(1)
+            silent_peers[10].recv(1)
 
 
 def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
@@ -66,10 +66,10 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
             peer.sendall(greeting(registration, **wrong_fields))
             assert is_let_go(peer)
     assert pty_robot.moves
-    silent = [visitor(registration) for _ in range(100)]
+    silent_peers = [visitor(registration) for _ in range(100)]
     assert on(pty_robot, "stop").code == 0
     assert command.wait_for_result().code == 3
-    for peer in silent:
+    for peer in silent_peers:
         assert is_let_go(peer)
         peer.close()
 

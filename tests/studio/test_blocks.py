@@ -109,12 +109,12 @@ def test_moves_and_waits_can_have_an_until(word: str) -> None:
 
 @pytest.mark.parametrize(("word", "unit"), UNIT_OF.items())
 def test_a_way_is_a_move_with_another_unit(word: str, unit: str) -> None:
-    way = f"{word}(X * 2 {unit}, 60)"
-    for until, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
-        check_blocks(f"X = 20;{way}{until}", TINIBOT)
-        (block,) = read_blocks(way + until, TINIBOT).body
+    move = f"{word}(X * 2 {unit}, 60)"
+    for until_text, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
+        check_blocks(f"X = 20;{move}{until_text}", TINIBOT)
+        (block,) = read_blocks(move + until_text, TINIBOT).body
         assert (block.kind, block.word) == (kind, f"{word} {unit}")
-    assert kinds(way.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
+    assert kinds(move.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
 
 
 def test_every_word_of_a_kit_is_in_blocks() -> None:

@@ -50,8 +50,8 @@ class Ana:
         self.takes(page_together.begin({"news": {"page": "a", **self.news(-1, "")}}, b""))
         self.show()
 
-    def news(self, since: int, epoch: str) -> Json:
-        answer: Json = json.loads(json.dumps(self.program.news("a", since, epoch)))
+    def news(self, seen_number: int, epoch: str) -> Json:
+        answer: Json = json.loads(json.dumps(self.program.news("a", seen_number, epoch)))
         return answer
 
     def takes(self, answer: Json) -> None:
@@ -113,24 +113,24 @@ def changes(body: list[Json], rng: Random, next_id: Any) -> set[str]:
     filled_bodies = [body for body in bodies if body]
     if not filled_bodies:
         return set()
-    where = rng.choice(filled_bodies)
-    data = rng.choice(where)
+    chosen_body = rng.choice(filled_bodies)
+    data = rng.choice(chosen_body)
     kind = rng.randrange(4)
     if kind == 0 and data["values"] and data["kind"] != "if":
         data["values"][0] = [["NUMBER", str(rng.randrange(2, 9))]]
         data["said"] = []
         return {data["id"]}
     if kind == 1:
-        where.remove(data)
+        chosen_body.remove(data)
         return {data["id"]}
     if kind == 2 and not data["bodies"]:
-        where.remove(data)
+        chosen_body.remove(data)
         target = rng.choice(bodies)
         target.insert(rng.randrange(len(target) + 1), data)
         return {data["id"]}
     block = {"kind": "move", "word": "L", "values": [[["NUMBER", "1"]], [["NUMBER", "60"]]],
              "bodies": [], "note": "", "is_apart": False, "id": next_id()}  # fmt: skip
-    where.insert(rng.randrange(len(where) + 1), block)
+    chosen_body.insert(rng.randrange(len(chosen_body) + 1), block)
     return set()
 
 
@@ -147,9 +147,9 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
     touched: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
         touched |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
-    want = format_blocks(from_data(ana.form)).text
+    wanted_text = format_blocks(from_data(ana.form)).text
     answer = ana.writes()
-    assert ana.text == want == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
+    assert ana.text == wanted_text == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
     assert answer["is_shown"]
     ana.sends()
     assert text_of(program.tree) == ana.text
@@ -158,8 +158,8 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
              ([id, *nodes_before[id].children] if id in nodes_before else [id])}  # fmt: skip
     for id, node in nodes_before.items():
         if id not in below and id not in (ROOT, START):
-            now = program.tree[id]
-            assert (now.text, now.mark("text")) == (node.text, node.mark("text")), id
+            new_node = program.tree[id]
+            assert (new_node.text, new_node.mark("text")) == (node.text, node.mark("text")), id
     present_ids = {node["id"] for node in ana.inside(ana.form["body"])}
     for block, id in nodes.items():
         assert block not in present_ids or id not in nodes_before or id in program.tree, (block, id)

@@ -67,11 +67,11 @@ def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
 
 def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
     """For example those of a school's proxy; the environment may override it."""
-    asks = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
+    node_command = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
     monkeypatch.delenv("NODE_USE_SYSTEM_CA", raising=False)
-    assert studio.run(asks) == "1\n"
+    assert studio.run(node_command) == "1\n"
     monkeypatch.setenv("NODE_USE_SYSTEM_CA", "0")
-    assert studio.run(asks) == "0\n"
+    assert studio.run(node_command) == "0\n"
 
 
 @pytest.mark.parametrize("language", languages()[1:])

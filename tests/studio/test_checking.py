@@ -278,11 +278,11 @@ def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
     assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
         1 if wrong_end else MOST_OFFERS
     )
-    which = next(k for k, finding in enumerate(findings) if finding.may_repair)
-    assert checking.repair(text.encode(), "tinibot", which)
+    finding_index = next(k for k, finding in enumerate(findings) if finding.may_repair)
+    assert checking.repair(text.encode(), "tinibot", finding_index)
     assert len(texts) == 2, "the text that is known is not compiled again"
     checking.check(b"S", "tinibot", "en")
-    assert checking.repair(text.encode(), "tinibot", which)
+    assert checking.repair(text.encode(), "tinibot", finding_index)
     assert len(texts) == 5
 
 

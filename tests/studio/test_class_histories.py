@@ -265,10 +265,10 @@ class History:
         resumed = room_after.teaches("class")
         for name in ("code", "turn_s", "places"):
             assert resumed[name] == state[name], name
-        both = [
+        states = [
             [(row["name"], *row["lessons"]) for row in work["pupils"]] for work in (resumed, state)
         ]
-        assert both[0] == both[1]
+        assert states[0] == states[1]
         assert [row["port"] for row in resumed["robots"]] == [
             row["port"] for row in state["robots"]
         ]

@@ -110,8 +110,8 @@ def test_whoever_leaves_in_whatever_way_is_followed_within_three_seconds() -> No
     def sleeps(room: Room, ana: str) -> None:
         asleep.append(room.connects(ana))
 
-    for way in (leaves_before, leaves_while_it_connects, sleeps):
-        assert wait_until_place_is_free(way) < 2.5, way.__name__
+    for leave_step in (leaves_before, leaves_while_it_connects, sleeps):
+        assert wait_until_place_is_free(leave_step) < 2.5, leave_step.__name__
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -918,9 +918,9 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
         is_up = chance.random() < 0.7
         room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
-        for pupil_token, old_view, after in zip(tokens, seen, pupils, strict=True):
+        for pupil_token, old_view, new_view in zip(tokens, seen, pupils, strict=True):
             is_other = pupil_token == token and works[pupil_token] != text
-            assert (after["version"] != old_view["version"]) == is_other
+            assert (new_view["version"] != old_view["version"]) == is_other
         seen, works[token] = pupils, text
         hands = [pupil_token for pupil_token in hands if pupil_token != token or is_up]
         hands += [token] * (is_up and token not in hands)
@@ -932,8 +932,8 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
 # -- the newest run of a pupil ---------------------------------------------------------------------
 
 
-def ask_for_run(room: Room, pupil: int, asks: bool = False) -> Any:
-    return room.made.teach({"do": "class_run", "pupil": pupil, "asks": asks})["run"]
+def ask_for_run(room: Room, pupil: int, is_asked: bool = False) -> Any:
+    return room.made.teach({"do": "class_run", "pupil": pupil, "asks": is_asked})["run"]
 
 
 def give_run_part(

@@ -125,9 +125,9 @@ class Group:
 
     def races(self) -> None:
         """Let one pupil drive; then some press Run, and one presses STOP after them."""
-        driver, *others = self.chance.sample(self.mates, 3)
+        driver, *other_mates = self.chance.sample(self.mates, 3)
         self.drives(driver)
-        for mate in self.chance.sample(others, self.chance.randrange(3)):
+        for mate in self.chance.sample(other_mates, self.chance.randrange(3)):
             pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
             self.later(pressed)
         if self.chance.random() < 0.5:

@@ -42,8 +42,8 @@ class Robot:
         self.count = 0  # number of values in a run
 
     def tells(self) -> Json:
-        does = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
-        if not (self.program or self.line) or does == "next":
+        action = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
+        if not (self.program or self.line) or action == "next":
             if self.program or self.line:
                 replaces = self.chance.random() < 0.3
                 return self._begins("program", "line") if replaces else self._ends()
@@ -53,7 +53,7 @@ class Robot:
                 return event
             return self._begins("program", "line", "button")
         program = self.program or self.line
-        if does == "place":
+        if action == "place":
             place = self.chance.randrange(500)
             self.place = place if self.program else self.place
             return {"event": "PLACE", "at": place, "program": program}
@@ -63,7 +63,7 @@ class Robot:
             self.meant.append(value)
             self.count += 1
             self.nth[value] = self.count
-        if does == "text":
+        if action == "text":
             return {"event": "TEXT", "text": value}
         return {"event": "SHOW", "value": value, "at": 7, "program": program}
 
@@ -239,9 +239,9 @@ def test_what_a_page_claims_to_know_breaks_nothing(known: object) -> None:
 
 
 def test_news_have_the_time_of_their_run() -> None:
-    now = [10.0]
-    runs = GroupRuns(lambda: now[0])
+    clock_s = [10.0]
+    runs = GroupRuns(lambda: clock_s[0])
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
-    now[0] += 0.25
+    clock_s[0] += 0.25
     runs.add_news("ana", [{"event": "SHOW", "value": "5"}])
     assert [item["ms"] for item in Page(runs, "teo").looks()] == [0, 250]

@@ -67,8 +67,14 @@ class Member:
 
     def request(self, **fields: Any) -> Json:
         page = self.page
-        since = -1 if page.is_astray else page.number
-        return {"page": page.name, "since": since, "epoch": page.epoch, "saw": self.saw, **fields}
+        seen_number = -1 if page.is_astray else page.number
+        return {
+            "page": page.name,
+            "since": seen_number,
+            "epoch": page.epoch,
+            "saw": self.saw,
+            **fields,
+        }
 
     def sends(self, **fields: Any) -> Json:
         """Send pending changes, and receive news."""
@@ -482,22 +488,22 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
     """Whatever the teacher's page does there, turns, places and robots are as without it."""
     chance = Random(seed)
     schools = [School(tmp_path / str(k), robots=2) for k in range(2)]
-    both = [[Member(school, name, name) for name in NAMES] for school in schools]
+    members_by_school = [[Member(school, name, name) for name in NAMES] for school in schools]
     for _ in range(40):
-        does, k = chance.choice(("wish", "connect", "join", "leave", "stop")), chance.randrange(5)
+        action, k = chance.choice(("wish", "connect", "join", "leave", "stop")), chance.randrange(5)
         name, wants = chance.choice(NAMES), chance.random() < 0.8
-        for school, members in zip(schools, both, strict=True):
+        for school, members in zip(schools, members_by_school, strict=True):
             member = members[k]
             school.now_s += 1
-            if does == "wish":
+            if action == "wish":
                 school.checks_in(member.token, wants)
-            elif does == "connect" and school.checks_in(member.token)["place"] == 0:
+            elif action == "connect" and school.checks_in(member.token)["place"] == 0:
                 school.connects(member.token)
-            elif does == "join":
+            elif action == "join":
                 member.joins(name)
-            elif does == "leave":
+            elif action == "leave":
                 member.asks("group_leave")
-            elif does == "stop":
+            elif action == "stop":
                 member.asks("stop", group_stops=school.now_s)
         shown_groups = schools[0].teaches("class")["groups"]
         if shown_groups:
@@ -506,7 +512,7 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
             if chance.random() < 0.3:
                 teacher.asks("group_leave")
         checks = [[school.checks_in(member.token) for member in members]
-                for school, members in zip(schools, both, strict=True)]  # fmt: skip
+                for school, members in zip(schools, members_by_school, strict=True)]  # fmt: skip
         assert checks[0] == checks[1]
         requests_by_school = [
             [request["do"] for request in school.hosting.asked] for school in schools
@@ -595,19 +601,19 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
     members = [Member(school, name, name) for name in NAMES]
     for step in range(60):
         member = chance.choice(members)
-        does = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
-        if does == "wish":
+        action = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
+        if action == "wish":
             wants = chance.random() < 0.8
             place = school.checks_in(member.token, wants)["place"]
             assert wants or place < 1, "who wants none waits no more, and no one of the group"
-        elif does == "connect" and school.checks_in(member.token)["place"] == 0:
+        elif action == "connect" and school.checks_in(member.token)["place"] == 0:
             with suppress(BadRequest):
                 school.connects(member.token)
-        elif does == "join":
+        elif action == "join":
             member.joins(chance.choice(("Red", "Blue", "Green")))
-        elif does == "leave":
+        elif action == "leave":
             member.asks("group_leave")
-        elif does == "next":
+        elif action == "next":
             school.now_s += chance.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
         classroom = school.made
@@ -615,7 +621,7 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
             mates = classroom._mates(pupil)
             turns = [turn for turn in map(classroom._turn, mates) if turn is not None]
             waiting = [mate for mate in mates if mate.queue_number is not None]
-            assert len(turns) + len(waiting) <= 1, f"step {step}: {does} {member.name}"
+            assert len(turns) + len(waiting) <= 1, f"step {step}: {action} {member.name}"
 
 
 def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
@@ -698,13 +704,13 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
 
     def listens(member: Member) -> None:
         try:
-            since = saw_count = 0
+            seen_number = saw_count = 0
             while not is_over.is_set():
-                request = {**member.request(waits=True), "since": since, "saw": saw_count}
+                request = {**member.request(waits=True), "since": seen_number, "saw": saw_count}
                 answer = member.asks("group", **request)
-                since, saw_count = answer.get("n", since), answer.get("saw", saw_count)
-        except BaseException as why:
-            failed_base_exceptions.append(why)
+                seen_number, saw_count = answer.get("n", seen_number), answer.get("saw", saw_count)
+        except BaseException as error:
+            failed_base_exceptions.append(error)
 
     threads = [start_thread(partial(listens, member)) for member in members]
     for k in range(300):

@@ -410,9 +410,9 @@ def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
 
 def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) -> None:
     image = compile("SHOW(1)").image.hex()
-    live = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
-    page.beat(live)
-    page.beat(live)
+    live_request = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
+    page.beat(live_request)
+    page.beat(live_request)
     page.until(lambda item: item.get("event") == "DONE")
     for _ in range(5):
         page.beat()

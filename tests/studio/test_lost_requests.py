@@ -36,8 +36,8 @@ class CountedLink:
 
     has_run = False
 
-    def __init__(self, does: Callable[[str, int], None]) -> None:
-        self._does = does
+    def __init__(self, note_action: Callable[[str, int], None]) -> None:
+        self._does = note_action
         self._news: list[Json] = []
 
     def stop(self) -> None:
@@ -180,9 +180,11 @@ def check_stops_kept(page: TornPage) -> None:
             assert stops >= newest, "it was asked for before"
             accepted_count = max(accepted_count, stops)
     for number in page.heard:
-        after = [at_ms for action, _, at_ms in World.actions
+        stop_times_ms = [at_ms for action, _, at_ms in World.actions
                  if action == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
-        assert after or accepted_count >= number, f"press {number} was told, and stopped nothing"
+        assert stop_times_ms or accepted_count >= number, (
+            f"press {number} was told, and stopped nothing"
+        )
 
 
 @pytest.mark.sampled("seed", keep=20)
@@ -204,12 +206,12 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
         check_stops_kept(page)
         if World.now_ms % BEAT_MS == 0:
             page.beat()
-        does = chance.random()
-        if does < 0.01:
+        draw_number = chance.random()
+        if draw_number < 0.01:
             page.press_stop()
-        elif does < 0.03:
+        elif draw_number < 0.03:
             page.press_run()
-        elif does < 0.032 or (not page.is_there and does < 0.05):
+        elif draw_number < 0.032 or (not page.is_there and draw_number < 0.05):
             page.connect()
     kinds = {action for action, _, _ in World.actions}
     assert kinds == {"stop", "run"}  # both kinds of requests were lost
@@ -317,8 +319,8 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     assert robot.moves and b"\0" * 4 not in robot.heard[began:]
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
-    others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
-    for other_fields in others:
+    other_requests: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
+    for other_fields in other_requests:
         asker.asks("stop", **other_fields)
         until(lambda: has_news(1) and not robot.moves, "it stands")
         start_drive(1)

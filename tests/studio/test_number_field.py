@@ -34,7 +34,9 @@ def test_a_comma_and_a_point_are_decimal_signs_and_groups_of_thousands_may_have_
 
 
 def test_anything_but_a_number_changes_nothing(page_data: Path) -> None:
-    typed = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
-    input_lines = "".join(f"{json.dumps(text)}\n" for text in typed)
-    for text, row in zip(typed, in_node(SCRIPT, str(page_data), given=input_lines), strict=True):
+    typed_texts = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
+    input_lines = "".join(f"{json.dumps(text)}\n" for text in typed_texts)
+    for text, row in zip(
+        typed_texts, in_node(SCRIPT, str(page_data), given=input_lines), strict=True
+    ):
         assert json.loads(row)[0] == 7, text

@@ -65,12 +65,12 @@ def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: P
 
 
 def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data: Path) -> None:
-    both = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
-    assert sent_to_robot(page_data, WHOLE, *both) == [
+    key_events = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
+    assert sent_to_robot(page_data, WHOLE, *key_events) == [
         [0, UP, 0, 0], [0, UP | A, 0, 0], [0, A, 0, 0], [0, *NOTHING],
     ]  # fmt: skip
     stick = ["offer", "driving", {"reads": ["PAD_Y", "KEY_A"]}]
-    assert sent_to_robot(page_data, stick, *both) == [
+    assert sent_to_robot(page_data, stick, *key_events) == [
         [0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING],
     ]  # fmt: skip
     assert sent_to_robot(page_data, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
@@ -183,17 +183,19 @@ def test_the_same_robot_that_is_offered_again_is_held_on(page_data: Path) -> Non
     assert packets == [[0, UP, 0, 0], [200, UP, 0, 0]]
 
 
-@pytest.mark.parametrize("way", ["host", "direct"])
-def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(page_data: Path, way: str) -> None:
+@pytest.mark.parametrize("stick_kind", ["host", "direct"])
+def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(
+    page_data: Path, stick_kind: str
+) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""
-    packets = json.loads(in_node(WAYS_SCRIPT, str(page_data), way)[0])
+    packets = json.loads(in_node(WAYS_SCRIPT, str(page_data), stick_kind)[0])
     moved = [y for _, y in packets["sent"][:-1]]
     assert moved == sorted(set(moved)) and len(moved) > 100
     assert packets["sent"][-1][1] == 0
     assert len(packets["sent"]) <= packets["asked"], "one word at a time: the newest"
-    assert packets["sent"][-1][0] - packets["released"] <= (31 if way == "host" else 150)
+    assert packets["sent"][-1][0] - packets["released"] <= (31 if stick_kind == "host" else 150)
     assert not packets["over"]
-    if way == "host":
+    if stick_kind == "host":
         seconds = 6
         assert packets["asked"] / seconds < classroom.REQUEST_RATE[1] - 1000 / 300, (
             "and it looks for its turn"

@@ -169,10 +169,12 @@ class Scene:
         self._mend(fault)
         timed_messages: list[tuple[float, str]] = page.evaluate("window.told")
         texts = [text for _, text in timed_messages]
-        errors += [f"said twice: {text}" for text, after in pairwise(texts) if text == after]
+        errors += [
+            f"said twice: {text}" for text, next_text in pairwise(texts) if text == next_text
+        ]
         errors += self._next_try()
         times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
-        gaps = [(after - start_ms) / 1000 for k, (start_ms, after) in enumerate(pairwise(times))
+        gaps = [(end_ms - start_ms) / 1000 for k, (start_ms, end_ms) in enumerate(pairwise(times))
                 if not k or not UNFINISHED_MESSAGE.search(texts[k - 1])]  # fmt: skip
         end_times_ms = [
             at_ms for at_ms, text in timed_messages if re.search(END_PATTERNS[action], text)
@@ -216,8 +218,8 @@ class Scene:
 
     def _next_try(self) -> list[str]:
         """Connect if that is needed, run, and stop; return the failures."""
-        why = self._connect() or self._run() or self._stop()
-        return [f"the next try: {why}"] if why else []
+        failure = self._connect() or self._run() or self._stop()
+        return [f"the next try: {failure}"] if failure else []
 
     def _link_text(self) -> str:
         return self.page.locator("#link_said").inner_text()
@@ -306,8 +308,8 @@ class ClassScene(Scene):
         self.page = self.pages.open(is_alone=True)
         write(self.page, FOREVER)
         self.page.click("#side_real")
-        for which, text in enumerate((class_.room.code, "Ana")):
-            self.page.locator("#class_pupil input").nth(which).fill(text)
+        for field_index, text in enumerate((class_.room.code, "Ana")):
+            self.page.locator("#class_pupil input").nth(field_index).fill(text)
         self.page.click("[data-text=class_join]")
         self.page.locator(ASK_BUTTON).wait_for()
 
@@ -364,10 +366,10 @@ def scene(browser: Browser, chance: Random) -> Iterator[Scene]:
 
 
 def list_faults(tried_action: TriedAction, room_s: float = TOLERANCE_S) -> list[str]:
-    silent = tried_action.silence_s > LONGEST_SILENCE_S + room_s
+    is_silent = tried_action.silence_s > LONGEST_SILENCE_S + room_s
     return [
         *tried_action.wrong,
-        *([f"silent for {tried_action.silence_s:.1f} s"] if silent else []),
+        *([f"silent for {tried_action.silence_s:.1f} s"] if is_silent else []),
     ]
 
 

@@ -100,8 +100,8 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
         oracle_kit, kit = KITS[seed % len(KITS)]
         forms.append(read_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
-    for k, (want, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
-        assert actual == want, k
+    for k, (wanted_form, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
+        assert actual == wanted_form, k
     assert compare(page, SAMPLE_SIZE, seed=1000) > SAMPLE_SIZE * 0.9
 
 
@@ -189,9 +189,9 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     page.mouse.click(place["x"] + 8, place["y"] + 8)
     page.keyboard.type("77")
     page.keyboard.press("Enter")
-    after = long.splitlines()
-    after[15] = "F(77, 80);"
-    wait_for_text(page, "\n".join(after) + "\n")
+    new_lines = long.splitlines()
+    new_lines[15] = "F(77, 80);"
+    wait_for_text(page, "\n".join(new_lines) + "\n")
     for _ in range(2):
         box_before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
         page.keyboard.press("Control+z")
@@ -204,7 +204,7 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
         )
         assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
         page.keyboard.press("Control+y")
-        wait_for_text(page, "\n".join(after) + "\n")
+        wait_for_text(page, "\n".join(new_lines) + "\n")
     high = box_of(block(page, "forward"))["height"]
     page.click("#words")
     wait_for_blocks(page)
@@ -557,7 +557,7 @@ def test_every_word_that_has_a_block_can_be_dragged_out(
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")
     assert list_offered_blocks(page) == kinds
-    for word in (name for name, its in WORDS.items() if its.role.name != "later"):
+    for word in (name for name, entry in WORDS.items() if entry.role.name != "later"):
         assert (
             kinds_in(read_blocks(program_with_word(word), robots.load("grabber").kit)) <= kinds
         ), word
@@ -617,7 +617,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
     """If the robot can measure it: in the first world it stops before the wall."""
     for robot in robots.names():
         page.select_option("#robot", robot)
-        asks = "DISTANCE" in robots.load(robot).kit.names
+        asks_distance = "DISTANCE" in robots.load(robot).kit.names
         for group, words in (
             ("Move", "or until"), ("Wait", "or until"), ("Repeat", "while"), ("Decide", "if"),
             ("Events", "each time"),
@@ -626,7 +626,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
             drag(page, group, words, block(page, "stop"))
             wait_for_other_text(page, "SI|S;\n")
             question = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
-            assert (question in text_of(page)) == asks, (robot, words, text_of(page))
+            assert (question in text_of(page)) == asks_distance, (robot, words, text_of(page))
             assert not [
                 message for message in check(text_of(page), robot) if message.severity == "mistake"
             ]
@@ -678,8 +678,8 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
 
 @few
 def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
-    first_hat, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
-    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{then}"
+    first_hat, second_hat = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
+    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{second_hat}"
     start(page, text, "usual")
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
@@ -693,7 +693,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     page.mouse.down()
     page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
     page.mouse.up()
-    moved = moved_text.replace(first_hat + then, then + first_hat)
+    moved = moved_text.replace(first_hat + second_hat, second_hat + first_hat)
     wait_for_text(page, moved)
     place = box_of(last_hat)
     assert place["x"] > above["right"] and place["y"] < above["y"]

@@ -141,15 +141,15 @@ def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> 
     wait_for_phase(page, "ended")
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["keys", "menu"])
-def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, way: str) -> None:
+@pytest.mark.sampled("try_action")
+@pytest.mark.parametrize("try_action", ["keys", "menu"])
+def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, try_action: str) -> None:
     page = pages.open(viewport={"width": 390, "height": 844})
     start(page, "SI|BEEP(0.2, 440);\nS;\n")
     touch(page, "beep")  # the block stays in the program
     page.locator("html[data-peek]").wait_for(state="attached")
     assert page.locator("html[data-half=program]").count() == 1
-    if way == "keys":
+    if try_action == "keys":
         page.keyboard.press("Shift+Enter")
     else:
         path_of(block(page, "beep")).click(button="right", position={"x": 6, "y": 6})
@@ -288,8 +288,12 @@ def test_a_message_is_at_its_block(page: Page) -> None:
             "e => e.getBoundingClientRect().toJSON()"
         )
         block_box = box_of(page.locator(f"{PROGRAM} .wrong").last)
-        others = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
-        boxes = others.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
+        other_blocks = page.locator(
+            f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)"
+        )
+        boxes = other_blocks.evaluate_all(
+            "all => all.map((e) => e.getBoundingClientRect().toJSON())"
+        )
         if isolated:
             assert 0 < bubble_box["left"] - block_box["right"] < LARGEST_GAP_PX
             assert not [box for box in boxes if meet(box, bubble_box)]
@@ -462,13 +466,13 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
     speak(page, "en")
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["search", "group"])
+@pytest.mark.sampled("flyout_action")
+@pytest.mark.parametrize("flyout_action", ["search", "group"])
 def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
-    page: Page, way: str
+    page: Page, flyout_action: str
 ) -> None:
     start(page, "SI|S;\n", "few")
-    if way == "search":
+    if flyout_action == "search":
         page.fill(".search input", "repeat")
     else:
         page.locator(".blocklyToolboxCategory", has_text="Repeat").click()

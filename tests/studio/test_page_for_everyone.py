@@ -93,16 +93,16 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):
-                look = LOOK if size in SCREENS else SCROLLED_LOOK_SCRIPT
+                look_script = LOOK if size in SCREENS else SCROLLED_LOOK_SCRIPT
                 problems = page.evaluate(
-                    f"(end) => {{ scrollTo(0, end); return ({look})(); }}", end
+                    f"(end) => {{ scrollTo(0, end); return ({look_script})(); }}", end
                 )
                 assert problems == [], (screen, size, end)
         if size in SCREENS:
             assert page.evaluate(CUT_CHOICES_SCRIPT) == [], (screen, size)
         if size in SCREENS and screen in LEAST_SIZES:
-            where, width, height = LEAST_SIZES[screen]
-            box = page.locator(where).bounding_box()
+            selector, width, height = LEAST_SIZES[screen]
+            box = page.locator(selector).bounding_box()
             assert box is not None and box["width"] >= width and box["height"] >= height, screen
         if screen == "drawing":
             assert page.evaluate("arena.clientHeight") >= 60, size

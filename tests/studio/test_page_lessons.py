@@ -340,13 +340,13 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     page = pages.open("start")
     axe_of = [axe(page)]
 
-    def press(where: str, max_presses: int = 3) -> None:
+    def press(selector: str, max_presses: int = 3) -> None:
         """Go on with Tab to an element, past few others, and press Enter."""
         for _ in range(max_presses):
-            if page.evaluate("where => document.activeElement.matches(where)", where):
+            if page.evaluate("where => document.activeElement.matches(where)", selector):
                 return page.keyboard.press("Enter")
             page.keyboard.press("Tab")
-        raise AssertionError(f"Tab does not lead to {where}")
+        raise AssertionError(f"Tab does not lead to {selector}")
 
     press("#start_lessons", 16)
     page.locator("#lesson_next:enabled").wait_for()

@@ -131,8 +131,8 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     assert owner.robot.is_running
 
 
-def key(robot: int, which: int = OWNER, byte: int = 1) -> RobotKey:
-    return RobotKey(robot, which, bytes([byte] * 16), "TINI")
+def key(robot: int, role: int = OWNER, byte: int = 1) -> RobotKey:
+    return RobotKey(robot, role, bytes([byte] * 16), "TINI")
 
 
 def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
@@ -160,11 +160,11 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
 
     def add_in_other_tab() -> None:
         nonlocal kept_text
-        others = PageKeys(kept_text.encode())
+        other_tab_keys = PageKeys(kept_text.encode())
         robot = chance.randrange(5, 9)
-        others.add(keys.encode_keys([RobotKey(robot, OWNER, chance.randbytes(KEY_BYTES))]))
-        kept_text = others.file()
-        newest_keys.update({key.slot: key.key for key in others.keys})
+        other_tab_keys.add(keys.encode_keys([RobotKey(robot, OWNER, chance.randbytes(KEY_BYTES))]))
+        kept_text = other_tab_keys.file()
+        newest_keys.update({key.slot: key.key for key in other_tab_keys.keys})
 
     def link(now_ms: int) -> dict[str, Any]:
         fields = {} if kept_text == known_text else {"kept": kept_text}
@@ -185,8 +185,8 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
                 kept_text = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept_text)[
                     "keys"
                 ]
-            case "claim" | "link" as does if page_line._robot:
-                new_keys = new_keys[: does == "claim"]
+            case "claim" | "link" as action if page_line._robot:
+                new_keys = new_keys[: action == "claim"]
                 for key in (*new_keys, *new_keys):  # the second time it is there already
                     page_line._robot.keys.settle_key(key)
                 answer = link(now_ms)

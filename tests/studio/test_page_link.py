@@ -95,15 +95,15 @@ def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     """It stops by its button, by a key in the editor, and while the virtual robot is shown."""
-    for way in ("button", "Escape", "virtual"):
+    for stop_action in ("button", "Escape", "virtual"):
         start_drive(page, robot)
-        if way == "Escape":
+        if stop_action == "Escape":
             page.locator(".cm-content").focus()
             page.keyboard.press("Escape")
         else:
-            page.click("#side_virtual" if way == "virtual" else "#side_real")
+            page.click("#side_virtual" if stop_action == "virtual" else "#side_real")
             page.click("#stop")
-        robot.until(lambda: not robot.moves, f"it stands: {way}")
+        robot.until(lambda: not robot.moves, f"it stands: {stop_action}")
         page.click("#side_real")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
 

@@ -153,10 +153,10 @@ class Mute:
         route.fulfill(response=response, json=answer)
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["button", "hidden"])
+@pytest.mark.sampled("stop_action")
+@pytest.mark.parametrize("stop_action", ["button", "hidden"])
 def test_a_stop_is_said_once_and_only_what_has_become_of_it(
-    page: Page, robot: PtyRobot, way: str
+    page: Page, robot: PtyRobot, stop_action: str
 ) -> None:
     connect(page, robot)
     start_drive(page, robot)
@@ -164,7 +164,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     mute = Mute(page, "STOPPED")
 
     def stop() -> None:
-        if way == "button":
+        if stop_action == "button":
             page.click("#stop")
         else:
             page.evaluate(VISIBILITY_SCRIPT, "hidden")
@@ -173,7 +173,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     wait_for(page, lambda: mute.withheld, "it has stopped")
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
-    wait_for_message(page, HIDDEN_MESSAGE if way == "hidden" else CONFIRMED_MESSAGE)
+    wait_for_message(page, HIDDEN_MESSAGE if stop_action == "hidden" else CONFIRMED_MESSAGE)
     mute.is_open = False
     page.evaluate(VISIBILITY_SCRIPT, "visible")
     start_drive(page, robot)

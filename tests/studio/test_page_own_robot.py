@@ -107,15 +107,15 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-@pytest.mark.parametrize("way", ["seen and heard", "muted", "still"])
-def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
+@pytest.mark.parametrize("motion", ["seen and heard", "muted", "still"])
+def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, motion: str) -> None:
     """The stars of all lessons are added up, once each."""
-    page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
+    page = pages.open(reduced_motion="reduce" if motion == "still" else "no-preference")
     store(page, LESSONS_KEY, ["01_first_line"])
     store(page, STARS_KEY, {"01_first_line": 1, "04_none": 2})
     page.evaluate(NOTE_EFFECTS)
     page.evaluate(CONFETTI)
-    if way == "muted":
+    if motion == "muted":
         page.click("#sound")
     page.select_option("#speed", "20")
     page.click("#side_lessons")
@@ -126,9 +126,9 @@ def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, way: str) -> None:
         choose_lesson(page, 2)
         assert check_answer(page, right_answers[0].program)[0] == "passed"
         assert f"You have {3 + worlds} stars." in page.inner_text("#lesson_said")
-    assert page.evaluate("window.fell") == (0 if way == "still" else 2)
+    assert page.evaluate("window.fell") == (0 if motion == "still" else 2)
     tune = [523, 659, 784, 1047]
-    assert page.evaluate("window.heard").count(tune[-1]) == (0 if way == "muted" else 2)
+    assert page.evaluate("window.heard").count(tune[-1]) == (0 if motion == "muted" else 2)
     page.locator(".confetti").wait_for(state="detached")
     page.click("#home")
     badge = page.locator("#start_badge")
@@ -149,10 +149,12 @@ def test_the_teacher_sees_whose_robot_is_whose(browser: Browser) -> None:
         pupil.locator("#own [role=radiogroup] label").nth(3).click()
         tile = teacher.locator("#wall li").filter(has_text="Ana · <b>Pip")
         tile.wait_for()
-        look = "getComputedStyle(document.querySelector('#wall .own_robot')).getPropertyValue"
+        style_script = (
+            "getComputedStyle(document.querySelector('#wall .own_robot')).getPropertyValue"
+        )
         wait_for(
             teacher,
-            lambda: teacher.evaluate(f"{look}('--robot')") == "#d0468f",
+            lambda: teacher.evaluate(f"{style_script}('--robot')") == "#d0468f",
             "it has its colour",
         )
         assert tile.locator("b").count() == 0

@@ -146,8 +146,8 @@ def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: 
     page.keyboard.down("ArrowUp")
     wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.select_option("#speed", "20")
-    since = trace(page)[-1]
-    wait_for(page, lambda: since not in trace(page), "it goes on, at each speed")
+    held_cm = trace(page)[-1]
+    wait_for(page, lambda: held_cm not in trace(page), "it goes on, at each speed")
     assert not any(line.endswith("MOTORS 0 0") for line in trace(page))
     page.keyboard.up("ArrowUp")
     wait_for(page, lambda: read_motor_powers(page) == "0 0", "it stands")

@@ -100,16 +100,16 @@ def test_the_messages_can_be_put_away(phone: Page) -> None:
 def test_run_and_stop_are_on_both_screens(phone: Page, size: tuple[int, int]) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.set_viewport_size({"width": size[0], "height": size[1]})
-    for where in ("program", "robot"):
+    for screen_name in ("program", "robot"):
         turn(phone, "program")
         phone.click("#run")
         wait_for_phase(phone, "running")
         assert shown_half(phone) == "robot"
         assert phone.locator("#arena").is_visible() and not phone.locator("#writing").is_visible()
-        turn(phone, where)
+        turn(phone, screen_name)
         phone.click("#stop")
         wait_for_phase(phone, "ended")
-        assert shown_half(phone) == where
+        assert shown_half(phone) == screen_name
 
 
 def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) -> None:
@@ -357,9 +357,9 @@ def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language:
         phone.click("#pause") if step == "paused" else turn(phone, step)
         if step == "paused":
             wait_for_phase(phone, "paused")
-        now = boxes()
-        assert now["stop"]["width"] > 0.75 * 390
-        assert now["run"] == boxes_before["run"], "nothing moves"
+        boxes_now = boxes()
+        assert boxes_now["stop"]["width"] > 0.75 * 390
+        assert boxes_now["run"] == boxes_before["run"], "nothing moves"
         assert axe(phone, within="#bar") == []
     phone.click("#stop")
     wait_for_phase(phone, "ended")

@@ -87,7 +87,7 @@ def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
         cut_texts[screen, size] = page.evaluate(CUT_TEXTS_SCRIPT)
         if size == SIZES[0]:
             cut_texts[screen, size] += page.evaluate(PLAIN_TEXTS_SCRIPT)
-    assert {where: value for where, value in cut_texts.items() if value} == {}
+    assert {place: value for place, value in cut_texts.items() if value} == {}
 
 
 def check_narrow_button_is_noticed(page: Page, button: str) -> None:
@@ -124,5 +124,5 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
                 page.evaluate(SETTLED_SCRIPT)
                 cut[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)
                 page.click(f"{window} [data-text=close]")
-        assert {where: value for where, value in cut.items() if value} == {}
+        assert {place: value for place, value in cut.items() if value} == {}
         pages.close()

@@ -170,11 +170,11 @@ def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRob
     assert set(page.locator("#link_shown").inner_text().split()) == {"7"}
 
 
-@pytest.mark.sampled("way", "runs_before", keep=2)
+@pytest.mark.sampled("button_mode", "runs_before", keep=2)
 @pytest.mark.parametrize("runs_before", [False, True])
-@pytest.mark.parametrize("way", ["waits for it", "is sent only"])
+@pytest.mark.parametrize("button_mode", ["waits for it", "is sent only"])
 def test_a_program_that_waits_for_the_robots_button_gets_it(
-    page: Page, robot: PtyRobot, way: str, runs_before: bool
+    page: Page, robot: PtyRobot, button_mode: str, runs_before: bool
 ) -> None:
     """The first press starts it, even if sensors were read before, or another program ran, whose
     end it reports.
@@ -184,8 +184,10 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
         write(page, FOREVER_SHOW)
         upload_until_it_runs(page)
         wait_for_action(page, "own")
-    write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
-    page.click("#link_upload" if way == "waits for it" else "#link_send")
+    write(
+        page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if button_mode == "waits for it" else "F(9, 80)"
+    )
+    page.click("#link_upload" if button_mode == "waits for it" else "#link_send")
     wait_for_message(page, re.compile("The robot has the program.|Done."))
     wait_for_no_reading(page)
     page.wait_for_timeout(1500)  # no run may start by itself in this time

@@ -31,9 +31,9 @@ def context(
     playwright: Playwright, robot: PtyRobot, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[BrowserContext]:
     """A browser of its own: a page that no `tsc studio` has given, as on any static host."""
-    why = studio_serial.missing()
-    if why:  # skipped in CI too, without root or a serial port
-        pytest.skip(why)
+    reason = studio_serial.missing()
+    if reason:  # skipped in CI too, without root or a serial port
+        pytest.skip(reason)
     folder: Path = tmp_path_factory.mktemp("serial")
     with (
         studio.serve_page() as server,

@@ -292,10 +292,10 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
         page.mouse.down()
         page.mouse.move(x + x_shift, y + down, steps=4)
         page.wait_for_timeout(AFTER_RUN_MS)
-        now = box_of(hat)
+        moved_box = box_of(hat)
         page.mouse.up()
         wait_for_blocks(page)
-        return now["x"] - box["x"], now["y"] - box["y"]
+        return moved_box["x"] - box["x"], moved_box["y"] - box["y"]
 
     drag(200, 60, 1)
     full_scale, width = scale(), page.evaluate("blocks.clientWidth")
@@ -371,8 +371,8 @@ def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
     page.locator("html[data-big]").wait_for(state="attached")
     for level in ("few", "usual", "all"):
         page.select_option("#level", level)
-        look = "getComputedStyle(document.querySelector('#level'), '::picker-icon').display"
-        assert page.evaluate(look) != "none"
+        style_script = "getComputedStyle(document.querySelector('#level'), '::picker-icon').display"
+        assert page.evaluate(style_script) != "none"
         rows = "new Set([...views.children].map((each) => each.getBoundingClientRect().top)).size"
         assert page.evaluate(rows) == 1, (language, level)
     page.click("#stop")
@@ -387,9 +387,9 @@ def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
     assert page.locator("html[data-full]").count() == 0
     page.keyboard.press("Backspace")
     page.locator("#run").focus()
-    for way in ("f", "F", "click"):
+    for trigger in ("f", "F", "click"):
         for is_full in (True, False):
-            page.click("#full") if way == "click" else page.keyboard.press(way)
+            page.click("#full") if trigger == "click" else page.keyboard.press(trigger)
             page.locator("html[data-full]" if is_full else "html:not([data-full])").wait_for(
                 state="attached"
             )

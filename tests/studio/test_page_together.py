@@ -103,12 +103,12 @@ def test_both_type_at_once_and_have_the_same_program(page_pair: tuple[Page, Page
     )
     assert "BEEP" not in "".join(lines(luz))
     type_slowly(ana, "\n")
-    both = ("F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
+    all_lines = ("F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
     for page in page_pair:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
-        wait_for_lines(page, *both)
+        wait_for_lines(page, *all_lines)
         wait_until_checked(page)
-        until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
+        until(lambda page=page: image(page) == compile("".join(all_lines)).image, "compiled")  # type: ignore[misc]
 
 
 @few

@@ -104,10 +104,10 @@ def text_of(page: Page) -> str:
     return str(text)
 
 
-def field(page: Page, words: str, which: int = 0) -> None:
+def field(page: Page, words: str, field_index: int = 0) -> None:
     """Open a field of a block, with nothing in it."""
     page.locator("html").evaluate("() => getSelection().removeAllRanges()")
-    block(page, words).locator(".blocklyNumberField").nth(which).click()
+    block(page, words).locator(".blocklyNumberField").nth(field_index).click()
     page.locator(".blocklyWidgetDiv input").wait_for()
     page.keyboard.press("Control+a")
 
@@ -257,9 +257,9 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
 
     if has_blocks:
         number_fields = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
-        which = rng.randrange(max(1, number_fields.count()))
+        field_index = rng.randrange(max(1, number_fields.count()))
         try:
-            number_fields.nth(which).click(timeout=3000)
+            number_fields.nth(field_index).click(timeout=3000)
         except Error:  # others have taken it away meanwhile
             return False
         page.keyboard.press("Control+a")

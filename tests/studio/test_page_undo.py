@@ -100,8 +100,8 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
     past_states = [state_of(page)]
     for act in (_move_block, *dice.choices(ACTS, k=5)):
         act(page, dice)
-        if (now := state_of(page)) != past_states[-1]:
-            past_states.append(now)
+        if (state := state_of(page)) != past_states[-1]:
+            past_states.append(state)
     for wanted_state in past_states[-2::-1]:
         page.click("#undo")
         wait_for_state(page, wanted_state)

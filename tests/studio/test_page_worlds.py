@@ -118,7 +118,7 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
     floor.keyboard.up("Control")
     assert save_world(floor).start == start
     drag(floor, [(56, 82.5), (56, 90)])  # creates a step to undo
-    for way in ("cancel", "undo"):
+    for stroke_end in ("cancel", "undo"):
         if floor.get_attribute("#world_add_walls", "aria-pressed") == "false":
             floor.click("#world_add_walls")
         wanted_text = picture(floor)
@@ -126,14 +126,14 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
         floor.mouse.down()
         floor.mouse.move(*screen_position(floor, (100, 60)), steps=4)
         assert picture(floor) != wanted_text
-        if way == "undo":
+        if stroke_end == "undo":
             # Touched by a second finger.
             floor.evaluate("document.querySelector('#world_undo').click()")
         else:
             floor.locator("#arena").dispatch_event("pointercancel")
         shown_text = picture(floor)
         floor.mouse.up()
-        assert shown_text == wanted_text, way
+        assert shown_text == wanted_text, stroke_end
         assert save_world(floor).walls == ()
 
 
@@ -251,10 +251,10 @@ def test_nothing_leaves_the_floor(floor: Page) -> None:
     assert save_world(floor).start[:2] == (56, 82.5)
 
 
-def draw(page: Page, way: Sequence[Place]) -> None:
+def draw(page: Page, places: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
     page.evaluate(SETTLED_SCRIPT)  # earlier taps may have changed the floor's size
-    finger(page, [screen_position(page, place) for place in way])
+    finger(page, [screen_position(page, place) for place in places])
 
 
 @few
@@ -350,14 +350,14 @@ def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     near = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
     assert near == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
     assert floor.locator("img").count() == 0
-    for data, why in (
+    for data, message in (
         (b"\xff", "UTF-8"),
         (b"[floor]\nwidth_cm = 1\n", "own.toml was not opened. "),
         (OWN.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
         (b"#" * 3_000_000, "has more than"),
     ):
         open_world_file(floor, data)
-        wait_for_status(floor, why)
+        wait_for_status(floor, message)
         assert floor.input_value("#world_width_cm") == "90"
     speak(floor, "es")
     open_world_file(floor, b"\xff")

@@ -31,10 +31,10 @@ LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 
 TINIBOT = robots.load("tinibot")
 
 
-def first_line(text: str = LOOKS, of: str = recordings.REAL, **fields: Any) -> str:
-    if of == recordings.VIRTUAL:
+def first_line(text: str = LOOKS, robot_kind: str = recordings.REAL, **fields: Any) -> str:
+    if robot_kind == recordings.VIRTUAL:
         fields = {"world": "obstacles", **fields}
-    return header_line(of, text, TINIBOT, compile(text).checksum, **fields)
+    return header_line(robot_kind, text, TINIBOT, compile(text).checksum, **fields)
 
 
 def file(*events: tuple[int, str], text: str = LOOKS, **fields: Any) -> bytes:
@@ -176,7 +176,7 @@ def test_a_program_that_means_something_else_now_is_not_played() -> None:
 
 # -- files of anybody -----------------------------------------------------------------------------
 
-VIRTUAL = {"of": recordings.VIRTUAL}
+VIRTUAL = {"robot_kind": recordings.VIRTUAL}
 
 
 @pytest.mark.parametrize(

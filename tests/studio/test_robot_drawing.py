@@ -31,13 +31,13 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     grabber = json.loads(json.dumps(robot_by_name["grabber"]))
     grabber["places"]["DISTANCE"]["turns_with"] = "GRIPPER"
     state = state_after("SI|GRIPPER(45);W(9)", "grabber", 100)
-    both: list[tuple[Any, dict[str, int]]] = [
+    turned_robots: list[tuple[Any, dict[str, int]]] = [
         (robot_by_name["grabber"], {}),
         (grabber, {"GRIPPER": -45}),
     ]
     requests = [
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
-        for robot, turned in both
+        for robot, turned in turned_robots
     ]
     ahead, turned_drawing = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
     (cone,), (turned_cone,) = (
@@ -81,10 +81,10 @@ def test_what_is_on_is_seen() -> None:
         ("tinibot", None, {**STANDING_STILL, "isBeeping": True}),
         ("tinibot", None, STANDING_STILL),
     )
-    lit, dark, waiting, driving, loud, silent = drawings_of(*of_rows)
+    lit, dark, waiting, driving, loud, silent_drawing = drawings_of(*of_rows)
     assert shapes(lit, "fill", LIT) and not shapes(dark, "fill", LIT)
     assert shapes(waiting, "fill", "#ffd84d") and not shapes(driving, "fill", "#ffd84d")
-    assert shapes(loud, "stroke", WAVE) and not shapes(silent, "stroke", WAVE)
+    assert shapes(loud, "stroke", WAVE) and not shapes(silent_drawing, "stroke", WAVE)
 
 
 def test_the_jaws_are_as_open_as_they_are() -> None:

@@ -38,11 +38,13 @@ class Robot:
     def enable_place_events(self) -> None:
         """The robot sends none."""
 
-    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(
+        self, make_request: Callable[[Requester], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
         session = SimpleNamespace(
             start=lambda: PendingRequest[Any](), live=lambda *_: PendingRequest[Any]()
         )
-        self.pending = make(cast(Requester, session))
+        self.pending = make_request(cast(Requester, session))
         self.pending.starts = True
         return self.pending
 
@@ -96,8 +98,8 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
             case "answer" if robot.pending is not None:
                 if chance.random() < 0.3:
                     robot.ends(chance.choice(("STOPPED", "DONE")))  # that of the run before
-                look = chance.choice((lambda: None, link.news))
-                robot.begins(is_own=True, look_at_end=look if chance.random() < 0.3 else None)
+                on_end = chance.choice((lambda: None, link.news))
+                robot.begins(is_own=True, look_at_end=on_end if chance.random() < 0.3 else None)
                 if robot.is_program:
                     own_programs.add((robot.boot, robot.run))
             case "refuse" if robot.pending is not None:

@@ -201,21 +201,21 @@ class ComingPage:
         return self._is_there and not self._sleeps
 
     def turn(self) -> None:
-        does = self.chance.random()
+        draw_number = self.chance.random()
         if not self._is_there:
-            if does < 0.1:
+            if draw_number < 0.1:
                 self._connect()
                 self._wants_run()  # requested at once, because a run may be under way
-        elif does < 0.01:
+        elif draw_number < 0.01:
             self._ask("leave")
             self._is_there, self.end = False, ""
-        elif does < 0.02:  # loaded again, under another name of its own or the same one
+        elif draw_number < 0.02:  # loaded again, under another name of its own or the same one
             self._is_there, self._connection = False, self._connection + 3
             if self.chance.random() < 0.5:
                 self.tab, self.stops = f"{self.tab}+", 0
-        elif does < 0.04:
+        elif draw_number < 0.04:
             self._sleeps, self.end = not self._sleeps, ""
-        elif does < 0.3:
+        elif draw_number < 0.3:
             self._wants_run()
         if self.is_beating:
             self._beat()

@@ -189,14 +189,16 @@ def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case differs; git shows the changes."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # The current place of the case, which earlier accepts may have moved.
-    now = next(written_case for written_case in read(case.path) if written_case.title == case.title)
+    written_case = next(
+        written_case for written_case in read(case.path) if written_case.title == case.title
+    )
     if part == "refused":
-        rows[now.line - 1] = f"{actual.rstrip()}: {now.title}\n"
+        rows[written_case.line - 1] = f"{actual.rstrip()}: {written_case.title}\n"
     else:
-        start = now.line
+        start = written_case.line
         if rows[start - 1].startswith("```"):
             start = rows.index(f"```{part}\n", start - 1) + 1
-        while rows[start].startswith("//") and "refused" in now.parts:
+        while rows[start].startswith("//") and "refused" in written_case.parts:
             start += 1
-        rows[start : start + _fold(now.parts[part]).count("\n")] = [_fold(actual)]
+        rows[start : start + _fold(written_case.parts[part]).count("\n")] = [_fold(actual)]
     case.path.write_text("".join(rows), encoding="utf-8")

@@ -28,8 +28,8 @@ class FakeRobot:
     is_half_made: bool = False
     witness: Callable[[list[Json]], object] | None = None
 
-    def leave(self, why: str) -> None:
-        self.leave_reason = why
+    def leave(self, reason: str) -> None:
+        self.leave_reason = reason
         self.has_ended = True
 
     @property

@@ -348,8 +348,8 @@ def check_way_programs(machine: Process, first_seed: int, count: int) -> None:
     count_by_end: Counter[str] = Counter()
     for image, kit, senses in some_way_programs(first_seed, count):
         run = machine.run(image, kit, senses)
-        want = run_in_python(image, kit, senses)
-        assert machine.agrees(run, want, senses.max_ms), image.hex(" ")
+        wanted_run = run_in_python(image, kit, senses)
+        assert machine.agrees(run, wanted_run, senses.max_ms), image.hex(" ")
         count_by_end[run.trace.split()[-1]] += 1
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(count_by_end), count_by_end
 

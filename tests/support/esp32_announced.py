@@ -41,23 +41,23 @@ class Announced:
         last_state: Any = None
         while not self._is_over.wait(LOOK_S):
             radios, number = self._read_radios()
-            now = _info(radios, number) if radios.service else None
-            if now == last_state:
+            state = _info(radios, number) if radios.service else None
+            if state == last_state:
                 continue
             if last_state is not None:
                 self._network.unregister_service(last_state)
-            if now is not None:
-                self._network.register_service(now)
-            last_state = now
+            if state is not None:
+                self._network.register_service(state)
+            last_state = state
 
     def _read_radios(self) -> tuple[Radios, int]:
         packets: list[tuple[Radios, int]] = []
 
-        def look(robot: HostFirmware) -> None:
+        def follow_radios(robot: HostFirmware) -> None:
             assert isinstance(robot, Esp32Robot)
             packets.append((radios(robot), port_of(robot)))
 
-        self._robot.ask(look)
+        self._robot.ask(follow_radios)
         return packets[0]
 
 

@@ -84,8 +84,8 @@ def _run_try(tried_test: Try, items: Sequence[pytest.Item]) -> str:
     if path.suffix == ".py":
         try:
             return _run_in_child(items, _exchange(tried_test))
-        except Elsewhere as why:
-            return str(why)
+        except Elsewhere as error:
+            return str(error)
     original_data = path.read_bytes()
     path.write_text(tried_test.text, encoding="utf-8")
     try:
@@ -156,8 +156,8 @@ def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
 
 
 def _own_content(code: CodeType) -> tuple[object, ...]:
-    others = [const for const in code.co_consts if not isinstance(const, CodeType)]
-    return code.co_code, code.co_names, repr(others)
+    plain_constants = [const for const in code.co_consts if not isinstance(const, CodeType)]
+    return code.co_code, code.co_names, repr(plain_constants)
 
 
 def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[FunctionType]:

@@ -66,10 +66,14 @@ def run_interrupted(ready_file: Path, *words: str, **variables: str) -> CommandR
     return CommandResult(running.returncode, "", output)
 
 
-def new_board(of: Bootloader) -> Uno:
+def new_board(loader: Bootloader) -> Uno:
     """Return a board as it comes: a bootloader, and no sketch worth the name."""
     uno = Uno(
-        build_uno("nothing"), board=of.board, bootloader=of.file, baud=of.baud, tells_sleep=False
+        build_uno("nothing"),
+        board=loader.board,
+        bootloader=loader.file,
+        baud=loader.baud,
+        tells_sleep=False,
     )
-    uno.go(speed=1.5 if of.board == "mega" else 1.0)  # a Mega is given its time to begin
+    uno.go(speed=1.5 if loader.board == "mega" else 1.0)  # a Mega is given its time to begin
     return uno

@@ -30,10 +30,10 @@ def program_text(program: Program) -> str:
     for procedure in (procedure for procedure in program.procedures if procedure.is_called):
         lines += [f"DEF {procedure.name}", *_body_lines(procedure.body, "  ")]
     for task in program.tasks:
-        look = "TASK"
+        task_head = "TASK"
         if task.until is not None:
-            look = f"WHEN {task.until.reads} {expression_text(task.until.condition)}"
-        lines += [look, *_body_lines(task.body, "  ")]
+            task_head = f"WHEN {task.until.reads} {expression_text(task.until.condition)}"
+        lines += [task_head, *_body_lines(task.body, "  ")]
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 
 

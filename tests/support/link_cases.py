@@ -104,11 +104,11 @@ def names_of(path: Path) -> dict[str, list[str]]:
 
 def accept(case: LinkCase, rows: list[str]) -> None:
     """Write the results into the case if they differ; git shows the changes."""
-    now = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
+    written_case = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
     old_lines = case.path.read_text(encoding="utf-8").splitlines()
     is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
-    end = next(k for k in range(now.line, len(old_lines)) if is_over(old_lines[k]))
-    old_lines[now.line : end] = shorten(rows, names_of(case.path))
+    end = next(k for k in range(written_case.line, len(old_lines)) if is_over(old_lines[k]))
+    old_lines[written_case.line : end] = shorten(rows, names_of(case.path))
     case.path.write_text("\n".join(old_lines) + "\n", encoding="utf-8")
 
 
@@ -148,7 +148,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
     played_rows = []
     now_ms = 0
     is_late = False
-    lost = {">": 0, "<": 0}
+    losses_by_side = {">": 0, "<": 0}
     for row in rows:
         words = row.split()
         if not words or words[0].isdigit():
@@ -160,7 +160,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
         elif words[0] == "robot":
             robot.happens(words[1:])
         elif words[0] == "lose":
-            lost[words[1]] += 1
+            losses_by_side[words[1]] += 1
             continue
         elif words[0] == "late":
             is_late = True
@@ -170,9 +170,9 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
             steps = int(words[1]) // STEP_MS
         for _ in range(steps):
             data = computer.poll(now_ms)
-            mark = _mark(">", data, lost)
+            mark = _mark(">", data, losses_by_side)
             step = robot.step(now_ms, b"" if mark == ">x" else data, is_late)
-            reply_mark = _mark("<", step.sent, lost)
+            reply_mark = _mark("<", step.sent, losses_by_side)
             computer.receive(b"" if reply_mark == "<x" else step.sent, now_ms)
             if data:
                 played_rows += wire_rows(now_ms, mark, data)
@@ -185,9 +185,9 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
     return played_rows
 
 
-def _mark(side: str, data: bytes, lost: dict[str, int]) -> str:
-    if data and lost[side]:
-        lost[side] -= 1
+def _mark(side: str, data: bytes, losses_by_side: dict[str, int]) -> str:
+    if data and losses_by_side[side]:
+        losses_by_side[side] -= 1
         return side + "x"
     return side
 

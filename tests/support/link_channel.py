@@ -232,8 +232,8 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     count_before = len(world.did)
     world.session.stop(world.now_ms)
     world.run(None, 300)
-    since = world.did[count_before:]
-    if "PINS OFF" in since:
-        rest = since[since.index("PINS OFF") :]
+    new_actions = world.did[count_before:]
+    if "PINS OFF" in new_actions:
+        rest = new_actions[new_actions.index("PINS OFF") :]
         assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)

@@ -71,9 +71,9 @@ class BadNetwork(Network):
     """Each piece is `late_s` on its way, one of `every` much longer; some are lost."""
 
     def __init__(
-        self, target: int, late_s: float = 0.02, every: int = 10, lost: float = 0.0
+        self, target: int, late_s: float = 0.02, every: int = 10, loss_rate: float = 0.0
     ) -> None:
-        self.late_s, self.every, self.lost = late_s, every, lost
+        self.late_s, self.every, self.lost = late_s, every, loss_rate
         self._chance = random.Random(1)
         super().__init__(target)
 

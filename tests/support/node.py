@@ -24,8 +24,8 @@ def in_node(script: Path, *words: str, given: str = "") -> list[str]:
     prints. It reads `given` on its standard input."""
     try:
         node = find_tools().node
-    except CannotMake as why:
-        need(str(why))
+    except CannotMake as error:
+        need(str(error))
     command = [*node, str(script), str(SOURCES / "src"), *words]
     result = subprocess.run(
         command, input=given, capture_output=True, text=True, timeout=2 * HANG_LIMIT_S, check=False

@@ -57,10 +57,10 @@ def spread_names(names: Sequence[str], count: int) -> list[int]:
     half = (count + 1) // 2
     parts: list[list[int]] = [[] for _ in range(count)]
     pages = [name for name in files if name.startswith(PAGES)]
-    others = [name for name in LONG if name in files]
-    for part_names, where in ((pages, parts[:half]), (others, parts[half:])):
+    other_names = [name for name in LONG if name in files]
+    for part_names, target_parts in ((pages, parts[:half]), (other_names, parts[half:])):
         for k, name in enumerate(part_names):
-            where[k % len(where)] += files.pop(name)
+            target_parts[k % len(target_parts)] += files.pop(name)
     quick = [k for row in files.values() for k in row]
     names_left = len(names)
     for index, part in enumerate(parts):

@@ -77,9 +77,9 @@ def build_changed_sketch(
 def firmware(board: str, build_folder: Path, shared_path: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
 
-    def make(path: Path) -> None:
+    def build_elf(path: Path) -> None:
         project = copy_sketch(build_folder)
         pio(project, "run", "-e", board).gives(0)
         shutil.copy(project / ".pio" / "build" / board / "firmware.elf", path)
 
-    return make_once(shared_path / f"{board}.elf", make)
+    return make_once(shared_path / f"{board}.elf", build_elf)

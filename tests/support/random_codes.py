@@ -192,17 +192,23 @@ def task_code(rng: random.Random) -> bytes:
         inner = loop(inner, 1)
     if rng.random() < 0.3:
         inner += nested_code(rng, 1)
-    look = simple("PUSH_TRUE") + simple("LOOK")
+    look_code = simple("PUSH_TRUE") + simple("LOOK")
     if rng.random() < 0.2:
-        look = b"\x05" + simple("PUSH_READ") + b"\x00" + simple("LT") + simple("LOOK")
-        look = simple("PUSH8") + look if rng.random() < 0.7 else look
+        look_code = b"\x05" + simple("PUSH_READ") + b"\x00" + simple("LT") + simple("LOOK")
+        look_code = simple("PUSH8") + look_code if rng.random() < 0.7 else look_code
     kind = rng.choice(("TASK", "WHEN"))
-    body = (look if kind == "WHEN" else b"") + inner + simple(f"END_{kind}")
+    body = (look_code if kind == "WHEN" else b"") + inner + simple(f"END_{kind}")
     if rng.random() < 0.15:
-        body = rng.choice((
-            inner + simple("END_TASK"), look + inner + simple("END_WHEN"), look + inner,
-            inner + simple("RETURN"), look + look + simple("END_WHEN"), simple("UNTIL") + body,
-        ))  # fmt: skip
+        body = rng.choice(
+            (
+                inner + simple("END_TASK"),
+                look_code + inner + simple("END_WHEN"),
+                look_code + inner,
+                inner + simple("RETURN"),
+                look_code + look_code + simple("END_WHEN"),
+                simple("UNTIL") + body,
+            )
+        )
     slip = rng.choice((0, 0, 0, 0, 0, 0, 0, 1, -1, 65_000))
     far = (len(body) + slip) % 65_536
     return bytes([BY_NAME[kind].code]) + far.to_bytes(2, "little") + body

@@ -31,8 +31,8 @@ def random_program(seed: int) -> RandomProgram:
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.program(rng, oracle_kit)
     readings = programs.senses(rng, oracle_kit)
-    want = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
+    wanted_run = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
     short = compile_text(text, kit)
     plain = compile_text(text, kit, optimize=False)
-    return RandomProgram(seed, text, kit, senses, want, short, plain)
+    return RandomProgram(seed, text, kit, senses, wanted_run, short, plain)

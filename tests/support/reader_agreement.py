@@ -142,11 +142,13 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
     assert answer.is_program, f"{answer}\n{data.decode()}"
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None and compilation.program.start == answer.start
-    actual, want = (trace(code, kit, senses) for code in (answer.code, compilation.code))
-    if any(lines[-1].endswith("LIMIT") for lines in (actual, want)):
-        least = min(len(actual), len(want)) - 1  # the meaning does not include where a run was cut
-        actual, want = actual[:least], want[:least]
-    assert actual == want, data.decode()
+    actual, wanted_trace = (trace(code, kit, senses) for code in (answer.code, compilation.code))
+    if any(lines[-1].endswith("LIMIT") for lines in (actual, wanted_trace)):
+        least = (
+            min(len(actual), len(wanted_trace)) - 1
+        )  # the meaning does not include where a run was cut
+        actual, wanted_trace = actual[:least], wanted_trace[:least]
+    assert actual == wanted_trace, data.decode()
 
 
 def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:

@@ -21,10 +21,10 @@ def go_through(
     for row in rows:
         try:
             test(row)
-        except Exception as why:  # any exception, so that the other rows run too
-            errors[name(row)] = why
+        except Exception as error:  # any exception, so that the other rows run too
+            errors[name(row)] = error
     if errors:
-        failures = (f"{row}: {type(why).__name__}: {why}" for row, why in errors.items())
+        failures = (f"{row}: {type(error).__name__}: {error}" for row, error in errors.items())
         raise AssertionError("\n\n".join(failures)) from next(iter(errors.values()))
 
 

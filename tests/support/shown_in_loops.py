@@ -53,7 +53,9 @@ def largest_difference_ms(actions: list[TimedAction], other_actions: list[TimedA
     """Return the largest time difference of two runs while both last: `inf` if their actions
     differ.
     """
-    both = list(zip(actions, other_actions, strict=False))
-    if any(action[1] != other_action[1] for action, other_action in both):
+    action_pairs = list(zip(actions, other_actions, strict=False))
+    if any(action[1] != other_action[1] for action, other_action in action_pairs):
         return inf
-    return max((abs(action[0] - other_action[0]) for action, other_action in both), default=0)
+    return max(
+        (abs(action[0] - other_action[0]) for action, other_action in action_pairs), default=0
+    )

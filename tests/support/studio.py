@@ -262,8 +262,8 @@ class Pages:
             context.close()
         for context in self._to_leave:
             context.remove_listener("request", self._note_request)
-            still, *others = context.pages
-            for page in others:
+            still, *other_pages = context.pages
+            for page in other_pages:
                 page.close()
             session = context.new_cdp_session(still)
             clear_options = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
@@ -321,10 +321,10 @@ def begin_anew(page: Page) -> None:
 SETTLED_SCRIPT = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
-def finger(page: Page, way: Sequence[tuple[float, float]]) -> None:
+def finger(page: Page, points: Sequence[tuple[float, float]]) -> None:
     """Go along a way on the screen with a finger."""
     session = page.context.new_cdp_session(page)
-    for k, (x, y) in enumerate(way):
+    for k, (x, y) in enumerate(points):
         kind = "touchMove" if k else "touchStart"
         touch = {"type": kind, "touchPoints": [{"x": x, "y": y}]}
         session.send("Input.dispatchTouchEvent", touch)

@@ -104,13 +104,13 @@ class Fuzz:
     def frames(self) -> None:
         session, rng = self.session, self.rng
         image = image_of(rng.choice(FRAMES))
-        asks: tuple[Callable[[], object], ...] = (
+        line_makers: tuple[Callable[[], object], ...] = (
             session.hello, session.ping, session.status, session.clear, session.start,
             session.fetch, lambda: session.live(image.code), lambda: session.name(b"A"),
             lambda: session.upload(image, saves=rng.random() < 0.5),
             lambda: session.upload(image_of(LONG)),
         )  # fmt: skip
-        rng.choice(asks)()
+        rng.choice(line_makers)()
         for _ in range(rng.choice((2, 10, 60, 300))):
             data = session.poll(self.robot.now_ms)
             if data and rng.random() < 0.1:

@@ -34,18 +34,18 @@ def program(text: str) -> Case:
     return Case(Path(__file__), 0, text, {"tiniscript": text, "senses": "DISTANCE = 60"})
 
 
-def motor_settings(uno: Uno, since: int) -> list[Setting]:
+def motor_settings(uno: Uno, start_cycle: int) -> list[Setting]:
     """Return the settings of the motor pins since a cycle."""
     changes = [
         change
         for name in MOTORS
         for change in uno.pins.history(name)
-        if change.cycle > since
+        if change.cycle > start_cycle
     ]  # fmt: skip
     settings = []
     for cycle in sorted({change.cycle for change in changes}):
         powers = (power(uno, side, cycle) for side in ("left", "right"))
-        settings.append(Setting((cycle - since) / CYCLES_PER_MS, *powers))
+        settings.append(Setting((cycle - start_cycle) / CYCLES_PER_MS, *powers))
     return lasting(settings)
 
 
@@ -89,9 +89,9 @@ def simulate_pings(distances: list[float]) -> list[float]:
     that jumps.
     """
     heard_cm = distances[:1] * 3
-    for last_distance, now in pairwise(distances):
-        is_far = abs(now - last_distance) > max(3, last_distance / 5)
-        heard_cm += [now] * (1 + is_far)
+    for last_distance, distance in pairwise(distances):
+        is_far = abs(distance - last_distance) > max(3, last_distance / 5)
+        heard_cm += [distance] * (1 + is_far)
     return heard_cm
 
 
@@ -152,9 +152,9 @@ def check_pins(case: Case, uno: Uno) -> None:
         ]
 
 
-def last_zero(uno: Uno, since: int) -> int:
+def last_zero(uno: Uno, start_count: int) -> int:
     """Return the time of the last frame from which a movement started."""
-    heard_bytes = uno.received_bytes[since:]
+    heard_bytes = uno.received_bytes[start_count:]
     drive_cycles = [
         change.cycle
         for name in MOTORS

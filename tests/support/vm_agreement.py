@@ -5,13 +5,13 @@ from __future__ import annotations
 from tests.support.random_programs import MAX_MS
 
 
-def are_equivalent(want: str, actual: str) -> bool:
+def are_equivalent(wanted_trace: str, actual: str) -> bool:
     """Return whether two traces are equivalent; the place of a cut by `max-steps` does not
     count.
     """
-    if want == actual:
+    if wanted_trace == actual:
         return True
-    actual_lines, wanted_lines = actual.splitlines(), want.splitlines()
+    actual_lines, wanted_lines = actual.splitlines(), wanted_trace.splitlines()
     if not any(_is_cut(lines[-1]) for lines in (actual_lines, wanted_lines)):
         return False
     shorter = min(len(actual_lines), len(wanted_lines)) - 1

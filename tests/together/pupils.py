@@ -39,10 +39,10 @@ class Pupil:
     """`typed` has all that somebody has written; `focus` is where in the text this one works."""
 
     def __init__(
-        self, page: Page, chance: Random, numbers: Iterator[int], typed: set[str],
+        self, page: Page, chance: Random, numbers: Iterator[int], typed_texts: set[str],
         deeds: Counter[str], spread: float = 0.5,
     ) -> None:  # fmt: skip
-        self.page, self.typed, self.deeds = page, typed, deeds
+        self.page, self.typed, self.deeds = page, typed_texts, deeds
         self.focus = 0.5
         self.stages: list[Stage] = []
         self._chance, self._numbers, self._spread = chance, numbers, spread
@@ -94,8 +94,10 @@ class Pupil:
         if deed == "undo":
             was_done = page.undo()
         else:
-            make: Callable[[Tree, list[str], str], list[Operation]] = getattr(self, f"_{deed}")
-            was_done = apply_edits(page, make(view, ids, self._near(ids) if ids else ""))
+            make_operations: Callable[[Tree, list[str], str], list[Operation]] = getattr(
+                self, f"_{deed}"
+            )
+            was_done = apply_edits(page, make_operations(view, ids, self._near(ids) if ids else ""))
         self.deeds[f"{deed}{'' if was_done else ', not possible'}"] += 1
         return was_done
 

@@ -143,14 +143,18 @@ def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
     chance, tried = Random(seed), Counter[str]()
     while sum(tried.values()) < PROGRAMS:
         tree_before = program(chance, chance.randint(0, 20))
-        after = edit_rows(chance, tree_before) if chance.random() < 0.8 else program(chance, 12)
+        new_rows = edit_rows(chance, tree_before) if chance.random() < 0.8 else program(chance, 12)
         numbers, new_numbers = count(1), count(1)
         try:
             old_tree = parse_tree("\n".join(tree_before), lambda: f"o.{next(numbers)}")  # noqa: B023
-            new_tree = parse_tree("\n".join(after))
+            new_tree = parse_tree("\n".join(new_rows))
         except Unparsed:
             continue
-        operations = find_operations(old_tree, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        operations = find_operations(
+            old_tree,
+            "\n".join(new_rows),
+            lambda: f"n.{next(new_numbers)}",  # noqa: B023
+        )
         assert [operation_of(data_of(operation)) for operation in operations] == operations
         outcome = apply_change(old_tree, Change("n:1", tuple(operations)))
         assert outcome.tree.shape() == new_tree.shape()

@@ -120,17 +120,19 @@ def _counts(worlds: list[World]) -> tuple[int, int]:
     change_count = sum(
         pupil.page.change_count for world in worlds for pupil in world.pupils.values()
     )
-    return change_count, sum(sum(world.why.values()) for world in worlds)
+    return change_count, sum(sum(world.refusals_by_reason.values()) for world in worlds)
 
 
 def _print_counts(worlds: list[World]) -> None:
     change_count, refused_count = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
-    why = sum((world.why for world in worlds), Counter[str]())
+    refusals = sum((world.refusals_by_reason for world in worlds), Counter[str]())
     happened = sum((world.counts for world in worlds), Counter[str]())
     percent = 100 * refused_count / change_count
-    print(f"{change_count} changes, refused {refused_count} ({percent:.2f} %) {dict(why)}, "
-          f"values replaced that their page had not seen: {unseen}")  # fmt: skip
+    print(
+        f"{change_count} changes, refused {refused_count} ({percent:.2f} %) {dict(refusals)}, "
+        f"values replaced that their page had not seen: {unseen}"
+    )
     print(dict(happened))
 
 

@@ -118,7 +118,7 @@ def test_deep_and_long_programs_are_refused() -> None:
         insert = {"do": "insert", "at": ["root", "start"], "nodes": nodes}
         program.submit([change_of({"uid": f"m:{k}", "ops": [insert]})])
     assert len(text_of(program.tree)) <= 20_000
-    assert {why for _, why in program.refusals_by_page["m"]} == {UNPARSED, TOO_LONG}
+    assert {reason for _, reason in program.refusals_by_page["m"]} == {UNPARSED, TOO_LONG}
 
 
 def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:

@@ -114,7 +114,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     journal, program = begin_journal(path)
     monkeypatch.setattr(journals, "MOST_BYTES", 2000)
 
-    def look() -> None:
+    def stop_saving() -> None:
         reopened = Journal(path)
         resumed = reopened.resume("e2")
         reopened.close()
@@ -122,7 +122,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
 
     def checked_call(call: Callable[..., Any]) -> Callable[..., Any]:
         def write_before(*arguments: Any, **keywords: Any) -> Any:
-            look()
+            stop_saving()
             if is_full:
                 raise OSError(errno.ENOSPC, "full")
             return call(*arguments, **keywords)
@@ -135,7 +135,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
         is_full = chance.random() < (0.8 if is_full else 0.2)
         assert change_program(program, value)
         kept_number = kept_number if journal.is_incomplete else program.number
-        look()
+        stop_saving()
         if chance.random() < 0.2:  # it crashes, and resumes with the stored data
             journal.close()
             journal = Journal(path)

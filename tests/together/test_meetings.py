@@ -380,7 +380,7 @@ def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> 
     duplicated."""
     chance, two = Random(seed), PagePair(FLAT_PROGRAM)
     for _ in range(60):
-        typed = program_of(two.ana)
+        typed_text = program_of(two.ana)
         match chance.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
             case "edit":
                 edits(two.ana, chance)
@@ -390,10 +390,10 @@ def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> 
                 two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
             case message:
                 exchange(two, message)
-        assert program_of(two.ana) == typed
-    typed = program_of(two.ana)
+        assert program_of(two.ana) == typed_text
+    typed_text = program_of(two.ana)
     two.meet()
-    assert program_of(two.luz) == program_of(two.ana) == typed and not two.ana.refusals
+    assert program_of(two.luz) == program_of(two.ana) == typed_text and not two.ana.refusals
 
 
 def data(page: Page) -> Any:

@@ -65,16 +65,16 @@ class World:
 
     def __init__(
         self, pages: int, seed: int, delay: Callable[[Random], float] = lambda r: r.uniform(0, 5),
-        lost: float = 0.05, asks_s: float = REQUEST_INTERVAL_S, spread: float = 0.5,
+        loss_rate: float = 0.05, asks_s: float = REQUEST_INTERVAL_S, spread: float = 0.5,
     ) -> None:  # fmt: skip
         self.chance = Random(seed)
         self.now_s = 0.0
         self.counts: Counter[str] = Counter()
-        self.why: Counter[str] = Counter()  # changes were refused
+        self.refusals_by_reason: Counter[str] = Counter()
         self.replaced_unseen = 0
         self._queue: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
         self._order = count()
-        self._delay, self._lost, self._asks_s = delay, lost, asks_s
+        self._delay, self._lost, self._asks_s = delay, loss_rate, asks_s
         ids, numbers = count(1), count(200_000)
         self._rows: list[Json] = []  # the journal
         self.all_taken: list[TakenChange] = []
@@ -124,17 +124,25 @@ class World:
             sent_data = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
-            since = -1 if page.is_astray else page.number
-            self.at(self._delay(self.chance), self._reach, name, turn, sent_data, since, page.epoch)
+            seen_number = -1 if page.is_astray else page.number
+            self.at(
+                self._delay(self.chance),
+                self._reach,
+                name,
+                turn,
+                sent_data,
+                seen_number,
+                page.epoch,
+            )
 
     def _ask_again(self, name: str, turn: int) -> None:
         if turn == self.turn[name]:
             self.turn[name] += 1
             self.ask(name, self.turn[name])
 
-    def _reach(self, name: str, turn: int, sent_data: Json, since: int, epoch: str) -> None:
+    def _reach(self, name: str, turn: int, sent_data: Json, seen_number: int, epoch: str) -> None:
         self.submit(sent_data["sent"])
-        news = self._send_and_parse(self.program.news(name, since, epoch))
+        news = self._send_and_parse(self.program.news(name, seen_number, epoch))
         if self.chance.random() >= self._lost and self.now_s >= self.off_until_s[name]:
             self.at(self._delay(self.chance), self._arrive, name, turn, news)
 
@@ -147,16 +155,21 @@ class World:
                 self.all_taken.append(program.taken_changes[-1])
                 self._count_unseen(tree_before, page, change.seen_number)
             elif program.last_count_by_page.get(page, 0) > decided:
-                self.why[program.refusals_by_page[page][-1][1]] += 1
+                self.refusals_by_reason[program.refusals_by_page[page][-1][1]] += 1
 
-    def _count_unseen(self, tree_before: Tree, page: str, since: int) -> None:
+    def _count_unseen(self, tree_before: Tree, page: str, seen_number: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
         for operation in self.all_taken[-1].operations:
             if isinstance(operation, Replace) and operation.id in tree_before:
                 by = tree_before[operation.id].mark(operation.fields[0][0])
-                self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
-                    change.uid == by and change.number > since for change in self.all_taken[-50:]
-                )  # fmt: skip
+                self.replaced_unseen += (
+                    bool(by)
+                    and page_and_count(by)[0] != page
+                    and any(
+                        change.uid == by and change.number > seen_number
+                        for change in self.all_taken[-50:]
+                    )
+                )
 
     def _arrive(self, name: str, turn: int, news: Json) -> None:
         if self.now_s < self.off_until_s[name]:
@@ -203,8 +216,8 @@ class World:
                 self.submit(
                     self._send_and_parse({"": list(map(data_of_change, page.pending_changes))})[""]
                 )
-                since = -1 if page.is_astray else page.number
-                page.receive(self._send_and_parse(self.program.news(name, since, page.epoch)))
+                seen_number = -1 if page.is_astray else page.number
+                page.receive(self._send_and_parse(self.program.news(name, seen_number, page.epoch)))
                 page.give_up()  # changes refused just now
 
     def check(self) -> None:
