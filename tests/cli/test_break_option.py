@@ -251,10 +251,10 @@ def test_the_first_key_at_a_halt_answers_it_and_no_other_key_does_anything(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At any halt, and while the program runs."""
-    rng, typed_keys, asked, wanted_commands = random.Random(seed), "", list[int](), list[int]()
+    rng, typed_keys, commands, wanted_commands = random.Random(seed), "", list[int](), list[int]()
     it = debugger.Debugger.__new__(debugger.Debugger)
     it.has_keys, it.is_halted, it.is_stepping, it.keys = True, False, False, Keys()
-    session = SimpleNamespace(resume=asked.append)
+    session = SimpleNamespace(resume=commands.append)
     it.connection = cast(
         Connection, SimpleNamespace(request=lambda make_request: make_request(session))
     )
@@ -269,7 +269,7 @@ def test_the_first_key_at_a_halt_answers_it_and_no_other_key_does_anything(
         if key and is_halted:
             wanted_commands.append(RESUME_STEP if key == "s" else RESUME_GO)
             is_halted = False
-        assert asked == wanted_commands
+        assert commands == wanted_commands
         assert it.is_stepping == (wanted_commands[-1:] == [RESUME_STEP])
 
 

@@ -35,13 +35,13 @@ def after_lines(count: int, *words: str, joins_err: bool = False) -> tuple[int, 
     """Read so many lines of a command, close its output; return its exit code and its errors."""
     err = subprocess.STDOUT if joins_err else subprocess.PIPE
     with subprocess.Popen([*TSC, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=err) as running:  # fmt: skip
-        assert running.stdout
+                          stderr=err) as process:  # fmt: skip
+        assert process.stdout
         for _ in range(count):
-            assert running.stdout.readline()
-        running.stdout.close()
-        err_text = running.stderr.read().decode() if running.stderr else ""
-        return running.wait(HANG_LIMIT_S), err_text
+            assert process.stdout.readline()
+        process.stdout.close()
+        err_text = process.stderr.read().decode() if process.stderr else ""
+        return process.wait(HANG_LIMIT_S), err_text
 
 
 @pytest.mark.parametrize(("lines", "extra"), [(0, []), (1, ["--json"]), (3, [])])
@@ -80,15 +80,15 @@ def test_a_slow_reader_and_a_file_are_none_that_has_gone(
     words = ["upload", "-e", "SI|F(1, 80)", "--port", pty_robot.port]
     with (tmp_path / "said").open("wb") as file:
         assert subprocess.run([*TSC, *words], stdout=file, timeout=HANG_LIMIT_S).returncode == 0
-    with subprocess.Popen([*TSC, *words], stdout=subprocess.PIPE) as running:
-        assert running.wait(HANG_LIMIT_S) == 0
-        assert running.stdout and b"Done." in running.stdout.read()
+    with subprocess.Popen([*TSC, *words], stdout=subprocess.PIPE) as process:
+        assert process.wait(HANG_LIMIT_S) == 0
+        assert process.stdout and b"Done." in process.stdout.read()
 
 
 def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
     """The program drives without a pause, so saving waits for the stop."""
-    drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
-    words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
+    moves = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
+    words = ["upload", "-e", f"SI|LOOP(FOREVER);{moves}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, err = after_lines(1, *words)
     assert code == EXIT_OF_CLOSED_PIPE and err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.switch_off_and_on()

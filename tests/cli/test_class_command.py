@@ -46,7 +46,7 @@ from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
-few = pytest.mark.sampled(of="commands for a class", keep=1)
+sampled = pytest.mark.sampled(of="commands for a class", keep=1)
 
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
@@ -175,7 +175,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(0)
 
 
-@few
+@sampled
 def test_whoever_only_looks_changes_nothing(room: Class) -> None:
     """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
@@ -219,7 +219,7 @@ def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
         assert {name: options.get(name, "none") for name in lacks} == lacks
 
 
-@few
+@sampled
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
@@ -234,8 +234,8 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
         header, *rows = csv.reader(file)
     assert header == ["robot", "id", "ms", "event", "value", "name"]
-    shows = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
-    assert shows == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
+    shown_values = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
+    assert shown_values == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
     assert len([row for row in rows if row[3] == "SHOW"]) == len(values)
 
 
@@ -298,14 +298,14 @@ def test_what_became_of_the_robots_is_the_exit_code(
 
 
 @pytest.mark.parametrize("is_there", [True, False])
-@pytest.mark.parametrize("gone", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
+@pytest.mark.parametrize("losses", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
 def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
-    gone: tuple[bool | None, ...], is_there: bool,
+    losses: tuple[bool | None, ...], is_there: bool,
 ) -> None:  # fmt: skip
     """All of them are tried, and then each robot is asked whether it has stopped; if none can be
     asked, the output reports whether a message was sent."""
-    rest, calls = [*gone], []
+    rest, calls = [*losses], []
 
     def stop(group: str) -> bool:
         has_gone = rest.pop(0)
@@ -334,7 +334,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
             classroom.stop(cast(Classroom, room))
     assert rest == []
     has_gone = "the stop for all robots" in capsys.readouterr().err
-    assert has_gone == (not is_there and any(gone))
+    assert has_gone == (not is_there and any(losses))
 
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
@@ -411,7 +411,7 @@ def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent
     process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
-@few
+@sampled
 def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> None:
     access = Access("robots", SECRET.decode())
     topic = f"{ROOT}/3b/{SEEDS[0] ^ 1:08x}"

@@ -164,7 +164,7 @@ def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.Monkey
     draw_times_ms: list[float] = []
     monkeypatch.setattr(terminal_screen, "time", clock)
     monkeypatch.setattr(
-        terminal_screen.Screen, "draw", lambda self, seen, now_ms: draw_times_ms.append(now_ms)
+        terminal_screen.Screen, "draw", lambda self, screen, now_ms: draw_times_ms.append(now_ms)
     )
     assert run_drawing.watch(iter(events), robots.load("tinibot"), pace, "en") == events[-1]
     assert draw_times_ms == sorted(draw_times_ms)

@@ -158,8 +158,8 @@ def test_two_computers_at_once_over_cable_and_network(
 
 
 def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:
-    bad = BadNetwork(int(ask_radios(robot_in_network, "port")))
-    place = f"socket://127.0.0.1:{bad.port}"
+    bad_network = BadNetwork(int(ask_radios(robot_in_network, "port")))
+    place = f"socket://127.0.0.1:{bad_network.port}"
     for _ in range(3):
         run_in_process("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
     compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
@@ -172,12 +172,12 @@ def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> 
     command.wait_for_result()
     command = start_endless_upload(robot_in_network, place)
     began_ms = robot_in_network.robot_ms
-    bad.cut()
+    bad_network.cut()
     assert robot_in_network.stands_after_ms(began_ms) < 2000, (
         "the connection was its dead-man timer"
     )
     assert command.wait_for_result().code == 3
-    bad.close()
+    bad_network.close()
 
 
 # -- by its name, with real multicast DNS ---------------------------------------------------------

@@ -423,7 +423,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
             raise KeyboardInterrupt
 
     arguments: list[Any] = []
-    monkeypatch.setattr(fetching, "run", lambda *given: arguments.extend(given))
+    monkeypatch.setattr(fetching, "run", lambda *words: arguments.extend(words))
     fetching.install(install_advice.STUDIO, page_build.NODE, "en")
     with pytest.raises(KeyboardInterrupt):
         children.run([sys.executable, "-c", code], tmp_path, check_wait, *arguments[4:])

@@ -189,8 +189,8 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
-    running = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
-    monkeypatch.setattr(directory, "running_robots", lambda: running)
+    running_robots = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
+    monkeypatch.setattr(directory, "running_robots", lambda: running_robots)
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]

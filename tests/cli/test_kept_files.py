@@ -238,12 +238,12 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
     for free_bytes in (0, 1, 10, 60):
         saved_numbers = restore(kept_memory, tmp_path)
 
-        def cut(free_bytes: int = free_bytes) -> None:
+        def limit_size(free_bytes: int = free_bytes) -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (free_bytes, free_bytes))
             with suppress(BadKeys, CommandError, OSError):
                 kept_memory.add(SECOND_NUMBER)
 
-        assert wait_for_child(fork_child(cut)) == 0
+        assert wait_for_child(fork_child(limit_size)) == 0
         assert kept_memory.all() == saved_numbers, free_bytes
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
         kept_memory.add(SECOND_NUMBER)
@@ -253,7 +253,9 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
 
 
 @pytest.mark.sampled("name", keep=2)
-@pytest.mark.parametrize("name", [name for name, kept in KEPT_FILES.items() if not kept.is_alone])
+@pytest.mark.parametrize(
+    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
+)
 def test_of_two_at_once_neither_loses_what_the_other_keeps(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
@@ -263,12 +265,16 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
     lines = lines_of(kept_memory, SECOND_NUMBER)
     for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
         saved_numbers = restore(kept_memory, tmp_path)
-        arrived, holds = os.pipe(), os.pipe()
+        arrival_pipe, release_pipe = os.pipe(), os.pipe()
         say = os.pipe()
 
-        def pause_at_line(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
+        def pause_at_line(
+            line: int = line, arrival_pipe: Any = arrival_pipe, release_pipe: Any = release_pipe
+        ) -> None:
             trace_until_line(
-                kept_memory, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1))
+                kept_memory,
+                line,
+                lambda: (os.write(arrival_pipe[1], b"1"), os.read(release_pipe[0], 1)),
             )()
             kept_memory.add(SECOND_NUMBER)
 
@@ -278,17 +284,19 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
             os.write(say[1], b"e")
 
         first_child = fork_child(pause_at_line)
-        assert os.read(arrived[0], 1)
+        assert os.read(arrival_pipe[0], 1)
         second_child = fork_child(run_child)
         assert os.read(say[0], 1) in (b"w", b"e")
-        os.write(holds[1], b"1")
+        os.write(release_pipe[1], b"1")
         assert (wait_for_child(first_child), wait_for_child(second_child)) == (0, 0), line
         assert sorted(kept_memory.all()) == [*saved_numbers, SECOND_NUMBER, THIRD_NUMBER], line
-        for end in (*arrived, *holds, *say):
+        for end in (*arrival_pipe, *release_pipe, *say):
             os.close(end)
 
 
-@pytest.mark.parametrize("name", [name for name, kept in KEPT_FILES.items() if not kept.is_alone])
+@pytest.mark.parametrize(
+    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
+)
 def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

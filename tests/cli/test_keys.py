@@ -116,8 +116,8 @@ def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
     commands = [
         [sys.executable, "-c", CLAIM_CODE, str(key_file.path), str(100 * k)] for k in range(4)
     ]
-    running = [subprocess.Popen(command) for command in commands]
-    assert [process.wait() for process in running] == [0] * 4
+    processes = [subprocess.Popen(command) for command in commands]
+    assert [process.wait() for process in processes] == [0] * 4
     robot_keys = key_file.all()
     assert sorted(key.id for key in robot_keys) == [
         100 * k + n for k in range(4) for n in range(25)
@@ -186,12 +186,12 @@ def test_a_class_list_goes_out_and_in(
 
 def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
     """The keys of a stranger would remove a person's own robots."""
-    key_file, many = KeyFile(), tmp_path / "many.json"
+    key_file, large_file = KeyFile(), tmp_path / "many.json"
     key_file.add([OWNER_KEY])
     foreign_keys = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
-    many.write_bytes(encode_keys(foreign_keys))
+    large_file.write_bytes(encode_keys(foreign_keys))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
-        tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
+        tsc("set", "owner", "--import", str(large_file), "--lang", language).gives(2, words, out="")
     assert key_file.all() == [OWNER_KEY]
     assert key_file.add(foreign_keys[1:]) == MOST_KEYS - 1
     assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (

@@ -55,23 +55,29 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
         result = run_in_process("upload", "-e", SHORT_PROGRAM, "--all", "--json").gives(3)
         rows = results(result)
-        bad = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
+        bad_ports = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
         present_rows = {port: row for port, row in rows.items() if not row["is_absent"]}
         assert set(present_rows) == {pupil.port for pupil in pupils}
-        assert {port for port, row in present_rows.items() if not row["is_done"]} == bad
+        assert {port for port, row in present_rows.items() if not row["is_done"]} == bad_ports
         assert "nothing responds" in str(rows[pupils[SILENT_ROBOT].port]["said"])
         assert "--robot liner" in str(rows[pupils[OTHER_KIT_ROBOT].port]["said"])
         for pupil in pupils:
-            if pupil.port not in bad:
+            if pupil.port not in bad_ports:
                 assert pupil.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
         events = [json.loads(line) for line in result.out.splitlines()]
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOT_COUNT - 3
         showing_ports = [row["port"] for row in events if row["event"] == "SHOW"]
         noisy = {pupils[number].port for number in NOISY_ROBOTS}  # the damaged event may be theirs
-        assert set(present_rows) - bad - noisy <= set(showing_ports) <= set(present_rows) - bad
+        assert (
+            set(present_rows) - bad_ports - noisy
+            <= set(showing_ports)
+            <= set(present_rows) - bad_ports
+        )
         # the silent one is over last
-        assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
+        assert events[-1]["port"] in bad_ports | {
+            port for port, row in rows.items() if row["is_absent"]
+        }
 
         run_in_process("upload", "-e", FOREVER, "--all", "--detach").gives(3)
         # The program uses no device of a kit.

@@ -97,20 +97,20 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     """This holds for any number of losses and unanswered searches; each robot is found once."""
     chance = Random(seed)
     searches: list[Any] = []
-    is_there, losses, waits = True, 0, 0
+    is_there, losses, wait_count = True, 0, 0
 
     class Over(Exception):
         pass
 
     def event() -> tuple[int, Event] | None:
-        nonlocal is_there, losses, waits
-        waits += 1
-        if waits > 400:
+        nonlocal is_there, losses, wait_count
+        wait_count += 1
+        if wait_count > 400:
             raise Over
         if is_there:
             if losses < 5 and chance.random() < 0.1:
                 is_there, losses = False, losses + 1
-                return waits, LostEvent()
+                return wait_count, LostEvent()
             return None
         questions = [search for search in searches if search.outcome is None]
         assert len(questions) == 1, "nobody looks for it"

@@ -187,8 +187,8 @@ def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
 
 
 def test_what_is_printable_stays() -> None:
-    for good in ("", "Tini", "año ñandú", "机器人", "🤖", "a b", "-e 'SI|F(2, 80)'"):
-        assert printable(good) == good
+    for printable_text in ("", "Tini", "año ñandú", "机器人", "🤖", "a b", "-e 'SI|F(2, 80)'"):
+        assert printable(printable_text) == printable_text
     assert printable("abc", 2) == "ab…"
     assert printable("a\x1b[31m") == "a?[31m"
 
@@ -289,5 +289,5 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
 
 
 def test_numbers_and_words_stay() -> None:
-    for plain in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
-        assert escape_formula(plain) == plain
+    for plain_text in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
+        assert escape_formula(plain_text) == plain_text

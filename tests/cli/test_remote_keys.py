@@ -60,12 +60,12 @@ def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
                 now_s += 0.01
 
 
-@pytest.mark.parametrize("cut", [1, 2])
-def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
+@pytest.mark.parametrize("split", [1, 2])
+def test_a_key_that_comes_in_two_pieces(split: int) -> None:
     keys = HeldKeys()
-    keys.press_typed("a" + UP[:cut], 0.0)
+    keys.press_typed("a" + UP[:split], 0.0)
     assert keys.keys_at(0.1) == remote_state_of(["A"])
-    keys.press_typed(UP[cut:] + LEFT, 0.1)
+    keys.press_typed(UP[split:] + LEFT, 0.1)
     assert keys.keys_at(0.2) == remote_state_of(["A", "UP", "LEFT"])
 
 
@@ -93,34 +93,34 @@ OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
     """Keys may be split anywhere, after any input: no part of a key is left for the next."""
     chance = random.Random(seed)
-    whole_keys, cut = HeldKeys(), HeldKeys()
+    whole_keys, split_keys = HeldKeys(), HeldKeys()
     for k in range(20):
         typed_text, now_s = (
             chance.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
             2.0 * k,
         )
         offset = chance.randrange(len(typed_text) + 1)
-        leaves = [
-            cut.press_typed(piece, now_s)
+        leave_flags = [
+            split_keys.press_typed(piece, now_s)
             for piece in (typed_text[:offset], "", typed_text[offset:], "")
         ]
-        assert any(leaves) == whole_keys.press_typed(typed_text, now_s), (k, typed_text)
-        assert cut.keys_at(now_s) == whole_keys.keys_at(now_s), (k, typed_text)
+        assert any(leave_flags) == whole_keys.press_typed(typed_text, now_s), (k, typed_text)
+        assert split_keys.keys_at(now_s) == whole_keys.keys_at(now_s), (k, typed_text)
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_what_was_typed_a_while_ago_holds_nothing_now(seed: int) -> None:
-    chance, used, fresh, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
+    chance, used_keys, unused_keys, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
     for _ in range(20):
-        used.press_typed(chance.choice(KEYS)[0], now_s)
+        used_keys.press_typed(chance.choice(KEYS)[0], now_s)
         now_s += chance.random()
     now_s += FIRST_HOLD_S
     for _ in range(20):
         typed_text = chance.choice(KEYS)[0]
-        used.press_typed(typed_text, now_s)
-        fresh.press_typed(typed_text, now_s)
+        used_keys.press_typed(typed_text, now_s)
+        unused_keys.press_typed(typed_text, now_s)
         for _ in range(chance.randrange(9)):
-            assert used.keys_at(now_s) == fresh.keys_at(now_s)
+            assert used_keys.keys_at(now_s) == unused_keys.keys_at(now_s)
             now_s += 0.1
 
 

@@ -88,8 +88,10 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
         code, parts = find_with_selftest(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
-        same = [{"robot": value} for value, robot_kit in kits.items() if robot_kit[:2] == kit[:2]]
-        assert parts["kit"]["values"] in same and {"robot": name} in same
+        equal_kits = [
+            {"robot": value} for value, robot_kit in kits.items() if robot_kit[:2] == kit[:2]
+        ]
+        assert parts["kit"]["values"] in equal_kits and {"robot": name} in equal_kits
         assert len([part for part in parts if part.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
 
@@ -132,8 +134,8 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
 
 def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
-    low = pty_robot.kit.sensors[0].low
-    pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
+    lowest_reading = pty_robot.kit.sensors[0].low
+    pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
     _, parts = find_with_selftest(pty_robot)
     first_sensor, second_sensor = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
     assert parts[first_sensor]["cause"] == "stuck"
@@ -142,7 +144,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
     code, parts = find_with_selftest(pty_robot)
     assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
     assert parts["sensor DISTANCE"]["verdict"] == "wrong"
-    pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
+    pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
     pty_robot.damages = 100
     code, parts = find_with_selftest(pty_robot)
     assert code == 3
@@ -396,14 +398,21 @@ def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
     robot = robot_in(name="tinibot2", eeprom_us=0)
     if number is not None:
         Flicker(robot, number, 20)
-    running = SimulatedRobot(robot, HURRIED_PACE)
+    simulated_robot = SimulatedRobot(robot, HURRIED_PACE)
     try:
         result = run_in_process(
-            "doctor", "--selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json"
+            "doctor",
+            "--selftest",
+            "--port",
+            simulated_robot.port,
+            "--robot",
+            "tinibot2",
+            "--yes",
+            "--json",
         )
-        output = run_in_process("doctor", "--port", running.port, "--lang", "en").out
+        output = run_in_process("doctor", "--port", simulated_robot.port, "--lang", "en").out
     finally:
-        running.close()
+        simulated_robot.close()
     (disc,) = [finding for finding in json.loads(result.out)["found"] if finding["what"] == "discs"]
     if number is None:
         assert (result.code, disc["cause"]) == (0, "discs_rest") and "disc" not in output
@@ -428,10 +437,10 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
     for private in ("LUISITO", str(tmp_path), os.uname().nodename):
         assert private not in report_text
     assert "sensor" in report_text
-    mine = tmp_path / "mine.txt"
-    mine.write_text("mine")
-    assert on(pty_robot, "doctor", "--selftest", "--yes", "--report", mine).code == 2
-    assert mine.read_text() == "mine"
+    robot_file = tmp_path / "mine.txt"
+    robot_file.write_text("mine")
+    assert on(pty_robot, "doctor", "--selftest", "--yes", "--report", robot_file).code == 2
+    assert robot_file.read_text() == "mine"
 
 
 def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:

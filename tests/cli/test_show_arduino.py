@@ -36,8 +36,10 @@ def test_a_wrong_program_gets_the_usual_messages(tsc: Tsc, tmp_path: Path) -> No
 
 
 def test_a_program_too_large_for_a_machine_is_refused_as_a_sketch(tsc: Tsc) -> None:
-    many = ";".join(f"F({k}.5, {k})" for k in range(1, 100))
-    tsc("show", "--arduino", "-e", f"SI|{many};{many}").gives(0, out="forward(99.5, 99);")
+    many_moves = ";".join(f"F({k}.5, {k})" for k in range(1, 100))
+    tsc("show", "--arduino", "-e", f"SI|{many_moves};{many_moves}").gives(
+        0, out="forward(99.5, 99);"
+    )
 
 
 def test_what_cannot_be_is_said(tsc: Tsc, tmp_path: Path) -> None:

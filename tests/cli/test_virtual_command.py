@@ -290,10 +290,10 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         assert "Start one in another terminal:  tsc robot" in result.err, command
         assert "--virtual" in run_in_process(*command.split(), "--help").out, command
     assert "Without a robot:  --virtual" in run_in_process("upload", "-e", "SI|S").err
-    with robot() as running:
+    with robot() as running_robot:
         for words in ((), ("--virtual",), ("--identify", "--virtual")):
-            run_in_process("doctor", *words).gives(0, out=running.port)
-        run_in_process("doctor", "--virtual", "--port", running.port).gives(2, "--virtual")
+            run_in_process("doctor", *words).gives(0, out=running_robot.port)
+        run_in_process("doctor", "--virtual", "--port", running_robot.port).gives(2, "--virtual")
 
 
 @pytest.mark.parametrize(
@@ -333,9 +333,9 @@ def test_a_port_in_use_and_an_invalid_memory_are_refused(tsc: Tsc, tmp_path: Pat
         result = tsc("robot", "--listen", str(server_socket.getsockname()[1]))
     assert result.code == 3
     assert "Choose another port with --listen" in result.err
-    small = tmp_path / "small.bin"
-    small.write_bytes(b"TS")
-    tsc("robot", "--memory", small).gives(2, "which has 1024 bytes")
+    small_file = tmp_path / "small.bin"
+    small_file.write_bytes(b"TS")
+    tsc("robot", "--memory", small_file).gives(2, "which has 1024 bytes")
 
 
 @pytest.mark.parametrize(("name", "commands"), [

@@ -174,9 +174,9 @@ def test_a_bar_writes_where_something_changes_and_leaves_nothing(
             bar.end()
             wanted_text = ""
         else:
-            done = chance.randint(0, total)
-            bar.draw(done)
-            percent = f"{min(100 * done // total, 99)} %" if total else ""
+            done_count = chance.randint(0, total)
+            bar.draw(done_count)
+            percent = f"{min(100 * done_count // total, 99)} %" if total else ""
             is_late = now_s - 100 >= progress.DRAW_DELAY_S and percent != newest
             wanted_text = percent if is_late else line
             newest = wanted_text or newest
@@ -206,12 +206,12 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
     real_call = Client.wait
-    waits: list[str] = []
+    notices: list[str] = []
 
     def wait(self: connect.Connection, *arguments: Any) -> Any:
         nonlocal now_s
         reply = real_call(self, *arguments)
-        waits.append("wait")
+        notices.append("wait")
         now_s += 1.5
         if len(arguments) > 1 and arguments[1] is not None:
             arguments[1]()
@@ -219,7 +219,7 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
 
     monkeypatch.setattr(Client, "wait", wait)
     result = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
-    assert len(waits) >= 2
+    assert len(notices) >= 2
     assert result.err.count("Waiting for the robot") == 1  # there were no 3 s of silence
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     now_s += 100

@@ -236,12 +236,12 @@ def test_a_radio_that_loses_much(is_radio: bool) -> None:
 def test_a_robot_tells_all_of_itself_whatever_was_stopped_before(epoch: int) -> None:
     end = Firmware()
     end.epoch, end.trim = epoch, {"wheels": 5, "balance": -2, "least": 30, "pace": b""}
-    told: list[RobotAnswers] = []
+    robot_answers: list[RobotAnswers] = []
     robot = WireRobot(SimulatedWire(end), 4711, KIT)
     reply = robot.hello()
     assert reply is not None
-    examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_answers=told.append))
-    assert told[0].trim == TrimReply(**end.trim)  # type: ignore[arg-type]
+    examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_answers=robot_answers.append))
+    assert robot_answers[0].trim == TrimReply(**end.trim)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("damaged_count", "is_lossy"), [(1, False), (2, True)])

@@ -357,12 +357,12 @@ def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
 
 def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Path) -> None:
     """A folder with programs may have a `serial.py` of the pupil's own."""
-    mine = tmp_path / "mine"
-    mine.mkdir()
-    (mine / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
+    own_folder = tmp_path / "mine"
+    own_folder.mkdir()
+    (own_folder / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
     completed = subprocess.run(
         command("--build"),
-        cwd=mine,
+        cwd=own_folder,
         env={**os.environ, **fake_platformio(tmp_path, "import serial\nprint(serial.__file__)")},
         capture_output=True,
         text=True,

@@ -48,8 +48,10 @@ def test_one_that_writes_for_ever(tmp_path: Path, message: str) -> None:
 
 
 def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
-    waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
-    body = f'print("{HALF_OUTPUT}", flush=True)\n' + waits + WRITING_CODE.format(said=" waiting\n")
+    wait_code = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
+    body = (
+        f'print("{HALF_OUTPUT}", flush=True)\n' + wait_code + WRITING_CODE.format(said=" waiting\n")
+    )
     result, steps = write_and_watch(tmp_path, body)
     assert result.outcome == avrdude.ENDLESS
     assert StepProgress(avrdude.WRITING, 50) in steps
@@ -93,16 +95,16 @@ def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there a program gets no Ctrl-C")
 def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    running = subprocess.Popen(["sleep", "600"], start_new_session=True)
+    child = subprocess.Popen(["sleep", "600"], start_new_session=True)
 
     def interrupt_wait(seconds_s: float) -> int:
         monkeypatch.undo()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running, "wait", interrupt_wait)
+    monkeypatch.setattr(child, "wait", interrupt_wait)
     with pytest.raises(KeyboardInterrupt):
-        children._end(running)
-    assert running.poll() is not None
+        children._end(child)
+    assert child.poll() is not None
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")

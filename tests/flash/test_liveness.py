@@ -59,8 +59,8 @@ def watch_parts(
         passed_s = clock.now_s - began_s
         try:
             watch("".join(part for at_s, part in parts if at_s <= passed_s))
-        except avrdude._GivenUp as over:
-            return over.result, passed_s
+        except avrdude._GivenUp as given_up:
+            return given_up.result, passed_s
         clock.now_s += LOOK_S
     percents = [
         progress.percent + 100 * (progress.phase == avrdude.READING)
@@ -83,11 +83,13 @@ def test_what_goes_on_is_waited_for(clock: Clock, seed: int) -> None:
 def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
     rng = random.Random(seed)
     parts = output(rng, MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
-    some = parts[: rng.randrange(len(parts) - 1)]
-    last_s = some[-1][0] if some else 0.0
-    result, at_s = watch_parts(clock, some, RUN_TIMEOUT_S + 1)
-    assert result and result.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
-    limit_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
+    first_parts = parts[: rng.randrange(len(parts) - 1)]
+    last_s = first_parts[-1][0] if first_parts else 0.0
+    result, at_s = watch_parts(clock, first_parts, RUN_TIMEOUT_S + 1)
+    assert result and result.outcome == (
+        avrdude.BROKEN_OFF if len(first_parts) > 1 else avrdude.NOBODY
+    )
+    limit_s = SILENCE_TIMEOUT_S if len(first_parts) > 1 else NO_ANSWER_TIMEOUT_S
     assert limit_s - LOOK_S < at_s - last_s < limit_s + 2 * LOOK_S
 
 
@@ -98,8 +100,8 @@ def test_a_bootloader_that_misses_the_first_try_is_waited_for(clock: Clock, fail
         (5.0 * k, f"avrdude: stk500_getsync() attempt {k} of 10: not in sync: resp=0x00\n")
         for k in range(1, failed + 1)
     ]
-    good = output(random.Random(failed), MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
-    parts = [*tries, *((5.0 * failed + at_s, part) for at_s, part in good)]
+    good_parts = output(random.Random(failed), MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
+    parts = [*tries, *((5.0 * failed + at_s, part) for at_s, part in good_parts)]
     result, at_s = watch_parts(clock, parts, parts[-1][0] + 1)
     assert result == (WriteResult(avrdude.NOBODY) if failed > 1 else None)
     assert failed < 2 or at_s < 5.0 * 2 + 2 * LOOK_S

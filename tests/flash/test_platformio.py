@@ -139,9 +139,9 @@ def test_sketch_builds(project: Path, name: str) -> None:
     log = pio(project, "run", "-e", name).gives(0).out
     assert names_stand_in_if_used(log)
     assert "warning" not in log, log
-    used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
-    assert 0 < used["Flash"] < (FLASH_BYTES if "mega" not in name else 7 * FLASH_BYTES)
-    assert 0 < used["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
+    used_bytes = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
+    assert 0 < used_bytes["Flash"] < (FLASH_BYTES if "mega" not in name else 7 * FLASH_BYTES)
+    assert 0 < used_bytes["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
     assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
 
 

@@ -46,10 +46,10 @@ def judge(sent_line: Line, accepted: list[Frame]) -> None:
     assert judgements == sorted(set(judgements)), (
         "a frame came twice, or before one that was sent earlier"
     )
-    arrived = set(judgements)
+    arrived_numbers = set(judgements)
     for number, is_damaged in enumerate(sent_line.is_damaged):
         if not is_damaged and (number == 0 or not sent_line.is_damaged[number - 1]):
-            assert number in arrived, (
+            assert number in arrived_numbers, (
                 f"frame {number} is lost without damage to it or the one before"
             )
 
@@ -114,9 +114,9 @@ def test_python_finds_the_same_in_them(is_large: bool) -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(10_000_000, 1_000_000, "large")
-    judges = cpp_damage(given.large)
-    damaged, lines = damage_frames(judges, given.count, given.seed)
+    options = make_options(10_000_000, 1_000_000, "large")
+    judges = cpp_damage(options.large)
+    damaged, lines = damage_frames(judges, options.count, options.seed)
     for sampled in range(0, lines, SAMPLED_OF):
-        judge_in_python(judges.line(given.seed, sampled), given.large)
+        judge_in_python(judges.line(options.seed, sampled), options.large)
     print(f"{damaged} damaged frames in {lines} lines: nothing wrong")

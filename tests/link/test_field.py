@@ -177,13 +177,13 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
 CHECKS = (check_never_silent, check_no_other_program, check_both_are_heard)
 
 
-@pytest.mark.parametrize("holds", CHECKS, ids=lambda holds: holds.__name__)
-def test_a_law_of_the_wire(holds: object) -> None:
+@pytest.mark.parametrize("check_law", CHECKS, ids=lambda holds: holds.__name__)
+def test_a_law_of_the_wire(check_law: object) -> None:
     for seed in range(SEEDS):
-        holds(cpp_link(), seed)  # type: ignore[operator]
+        check_law(cpp_link(), seed)  # type: ignore[operator]
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 1_000_000)
+    options = make_options(10_000, 1_000_000)
     for check in CHECKS:
-        each_seed(partial(check, link_library()), given)
+        each_seed(partial(check, link_library()), options)

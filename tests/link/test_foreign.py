@@ -94,8 +94,14 @@ def test_noise_before_a_recording_changes_nothing(recording: Recording, noise: b
 def test_two_bytes_alone_say_nothing() -> None:
     """Neither those of an mBot nor the version of Firmata's protocol prove anything: noise contains
     them, too."""
-    for few in (b"\xff\x55", b"\xf9\x02\x05", b"\xff\x55\r", b"\xf0\x79\x02\x05\xf7", b"\r\n"):
-        assert identify_stranger(few) is None
+    for short_data in (
+        b"\xff\x55",
+        b"\xf9\x02\x05",
+        b"\xff\x55\r",
+        b"\xf0\x79\x02\x05\xf7",
+        b"\r\n",
+    ):
+        assert identify_stranger(short_data) is None
 
 
 def test_the_two_that_send_high_bytes_are_told_apart() -> None:

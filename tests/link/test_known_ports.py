@@ -20,8 +20,10 @@ for number in range({PORTS}):
 
 
 def test_commands_at_once_lose_no_port() -> None:
-    running = [subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)]
-    assert [process.wait() for process in running] == [0] * COMMANDS
+    processes = [
+        subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)
+    ]
+    assert [process.wait() for process in processes] == [0] * COMMANDS
     assert len(known_ports.remembered_ports().name_by_port) == COMMANDS * PORTS
 
 

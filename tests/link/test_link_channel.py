@@ -88,10 +88,10 @@ def test_undos_over_a_bad_radio() -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 1_000_000, "large", "undos", "pieces")
+    options = make_options(10_000, 1_000_000, "large", "undos", "pieces")
     one = (
         one_undo
-        if given.undos
-        else partial(run_upload_scenario, world_of=Split if given.pieces else World)
+        if options.undos
+        else partial(run_upload_scenario, world_of=Split if options.pieces else World)
     )
-    each_seed(partial(one, link_library(given.large)), given)
+    each_seed(partial(one, link_library(options.large)), options)

@@ -49,11 +49,13 @@ def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
             status = request.outcome.status
             times = Counter(row for row in world.did if row.startswith("TAKE"))
             image = pack("SI", 0, line_of(number))
-            mine = times[f"TAKE live {unpack(image).checksum:08x}"]
-            assert mine == 1 if status == 0 else mine <= 1, f"seed {seed}, line {number}: {mine}"
+            take_count = times[f"TAKE live {unpack(image).checksum:08x}"]
+            assert take_count == 1 if status == 0 else take_count <= 1, (
+                f"seed {seed}, line {number}: {take_count}"
+            )
             assert set(times.values()) <= {1}, f"seed {seed}: an earlier line again, {number}"
-            starts = sum(row.startswith("START") for row in world.did)
-            assert starts == len(times), f"seed {seed}, line {number}: {starts} starts"
+            start_count = sum(row.startswith("START") for row in world.did)
+            assert start_count == len(times), f"seed {seed}, line {number}: {start_count} starts"
             counts[OUTCOMES.get(status) or name_of(status)] += 1
             counts["sent again"] += world.sent > 1
             if status != 0:
@@ -75,5 +77,5 @@ def test_live_lines_over_a_bad_radio() -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(100_000, 1_000_000)
-    print(send_live_lines(link_library(), given.count, given.seed))
+    options = make_options(100_000, 1_000_000)
+    print(send_live_lines(link_library(), options.count, options.seed))

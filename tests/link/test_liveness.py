@@ -151,10 +151,10 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
             polled_when_due(session, robot.now_ms)
             robot.wait(50)
         if rng.random() < 0.5:
-            fresh = HostFirmware(TINIBOT, robot.memory(), seed=rng.getrandbits(32) | 1)
-            fresh.now_ms = robot.now_ms
-            fresh.wait(200)
-            robot = fresh
+            new_robot = HostFirmware(TINIBOT, robot.memory(), seed=rng.getrandbits(32) | 1)
+            new_robot.now_ms = robot.now_ms
+            new_robot.wait(200)
+            robot = new_robot
         limit_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
         for request in pending_requests:
             finish_request(session, robot, line, request, limit_ms)

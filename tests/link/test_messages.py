@@ -71,7 +71,7 @@ def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> Non
 
 def test_every_payload_fits_a_frame() -> None:
     """It fits a small one; a payload that fills a frame can fill a large one, too."""
-    large = payload_bytes(LARGE_FRAME)
+    large_bytes = payload_bytes(LARGE_FRAME)
     for message in MESSAGES:
         for fields, size_before in (
             (message.request, 0),
@@ -79,9 +79,9 @@ def test_every_payload_fits_a_frame() -> None:
         ):
             fills = any(field.fills_frame for field in fields)
             max_bytes = size_before + sizes(fields)[1]
-            assert max_bytes == large if fills else max_bytes <= PAYLOAD_BYTES, message.name
+            assert max_bytes == large_bytes if fills else max_bytes <= PAYLOAD_BYTES, message.name
     assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55
-    assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)
+    assert (large_bytes - MODE_BYTES, large_bytes - OFFSET_BYTES) == (241, 240)
 
 
 @each_row("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))

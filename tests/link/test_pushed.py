@@ -34,16 +34,16 @@ class Waits:
 
 
 def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Waits]:
-    port, waits = PushedTransport(), Waits()
-    monkeypatch.setattr(port, "_bell", waits)
-    waits.port = port
-    return port, waits
+    port, bell = PushedTransport(), Waits()
+    monkeypatch.setattr(port, "_bell", bell)
+    bell.port = port
+    return port, bell
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     rng = random.Random(seed)
-    port, waits = port_and_waits(monkeypatch)
+    port, bell = port_and_waits(monkeypatch)
     unread, is_cancelled, failure = b"", False, ""
     for _ in range(200):
         action = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
@@ -62,18 +62,18 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
         else:
             size = rng.choice((1, 20, 4096))
             late_bytes = rng.randbytes(5) if action == "while it waits" else b""
-            waits.then = [late_bytes] if late_bytes else []
+            bell.then = [late_bytes] if late_bytes else []
             has_to_wait = not (unread or is_cancelled or failure)
             if has_to_wait:
                 unread += late_bytes
-            count_before = waits.count
+            count_before = bell.count
             if failure and not unread:
                 with pytest.raises(OSError, match=failure):
                     port.read(size)
             else:
                 assert port.read(size) == unread[:size]
             unread = unread[size:]
-            assert waits.count - count_before == has_to_wait, "it waits once, or not at all"
+            assert bell.count - count_before == has_to_wait, "it waits once, or not at all"
             is_cancelled = False
         assert port.in_waiting == len(unread)
 

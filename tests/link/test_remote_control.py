@@ -84,8 +84,10 @@ class Hand:
             sent_bytes = robot.step(b"" if data and self.loses() else data)
             if sent_bytes and not self.loses():
                 session.receive(sent_bytes, robot.now_ms)
-        over = [request.outcome.status for request in self._requests if request.outcome is not None]
-        self.outcomes += over
+        statuses = [
+            request.outcome.status for request in self._requests if request.outcome is not None
+        ]
+        self.outcomes += statuses
         self._requests = [
             pending_request for pending_request in self._requests if pending_request.outcome is None
         ]
@@ -555,12 +557,12 @@ def test_a_word_that_comes_twice_counts_once() -> None:
     assert wire.robot.remote() == RELEASED
 
 
-@pytest.mark.parametrize("cut", range(1, 14))
-def test_a_word_in_two_reads_and_at_9600_baud(cut: int) -> None:
+@pytest.mark.parametrize("split", range(1, 14))
+def test_a_word_in_two_reads_and_at_9600_baud(split: int) -> None:
     wire = Wire()
     word = wire.keys(remote_state_of(["B"], -100, 100))
-    wire.robot.wait(30, word[:cut])
-    wire.robot.wait(30, word[cut:])
+    wire.robot.wait(30, word[:split])
+    wire.robot.wait(30, word[split:])
     assert wire.robot.remote() == remote_readings(remote_state_of(["B"], -100, 100))
     slow = wire.keys(KEY_LEFT)
     wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)

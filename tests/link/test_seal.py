@@ -109,9 +109,9 @@ def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> 
         frame, counter = random_frame(chance, True), counters(chance)
         marked, sent = whole_frame(frame._replace(is_sealed=True)), sealed_by_hand(frame, counter)
         assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
-        mine = seal(heard_counter=counter - 1)
-        assert mine.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
-        assert mine.open_frame(frame_of(sent)) is None  # once
+        robot_seal = seal(heard_counter=counter - 1)
+        assert robot_seal.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
+        assert robot_seal.open_frame(frame_of(sent)) is None  # once
         assert seal(heard_counter=counter).open_frame(frame_of(sent)) is None
 
 
@@ -149,12 +149,12 @@ def test_another_origin_is_another_key() -> None:
 
 
 def test_a_counter_at_its_end_seals_nothing_more() -> None:
-    mine = seal(sent_counter=LAST_COUNTER - 1)
-    assert not mine.is_spent
-    mine.seal_frame(Frame(2, 1, 1))
-    assert mine.is_spent
+    full_seal = seal(sent_counter=LAST_COUNTER - 1)
+    assert not full_seal.is_spent
+    full_seal.seal_frame(Frame(2, 1, 1))
+    assert full_seal.is_spent
     with pytest.raises(AssertionError):
-        mine.seal_frame(Frame(2, 1, 1))
+        full_seal.seal_frame(Frame(2, 1, 1))
     marked = whole_frame(Frame(2, 1, 1, is_reply=True, is_sealed=True))
     assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
     assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""

@@ -198,6 +198,6 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 1, "large")
-    robot = link_library(given.large)
-    each_seed(lambda seed: run_upload_scenario(robot, seed, SealedWorld), given)
+    options = make_options(10_000, 1, "large")
+    robot = link_library(options.large)
+    each_seed(lambda seed: run_upload_scenario(robot, seed, SealedWorld), options)

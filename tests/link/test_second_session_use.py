@@ -111,10 +111,10 @@ def restart(rng: random.Random, wire: Wire) -> None:
     """
     epoch = wire.session._epoch + 128 & 0xFF
     seed = (rng.getrandbits(24) | 1) << 8 | epoch
-    fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
-    fresh.now_ms = wire.robot.now_ms
-    fresh.wait(200)
-    wire.robot = fresh
+    new_robot = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
+    new_robot.now_ms = wire.robot.now_ms
+    new_robot.wait(200)
+    wire.robot = new_robot
 
 
 def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
@@ -167,18 +167,18 @@ def ends_are_told_once(events: list[Event]) -> bool:
 
 
 def check(seed: int) -> str:
-    used, other_use = first_use(random.Random(seed)), first_use(random.Random(seed))
-    for wire in (used, other_use):
+    used_wire, other_use = first_use(random.Random(seed)), first_use(random.Random(seed))
+    for wire in (used_wire, other_use):
         wire.robot.talk(wire.session, QUIET_MS)
         if not wire.robot.is_latched:  # detached programs continue
             wire.session.stop(wire.robot.now_ms)
             wire.robot.talk(wire.session, 300)
-    events = used.session.events()
+    events = used_wire.session.events()
     assert ends_are_told_once(events), f"seed {seed} {events}"
     session = computer(77)
     session.tells_starts = True
     assert other_use.robot.until(session, session.hello()) == OK
-    actual = second_use(random.Random(seed), used.session, used.robot)
+    actual = second_use(random.Random(seed), used_wire.session, used_wire.robot)
     wanted_use = second_use(random.Random(seed), session, other_use.robot)
     assert actual.what == wanted_use.what, f"seed {seed}\n{actual.what}\nnot\n{wanted_use.what}"
     delays_ms = [a - b for a, b in zip(actual.took_ms, wanted_use.took_ms, strict=True)]

@@ -144,10 +144,10 @@ def test_a_stop_cuts_everything_short() -> None:
 def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_seconds() -> None:
     session = greet()
     session.stop(0)
-    early = session.ping()
+    early_request = session.ping()
     assert len(list_packets(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
     assert [event.name for event in session.events()] == ["LOST"]
-    assert early.outcome and early.outcome.status == LOST
+    assert early_request.outcome and early_request.outcome.status == LOST
     late_request = session.ping()
     data = session.poll(CONFIRM_MS + 1)
     session.receive(answer(data, {"state": 0, "run": 0}), CONFIRM_MS + 2)
@@ -223,12 +223,15 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
     """The frame that does it is under way. Requests that were not sent, or were refused, have no
     effect."""
     session = greet()
-    live_request, waits = session.live(FORWARD), session.start()
+    live_request, start_request = session.live(FORWARD), session.start()
     session.poll(0)
     session.stop(5)
-    assert [reason_of(NO_CONNECTION, it.outcome) for it in (live_request, waits) if it.outcome] == [
-        "stopped_midway", "stopped_elsewhere",
-    ]  # fmt: skip
+    assert [
+        reason_of(NO_CONNECTION, it.outcome) for it in (live_request, start_request) if it.outcome
+    ] == [
+        "stopped_midway",
+        "stopped_elsewhere",
+    ]
     for is_cleared in (False, True):  # the latch has to be released before the program
         session = greet()
         session.receive(event("STOPPED", 0, {"cause": 3}), 0)
@@ -417,18 +420,18 @@ def upload_image(image: Image, kit: int | None, is_refused: int = 0) -> tuple[li
 
 def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> None:
     """A frame alone does not name the devices: the robot compares them."""
-    free, used = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
-    later = unpack(pack("SI", 0, FORWARD, b"later"))
+    portable, bound = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
+    extended = unpack(pack("SI", 0, FORWARD, b"later"))
     in_pieces = ["BEGIN", "DATA", "COMMIT"]
     for image, kit, expected in (
-        (free, KIT ^ 1, ["PROGRAM"]), (used, KIT, ["PROGRAM"]), (used, None, ["PROGRAM"]),
-        (used, KIT ^ 1, in_pieces), (used, 0, in_pieces), (later, KIT, in_pieces),
+        (portable, KIT ^ 1, ["PROGRAM"]), (bound, KIT, ["PROGRAM"]), (bound, None, ["PROGRAM"]),
+        (bound, KIT ^ 1, in_pieces), (bound, 0, in_pieces), (extended, KIT, in_pieces),
     ):  # fmt: skip
         names, request = upload_image(image, kit)
         assert names == expected
         assert request.outcome and request.outcome.status == 0
     for refused_status in (STATUSES["WRONG_KIT"], RULES["NO_SUCH_DEVICE"][0]):
-        _, request = upload_image(used, KIT ^ 1, refused_status)
+        _, request = upload_image(bound, KIT ^ 1, refused_status)
         assert request.outcome and request.outcome.status == STATUSES["WRONG_KIT"]
 
 
@@ -586,8 +589,8 @@ def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it(
     session = Session(1, kit=KIT)
     forever = compile_text("F(200, 80)", ROBOT.kit).code
     assert robot.until(session, session.live(forever)) == 0
-    shows = unpack(compile_text("SHOW(1)", ROBOT.kit).image or b"")
-    assert robot.until(session, session.upload(shows, runs=False, saves=False)) == 0
+    show_program = unpack(compile_text("SHOW(1)", ROBOT.kit).image or b"")
+    assert robot.until(session, session.upload(show_program, runs=False, saves=False)) == 0
     assert session.events() == [DoneEvent(1)]
     assert not session.is_running
     robot.talk(session, 100, flags=1)

@@ -38,8 +38,8 @@ def new_session(run: int = 5, features: int = PLACES) -> Session:
     return session
 
 
-def events_after(session: Session, *arrived: bytes, now_ms: int = 10) -> list[Event]:
-    session.receive(b"".join(arrived), now_ms)
+def events_after(session: Session, *frames: bytes, now_ms: int = 10) -> list[Event]:
+    session.receive(b"".join(frames), now_ms)
     return session.events()
 
 
@@ -70,8 +70,8 @@ def test_what_an_older_robot_shows_has_no_place() -> None:
 @pytest.mark.parametrize("place", [b"\5", b"\5\2"])
 def test_a_truncated_place_is_ignored(place: bytes) -> None:
     session = new_session()
-    cut = event("SHOW", 1, {"value": 1500, "is_yes_no": 0, "place": place}, EPOCH)
-    assert events_after(session, cut) == [make_shown_event()]
+    truncated_event = event("SHOW", 1, {"value": 1500, "is_yes_no": 0, "place": place}, EPOCH)
+    assert events_after(session, truncated_event) == [make_shown_event()]
 
 
 def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> None:

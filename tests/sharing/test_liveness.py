@@ -89,8 +89,8 @@ def listen_until_lost(line: SharedConnection, holder: Holder, seconds: float) ->
     while holder.now_s - began_s < seconds:
         try:
             line.event(POLL_INTERVAL_S)
-        except ConnectionLost as over:
-            assert over.is_server
+        except ConnectionLost as caught:
+            assert caught.is_server
             break
     return holder.now_s - began_s
 
@@ -152,9 +152,9 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
     rng = random.Random(seed)
     holder = Holder(lambda: 0.0)
     line = open_shared_connection(monkeypatch, holder)
-    asked: list[tuple[int, PendingRequest[Any], str]] = []
+    requests: list[tuple[int, PendingRequest[Any], str]] = []
     events: list[int] = []
-    told: list[int] = []
+    progress_values: list[int] = []
     number, name = 0, ""
 
     def listen(seconds: float) -> None:
@@ -174,17 +174,17 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
                 else ClientRequest("hello", HelloReply)
             )
             request: PendingRequest[Any] = line.begin(lambda _: message)  # noqa: B023 - at once
-            asked.append((number, request, new_name))
+            requests.append((number, request, new_name))
         elif action == "event":
             holder.says({**SHOWN, "ms": k}, 0)
-            told.append(k)
-        elif asked and action == "progress":
-            answered, request, _ = rng.choice(asked)
+            progress_values.append(k)
+        elif requests and action == "progress":
+            answered, request, _ = rng.choice(requests)
             holder.says({"id": answered, "done_bytes": k}, 0)
             listen(POLL_INTERVAL_S)
             assert request.done_bytes == k and request.outcome is None
-        elif asked:
-            answered, request, new_name = asked.pop(rng.randrange(len(asked)))
+        elif requests:
+            answered, request, new_name = requests.pop(rng.randrange(len(requests)))
             state = {"heard": k, "came": f"{k:02x}", "is_echoed": k % 2 == 0, "boot": k // 2}
             status = rng.choice((OK, OK, 72))
             values = {} if new_name or status != OK else HELLO_VALUES
@@ -202,14 +202,14 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
                 name = new_name or "TINI"
             assert (line.robot.name if line.robot else "") == name
     listen(1.0)
-    assert events == told
+    assert events == progress_values
     holder.says({**SHOWN, "ms": 99}, 0)
     is_port_lost = seed % 2 == 0
     holder.says({"over": "gone" if is_port_lost else "ended", "why": "the cable"}, 0)
     with suppress(ConnectionLost):
         listen(POLL_INTERVAL_S)
     holder.is_gone = True
-    assert events == [*told, 99]
+    assert events == [*progress_values, 99]
     for check in (
         lambda: line.event(0),
         lambda: line.wait(line.begin(lambda requests: requests.status())),

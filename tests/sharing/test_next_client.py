@@ -317,7 +317,7 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
     with desk(monkeypatch) as made_desk:
         owner: Client | str = ""
         verbs: dict[Client, str] = {}
-        told: list[tuple[str, str]] = []
+        posted: list[tuple[str, str]] = []
         for _ in range(40):
             client = rng.choice([*verbs]) if verbs else None
             end_kind = rng.choice(
@@ -327,7 +327,7 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
                 verb = rng.choice(("upload", "live", "monitor", protocol.LOOKING_VERB))
                 client = made_desk.join(verb)
                 verbs[client] = verb
-                told += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
+                posted += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
             elif end_kind == "starts":
                 is_detached = rng.random() < 0.2
                 client.asks("upload", **upload("SI|F(60, 50)", is_detached))
@@ -340,11 +340,13 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
             else:
                 verb = verbs.pop(client)
                 END_ACTIONS[end_kind](rng, client)
-                told += [("LEFT", verb)] * (end_kind == "leaves" and verb != protocol.LOOKING_VERB)
+                posted += [("LEFT", verb)] * (
+                    end_kind == "leaves" and verb != protocol.LOOKING_VERB
+                )
                 owner = "" if owner is client else owner
             made_desk.steps(1600 if end_kind == "is silent" else 300)
             assert made_desk.line.session.is_running == (owner != ""), end_kind
-            assert made_desk.line.posted == told, end_kind
+            assert made_desk.line.posted == posted, end_kind
 
 
 DROPPED: dict[str, Event] = {

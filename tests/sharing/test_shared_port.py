@@ -351,8 +351,8 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
 def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Command) -> None:
     command = start_endless_upload(pty_robot)
     pty_robot.pull()
-    for running in (command, link):
-        running.wait_for_result().gives(3, "is gone")
+    for held_command in (command, link):
+        held_command.wait_for_result().gives(3, "is gone")
 
 
 def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:

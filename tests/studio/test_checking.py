@@ -226,13 +226,13 @@ def mistakes(messages: list[Message]) -> int:
 
 def changed_by(text: str, changes: tuple[checking.Change, ...]) -> str:
     """Return a text after changes, whose places are lines and columns."""
-    starts = [0]
+    line_starts = [0]
     for k, character in enumerate(text):
         if character == "\n":
-            starts.append(k + 1)
+            line_starts.append(k + 1)
 
     def offset(line: int, column: int) -> int:
-        return starts[line - 1] + column - 1 if line <= len(starts) else len(text)
+        return line_starts[line - 1] + column - 1 if line <= len(line_starts) else len(text)
 
     for change in sorted(changes, reverse=True):
         start, end = offset(change.line, change.column), offset(change.end_line, change.end_column)

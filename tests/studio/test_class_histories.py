@@ -262,14 +262,15 @@ class History:
         kept_state = json.loads(json.dumps(self.room.made.state_to_keep()))
         room_after = Room(0)
         assert room_after.made.resume(kept_state) == len(state["pupils"])
-        resumed = room_after.teaches("class")
+        resumed_class = room_after.teaches("class")
         for name in ("code", "turn_s", "places"):
-            assert resumed[name] == state[name], name
+            assert resumed_class[name] == state[name], name
         states = [
-            [(row["name"], *row["lessons"]) for row in work["pupils"]] for work in (resumed, state)
+            [(row["name"], *row["lessons"]) for row in work["pupils"]]
+            for work in (resumed_class, state)
         ]
         assert states[0] == states[1]
-        assert [row["port"] for row in resumed["robots"]] == [
+        assert [row["port"] for row in resumed_class["robots"]] == [
             row["port"] for row in state["robots"]
         ]
         works = [
@@ -278,7 +279,7 @@ class History:
         ]
         assert works[0] == works[1]
         whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
-                for work in (resumed, state)]  # fmt: skip
+                for work in (resumed_class, state)]  # fmt: skip
         assert whom[0] == whom[1], "what was given is given to nobody"
 
 
@@ -311,7 +312,7 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         assert anew["code"] != code and all(
             robot.has_ended for robot in driven_fake_robots if robot
         )
-        fresh = Room(0).teaches("class")
+        new_class = Room(0).teaches("class")
         settings = {
             "code": anew["code"],
             "turn_s": old_settings["turn_s"],
@@ -319,7 +320,7 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
         }
         ports = [{**robot, "pupil": "", "left_s": 0} for robot in old_settings["robots"]]
         name_by_port = {robot["port"]: robot["name"] for robot in anew["robots"]}
-        assert anew == fresh | settings | {
+        assert anew == new_class | settings | {
             "robots": [{**port, "name": name_by_port[port["port"]]} for port in ports]
         }
         assert room.teaches("class_work")["pupils"] == []

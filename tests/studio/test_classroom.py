@@ -87,12 +87,12 @@ def test_whoever_leaves_in_whatever_way_is_followed_within_three_seconds() -> No
     robot that a page has left before it answered is as good as before."""
     asleep: list[FakeRobot] = []
 
-    def wait_until_place_is_free(leaves: Callable[[Room, str], None]) -> float:
+    def wait_until_place_is_free(leave_room: Callable[[Room, str], None]) -> float:
         room = Room()
         ana, luz = room.joins("Ana"), room.joins("Luz")
         room.checks_in(ana, True)
         room.checks_in(luz, True)
-        leaves(room, ana)
+        leave_room(room, ana)
         began_s = room.now_s
         while room.checks_in(luz)["place"] != 0:
             room.now_s += 0.3  # about the interval of the next page's requests
@@ -197,19 +197,19 @@ def test_what_only_the_teacher_may_ask(action: object) -> None:
 
 
 @pytest.mark.parametrize(
-    "asked",
+    "message",
     [{"do": "claim"}, {"do": "disown"}, {"do": "name", "name": "X"}, {"do": "trim", "trim": {}},
      {"do": "undo"}, {}, 5, {"do": ["hello"]}],
     ids=str,
 )  # fmt: skip
-def test_a_robot_stays_the_teachers(asked: object) -> None:
+def test_a_robot_stays_the_teachers(message: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     room.checks_in(eve, True)
     room.connects(eve)
     with pytest.raises(BadRequest):
         room.made.answer(
-            eve, PUPIL_ADDRESS, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]}
+            eve, PUPIL_ADDRESS, {"do": "beat", "asked": [{"do": "hello", "id": 1}, message]}
         )
     assert [request["do"] for request in room.hosting.asked] == ["connect"]
 
@@ -471,9 +471,9 @@ def test_a_class_goes_on_with_its_turns_unless_others_are_given(given_s: int | N
     room = Room()
     room.teaches("class_turn", seconds=300)
     state = json.loads(json.dumps(room.made.state_to_keep()))
-    resumed = classroom.Classroom(FakeHosting(), [], given_s)  # type: ignore[arg-type]
-    resumed.resume(state)
-    assert resumed.teach({"do": "class"})["turn_s"] == (given_s or 300)
+    resumed_room = classroom.Classroom(FakeHosting(), [], given_s)  # type: ignore[arg-type]
+    resumed_room.resume(state)
+    assert resumed_room.teach({"do": "class"})["turn_s"] == (given_s or 300)
 
 
 def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
@@ -663,16 +663,27 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
     keeper.keep(room.made.state_to_keep())
     class_data = json.loads(kept_at.read_text())
     row = class_data["pupils"][0]
-    bad = [5, {**row, "token": "x"}, {**row, "name": " "}, {**row, "address": 5}, {"name": "Eve"}]
-    damaged = {**class_data, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
+    bad_pupils = [
+        5,
+        {**row, "token": "x"},
+        {**row, "name": " "},
+        {**row, "address": 5},
+        {"name": "Eve"},
+    ]
+    damaged = {
+        **class_data,
+        "pupils": [*bad_pupils, row],
+        "kept": [5, {"name": "Eve"}],
+        "robots": [5, ""],
+    }
     odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
     kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
     assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
     assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
-    many = [{**row, "token": f"{k:032x}"} for k in range(99)]
-    kept_at.write_text(json.dumps({**class_data, "pupils": many, "kept": many}))
+    many_pupils = [{**row, "token": f"{k:032x}"} for k in range(99)]
+    kept_at.write_text(json.dumps({**class_data, "pupils": many_pupils, "kept": many_pupils}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == class_keeping.MOST_PUPILS
     works = len(room_after.teaches("class_work")["pupils"])
@@ -760,9 +771,9 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
 
     with monkeypatch.context() as patched:
         patched.setattr(os, "open", fail_full_disk)
-        early, late_keeper = Keeper(), Keeper()
-    with closing(early), closing(late_keeper):
-        early.keep(room.made.state_to_keep())
+        early_keeper, late_keeper = Keeper(), Keeper()
+    with closing(early_keeper), closing(late_keeper):
+        early_keeper.keep(room.made.state_to_keep())
         assert kept_at.exists()
         late_keeper.keep(None)
         assert kept_at.exists()
@@ -825,8 +836,8 @@ def test_a_new_code_and_another_turn() -> None:
             room.teaches("class_turn", seconds=seconds)
 
 
-@pytest.mark.parametrize(("erases", "over"), [(True, "erased"), (False, "kept")])
-def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
+@pytest.mark.parametrize(("erases", "end_reason"), [(True, "erased"), (False, "kept")])
+def test_the_end_reaches_every_page(erases: bool, end_reason: str) -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -836,9 +847,9 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     assert robot.leave_reason == "turn_over"
     room.made.tend()
     assert not room.made.has_ended
-    assert room.checks_in(ana) == {"over": over}
+    assert room.checks_in(ana) == {"over": end_reason}
     assert not room.made.has_ended
-    assert room.checks_in(luz, True) == {"over": over}
+    assert room.checks_in(luz, True) == {"over": end_reason}
     assert room.made.has_ended
     assert [robot["pupil"] for robot in room.teaches("class")["robots"]] == [""]
     late_request = {"do": "join", "code": room.made.code, "name": "Teo"}
@@ -912,16 +923,16 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
     chance, room = Random(seed), Room()
     tokens = [room.joins(name) for name in ("Ana", "Ben", "Eve")]
     works, hands = dict.fromkeys(tokens, ""), list[str]()
-    seen = room.teaches("class")["pupils"]
+    views = room.teaches("class")["pupils"]
     for _ in range(60):
         token, text = chance.choice(tokens), chance.choice(("", "F(1)", "F(2)"))
         is_up = chance.random() < 0.7
         room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
-        for pupil_token, old_view, new_view in zip(tokens, seen, pupils, strict=True):
+        for pupil_token, old_view, new_view in zip(tokens, views, pupils, strict=True):
             is_other = pupil_token == token and works[pupil_token] != text
             assert (new_view["version"] != old_view["version"]) == is_other
-        seen, works[token] = pupils, text
+        views, works[token] = pupils, text
         hands = [pupil_token for pupil_token in hands if pupil_token != token or is_up]
         hands += [token] * (is_up and token not in hands)
         raised_hands = [pupil for pupil in pupils if pupil["hand"]]

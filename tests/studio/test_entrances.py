@@ -91,9 +91,13 @@ def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
 def test_the_code_of_a_browser_is_valid_for_a_while(peer: socket.socket) -> None:
     clock = Clock()
     doors = Entrances(clock)
-    early, late_code, printed_text = doors.new_code(True), doors.new_code(True), doors.new_code()
+    early_code, late_code, printed_text = (
+        doors.new_code(True),
+        doors.new_code(True),
+        doors.new_code(),
+    )
     clock.now_s = OPEN_TIMEOUT_S
-    assert doors.token_for(early, peer) == doors.token
+    assert doors.token_for(early_code, peer) == doors.token
     clock.now_s = OPEN_TIMEOUT_S + 1
     assert doors.token_for(late_code, peer) == ""
     assert doors.token_for(printed_text, peer) == doors.token

@@ -46,7 +46,7 @@ def image(board: str, size: int = 70_001) -> bytes:
 def flash(board: str, firmware: bytes, **options: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
     case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **options}
-    lines = in_node(TEST_FOLDER / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
+    lines = in_node(TEST_FOLDER / "flash_esp32_in_node.mjs", str(ROM), input_text=json.dumps(case))
     outcome: dict[str, Any] = json.loads(lines[-1])
     assert outcome["sums"]
     assert not outcome["is_open"]  # the next one can have the port

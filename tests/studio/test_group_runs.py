@@ -185,10 +185,10 @@ def begin_and_end_by_turns(page: Page) -> bool:
     return True
 
 
-def is_part(some: list[str], all_of_them: list[str]) -> bool:
+def is_part(texts: list[str], all_of_them: list[str]) -> bool:
     """Return whether they are a subsequence."""
     rest = iter(all_of_them)
-    return all(text in rest for text in some)
+    return all(text in rest for text in texts)
 
 
 def count_missed_values(page: Page) -> int:

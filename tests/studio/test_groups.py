@@ -325,14 +325,14 @@ def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
     ana.page.type((text + TEXT).split("\n"), 0)
     ana.page.flush()
     assert not ana.page.pending_changes  # the page itself makes no program that is too long
-    large = {
+    large_change = {
         "uid": f"{ana.page.name}:{ana.page.change_count + 1}",
         "ops": [
             {"do": "insert", "at": ["root", ""], "nodes": [{"id": "m1.9", "text": "S", "x": text}]}
         ],
     }
-    answer = ana.asks("group", **ana.request(changes=[large]))
-    assert answer["refused"][-1] == [large["uid"], "too_long"]
+    answer = ana.asks("group", **ana.request(changes=[large_change]))
+    assert answer["refused"][-1] == [large_change["uid"], "too_long"]
 
 
 def test_nobody_sends_as_another_page(school: School) -> None:
@@ -395,11 +395,11 @@ def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
     ana.types("80", "95")
     ana.sends()
     luz.types("B(1", "B(7")  # text not sent yet
-    [seen] = school.teaches("class")["groups"]
-    text_before = school.teaches("class_text", group=seen["key"])
+    [group] = school.teaches("class")["groups"]
+    text_before = school.teaches("class_text", group=group["key"])
     for _ in range(2):
         school.crashes()
-        assert school.teaches("class_text", group=seen["key"]) == text_before
+        assert school.teaches("class_text", group=group["key"]) == text_before
     luz.sends()
     ana.sends()
     assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
@@ -669,12 +669,12 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
         if deed == "connect":
             if turn.pupil.token != member.token:
                 request = {"do": "connect", "page": "x", "port": "y"}
-                early = {
+                early_request = {
                     **request,
                     "saw_stops": turn.stop_number - 1,
                 }  # the button was pressed before a STOP
                 refusal = {"failure": "stopped_elsewhere"}
-                assert school.made.answer(member.token, PUPIL_ADDRESS, early) == refusal
+                assert school.made.answer(member.token, PUPIL_ADDRESS, early_request) == refusal
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
                 assert robot.leave_reason == "group_other"  # leaving stops its run

@@ -80,25 +80,25 @@ def test_a_program_that_was_held_does_the_same(
 ) -> None:
     """The events and times are the same, with steps and at 1,000 breakpoints."""
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
-    plain = Simulation(robot, worlds.load(world), result.image)
-    plain.advance(2500)
-    wanted_events = plain.robot.take_events()
+    plain_simulation = Simulation(robot, worlds.load(world), result.image)
+    plain_simulation.advance(2500)
+    wanted_events = plain_simulation.robot.take_events()
     parts = tuple(place.offset for place in result.places)
     marks = Marks(
         parts, (*parts, *range(1000)) if mode == "breakpoints" else (), 0, mode == "steps"
     )
     held_simulation = Simulation(robot, worlds.load(world), result.image, marks)
     pauses = 0
-    while held_simulation.robot.now_ms < plain.robot.now_ms:
+    while held_simulation.robot.now_ms < plain_simulation.robot.now_ms:
         if mode == "steps":
-            held_simulation.step(plain.robot.now_ms - held_simulation.robot.now_ms)
+            held_simulation.step(plain_simulation.robot.now_ms - held_simulation.robot.now_ms)
         else:
             held_simulation.go_on()
-            held_simulation.advance(plain.robot.now_ms - held_simulation.robot.now_ms)
+            held_simulation.advance(plain_simulation.robot.now_ms - held_simulation.robot.now_ms)
         pauses += held_simulation.held_at is not None
     assert pauses > 5
     assert held_simulation.robot.take_events() == wanted_events
-    assert held_simulation.robot.pose == plain.robot.pose
+    assert held_simulation.robot.pose == plain_simulation.robot.pose
 
 
 def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:

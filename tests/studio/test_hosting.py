@@ -214,12 +214,12 @@ def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None
     assert not robot.moves
 
 
-@pytest.mark.parametrize("leaves", [True, False], ids=["page", "server"])
+@pytest.mark.parametrize("page_leaves", [True, False], ids=["page", "server"])
 def test_the_end_of_a_page_and_of_the_server_stops_robots(
-    hosting: Hosting, page: Page, robot: PtyRobot, leaves: bool
+    hosting: Hosting, page: Page, robot: PtyRobot, page_leaves: bool
 ) -> None:
     start_drive(page, robot)
-    if leaves:
+    if page_leaves:
         page.beat(action="leave")
         robot.until(lambda: not robot.moves, "it stands")
     else:
@@ -344,12 +344,12 @@ def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
     for port in ("/dev/nothing", "socket://127.0.0.1:1", "no such port"):
         other_page = Page(hosting, port)
         other_page.connect(port)
-        over = other_page.until(lambda item: "over" in item)
-        assert over["over"].startswith("port_") and port in over["said"]
+        over_item = other_page.until(lambda item: "over" in item)
+        assert over_item["over"].startswith("port_") and port in over_item["said"]
     page.upload(FOREVER)
     robot.pull()
-    over = page.until(lambda item: "over" in item)
-    assert over["over"] == "port_gone" and "cable" in over["said"]
+    over_item = page.until(lambda item: "over" in item)
+    assert over_item["over"] == "port_gone" and "cable" in over_item["said"]
 
 
 def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:

@@ -93,13 +93,13 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
 
 def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
     """No one else presses keys."""
-    drives = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
-    answer, judged_run = judge(18, drives)
+    drive_program = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
+    answer, judged_run = judge(18, drive_program)
     assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]
     state = judged_run.state()
     assert state["pose"][0] > 170, "it went forward"
     assert (state["now_ms"] - state["began_ms"]) == 5100
-    image = check(drives.encode(), "tinibot", "en").image
+    image = check(drive_program.encode(), "tinibot", "en").image
     judged_run = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
     for _ in range(9):
         judged_run.press(1, 0, 100)

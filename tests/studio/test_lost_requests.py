@@ -221,10 +221,20 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
 def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
     stepped_hosting: Hosting, runs: bool
 ) -> None:
-    def send_request(action: str, connection: int, *asked: Json, **fields: object) -> None:
-        stepped_hosting.answer({"do": action, "page": "me", "connection": connection, "port": "p",
-                                "seen": 0, "robot": "tinibot", "language": "en", "asked": [*asked],
-                        **fields})  # fmt: skip
+    def send_request(action: str, connection: int, *requests: Json, **fields: object) -> None:
+        stepped_hosting.answer(
+            {
+                "do": action,
+                "page": "me",
+                "connection": connection,
+                "port": "p",
+                "seen": 0,
+                "robot": "tinibot",
+                "language": "en",
+                "asked": [*requests],
+                **fields,
+            }
+        )
         cast(SteppedRobot, stepped_hosting.robot_of("me")).step()
 
     send_request("connect", 1)

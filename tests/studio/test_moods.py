@@ -22,7 +22,7 @@ Face = dict[str, Any]
 
 def faces(*runs: list[State]) -> list[tuple[list[Face], list[Face]]]:
     """Return the robot's faces in each state of its runs, and when looking back."""
-    rows = json.loads(in_node(SCRIPT, given=json.dumps(runs))[0])
+    rows = json.loads(in_node(SCRIPT, input_text=json.dumps(runs))[0])
     return [(face["seen"], face["again"]) for face in rows]
 
 

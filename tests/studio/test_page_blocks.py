@@ -60,7 +60,7 @@ from tools.builds.studio import BLOCKLY, unusable_reason
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-few = pytest.mark.sampled(of="details of blocks", keep=4)
+sampled = pytest.mark.sampled(of="details of blocks", keep=4)
 
 SAMPLE_SIZE = 8  # random programs
 # Whether a text field handles the undo key itself.
@@ -174,7 +174,7 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
-@few
+@sampled
 def test_an_undo_keeps_the_place(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
     long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
@@ -205,10 +205,10 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
         assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
         page.keyboard.press("Control+y")
         wait_for_text(page, "\n".join(new_lines) + "\n")
-    high = box_of(block(page, "forward"))["height"]
+    block_height = box_of(block(page, "forward"))["height"]
     page.click("#words")
     wait_for_blocks(page)
-    assert box_of(block(page, "forward"))["height"] == pytest.approx(high, abs=1)
+    assert box_of(block(page, "forward"))["height"] == pytest.approx(block_height, abs=1)
     page.click("#words")
     page.locator(".zoom button").nth(0).click()
     wait_for_blocks(page)
@@ -240,7 +240,7 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
-@few
+@sampled
 def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(page: Page) -> None:
     """Also one without values."""
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
@@ -379,7 +379,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
     assert icons.count() == 0
 
 
-@few
+@sampled
 def test_a_message_stands_on_no_block(page: Page) -> None:
     """A message without room is hidden."""
     bubble = page.locator("#blocks .blocklyBubble")
@@ -401,22 +401,22 @@ def test_a_message_stands_on_no_block(page: Page) -> None:
     bubble.wait_for(state="detached")
 
 
-@few
+@sampled
 def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
     start(page, "SI|S;\nF(FOREVER, 20) UNTIL(FALSE);\nW(1);\n", "all")
     page.click("#run")
-    running = page.locator("#blocks .blocklyDraggable.running")
-    running.wait_for()
-    assert "until" in (running.text_content() or "")
+    running_block = page.locator("#blocks .blocklyDraggable.running")
+    running_block.wait_for()
+    assert "until" in (running_block.text_content() or "")
     page.click("#stop")
     wait_for_phase(page, "ended")
     page.select_option("#robot", "tinibot32")
     start(page, "SI|W(9);\nTASK;\n  LOOP(9);\n    W(9);\n  END_LOOP;\nEND_TASK;\n", "all")
     page.click("#run")
-    running.nth(1).wait_for()
-    assert running.count() == 2
+    running_block.nth(1).wait_for()
+    assert running_block.count() == 2
     page.click("#stop")
-    running.first.wait_for(state="detached")
+    running_block.first.wait_for(state="detached")
 
 
 def flyout(page: Page, group: str) -> str:
@@ -427,7 +427,7 @@ def flyout(page: Page, group: str) -> str:
     return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
-@few
+@sampled
 def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Config) -> None:
     for name in sample_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
@@ -445,7 +445,7 @@ def texts_on_blocks(page: Page) -> set[str]:
     return {" ".join(text.split()) for text in texts if not text.isdigit()}
 
 
-@few
+@sampled
 def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert texts_on_blocks(page) == {
@@ -469,7 +469,7 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
     assert "stop" in texts_on_blocks(page)
 
 
-@few
+@sampled
 def test_a_move_is_so_long_or_so_far(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
     for field, choice, says, text in (
@@ -484,7 +484,7 @@ def test_a_move_is_so_long_or_so_far(page: Page) -> None:
         assert texts_on_blocks(page) == {"when it starts", "at", "%", *says}
 
 
-@few
+@sampled
 def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -> None:
     page.click("#view_text")
     write(page, "S;" * 1600)
@@ -578,12 +578,12 @@ def test_a_lesson_offers_its_words_while_it_is_open(
     """
     page = pages.open(view="blocks")
     page.locator("#level").wait_for()
-    few = list_offered_blocks(page)
-    assert page.input_value("#level") == "few" and "show" not in few
+    offered_before = list_offered_blocks(page)
+    assert page.input_value("#level") == "few" and "show" not in offered_before
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
     folders = catalogue.folders()
-    few_before = few
+    few_before = offered_before
     for folder in sample_of(pytestconfig, "offers", folders, 4):
         number, lesson = folders.index(folder) + 1, catalogue.load(folder)
         kit = robots.load(lesson.robot).kit
@@ -641,7 +641,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
     assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == "0"
 
 
-@few
+@sampled
 def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     """Dragged out, chosen later, and back; a number stays where it still fits."""
     page.select_option("#robot", "grabber")
@@ -657,7 +657,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
 
-@few
+@sampled
 def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
     for group, words, own in (
@@ -676,7 +676,7 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
         assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
 
 
-@few
+@sampled
 def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
     first_hat, second_hat = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
     text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{second_hat}"
@@ -704,7 +704,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     assert box_of(last_hat)["x"] == pytest.approx(place["x"], abs=1)
 
 
-@few
+@sampled
 def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
     """An existing hat stays if somebody put it, even out of sight."""
     word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
@@ -794,7 +794,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     assert page.locator("#lesson_said").get_attribute("data-verdict") == "passed", text_of(page)
 
 
-@few
+@sampled
 def test_more_cases_of_an_if(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
     for name, wanted_text in (
@@ -808,7 +808,7 @@ def test_more_cases_of_an_if(page: Page) -> None:
         wait_for_text(page, f"SI|{wanted_text}")
 
 
-@few
+@sampled
 def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     start(page, "SI|DEF HOP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nHOP(2);\nHOP(3);\n", "usual")
     canvas = page.locator("#blocks .blocklyBlockCanvas")
@@ -831,7 +831,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
         wait_for_text(page, f"SI|DEF {head};\n{body}{calls}")
 
 
-@few
+@sampled
 def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
     text = "SI|DEF A{};\n  F(1, 50);\nEND_DEF;\n"
     start(page, text.format(""), "usual")
@@ -888,7 +888,7 @@ def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
 
 
-@few
+@sampled
 def test_a_fault_is_said_at_its_block(page: Page) -> None:
     start(page, "X = 0;\nSHOW(1 / X);\nS;\n")
     page.select_option("#speed", "20")

@@ -38,7 +38,7 @@ from tests.support.studio import (
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-few = pytest.mark.sampled(of="touched blocks", keep=3)
+sampled = pytest.mark.sampled(of="touched blocks", keep=3)
 
 SCRIPT = Path(__file__).with_name("tones_in_node.mjs")
 LARGEST_GAP_PX = 30  # pixels between a block and its message
@@ -94,7 +94,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     page.click("#runs_close")
     start(page, LONG_PROGRAM)
     text = text_of(page)
-    for words, sounds, shows in (
+    for words, sounds, show_count in (
         ("forward", 0, 0), ("do", 1, 0), ("repeat", 2, 0), ("each time", 1, 0), ("new word", 1, 0),
         ("show", 0, 1),
     ):  # fmt: skip
@@ -102,7 +102,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
         touch(page, words)
         events = list_actions(page)
         assert sum(line.startswith("BEEP") for line in events) == sounds, (words, events)
-        assert sum(line.startswith("SHOW") for line in events) == shows, (words, events)
+        assert sum(line.startswith("SHOW") for line in events) == show_count, (words, events)
     switch_robot_off(page)
     box = box_of(page.locator(f"{PROGRAM} .blocklyBlock.sensor").first)
     page.mouse.click(box["x"] + 6, box["y"] + 4)
@@ -112,7 +112,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
     page.click("#runs_close")
 
 
-@few
+@sampled
 def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
     start(page, LONG_PROGRAM)
     page.select_option("#speed", "1")
@@ -232,7 +232,7 @@ ARROWS_SCRIPT = """all => all.map((arrow) => {
 })"""
 
 
-@few
+@sampled
 def test_each_move_has_its_arrow(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     arrows = page.locator(f"{PROGRAM} path.arrow")
@@ -254,7 +254,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     assert 0 < gap < 14
 
 
-@few
+@sampled
 def test_an_editor_stands_over_its_own_field(page: Page) -> None:
     start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
     for k in range(6):
@@ -265,14 +265,14 @@ def test_an_editor_stands_over_its_own_field(page: Page) -> None:
         field.click()
         editor = page.locator(".blocklyWidgetDiv input")
         editor.wait_for()
-        over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
-        assert over["top"] == pytest.approx(block_box["top"], abs=4)
-        assert over["bottom"] == pytest.approx(block_box["bottom"], abs=4)
+        editor_box = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
+        assert editor_box["top"] == pytest.approx(block_box["top"], abs=4)
+        assert editor_box["bottom"] == pytest.approx(block_box["bottom"], abs=4)
         page.keyboard.press("Escape")
         editor.wait_for(state="detached")
 
 
-@few
+@sampled
 def test_a_message_is_at_its_block(page: Page) -> None:
     """It is as near as possible without covering another block, with a line from the block."""
     wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
@@ -302,20 +302,22 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         assert tail_left > block_box["right"] - 14 and tail.is_visible()
 
 
-@few
+@sampled
 def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None:
     """An unfinished program has many of them, so blocks keep their size."""
     for size in ((1366, 768), (390, 844)):
         page = pages.open(viewport={"width": size[0], "height": size[1]})
         start(page, "SI|S;\n")
-        high = page.evaluate("blocks.clientHeight")
+        blocks_height = page.evaluate("blocks.clientHeight")
         page.click("#view_text")
         write(page, "SI|LOOP(FOREVER);\nEND_LOOP;\n")
         page.click("#view_blocks")
         wait_for_blocks(page)
         list_of_all = page.locator("#messages li")
         assert list_of_all.count() and not list_of_all.first.is_visible()
-        assert page.evaluate("blocks.clientHeight") >= high - 24  # a phone's status has two lines
+        assert (
+            page.evaluate("blocks.clientHeight") >= blocks_height - 24
+        )  # a phone's status has two lines
         assert page.locator(f"{PROGRAM} .blocklyIconGroup").is_visible()
         page.click("#sheet")
         assert list_of_all.first.is_visible()
@@ -359,7 +361,7 @@ def pitch(page: Page, hertz: str = "440") -> Locator:
     return field
 
 
-@few
+@sampled
 def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
     for language, name in (("en", "E"), ("es", "mi"), ("pt", "mi")):
         speak(page, language)
@@ -406,7 +408,7 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
     wait_for_text(page, text)
 
 
-@few
+@sampled
 def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
     start(page, "SI|BEEP(0.5, 440);\nS;\n")
     pitch(page).first.click()
@@ -496,7 +498,7 @@ IS_SEEN_SCRIPT = """(path) => {
 }"""
 
 
-@few
+@sampled
 def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
     start(page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all")
     value, pile = block(page, "distance"), block(page, "new word")

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import APIResponse, Browser, Locator, Page, Route
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-few = pytest.mark.sampled(of="details of a class", keep=2)
+sampled = pytest.mark.sampled(of="details of a class", keep=2)
 
 KIT = robots.load("tinibot").kit
 WALL_FITS_SCRIPT = (
@@ -145,13 +145,13 @@ def tile(teacher: Page, name: str) -> Locator:
     return teacher.locator("#wall li").filter(has_text=name)
 
 
-def remove_all_but_ana(taught: Class) -> None:
+def remove_all_but_ana(class_: Class) -> None:
     """Remove the others, and their remains."""
-    for pupil in taught.room.teach({"do": "class"})["pupils"]:
+    for pupil in class_.room.teach({"do": "class"})["pupils"]:
         if pupil["name"] != "Ana":
-            taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
-    for kept_work in taught.room.teach({"do": "class"})["kept"]:
-        taught.room.teach({"do": "class_forget", "key": kept_work["key"]})
+            class_.room.teach({"do": "class_remove", "pupil": pupil["number"]})
+    for kept_work in class_.room.teach({"do": "class"})["kept"]:
+        class_.room.teach({"do": "class_forget", "key": kept_work["key"]})
 
 
 def click_ask(page: Page) -> None:
@@ -212,7 +212,7 @@ def test_three_pupils_share_a_robot(
     luz.close()
 
 
-@few
+@sampled
 def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
     ana: Page, shared_pages: Pages
 ) -> None:
@@ -311,7 +311,7 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     pages.wrong.clear()
 
 
-@few
+@sampled
 def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_class: Class) -> None:
     """A wall that looks while a pupil is removed does not show the pupil again."""
     room = shared_class.room
@@ -344,7 +344,7 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_clas
     teacher.evaluate("() => { AbortSignal.timeout = window.limit; }")
 
 
-@few
+@sampled
 def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Class) -> None:
     """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
     room = shared_class.room
@@ -370,7 +370,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Cl
     remove_all_but_ana(shared_class)
 
 
-@few
+@sampled
 def test_a_picture_is_seen_large_while_the_next_one_is_made(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
@@ -388,8 +388,10 @@ def test_a_picture_is_seen_large_while_the_next_one_is_made(
     teacher.wait_for_function(ONE_HELD_SCRIPT)
     assert tile(teacher, "Ana").locator("img").get_attribute("src") != first_picture
     tile(teacher, "Ana").locator(".see").click()
-    large = teacher.locator("#big_pupil img[src^=blob]")
-    assert large.evaluate("async (image) => { await image.decode(); return image.width > 0; }")
+    large_picture = teacher.locator("#big_pupil img[src^=blob]")
+    assert large_picture.evaluate(
+        "async (image) => { await image.decode(); return image.width > 0; }"
+    )
     teacher.click("#big_pupil [data-text=close]")
     teacher.evaluate("() => released()")
 
@@ -441,7 +443,7 @@ COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
   URL.createObjectURL = (blob) => (window.drawn.push(newest), make(blob)); }"""
 
 
-@few
+@sampled
 def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
     """Whatever the page writes meanwhile, the newest is drawn then. Others have no wait."""
     teacher = open_teacher_page(pages, shared_class)
@@ -506,7 +508,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
     red.wait_for(state="detached")
 
 
-@few
+@sampled
 def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     click_ask(ana)
     wait_for_link(ana, "Connected: ")
@@ -522,7 +524,7 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
     teacher.click("#class_window [data-text=close]")
 
 
-@few
+@sampled
 def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     click_ask(ana)
@@ -657,7 +659,7 @@ def opened_row(teacher: Page, name: str) -> Locator:
     return row
 
 
-@few
+@sampled
 def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
@@ -680,7 +682,7 @@ def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     pages.wrong.clear()
 
 
-@few
+@sampled
 def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
@@ -705,23 +707,23 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana.click("#side_real")
 
 
-@few
+@sampled
 @pytest.mark.parametrize("erases", [True, False])
 def test_the_end(browser: Browser, erases: bool) -> None:
-    with studio.serve_class([]) as taught:
-        pages = Pages(browser, taught.server.address)
-        ends(pages, taught, erases)
+    with studio.serve_class([]) as class_:
+        pages = Pages(browser, class_.server.address)
+        ends(pages, class_, erases)
         pages.close()
         assert not pages.wrong
 
 
-def ends(pages: Pages, taught: Class, erases: bool) -> None:
-    ana = join_class(pages, taught, "Ana")
+def ends(pages: Pages, class_: Class, erases: bool) -> None:
+    ana = join_class(pages, class_, "Ana")
     write(ana, "F(1, 33)")
     ana.click("#my_programs")
     ana.click("#new")
-    teacher = open_teacher_page(pages, taught)
-    assert taught.server.entrances.token not in teacher.evaluate("location.href")
+    teacher = open_teacher_page(pages, class_)
+    assert class_.server.entrances.token not in teacher.evaluate("location.href")
     teacher.click("#class_settings")
     if erases:
         teacher.check("#class_window input[type=checkbox]")
@@ -744,4 +746,4 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
         ana.click("#my_programs")
         assert ana.locator("#versions li:not(:has(#new)) strong").all_inner_texts() == ["F(1, 44)"]
         assert "tiniscript." not in ana.evaluate(kept_text)
-    assert taught.room.has_ended
+    assert class_.room.has_ended

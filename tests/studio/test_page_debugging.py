@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="breakpoints of the page", keep=3)
+sampled = pytest.mark.sampled(of="breakpoints of the page", keep=3)
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
 
 
-@few
+@sampled
 def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page: Page) -> None:
     """Only the left button sets one."""
     write(page, COUNTING_PROGRAM)
@@ -74,7 +74,7 @@ def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page
     assert points(page) == 0
 
 
-@few
+@sampled
 def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
     write(page, "F(0.1, 80);\nSHOW(7);\nB(0.1, 80)")
     page.keyboard.press("Control+Home")
@@ -92,7 +92,7 @@ def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
     assert points(page) == 0
 
 
-@few
+@sampled
 def test_one_line_has_several_breakpoints(page: Page) -> None:
     write(page, "SI|SHOW(1);SHOW(2);SHOW(3)")
     for _ in range(2):
@@ -108,7 +108,7 @@ def test_one_line_has_several_breakpoints(page: Page) -> None:
     wait_for_phase(page, "ended")
 
 
-@few
+@sampled
 def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     press_margin(page, 3)
@@ -130,7 +130,7 @@ def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
     page.locator("#blocks .show.breakpoint").wait_for(state="detached")
 
 
-@few
+@sampled
 def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  F(0.2, 80);\n  SHOW(1);\nEND_LOOP")
     page.click("#run")
@@ -144,7 +144,7 @@ def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> Non
     wait_for_phase(page, "running")
 
 
-@few
+@sampled
 def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_changes(
     page: Page,
 ) -> None:
@@ -171,7 +171,7 @@ def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_
     page.keyboard.press("Escape")
 
 
-@few
+@sampled
 def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  W(0.1);\n  SHOW(3);\nEND_LOOP")
     press_margin(page, 3)
@@ -190,7 +190,7 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
     page.keyboard.press("Escape")
 
 
-@few
+@sampled
 def test_a_breakpoint_in_every_line_is_not_a_hurdle(page: Page) -> None:
     """In a program of the largest size, and after its end; the first ones work."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
@@ -208,7 +208,7 @@ def test_a_breakpoint_in_every_line_is_not_a_hurdle(page: Page) -> None:
     wait_until_stopped(page, 2)
 
 
-@few
+@sampled
 def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     page.click("#seen_plot")

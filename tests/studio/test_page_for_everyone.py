@@ -84,12 +84,12 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
 ) -> None:
     """At two sizes, others in each commit; the class is in `test_page_class.py`."""
     usual = {screen: sample_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
-    low = {screen: sample_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
+    low_sizes = {screen: sample_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
     axed = {screen: sample_of(pytestconfig, screen, usual[screen]) for screen in usual}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
-    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low[name])):
+    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low_sizes[name])):
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):

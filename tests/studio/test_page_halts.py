@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-few = pytest.mark.sampled(of="details of halts", keep=2)
+sampled = pytest.mark.sampled(of="details of halts", keep=2)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 MERGED_PROGRAM = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
@@ -155,7 +155,7 @@ def halts(page: Page, line: int) -> None:
     page.locator("html[data-halt=read]").wait_for(state="attached")
 
 
-@few
+@sampled
 def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
     tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
     write_with_breakpoints(
@@ -174,7 +174,7 @@ def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
 LOOP_PROGRAM = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 
 
-@few
+@sampled
 def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
     """It stays while the text changes; a waiting or restarted program has it too."""
     write_with_breakpoints(page, LOOP_PROGRAM, ())
@@ -202,7 +202,7 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
     halts(page, 5)
 
 
-@few
+@sampled
 def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
     write_with_breakpoints(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
     page.click("#link_upload")
@@ -217,7 +217,7 @@ def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
     halts(page, 3)
 
 
-@few
+@sampled
 def test_a_robot_has_the_first_four(page: Page) -> None:
     write_with_breakpoints(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
     page.click("#link_upload")
@@ -231,7 +231,7 @@ def test_a_robot_has_the_first_four(page: Page) -> None:
     note.wait_for(state="hidden")
 
 
-@few
+@sampled
 def test_a_robot_that_cannot_halt_says_so_and_runs(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -258,7 +258,7 @@ BROUGHT_FIRMWARES = [
 ]  # fmt: skip
 
 
-@few
+@sampled
 def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     page: Page, pages: Pages, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,7 +20,7 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
 
-few = pytest.mark.sampled(of="held files and ports", keep=2)
+sampled = pytest.mark.sampled(of="held files and ports", keep=2)
 
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
 FILE = "tinibot-uno-digest.hex"
@@ -86,7 +86,7 @@ def test_what_tells_of_no_progress_ends_when_it_does_not_come() -> None:
     assert json.loads(in_node(SCRIPT)[0]) == ["TimeoutError 1", "AbortError", "there", "0 false"]
 
 
-@few
+@sampled
 def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -108,7 +108,7 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     assert page.evaluate("window.port.opened") == 0
 
 
-@few
+@sampled
 def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -126,7 +126,7 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
     assert page.evaluate("window.port.opened") == 0
 
 
-@few
+@sampled
 def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -146,7 +146,7 @@ def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
     wait_for(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
 
 
-@few
+@sampled
 def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: serving.Server) -> None:
     page = with_serial(pages, server)
     page.evaluate("() => { window.port.open = () => new Promise(() => {}); }")
@@ -227,15 +227,15 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
         held_robot = Held(page, f"**/{name}")
         page.goto(visits.address, wait_until="commit")
         begin_button, word = page.locator(f"{BEGIN_BUTTON}:visible"), page.locator(HANGING_MESSAGE)
-        running = page.locator("html:is([data-phase=running], [data-phase=ended])")
+        run_page = page.locator("html:is([data-phase=running], [data-phase=ended])")
 
         def is_told(begin_button: Locator = begin_button, word: Locator = word) -> bool:
             return word.first.is_visible() or begin_button.count() > 0
 
-        def continues(begin_button: Locator = begin_button, running: Locator = running) -> bool:
+        def continues(begin_button: Locator = begin_button, run_page: Locator = run_page) -> bool:
             if begin_button.count():
                 begin_button.click()  # a busy page may miss the first one
-            return is_told(running)
+            return is_told(run_page)
 
         wait_for(page, is_told, name)
         wait_for(page, continues, name)
@@ -295,7 +295,7 @@ def test_whoever_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visit
     check_dance_goes_on(page)
 
 
-@few
+@sampled
 def test_a_robots_run_tries_the_compiler_again(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
     page.context.route("**/tiniscript.zip", lambda route: route.abort())

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="blocks of lessons", keep=1)
+sampled = pytest.mark.sampled(of="blocks of lessons", keep=1)
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
 LEVELS = ["few", "usual", "all"]
@@ -47,14 +47,14 @@ def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(languag
     """Each lesson has a block to look for; no later lesson removes a block."""
     taught_words: set[str] = set()
     for number in LESSONS:
-        taught, new_kinds = (
+        known_kinds, new_kinds = (
             f(number, language) for f in (page_lessons.taught_kinds, page_lessons.new_pieces)
         )
         kinds = {piece.partition(" ")[0] for piece in new_kinds}
-        assert new_kinds and kinds <= set(taught)
-        assert set(taught) - taught_words <= kinds
-        assert set(page_lessons.needed_kinds(number, language)) <= set(taught) <= KINDS.keys()
-        taught_words |= set(taught)
+        assert new_kinds and kinds <= set(known_kinds)
+        assert set(known_kinds) - taught_words <= kinds
+        assert set(page_lessons.needed_kinds(number, language)) <= set(known_kinds) <= KINDS.keys()
+        taught_words |= set(known_kinds)
         assert set(page_lessons.offered_kinds(number, language)) == taught_words
 
 
@@ -108,7 +108,7 @@ def test_a_lesson_takes_no_block_away(page: Page) -> None:
     assert "endless" in list_offered_blocks(page)
 
 
-@few
+@sampled
 def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
     start(page, "SI|F(1, 80);\n")
     open_lesson(page, 6)
@@ -130,7 +130,7 @@ def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
     assert locator.all_inner_texts() == ["Robot"]
 
 
-@few
+@sampled
 def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
     page = pages.open(view="blocks", reduced_motion="reduce")
     page.click("#side_lessons")
@@ -141,7 +141,7 @@ def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
     assert path.evaluate("e => getComputedStyle(e).animationName") == "none"
 
 
-@few
+@sampled
 def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
     """Its programs are drawn, and its words are those on blocks, while blocks are seen; a screen
     reader has the text of both."""

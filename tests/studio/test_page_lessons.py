@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 FOLDERS = catalogue.folders()
-few = pytest.mark.sampled(of="details of lessons", keep=3)
+sampled = pytest.mark.sampled(of="details of lessons", keep=3)
 
 NIGHT_COLOUR = "39,50,75"
 BUSY_PROGRAM = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
@@ -78,7 +78,7 @@ def later_sentences(page: Page) -> list[str]:
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 
-@few
+@sampled
 def test_any_program_can_be_checked(page: Page) -> None:
     choose_lesson(page, 1)
     for program, verdict in (
@@ -90,7 +90,7 @@ def test_any_program_can_be_checked(page: Page) -> None:
         assert (shown_verdict, len(sentences)) == (verdict, verdict == "failed"), program
 
 
-@few
+@sampled
 def test_a_check_can_be_ended(page: Page) -> None:
     choose_lesson(page, 9)
     write(page, BUSY_PROGRAM)
@@ -105,7 +105,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
     assert check_answer(page, right_answers[0].program) == ("passed", [])
 
 
-@few
+@sampled
 def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     """The robot stays at the wall that it touched; then the answer appears."""
     choose_lesson(page, 1)
@@ -122,7 +122,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
     assert page.locator("html[data-phase=ended]").count() == 1
 
 
-@few
+@sampled
 def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
     choose_lesson(page, 2)
     write(page, "F(3, 80); W(9)")
@@ -167,7 +167,7 @@ CUT_NAMES_SCRIPT = """() => {
 }"""
 
 
-@few
+@sampled
 def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     for language, word in (("es", "Detente"), ("pt", "Pare antes"), ("en", "Stop before")):
         speak(page, language)
@@ -254,7 +254,7 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
     assert page.locator("#lesson_said[data-verdict]").count() == 0
 
 
-@few
+@sampled
 def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     choose_lesson(page, 12)
     _, wrong_answers = catalogue.answers(FOLDERS[11])
@@ -279,7 +279,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
     page.locator("#world option:checked", has_text="12").wait_for(state="attached")
 
 
-@few
+@sampled
 def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
     choose_lesson(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
@@ -363,7 +363,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     assert axe_of == [[], []]
 
 
-@few
+@sampled
 def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
     """Also from a page with a drawn floor, and with Back from a panel in front of it."""
     page.click("#side_virtual")
@@ -414,7 +414,7 @@ def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, nu
     assert lesson.title("en").replace(":", "") in names
 
 
-@few
+@sampled
 def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     """The start page shows no verdict, and after a change of language the reason is translated."""
     choose_lesson(page, 7)
@@ -438,7 +438,7 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     page.click("#start_write")
 
 
-@few
+@sampled
 def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
     """Programs of lessons are in the list; the person's own program returns."""
     program, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
@@ -464,7 +464,7 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
     page.locator(".cm-content", has_text=of_lesson).wait_for()
 
 
-@few
+@sampled
 def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
     own_text, first_text, second_text = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"

@@ -48,7 +48,7 @@ from tiniscript.studio import robot_link, serving
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-few = pytest.mark.sampled(of="details of a link", keep=4)
+sampled = pytest.mark.sampled(of="details of a link", keep=4)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 
@@ -134,7 +134,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     errors.clear()
 
 
-@few
+@sampled
 def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
     other_page = first[0].another(page)
     other_page.click("#side_real")
@@ -150,7 +150,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
         wait_for_message(page, re.compile(f"{VOID_STOP_MESSAGE}|{BLINKING_MESSAGE}"))
 
 
-@few
+@sampled
 def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
     wait_for_message(page, BLINKING_MESSAGE)
@@ -183,7 +183,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     )
 
 
-@few
+@sampled
 def test_everything_is_seen_and_axe_finds_nothing(
     page: Page, robot: PtyRobot, pytestconfig: pytest.Config
 ) -> None:
@@ -240,7 +240,7 @@ def test_why_there_is_no_connection(pages: Pages) -> None:
         wait_for_message(page, "cable")
 
 
-@few
+@sampled
 def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> None:
     assert page.evaluate("location.href") == server.address + "#editor"
     page.reload()
@@ -282,7 +282,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     pages.wrong.clear()
 
 
-@few
+@sampled
 def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
     """This holds next to another text, too; a line of the same code has its own names."""
     shown_element = page.locator("#link_shown")
@@ -298,7 +298,7 @@ def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
         shown_element.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
-@few
+@sampled
 def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> None:
     """The next one has the same code, and is sent before the last values of the one before come."""
     shown_element = page.locator("#link_shown")
@@ -335,7 +335,7 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
     wait_for_message(page, "Stopped: the robot has confirmed the stop")
 
 
-@few
+@sampled
 def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     write(page, "SHOW(5);\nW(60);\nSHOW(6)")
     upload_until_it_runs(page)
@@ -353,7 +353,7 @@ def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
     assert events(page) == ["SHOW 5", "LOST"]
 
 
-@few
+@sampled
 def test_a_program_of_the_button_is_recorded_from_its_first_event(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -413,7 +413,7 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
     assert doing.inner_text() == "Both robots did the same. Values compared: 3."
 
 
-@few
+@sampled
 def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) -> None:
     write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
 
@@ -442,7 +442,7 @@ def wait_for_no_mark(page: Page) -> None:
 
 
 @pytest.mark.usefixtures("no_page_timeouts")
-@few
+@sampled
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     write(page, DRIVE)
     page.click("#view_blocks")
@@ -456,7 +456,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     wait_for_no_mark(page)
 
 
-@few
+@sampled
 def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
     write(page, "F(600, 80)")
     page.click("#link_upload")
@@ -493,14 +493,14 @@ def upload_until_told(page: Page, place: int) -> None:
     page.wait_for_timeout(200)
 
 
-@few
+@sampled
 def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
     write(page, "F(60, 80)")
     upload_until_told(page, 60_000)
     assert running(page) == ""
 
 
-@few
+@sampled
 def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     """Both are held at the first line, then one continues, then the other one."""
     first_row, second_row = "W(0.1)", "F(60, 80)"

@@ -20,7 +20,7 @@ from tiniscript.studio.attending import LEFT_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
 
-few = pytest.mark.sampled(of="lost requests", keep=3)
+sampled = pytest.mark.sampled(of="lost requests", keep=3)
 
 CONFIRMED_MESSAGE = "Stopped: the robot has confirmed the stop."
 HIDDEN_MESSAGE = "The robot was stopped because this page was hidden. Come back here to drive it."
@@ -73,25 +73,27 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
     connect(page, robot)
     for _ in range(2):
         start_drive(page, robot)
-        torn = tear_requests(page, "stop", lambda route: route.abort(), times=9)
+        torn_requests = tear_requests(page, "stop", lambda route: route.abort(), times=9)
         page.click("#stop")
         wait_for(page, lambda: not robot.moves, "it stands")
         wait_for_message(page, CONFIRMED_MESSAGE)
-        assert torn
+        assert torn_requests
         page.unroute_all(behavior="wait")
 
 
-@few
+@sampled
 def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
-    torn = tear_requests(page, "beat", refuse, times=2)
-    wait_for(page, lambda: len(torn) == 2, "they are refused")
+    torn_requests = tear_requests(page, "beat", refuse, times=2)
+    wait_for(page, lambda: len(torn_requests) == 2, "they are refused")
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
-    torn = tear_requests(page, "beat", refuse, times=1000)  # a failure that lasts is reported
+    torn_requests = tear_requests(
+        page, "beat", refuse, times=1000
+    )  # a failure that lasts is reported
     wait_for_message(page, "tsc studio has stopped responding")
-    assert torn
+    assert torn_requests
 
 
 @pytest.mark.sampled("tear")
@@ -99,13 +101,13 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
 def test_a_connect_that_is_lost_comes_again(
     page: Page, robot: PtyRobot, tear: Callable[[Route], None]
 ) -> None:
-    torn = tear_requests(page, "connect", tear)
+    torn_requests = tear_requests(page, "connect", tear)
     connect(page, robot)
-    assert len(torn) == 1
+    assert len(torn_requests) == 1
     start_drive(page, robot)
 
 
-@few
+@sampled
 def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -186,7 +188,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE, LATE_MESSAGE]
 
 
-@few
+@sampled
 def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
@@ -204,18 +206,18 @@ def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
 
 
-@few
+@sampled
 def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
     page: Page, robot: PtyRobot
 ) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
     start_drive(page, robot)
-    torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)
+    torn_requests = tear_requests(page, "stop", lambda route: route.abort(), times=99)
     page.evaluate(LISTENING_SCRIPT)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
     wait_for_message(page, CONFIRMED_MESSAGE)
-    wait_for(page, lambda: torn, "they are lost")
+    wait_for(page, lambda: torn_requests, "they are lost")
     page.wait_for_timeout(300)
     assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
     page.unroute_all(behavior="wait")
@@ -252,7 +254,7 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
     assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE]
 
 
-@few
+@sampled
 def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     """Its requests and the link end. A slow page, which is not heard for a while, first stops the
     run under way, and reports that, too.
@@ -269,7 +271,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
     assert [text for text in texts if text == "The robot has stopped responding"] == texts[-1:]
 
 
-@few
+@sampled
 def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -282,19 +284,19 @@ def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 
-@few
+@sampled
 def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
-    torn = tear_requests(page, "beat", lambda route: route.abort(), times=1)
-    wait_for(page, lambda: torn, "a beat is lost")
+    torn_requests = tear_requests(page, "beat", lambda route: route.abort(), times=1)
+    wait_for(page, lambda: torn_requests, "a beat is lost")
     page.unroute_all(behavior="wait")
     hang(page, round(1000 * LEFT_S) + 500)
     wait_for_message(page, "tsc studio heard nothing from this page for a while")
 
 
-@few
+@sampled
 def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
     page: Page, robot: PtyRobot
 ) -> None:

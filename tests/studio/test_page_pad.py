@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-few = pytest.mark.sampled(of="details of the remote control", keep=1)
+sampled = pytest.mark.sampled(of="details of the remote control", keep=1)
 
 STICK_PROGRAM = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
 KEYS = "LOOP(FOREVER);\nIF(KEY_UP);\nM(60, 60);\nELSE;\nM(0, 0);\nENDIF;\nW(0.02);\nEND_LOOP;\n"
@@ -106,7 +106,7 @@ def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, 
     assert not page.locator("#pad").is_visible()
 
 
-@few
+@sampled
 def test_the_picture_opens_the_example(pages: Pages) -> None:
     page = pages.visit(pages.entrance(), "start")
     page.click("[data-begin=drive]")
@@ -117,7 +117,7 @@ def test_the_picture_opens_the_example(pages: Pages) -> None:
     assert opened_text.split() == re.sub(r"//.*", "", example).split()
 
 
-@few
+@sampled
 def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: Pages) -> None:
     page = pages.open()
     write(page, STICK_PROGRAM)
@@ -153,7 +153,7 @@ def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: 
     wait_for(page, lambda: read_motor_powers(page) == "0 0", "it stands")
 
 
-@few
+@sampled
 def test_a_robot_that_hears_no_keys_is_told_none_and_the_page_says_so(pages: Pages) -> None:
     sensors = tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(9))
     with PtyRobot(Kit(sensors)) as robot:
@@ -174,7 +174,7 @@ def test_a_robot_that_hears_no_keys_is_told_none_and_the_page_says_so(pages: Pag
         assert axe(page) == []
 
 
-@few
+@sampled
 def test_everybody_can_use_what_drives_a_real_robot(pages: Pages) -> None:
     with PtyRobot(robots.load("tinibot").kit) as robot:
         known_ports.remember(robot.port, "TINI")
@@ -186,7 +186,7 @@ def test_everybody_can_use_what_drives_a_real_robot(pages: Pages) -> None:
         assert axe(page) == []
 
 
-@few
+@sampled
 def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
     page = pages.open()
     write(page, f"// robot: tinibot\n{KEYS}")

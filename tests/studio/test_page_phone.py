@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="looks of a phone", keep=2)
+sampled = pytest.mark.sampled(of="looks of a phone", keep=2)
 
 NINE = """SI|LOOP(3)
   F(1, 80)
@@ -67,7 +67,7 @@ def shown_half(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.half"))
 
 
-@few
+@sampled
 def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
     write(phone, NINE)
     phone.click("#view_blocks")
@@ -77,7 +77,7 @@ def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
     assert axe(phone) == []
 
 
-@few
+@sampled
 def test_the_messages_can_be_put_away(phone: Page) -> None:
     for wrong_text in ("F(-2, 80)", "F(-3, 80)"):
         write(phone, wrong_text)
@@ -132,7 +132,7 @@ def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) ->
     wait_for_phase(phone, "running")
 
 
-@few
+@sampled
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     """On a tablet, a second tap does not hit the element that replaces the first."""
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
@@ -157,7 +157,7 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     assert page.get_attribute("#side_real", "aria-pressed") == "false"
 
 
-@few
+@sampled
 def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.click("#run")
@@ -178,7 +178,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
 TRANSPARENT = "rgba(0, 0, 0, 0)"
 
 
-@few
+@sampled
 def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.emulate_media(forced_colors="active")
@@ -220,7 +220,7 @@ F(5, 60) UNTIL(DISTANCE < 10);
 """
 
 
-@few
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> None:
     """Letters are 12 pixels high, touch targets 24, and a long question has more rows: the whole
@@ -248,7 +248,7 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
 
 
-@few
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: str) -> None:
     """They are below one row of buttons: a move gets a second row if it needs one, and no scrollbar
@@ -291,7 +291,7 @@ UNDER_STOP = """() => {
 }"""
 
 
-@few
+@sampled
 def test_a_new_program_is_begun_from_the_bar_of_a_phone(phone: Page) -> None:
     """Its button shares one row with the rest of the bar, in every language."""
     bar = phone.locator("body > header")
@@ -311,7 +311,7 @@ def test_a_new_program_is_begun_from_the_bar_of_a_phone(phone: Page) -> None:
     assert phone.locator(".cm-content").inner_text().strip() == ""
 
 
-@few
+@sampled
 def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, view="start")
 
@@ -333,7 +333,7 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
     assert width() < 130
 
 
-@few
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language: str) -> None:
     """The other screen is a tap away, and all is where it was once the run is over."""

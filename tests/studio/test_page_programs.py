@@ -43,7 +43,7 @@ from tools.builds.studio import find_tools
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-few = pytest.mark.sampled(of="details of programs", keep=2)
+sampled = pytest.mark.sampled(of="details of programs", keep=2)
 
 TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 
@@ -86,7 +86,7 @@ ADDRESSES_BY_REACH = {
 }
 
 
-@few
+@sampled
 def test_a_program_gets_a_name(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
@@ -109,7 +109,7 @@ def test_a_program_gets_a_name(page: Page) -> None:
     page.click("#programs_close")
 
 
-@few
+@sampled
 def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
@@ -160,7 +160,7 @@ WRONG_LINKS = {
 }
 
 
-@few
+@sampled
 @each_row("name", WRONG_LINKS)
 def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
@@ -174,7 +174,7 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
     assert page.locator("img").count() == 0
 
 
-@few
+@sampled
 def test_what_cannot_be_shared_says_why(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
@@ -255,7 +255,7 @@ def read_picture(page: Page) -> str:
     return str(completed.stdout)
 
 
-@few
+@sampled
 def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     """A phone cannot open an address that only this computer has, so such a link gets no
     picture."""
@@ -273,7 +273,7 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-@few
+@sampled
 def test_the_window_opens_on_programs(page: Page) -> None:
     """Each with a picture, a large plus before them, and how one is shared is folded away."""
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
@@ -317,7 +317,7 @@ def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
     return colours(page, Path(download.value.path()).read_bytes())
 
 
-@few
+@sampled
 def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     """This works from the text view, too, unless there are too many blocks."""
     for view in ("text", "blocks"):
@@ -325,19 +325,21 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
         write(page, "SI|F(2, 80)")
         page.click(f"#view_{view}")
         page.click("#my_programs")
-        small = picture_of_blocks(page)
+        small_image = picture_of_blocks(page)
         page.click("#programs_close")
         assert page.locator("#blocks").is_visible() == (view == "blocks")
         page.click("#view_text")
         write(page, "SI|" + "F(2, 80);" * 5)
         page.click("#my_programs")
-        large = picture_of_blocks(page)
+        large_image = picture_of_blocks(page)
         page.keyboard.press("Escape")
-        assert large[1] > small[1] * 1.8, view  # rows
+        assert large_image[1] > small_image[1] * 1.8, view  # rows
         # the blocks are filled
-        assert large[2][MOVE_COLOUR] > 4 * small[2][MOVE_COLOUR] > 4000, view
-        assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and their surroundings
-        assert "0,0,0" not in small[2], view  # every block has its colour
+        assert large_image[2][MOVE_COLOUR] > 4 * small_image[2][MOVE_COLOUR] > 4000, view
+        assert (
+            small_image[2]["255,255,255"] > small_image[0] * small_image[1] / 10
+        )  # letters and their surroundings
+        assert "0,0,0" not in small_image[2], view  # every block has its colour
     write(page, "S;" * 1600)
     page.click("#my_programs")
     unfold(page)
@@ -346,7 +348,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-@few
+@sampled
 def test_what_is_shared_can_be_copied(page: Page) -> None:
     write(page, "SI|F(1, 80)")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
@@ -444,7 +446,7 @@ def test_a_program_is_deleted_and_brought_back(page: Page) -> None:
         if not index:
             continue
         delete.click()
-        assert list_programs(page) == [each for each in texts[::-1] if each != title]
+        assert list_programs(page) == [text for text in texts[::-1] if text != title]
         assert axe(page, within="#programs") == []
         page.keyboard.press("Enter")  # the button in the program's place has the focus
     rows.nth(2).locator(".delete").click()

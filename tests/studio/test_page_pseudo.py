@@ -113,16 +113,16 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
         page.locator("#class_settings", has_text="Cläss").wait_for()
         page.locator("#wall li").nth(9).wait_for()
         check_narrow_button_is_noticed(page, "#class_settings")
-        cut = {}
+        cut_texts = {}
         for width, height in SIZES:
             page.set_viewport_size({"width": width, "height": height})
             page.evaluate(SETTLED_SCRIPT)
-            cut["wall", width] = page.evaluate(CUT_TEXTS_SCRIPT)
+            cut_texts["wall", width] = page.evaluate(CUT_TEXTS_SCRIPT)
             for opens, window in WINDOWS:
                 page.click(opens)
                 page.locator(f"{window} [data-text=close]").wait_for()
                 page.evaluate(SETTLED_SCRIPT)
-                cut[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)
+                cut_texts[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)
                 page.click(f"{window} [data-text=close]")
-        assert {place: value for place, value in cut.items() if value} == {}
+        assert {place: value for place, value in cut_texts.items() if value} == {}
         pages.close()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="earlier runs", keep=2)
+sampled = pytest.mark.sampled(of="earlier runs", keep=2)
 
 KEYS = (
     "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_A);\nSHOW(RANDOM(1, 99));\nEND_IF;\n"
@@ -68,7 +68,7 @@ def open_run(page: Page, data: bytes | str, file: Path) -> None:
     page.set_input_files("#run_file", file)
 
 
-@few
+@sampled
 def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> None:
     run_to_end(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
     pose = page.locator("#where").text_content()
@@ -86,7 +86,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
     wait_for_phase(page, "paused")
 
 
-@few
+@sampled
 def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
     for number in range(12):
         run_to_end(page, f"SI|SHOW({number})", f"SHOW {number}")
@@ -134,7 +134,7 @@ def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
     page.click("#runs_close")
 
 
-@few
+@sampled
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
     data, rows = next(run for run in map(record_run, range(99)) if b'"tinibot32"' in run[0])
     open_run(page, data, tmp_path / "run.tsr")
@@ -146,7 +146,7 @@ def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path
         header["robot"], header["world"])  # fmt: skip
 
 
-@few
+@sampled
 def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     page: Page, tmp_path: Path
 ) -> None:
@@ -202,7 +202,7 @@ def test_a_file_that_is_not_a_run_says_why_and_nothing_is_lost(
     assert running(page) == ""
 
 
-@few
+@sampled
 def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     drop = """([name, data]) => {

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tests.machines.host_firmware import HostFirmware
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-few = pytest.mark.sampled(of="details of the senses", keep=2)
+sampled = pytest.mark.sampled(of="details of the senses", keep=2)
 
 SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
 MEASURED = 40  # values
@@ -151,7 +151,7 @@ def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: Pt
     assert page.locator("#gauges dd").first.inner_text() == ""
 
 
-@few
+@sampled
 def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRobot) -> None:
     watch_senses(page)
     write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
@@ -196,7 +196,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
     wait_for_action(page, "own")
 
 
-@few
+@sampled
 def test_the_robots_button_ends_them_and_then_starts_its_program(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -223,7 +223,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
     senses(page, robot, 9, 8, 7)
 
 
-@few
+@sampled
 def test_they_come_by_themselves_where_somebody_has_wanted_them(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -250,7 +250,7 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
     assert not page.locator("#senses").is_visible()
 
 
-@few
+@sampled
 def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> None:
     """The text is in the chosen language, for every action."""
     wait_for_action(page, "still")
@@ -288,7 +288,7 @@ def test_a_port_where_nothing_answers_says_so_within_three_seconds(
     page.close()
 
 
-@few
+@sampled
 @pytest.mark.parametrize("name", ["tinibot", "liner"])
 def test_the_readings_take_a_third_of_the_line_at_most(
     open_page: tuple[Pages, Page], name: str

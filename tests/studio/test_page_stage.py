@@ -82,14 +82,14 @@ def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -
     page.reload()  # a chosen camera is kept
     page.select_option("#world", world)
     write(page, FOREVER)
-    small = page.evaluate(AREA_SCRIPT)
+    small_area = page.evaluate(AREA_SCRIPT)
     page.click("#run")
     wait_for_large_run(page, 1366 * 768 / 3)
     page.keyboard.press("Escape")
     wait_for_phase(page, "ended")
     assert page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3  # until someone continues to write
     page.hover("#editor")
-    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small, "as before")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small_area, "as before")
 
 
 def wait_for_large_run(page: Page, least_area: float = 0) -> None:
@@ -125,25 +125,27 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
     page: Page, size: tuple[int, int]
 ) -> None:
     """The step comes back by the lesson's own buttons, the check is in reach all the time."""
-    large = see_last_step(page, size)
-    small = page.evaluate(AREA_SCRIPT)
+    large_area = see_last_step(page, size)
+    small_area = page.evaluate(AREA_SCRIPT)
     for is_ended in (False, True):
         page.click("#run")
-        wait_for_large_run(page, large)
+        wait_for_large_run(page, large_area)
         assert not page.locator("#lesson_page").is_visible()
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
             page.keyboard.press("Escape")
             wait_for_phase(page, "ended")
-            assert page.evaluate(AREA_SCRIPT) > small
+            assert page.evaluate(AREA_SCRIPT) > small_area
         page.locator("#lesson_steps button").last.click()
-        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small
+        assert (
+            page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small_area
+        )
         page.click("#stop")
     page.click("#run")
     wait_for_phase(page, "running")
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for()
-    assert page.evaluate(AREA_SCRIPT) <= small and page.locator("#lesson_page").is_visible()
+    assert page.evaluate(AREA_SCRIPT) <= small_area and page.locator("#lesson_page").is_visible()
     page.click("#side_virtual")
     turn(page, "program")
 
@@ -153,16 +155,16 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
 def test_a_run_that_is_judged_is_as_large_until_it_is_told(
     page: Page, size: tuple[int, int]
 ) -> None:
-    large = see_last_step(page, size)
+    large_area = see_last_step(page, size)
     for is_still in (False, True):
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
         page.click("#lesson_check")
         if not is_still:
-            wait_for_large_run(page, large)
+            wait_for_large_run(page, large_area)
             page.click("#lesson_end")  # the button leads to the lesson's result
         page.locator("#lesson_said[data-verdict]").wait_for()
         assert page.locator("html[data-big]").count() == 0
-        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) < large
+        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) < large_area
     page.emulate_media(reduced_motion="no-preference")
     page.click("#side_virtual")
     turn(page, "program")
@@ -193,9 +195,11 @@ def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> N
     editor = page.locator(".blocklyWidgetDiv input")
     editor.wait_for()
     page.evaluate(SETTLED_SCRIPT)
-    over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
+    editor_box = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
     text_box = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
-    assert over["left"] <= text_box["left"] + 1 and over["right"] >= text_box["right"] - 1
+    assert (
+        editor_box["left"] <= text_box["left"] + 1 and editor_box["right"] >= text_box["right"] - 1
+    )
 
 
 # Running blocks that the edges of the program cut off.
@@ -252,8 +256,8 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
         transform = canvas.get_attribute("transform") or ""
         return [round(100 * float(number)) for number in re.findall(r"[-\d.e]+(?=[,)])", transform)]
 
-    start_place, cut = place(), page.evaluate(CUT_HATS_SCRIPT)
-    assert size[0] != 1366 or cut == []
+    start_place, cut_hats = place(), page.evaluate(CUT_HATS_SCRIPT)
+    assert size[0] != 1366 or cut_hats == []
     page.click("#run")
     wait_for_phase(page, "running")
     wait_for(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
@@ -264,7 +268,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     # The view stays for someone who looks at the robot.
     assert page.locator("html[data-big]").count()
     page.wait_for_timeout(AFTER_RUN_MS)
-    assert page.evaluate(CUT_HATS_SCRIPT) == cut, "what was seen before the run is seen"
+    assert page.evaluate(CUT_HATS_SCRIPT) == cut_hats, "what was seen before the run is seen"
     page.hover("#views")
     wait_for(page, lambda: place() == start_place, "as before")
     page.click("#view_text")
@@ -482,12 +486,12 @@ def test_cameras_and_the_whole_page_are_there_on_small_screens(
         write(page, FOREVER)
         page.set_viewport_size({"width": size[0], "height": size[1]})
         turn(page, "robot")
-    small = page.evaluate(AREA_SCRIPT)
+    small_area = page.evaluate(AREA_SCRIPT)
     for button in ("#camera", "#full"):
         box = page.locator(button).bounding_box()
         assert box is not None and min(box["width"], box["height"]) >= 44
     page.click("#full")
-    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) > small, "more of the robot")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) > small_area, "more of the robot")
     page.click("#run")
     wait_for_phase(page, "running")
     shown_buttons = "all => all.filter((e) => e.checkVisibility()).map((e) => e.id)"

@@ -26,7 +26,7 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page, Route
 
-few = pytest.mark.sampled(of="details of the start", keep=2)
+sampled = pytest.mark.sampled(of="details of the start", keep=2)
 
 PICTURES = ("dance", "square", "obstacle", "line", "light", "music", "drive")
 START = "html[data-screen=start]"
@@ -85,7 +85,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
     assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
 
 
-@few
+@sampled
 def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
     """The robot moves before the blocks are fetched, and continues when the lessons arrive."""
     page = pages.blank()
@@ -140,7 +140,7 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     pages.wrong.clear()
 
 
-@few
+@sampled
 def test_the_address_says_which_screen_is_seen(start: Page) -> None:
     start.click("#start_write")
     assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
@@ -163,7 +163,7 @@ def test_the_address_says_which_screen_is_seen(start: Page) -> None:
     assert start.locator("#link").is_visible()
 
 
-@few
+@sampled
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
     start.goto(f"{pages.address}#program={GOOD_WORK}")
     wait_for_note(start, "This program came from a link.")
@@ -212,7 +212,7 @@ def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
         )
 
 
-@few
+@sampled
 def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     start.click("[data-begin=dance]")
     start.click("#view_text")
@@ -285,14 +285,14 @@ def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
     start.wait_for_function("document.documentElement.dataset.phase === 'off'")
     assert set(start.locator("#values dd").all_inner_texts()) == {"–"}
     start.evaluate(SETTLED_SCRIPT)
-    fresh = start.locator("#arena").screenshot()
-    assert fresh != screenshot_before
+    new_program_image = start.locator("#arena").screenshot()
+    assert new_program_image != screenshot_before
     start.click("#erase_ways")
     start.evaluate(SETTLED_SCRIPT)
-    assert start.locator("#arena").screenshot() == fresh
+    assert start.locator("#arena").screenshot() == new_program_image
 
 
-@few
+@sampled
 def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: Page) -> None:
     start.dblclick("#start_write")
     assert start.get_attribute("#side_real", "aria-pressed") == "false"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="looks back at a run", keep=2)
+sampled = pytest.mark.sampled(of="looks back at a run", keep=2)
 
 # The number of points of the line that have the color of a WHEN.
 MARKED = """() => {
@@ -49,7 +49,7 @@ def seconds(page: Page) -> float:
     return float(value(page, "Time").split()[0])
 
 
-@few
+@sampled
 def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
     start_run(page, COUNT)
     wait_for_phase(page, "ended")
@@ -96,7 +96,7 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
     wait_for_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
 
 
-@few
+@sampled
 def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
     start_run(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
     wait_for_phase(page, "ended")
@@ -109,7 +109,7 @@ def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
     assert parts == ["F(0.3, 60)", "W(0.3)", "B(0.3, 60)"]
 
 
-@few
+@sampled
 def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     start_run(page, COUNT)
     wait_for_phase(page, "ended")
@@ -125,7 +125,7 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
     assert end_ms - start_ms < 1000 and shown_ms == end_ms
 
 
-@few
+@sampled
 def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page) -> None:
     start_run(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
     wait_for_phase(page, "ended")
@@ -140,7 +140,7 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
 CODE = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
-@few
+@sampled
 def test_the_line_is_as_long_until_it_is_let_go(page: Page) -> None:
     """Else what a finger drags runs away under it."""
     start_run(page, "F(0.4, 60)")
@@ -158,7 +158,7 @@ def test_the_line_is_as_long_until_it_is_let_go(page: Page) -> None:
     page.locator("#why").wait_for()
 
 
-@few
+@sampled
 def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
     """It also names the task that had the motors. No extra click is needed at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
@@ -186,7 +186,7 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
     assert "Line 3" not in status_text(page) and "motors" not in status_text(page)
 
 
-@few
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
     """At each moment of a run: no code and no line; users of text are told about text."""
@@ -203,21 +203,23 @@ def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> Non
     page.keyboard.press("Home")
     page.click("#why")
     page.focus("#time_at")
-    told = set()
+    status_texts = set()
     for _ in range(12):
         wait_for(page, lambda: not re.search(CODE, status_text(page)), "no code")
-        told.add(status_text(page))
+        status_texts.add(status_text(page))
         page.keyboard.press("ArrowRight")
     was = str(page_texts(language)["why_value"]).format(name="[^.]+", value="[0-9]")
-    assert any(re.search(was, each) for each in told)
-    assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", each) for each in told), "a small first letter"
+    assert any(re.search(was, text) for text in status_texts)
+    assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", text) for text in status_texts), (
+        "a small first letter"
+    )
     page.click("#why")
     page.click("#view_text")
     wait_for(page, lambda: re.search(CODE, status_text(page)), "code")
     speak(page, "en")
 
 
-@few
+@sampled
 def test_a_when_that_begins_is_a_mark(page: Page) -> None:
     for begins_s, is_marked in ((0.5, True), (90, False)):
         body = "W(0.3);\nW(9);\nEND_WHEN;\nSHOW(1);\nW(1.5);\nSHOW(2)"

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Dialog, Page
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-few = pytest.mark.sampled(of="details of groups", keep=2)
+sampled = pytest.mark.sampled(of="details of groups", keep=2)
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
 ROWS = [row.strip() for row in PROGRAM.splitlines()]
@@ -75,10 +75,10 @@ def page_pair(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     return ana, luz
 
 
-def program_of(taught: Class) -> str:
+def program_of(class_: Class) -> str:
     """Return the program of the only group, as the teacher sees it."""
-    [group] = taught.room.teach({"do": "class"})["groups"]
-    return str(taught.room.teach({"do": "class_text", "group": group["key"]})["text"])
+    [group] = class_.room.teach({"do": "class"})["groups"]
+    return str(class_.room.teach({"do": "class_text", "group": group["key"]})["text"])
 
 
 def show_program_on_both(two: tuple[Page, Page]) -> None:
@@ -111,7 +111,7 @@ def test_both_type_at_once_and_have_the_same_program(page_pair: tuple[Page, Page
         until(lambda page=page: image(page) == compile("".join(all_lines)).image, "compiled")  # type: ignore[misc]
 
 
-@few
+@sampled
 def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(
     page_pair: tuple[Page, Page],
 ) -> None:
@@ -130,7 +130,7 @@ def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(
     wait_for_lines(luz, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 95);", "END_LOOP;", "S;")
 
 
-@few
+@sampled
 def test_undo_takes_back_what_the_own_page_has_typed(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
@@ -147,7 +147,7 @@ def test_undo_takes_back_what_the_own_page_has_typed(page_pair: tuple[Page, Page
         wait_for_lines(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
 
 
-@few
+@sampled
 def test_undo_leaves_what_another_one_has_changed_since(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
@@ -177,7 +177,7 @@ def test_undo_leaves_what_another_one_has_changed_since(page_pair: tuple[Page, P
     wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
 
 
-@few
+@sampled
 def test_each_sees_where_the_other_is(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
@@ -189,7 +189,7 @@ def test_each_sees_where_the_other_is(page_pair: tuple[Page, Page]) -> None:
     luz.locator("#class_mates", has_text="Ana").wait_for()
 
 
-@few
+@sampled
 def test_whoever_loads_the_page_again_is_in_the_group_with_all(
     page_pair: tuple[Page, Page],
 ) -> None:
@@ -400,7 +400,7 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
         )
 
 
-@few
+@sampled
 def test_whoever_leaves_keeps_the_program_and_hears_no_more(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
@@ -420,7 +420,7 @@ def test_whoever_leaves_keeps_the_program_and_hears_no_more(page_pair: tuple[Pag
     wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
 
 
-@few
+@sampled
 def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     page_pair: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:

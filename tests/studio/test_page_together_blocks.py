@@ -33,7 +33,7 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-few = pytest.mark.sampled(of="blocks of groups", keep=2)
+sampled = pytest.mark.sampled(of="blocks of groups", keep=2)
 
 PROGRAM = """F(1.50, (80));  // first
 LOOP(3);
@@ -64,11 +64,11 @@ def loaded_pair(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     return group_of(pages, shared_class)
 
 
-def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
+def group_of(pages: Pages, class_: Class) -> tuple[Page, Page]:
     """Ana has blocks, Luz has the text."""
-    ana = join_class(pages, taught, "Ana")
+    ana = join_class(pages, class_, "Ana")
     write(ana, PROGRAM)
-    luz = join_class(pages, taught, "Luz")
+    luz = join_class(pages, class_, "Luz")
     for page in (ana, luz):
         enters(page)
     ana.set_viewport_size({"width": 1366, "height": 768})
@@ -76,9 +76,9 @@ def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
     return ana, luz
 
 
-def others_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
+def others_of(pages: Pages, class_: Class) -> tuple[Page, Page]:
     """Two more of the group: Teo has blocks, Eva the text. It is full."""
-    teo, eva = (join_class(pages, taught, name) for name in ("Teo", "Eva"))
+    teo, eva = (join_class(pages, class_, name) for name in ("Teo", "Eva"))
     for page in (teo, eva):
         enters(page)
     teo.set_viewport_size({"width": 1366, "height": 768})
@@ -144,7 +144,7 @@ def test_a_changed_field_is_a_change_of_its_line_alone(page_pair: tuple[Page, Pa
     ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")))
 
 
-@few
+@sampled
 def test_a_half_typed_field_is_none_and_stays_open(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     field(ana, "back")
@@ -160,7 +160,7 @@ def test_a_half_typed_field_is_none_and_stays_open(page_pair: tuple[Page, Page])
     block(ana, "wait").wait_for()
 
 
-@few
+@sampled
 def test_what_is_dragged_while_others_write_comes_to_its_place(
     page_pair: tuple[Page, Page],
 ) -> None:
@@ -178,7 +178,7 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(
     ends(page_pair, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
 
 
-@few
+@sampled
 def test_of_two_of_one_block_the_later_one_wins_whole(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     field(ana, "back")
@@ -189,7 +189,7 @@ def test_of_two_of_one_block_the_later_one_wins_whole(page_pair: tuple[Page, Pag
     ends(page_pair, *change_rows(("B(1, 40);", "B(6, 40);")))
 
 
-@few
+@sampled
 def test_what_hangs_on_nothing_is_on_the_own_page_alone(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     drag(ana, "Move", "left", None)
@@ -212,7 +212,7 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(page_pair: tuple[Page, P
     until(lambda: text_of(ana) == text_of(luz), "both have the same")
 
 
-@few
+@sampled
 def test_undo_in_blocks_takes_back_the_own_change(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     field(ana, "back")
@@ -234,7 +234,7 @@ def test_undo_in_blocks_takes_back_the_own_change(page_pair: tuple[Page, Page]) 
     ends(page_pair, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
 
 
-@few
+@sampled
 def test_each_sees_at_which_block_the_other_is(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     go_to_line(luz, "B(1, 40)")

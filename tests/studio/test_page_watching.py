@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="what is heard and seen", keep=3)
+sampled = pytest.mark.sampled(of="what is heard and seen", keep=3)
 
 # The computer's sound, noted as often as it is opened. `rest` closes it after a while: the test
 # decides when, since a run on a slow computer may take longer.
@@ -86,7 +86,7 @@ def run(page: Page, program: str) -> None:
     wait_for_phase(page, "ended")
 
 
-@few
+@sampled
 def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page) -> None:
     page = listening
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
@@ -143,7 +143,7 @@ def test_an_empty_program_says_so_before_and_after_its_run(page: Page, text: str
     assert "It has ended." in page.inner_text("#doing")
 
 
-@few
+@sampled
 def test_no_sound_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. A page must wait before it closes
     this."""
@@ -164,7 +164,7 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
         assert page.evaluate("window.closings") == closings + 1
 
 
-@few
+@sampled
 def test_stop_and_pause_silence_it(listening: Page) -> None:
     page = listening
     write(page, "BEEP(30, 440)")
@@ -179,7 +179,7 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
         assert page.evaluate("window.stopped") == stops_before + 1
 
 
-@few
+@sampled
 def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page) -> None:
     page = listening
     noted_text = "[window.heard.length, window.started, window.shaken]"
@@ -199,7 +199,7 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
     assert page.evaluate(noted_text) == [1, 1, 1]
 
 
-@few
+@sampled
 def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     page = listening
     page.emulate_media(reduced_motion="reduce")
@@ -209,16 +209,16 @@ def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
     assert count(page, "ffd84d") > 20
 
 
-@few
+@sampled
 def test_ways_stay_until_they_are_erased(listening: Page) -> None:
     page = listening
     page.select_option("#world", "obstacles")
     assert count(page, WAY_COLOUR) == 0
     run(page, "R(0.1, 60);F(1.5, 80)")  # oblique: both edges of a level line may have that color
-    few = count(page, EARLIER_WAY_COLOUR)
+    pixels_before = count(page, EARLIER_WAY_COLOUR)
     assert count(page, WAY_COLOUR) > 20
     run(page, "L(0.5, 60);F(0.5, 80)")
-    assert count(page, WAY_COLOUR) > 5 and count(page, EARLIER_WAY_COLOUR) > few + 20
+    assert count(page, WAY_COLOUR) > 5 and count(page, EARLIER_WAY_COLOUR) > pixels_before + 20
     erase(page)
     assert count(page, WAY_COLOUR) == 0 and count(page, EARLIER_WAY_COLOUR) < 10
     run(page, "F(1, 80)")
@@ -243,7 +243,7 @@ y_cm = 50
 """
 
 
-@few
+@sampled
 def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
     page = listening
     page.set_input_files(
@@ -283,7 +283,7 @@ power_percent = 0
 RIVAL_COLOUR, DARK_COLOUR = "9a4fc0", "3b434c"
 
 
-@few
+@sampled
 def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
     page = listening
     page.set_input_files(

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-few = pytest.mark.sampled(of="details of worlds", keep=2)
+sampled = pytest.mark.sampled(of="details of worlds", keep=2)
 
 
 KEPT = "() => localStorage.getItem('tiniscript.world')"
@@ -80,7 +80,7 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
     assert abs(number(floor, "x_cm") - 145) <= 1 and abs(number(floor, "y_cm") - 120) <= 1
 
 
-@few
+@sampled
 def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
     shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
@@ -110,7 +110,7 @@ def picture(page: Page) -> str:
     return url
 
 
-@few
+@sampled
 def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
     start = save_world(floor).start
     floor.keyboard.down("Control")
@@ -137,7 +137,7 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
         assert save_world(floor).walls == ()
 
 
-@few
+@sampled
 def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     floor.click("#world_add_walls")
     drag(floor, [(60, 30), (100, 60)])
@@ -202,7 +202,7 @@ def test_keys_alone_are_enough(floor: Page) -> None:
     assert (world.width_cm, world.start.x_cm, world.has_border) == (100, 100, False)
 
 
-@few
+@sampled
 def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (200, 80)])
@@ -228,7 +228,7 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
     assert save_world(floor).seconds == 30
 
 
-@few
+@sampled
 @pytest.mark.parametrize("step", ["world_undo", "world_redo"])
 def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> None:
     drag(floor, [(56, 82.5), (56, 90)])
@@ -242,7 +242,7 @@ def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> No
     assert floor.locator(f"#{step}").is_disabled()
 
 
-@few
+@sampled
 def test_nothing_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
     assert save_world(floor).start[:2] == (0, 200)
@@ -257,7 +257,7 @@ def draw(page: Page, places: Sequence[Place]) -> None:
     finger(page, [screen_position(page, place) for place in places])
 
 
-@few
+@sampled
 def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, has_touch=True, locale="es-ES")
     turn(page, "robot")
@@ -292,7 +292,7 @@ def test_the_floor_is_seen_where_the_curves_were(page: Page) -> None:
     assert page.get_attribute("#seen_arena", "aria-pressed") == "true"
 
 
-@few
+@sampled
 def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     """In a shipped world, without drawing, and again after a run."""
     page.select_option("#world", "light")
@@ -336,7 +336,7 @@ es = "aula"
 """
 
 
-@few
+@sampled
 def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     open_world_file(floor, OWN)
     wait_for_status(floor, "Opened: own.toml")
@@ -347,8 +347,8 @@ def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
         90,
         wanted_world.labels,
     )
-    near = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
-    assert near == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
+    rounded_box = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
+    assert rounded_box == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
     assert floor.locator("img").count() == 0
     for data, message in (
         (b"\xff", "UTF-8"),

@@ -80,12 +80,12 @@ def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -
 @pytest.mark.parametrize("value", ["TRUE", "FALSE"])
 def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(value: str) -> None:
     text = "W(1);\nIF(KEY_A);SHOW(1);ENDIF;W(1);\nSHOW(DISTANCE * 2)"
-    shows = [(1017, "SHOW 1")] if value == "TRUE" else []
-    rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *shows,
+    show_rows = [(1017, "SHOW 1")] if value == "TRUE" else []
+    rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *show_rows,
             (1900, "READ DISTANCE 9"), (2030, "SHOW 18"), (2031, "DONE")]  # fmt: skip
-    assert parting(*rows, text=text) == Divergence("same", len(shows) + 2)
+    assert parting(*rows, text=text) == Divergence("same", len(show_rows) + 2)
     rows[-2] = (2030, "SHOW 16")
-    assert recording_of(*rows, text=text) == ("value", len(shows), 3)
+    assert recording_of(*rows, text=text) == ("value", len(show_rows), 3)
 
 
 def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
@@ -242,8 +242,8 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
             data[offset : offset + rng.randint(0, 4)] = piece
         try:
             recording = decode(bytes(data))
-        except BadRecording as bad:
-            outcomes.add(bad.reason)
+        except BadRecording as error:
+            outcomes.add(error.reason)
             continue
         outcomes.add("read")
         assert recording.rows == tuple(sorted(recording.rows, key=lambda row: row.ms))

@@ -39,7 +39,7 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
         for robot, turned in turned_robots
     ]
-    ahead, turned_drawing = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
+    ahead, turned_drawing = json.loads(in_node(DRAW_SCRIPT, input_text=json.dumps(requests))[0])
     (cone,), (turned_cone,) = (
         shapes(drawing, "fill", "#e0452f33") for drawing in (ahead, turned_drawing)
     )
@@ -105,12 +105,12 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
     [drawing] = drawings_of(("tinibot", state, STANDING_STILL))
     [cone] = shapes(drawing, "fill", "#e0452f33")
     assert cone[4] == state["readings"][2]["value"] > 0  # index after the tip and the middle
-    far, near = json.loads(json.dumps(state)), json.loads(json.dumps(state))
-    far["readings"][0]["value"], near["readings"][0]["value"] = 0, 1023
+    far_state, near_state = json.loads(json.dumps(state)), json.loads(json.dumps(state))
+    far_state["readings"][0]["value"], near_state["readings"][0]["value"] = 0, 1023
     dim, bright = (
         [color for _, _, color in picture if color.startswith("#e08a1e")]
         for picture in drawings_of(
-            ("tinibot", far, STANDING_STILL), ("tinibot", near, STANDING_STILL)
+            ("tinibot", far_state, STANDING_STILL), ("tinibot", near_state, STANDING_STILL)
         )
     )
     assert dim[0] < bright[0] and dim[1] == bright[1]  # the other one has not changed

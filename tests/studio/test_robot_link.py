@@ -118,8 +118,10 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
             boot_and_runs = [
                 (robot.boot, event.run) for event in robot.events if event.name == "STARTED"
             ]
-            told = [news["is_program"] for news in link.news() if news.get("event") == "STARTED"]
-            assert told == [run in own_programs for run in boot_and_runs]
+            is_program_values = [
+                news["is_program"] for news in link.news() if news.get("event") == "STARTED"
+            ]
+            assert is_program_values == [run in own_programs for run in boot_and_runs]
             assert link.has_run == (robot.pending is not None or robot.runs_own is True)
             own_runs += robot.runs_own is True
     assert own_runs

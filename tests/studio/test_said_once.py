@@ -38,9 +38,9 @@ Parts = list[tuple[bool, str]]
 
 
 def words(text: str) -> list[str]:
-    plain = unicodedata.normalize("NFD", text.lower())
+    decomposed_text = unicodedata.normalize("NFD", text.lower())
     return WORD.findall(
-        "".join(character for character in plain if not unicodedata.combining(character))
+        "".join(character for character in decomposed_text if not unicodedata.combining(character))
     )
 
 
@@ -63,9 +63,9 @@ def list_repetitions(parts: Parts) -> list[str]:
         text_before, text_after = (
             parts[k + step][1] if 0 <= k + step < len(parts) else "" for step in (-1, 1)
         )
-        near = words(re.split(r"[.?!:;]", text_before)[-1])[-NEAR:]
-        near += words(re.split(r"[.?!:;]", text_after)[0])[:NEAR]
-        repeated_words += [word for word in near if stem(word) in label_stems]
+        nearby_words = words(re.split(r"[.?!:;]", text_before)[-1])[-NEAR:]
+        nearby_words += words(re.split(r"[.?!:;]", text_after)[0])[:NEAR]
+        repeated_words += [word for word in nearby_words if stem(word) in label_stems]
     return repeated_words
 
 
@@ -98,7 +98,7 @@ def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> l
     """Return the parts of sentences as a page in a language shows them."""
     (page_data / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
     given_text = "\n".join(json.dumps(row) for row in rows)
-    lines = in_node(SCRIPT, str(page_data), given=given_text)
+    lines = in_node(SCRIPT, str(page_data), input_text=given_text)
     assert len(lines) == len(rows)
     return [[(bool(is_block), text) for is_block, text in json.loads(line)] for line in lines]
 
@@ -144,9 +144,9 @@ def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -
     parts = shown_parts(page_data, language, rows)
     assert {finding["code"] for finding in findings} > set(warned[:5])
     assert sum(is_block for row in parts for is_block, _ in row) > len(warned)
-    plain = [part for row in parts for is_block, part in row if not is_block]
-    assert [part for part in plain if set(CAPITAL_WORDS.findall(part)) & WORDS.keys()] == []
-    assert [part for part in plain if re.search(r"\b[Ll](ine|ínea|inha)s? \d", part)] == []
+    plain_parts = [part for row in parts for is_block, part in row if not is_block]
+    assert [part for part in plain_parts if set(CAPITAL_WORDS.findall(part)) & WORDS.keys()] == []
+    assert [part for part in plain_parts if re.search(r"\b[Ll](ine|ínea|inha)s? \d", part)] == []
 
 
 @pytest.mark.parametrize("sentence, marked_text", [

@@ -322,8 +322,8 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
     silences = 0
     for _ in range(150):
         is_heard, lasts_ms = chance.random() < 0.5, chance.choice((100, 400, 800, 2000))
-        drives, is_stopped = chance.random() < 0.6, chance.random() < 0.2
-        if is_heard and drives:
+        starts_drive, is_stopped = chance.random() < 0.6, chance.random() < 0.2
+        if is_heard and starts_drive:
             number += 1
             attending.on_beat([{**RUN, "id": number, "stops": 0, "seen": 0}], 0)
             attending.attend(cast(RobotLink, link), 0)
@@ -372,9 +372,11 @@ class HeldClient:
         """Do nothing, because no run of the page is affected."""
 
 
-@pytest.mark.parametrize("leaves", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)])
+@pytest.mark.parametrize(
+    "lets_go_values", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)]
+)
 def test_a_port_that_is_let_go_once_is_held_for_nobody(
-    monkeypatch: pytest.MonkeyPatch, leaves: tuple[int, ...]
+    monkeypatch: pytest.MonkeyPatch, lets_go_values: tuple[int, ...]
 ) -> None:
     """It does not matter who else releases it, before or after: a page, the end of a turn, or the
     studio's end."""
@@ -385,11 +387,11 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
     monkeypatch.setattr(HeldClient, "was_held", None)
     robot = hosted_robot.HostedRobot("p", "tinibot", "en")
     until(lambda: robot.name != "", "it is met")
-    for lets_go in leaves:
+    for lets_go in lets_go_values:
         robot.leave(is_letting_go=bool(lets_go))
     HeldClient.all_left.set()
     robot.join(HANG_LIMIT_S)
-    assert HeldClient.was_held == (not any(leaves))
+    assert HeldClient.was_held == (not any(lets_go_values))
     assert robot.has_ended and not robot.is_parting
 
 
@@ -460,9 +462,9 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
             ("/nothing", "{}", STRANGE) if is_odd else ("/", "/main.js", BEAT.decode())
         )
         padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
-        fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-        expected = ask(fresh, request, padding)
-        fresh.close()
+        new_connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
+        expected = ask(new_connection, request, padding)
+        new_connection.close()
         assert ask(httpconnection, request, padding) == expected, (request, padding)
         request_count += 1
         longest = max(longest, request_count)

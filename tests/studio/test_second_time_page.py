@@ -108,7 +108,7 @@ def test_whoever_begins_anew_sees_what_a_tab_that_is_loaded_again_shows(
     lines = in_node(WHOLE_PAGE, str(page_data), str(first_seed), str(ROW))
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == ROW
-    done = {end for row in rows for end in row["ends"]}
-    assert done >= NEEDED_ACTIONS and len(done) > LEAST_ACTION_KINDS
+    end_kinds = {end for row in rows for end in row["ends"]}
+    assert end_kinds >= NEEDED_ACTIONS and len(end_kinds) > LEAST_ACTION_KINDS
     for row in rows:
         assert row["isSame"] and not row["unhandled"], row

@@ -44,19 +44,19 @@ def served_class(tmp_path: Path) -> Iterator[Class]:
         yield Class(server, room)
 
 
-def host_header(taught: Class) -> str:
-    return f"{HOST}:{taught.server.server_port}"
+def host_header(class_: Class) -> str:
+    return f"{HOST}:{class_.server.server_port}"
 
 
-def post(taught: Class, request: object, token: str = "", **headers: str) -> int:
+def post(class_: Class, request: object, token: str = "", **headers: str) -> int:
     """Post as a page of the class does; return the status."""
     body = json.dumps(request).encode()
-    return page_server.post(host_header(taught), token, body, headers=headers)[0]
+    return page_server.post(host_header(class_), token, body, headers=headers)[0]
 
 
-def join_class(taught: Class) -> str:
-    request = {"do": "join", "code": taught.room.code, "name": "Ana"}
-    return str(taught.room.answer("", OTHER_HOST, request)["token"])
+def join_class(class_: Class) -> str:
+    request = {"do": "join", "code": class_.room.code, "name": "Ana"}
+    return str(class_.room.answer("", OTHER_HOST, request)["token"])
 
 
 @pytest.mark.parametrize(
@@ -125,11 +125,11 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
     source = kept_socket.getsockname()[0] if is_same else OTHER_HOST
     with ExitStack() as strangers:
         for _ in range(0, STRANGER_COUNT, 500):
-            some = crowd(
+            client_crowd = crowd(
                 served_class.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
                 source=source,
             )  # fmt: skip
-            strangers.enter_context(some)
+            strangers.enter_context(client_crowd)
             pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
             assert pupil.getresponse().read()
             assert ask(host_header(served_class))[0].status == 200
@@ -140,8 +140,8 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
 
 def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
-    early = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
-    early.connect()
+    early_client = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
+    early_client.connect()
     with crowd(
         served_class.server.server_port,
         count=serving.MOST_CLASS_CONNECTIONS + 50,
@@ -149,9 +149,9 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) 
         source=OTHER_HOST,
     ):
         assert ask(host_header(served_class))[0].status == 200  # therefore all of them have arrived
-        early.request("GET", "/")
-        assert early.getresponse().status == 200
-    early.close()
+        early_client.request("GET", "/")
+        assert early_client.getresponse().status == 200
+    early_client.close()
 
 
 @pytest.mark.parametrize(

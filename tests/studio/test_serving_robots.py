@@ -162,8 +162,8 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server, server_h
     active_count_before = active_count()
     with ExitStack() as strangers:
         for _ in range(10):
-            some = crowd(server.server_port, count=100, says=(b"", HALF_A_REQUEST))
-            strangers.enter_context(some)
+            client_crowd = crowd(server.server_port, count=100, says=(b"", HALF_A_REQUEST))
+            strangers.enter_context(client_crowd)
             assert ask() == 200
         assert page.sock is kept_socket
         assert active_count() - active_count_before <= serving.MOST_CONNECTIONS + 30

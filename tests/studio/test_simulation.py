@@ -88,9 +88,9 @@ def test_it_is_told_where_each_task_is() -> None:
     assert marked_lines() == {1, 2}
     simulation.stop()
     assert simulation.state()["places"] == []
-    plain = started_simulation("W(1)")
-    plain.advance(500)
-    assert plain.state()["places"] == [plain.state()["at"]]
+    plain_simulation = started_simulation("W(1)")
+    plain_simulation.advance(500)
+    assert plain_simulation.state()["places"] == [plain_simulation.state()["at"]]
 
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
@@ -131,7 +131,7 @@ PUSHED = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
 def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> None:
     """Each stop counts, whatever stopped the robot before."""
     rng = random.Random(seed)
-    fresh, simulation = (
+    fresh_simulation, simulation = (
         started_simulation(PUSHED),
         started_simulation(PUSHED, is_held=rng.random() < 0.3),
     )
@@ -155,7 +155,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
     simulation.stop()
     assert not simulation.robot.is_running and not any(simulation.state()["motors"])
     runs = []
-    for one_simulation in (fresh, simulation):
+    for one_simulation in (fresh_simulation, simulation):
         one_simulation.robot.take_events()
         one_simulation.push()
         one_simulation.advance(1500)

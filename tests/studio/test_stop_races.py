@@ -51,11 +51,11 @@ class Meeting:
             now_ms = self.robot.now_ms + step_ms
             heard_bytes = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
             self._sent = self.line.advance(b"" if self.is_cut else heard_bytes, now_ms)
-            arrived = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
+            arrived_answers = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
             self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
-            if arrived or now_ms >= self._beat_ms:
+            if arrived_answers or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
-                self.news += self.attending.on_beat(arrived, self.newest_number)
+                self.news += self.attending.on_beat(arrived_answers, self.newest_number)
             if now_ms >= self._look_ms:
                 self._look_ms = now_ms + self.chance.randrange(1, LOOK_MS)
                 self.attending.attend(self.link, 0)
@@ -115,9 +115,9 @@ def test_afterwards_a_page_drives_again() -> None:
     assert meeting.robot.is_running
     meeting.attending.latch()
     meeting.advance(round(1000 * LATCH_S) - 200)
-    early = meeting.upload(0)
+    early_request = meeting.upload(0)
     meeting.advance(300)
-    assert meeting.answer(early)["failure"] == "stopped_elsewhere"
+    assert meeting.answer(early_request)["failure"] == "stopped_elsewhere"
     late_request = meeting.upload(0)
     meeting.advance(1500)
     assert meeting.answer(late_request)["ok"] and meeting.robot.is_running

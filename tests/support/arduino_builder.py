@@ -27,10 +27,10 @@ def firmware(board: str, build_folder: Path, shared_path: Path) -> Built:
     log = built.hex.with_suffix(".log")
     if not log.exists():
         build = _build(board, build_folder)
-        mine = shared_path / f"builder-{board}.{os.getpid()}"
+        own_path = shared_path / f"builder-{board}.{os.getpid()}"
         for text, target in ((build.hex.read_text(), built.hex), (build.log, log)):
-            mine.write_text(text, encoding="utf-8")
-            mine.replace(target)
+            own_path.write_text(text, encoding="utf-8")
+            own_path.replace(target)
     return built._replace(log=log.read_text(encoding="utf-8"))
 
 

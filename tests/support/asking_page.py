@@ -21,10 +21,10 @@ class AskingPage:
         self.news: list[Json] = []
         self._number = 0
 
-    def asks(self, action: str, *asked: Json, connection: int = 1, **fields: object) -> Json:
+    def asks(self, action: str, *requests: Json, connection: int = 1, **fields: object) -> Json:
         number = max((item["number"] for item in self.news), default=0)
         request = {"do": action, "page": "me", "connection": connection, "port": self.port,
-                   "robot": "tinibot", "language": "en", "seen": number, "asked": list(asked),
+                   "robot": "tinibot", "language": "en", "seen": number, "asked": list(requests),
                    **fields}  # fmt: skip
         answer = self.answer(request)
         self.news += [item for item in answer.get("news", ()) if item["number"] > number]

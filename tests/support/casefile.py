@@ -76,8 +76,8 @@ def read(path: Path) -> list[Case]:
                 fence, lines = language or "text", []
                 if fence in PARTS:
                     # a new program, or a disassembly that is not the program's, begins a new case
-                    starts = fence in ("tiniscript",) or not cases or fence in cases[-1].parts
-                    if starts or cases[-1].title.split(" #")[0] != title:
+                    starts_case = fence in ("tiniscript",) or not cases or fence in cases[-1].parts
+                    if starts_case or cases[-1].title.split(" #")[0] != title:
                         count += 1
                         name = title if count == 1 else f"{title} #{count}"
                         cases.append(Case(path, number, name, {}))

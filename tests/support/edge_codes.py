@@ -71,10 +71,10 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     yield calls[:-2], None
     yield calls, 2 * frames
     yield end, 0
-    for far in (False, True):
-        skip = jump("ELSE", far, 0)
+    for is_far in (False, True):
+        skip = jump("ELSE", is_far, 0)
         yield skip, None
-        yield jump("ELSE", far, 1), len(skip) + 1
+        yield jump("ELSE", is_far, 1), len(skip) + 1
     yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
     yield jump("AGAIN", True, 4), 0xFFFF
     # A cut instruction reads the bytes after the code.

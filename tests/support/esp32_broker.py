@@ -35,9 +35,9 @@ def connect_to_broker(
     return robot, owner
 
 
-def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 60_000) -> None:
+def until(robot: Esp32Robot, is_reached: Callable[[], bool], limit_ms: int = 60_000) -> None:
     for _ in range(limit_ms // 20):
-        if holds():
+        if is_reached():
             return
         for _ in range(20):
             robot.step()

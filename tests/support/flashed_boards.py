@@ -56,14 +56,14 @@ def tsc(package: Path, *words: str, **variables: str) -> CommandResult:
 
 def run_interrupted(ready_file: Path, *words: str, **variables: str) -> CommandResult:
     """Run a command, and press Ctrl-C as soon as a file has content; return the result."""
-    running = subprocess.Popen(
+    process = subprocess.Popen(
         command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
     )
     while not (ready_file.exists() and ready_file.read_text()):
-        assert running.poll() is None
-    running.send_signal(signal.SIGINT)
-    _, output = running.communicate(timeout=HANG_LIMIT_S)
-    return CommandResult(running.returncode, "", output)
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    _, output = process.communicate(timeout=HANG_LIMIT_S)
+    return CommandResult(process.returncode, "", output)
 
 
 def new_board(loader: Bootloader) -> Uno:

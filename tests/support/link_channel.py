@@ -209,8 +209,10 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     )
     names = [f"TAKE {unpack(image).checksum:08x}" for image in (new_image, old_image)]
     assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
-    starts = sum(row.startswith("START") for row in world.did)
-    assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"
+    start_count = sum(row.startswith("START") for row in world.did)
+    assert start_count == 1 if is_done else start_count <= 1, (
+        f"seed {seed}: started {start_count} times"
+    )
 
     # Each line runs at most once, and exactly once if the computer confirms it.
     lines = []

@@ -69,8 +69,8 @@ def send_and_leave(registration: Registration, data: bytes, chance: Random) -> N
         socket.create_connection((protocol.HOST, registration.number), 10) as peer,
         suppress(OSError),
     ):
-        cut = chance.randrange(len(data) + 1)
-        for piece in (data[:cut], data[cut:]) if chance.random() < 0.3 else (data,):
+        split = chance.randrange(len(data) + 1)
+        for piece in (data[:split], data[split:]) if chance.random() < 0.3 else (data,):
             peer.sendall(piece)
         if chance.random() < 0.5:
             peer.shutdown(socket.SHUT_WR)

@@ -57,9 +57,9 @@ def likely_code(rng: random.Random) -> bytes:
     """Return a sequence of instructions with a valid stack and a random structure."""
     code = b""
     depth = 0
-    few = rng.sample(UNO_OPS, rng.randint(3, 12))
+    common_ops = rng.sample(UNO_OPS, rng.randint(3, 12))
     for _ in range(rng.randrange(1, 14)):
-        op = rng.choice(few if rng.random() < 0.8 else UNO_OPS)
+        op = rng.choice(common_ops if rng.random() < 0.8 else UNO_OPS)
         while depth < op.pops:
             if rng.random() < 0.8:
                 code += bytes((BY_NAME["PUSH8"].code, rng.randrange(256)))
@@ -78,7 +78,7 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
     code = b""
     for _ in range(rng.randrange(4)):
         inner = nested_code(rng, levels - 1) if levels else likely_code(rng)[:8]
-        far = rng.random() < 0.3
+        is_far = rng.random() < 0.3
         kind = rng.randrange(8)
         answer, branch = (
             simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))),
@@ -87,37 +87,37 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
         slip = rng.choice((0, 0, 0, 0, 0, 0, 1, -1, 2, 65_530))
         if kind == 0:
             code += simple("FOREVER") + inner
-            code += jump("AGAIN", far, len(inner) + (3 if far else 2) + slip)
+            code += jump("AGAIN", is_far, len(inner) + (3 if is_far else 2) + slip)
         elif kind == 1:
-            close = jump("NEXT", far, len(inner) + (3 if far else 2) + slip)
+            close = jump("NEXT", is_far, len(inner) + (3 if is_far else 2) + slip)
             times = bytes((BY_NAME["PUSH8"].code, rng.randrange(3)))
             counted_bytes = times + jump("LOOP", rng.random() < 0.5, len(inner + close) + slip)
             code += rng.choice((simple("LOOP8") + b"\x02", counted_bytes)) + inner + close
         elif kind == 2:
-            body = inner + jump("BREAK_LOOP", far, slip + 3 if far else slip + 2)
-            close = jump("NEXT", far, len(body) + (3 if far else 2))
+            body = inner + jump("BREAK_LOOP", is_far, slip + 3 if is_far else slip + 2)
+            close = jump("NEXT", is_far, len(body) + (3 if is_far else 2))
             code += simple("LOOP8") + b"\x03" + body + close
         elif kind == 3:
-            code += answer + jump(branch, far, len(inner) + slip) + inner
+            code += answer + jump(branch, is_far, len(inner) + slip) + inner
         elif kind == 4:
             else_code = likely_code(rng)[:6]
-            skip = jump("ELSE", far, len(else_code) + slip)
-            code += answer + jump(branch, far, len(inner) + len(skip)) + inner
+            skip = jump("ELSE", is_far, len(else_code) + slip)
+            code += answer + jump(branch, is_far, len(inner) + len(skip)) + inner
             code += skip + else_code
         elif kind == 5:
             end = inner + simple("RETURN")
-            code += jump("DEF", far, len(end) + slip) + end
-            code += jump("CALL", far, len(end) + (3 if far else 2) + rng.choice((0, 0, slip)))
+            code += jump("DEF", is_far, len(end) + slip) + end
+            code += jump("CALL", is_far, len(end) + (3 if is_far else 2) + rng.choice((0, 0, slip)))
         elif kind == 6:
             code += simple("WATCH_FOREVER_WAIT") + bytes((BY_NAME["PUSH_READ"].code, 0))
             compared_bytes = bytes((BY_NAME["PUSH8"].code, 5)) + simple("LT") + simple("UNTIL")
             code += rng.choice((compared_bytes, simple("UNTIL8_LT") + b"\x05"))
             code += simple("UNTIL") if slip == 1 else b""
         else:
-            inner = jump("BREAK", far, len(inner) + (3 if far else 2)) + inner
-            loop_end = jump("AGAIN", far, len(inner) + (3 if far else 2))
+            inner = jump("BREAK", is_far, len(inner) + (3 if is_far else 2)) + inner
+            loop_end = jump("AGAIN", is_far, len(inner) + (3 if is_far else 2))
             code += rng.choice(
-                (simple("FOREVER"), jump("WHILE", far, len(inner + loop_end) + slip))
+                (simple("FOREVER"), jump("WHILE", is_far, len(inner + loop_end) + slip))
             )
             code += inner + loop_end
     return code
@@ -210,8 +210,8 @@ def task_code(rng: random.Random) -> bytes:
             )
         )
     slip = rng.choice((0, 0, 0, 0, 0, 0, 0, 1, -1, 65_000))
-    far = (len(body) + slip) % 65_536
-    return bytes([BY_NAME[kind].code]) + far.to_bytes(2, "little") + body
+    body_length = (len(body) + slip) % 65_536
+    return bytes([BY_NAME[kind].code]) + body_length.to_bytes(2, "little") + body
 
 
 def expression(rng: random.Random) -> bytes:
@@ -234,8 +234,8 @@ def branches(rng: random.Random) -> bytes:
     body = simple("STOP")
     for _ in range(6):
         op = rng.choice([op for op in UNO_OPS if op.control_role == "if"])
-        near = rng.choice((0, 1, 2, 9, 200))
-        code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
+        loop_count = rng.choice((0, 1, 2, 9, 200))
+        code += simple("PUSH16") + loop_count.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
         *variable, compared_operand_kind, _ = [
             None,
             None,
@@ -247,7 +247,7 @@ def branches(rng: random.Random) -> bytes:
             is_variable = variable != [None]
             code += b"" if is_variable else simple("PUSH_VAR_1")
             code += bytes([op.code, 1] if is_variable else [op.code])
-            number = near + rng.choice((-1, 0, 0, 1))
+            number = loop_count + rng.choice((-1, 0, 0, 1))
             size = compared_operand_kind.size
             code += (number & ((1 << 8 * size) - 1)).to_bytes(size, "little")
         code += len(body).to_bytes(op.operands[-1].kind.size, "little") + body
@@ -262,9 +262,11 @@ def simple(name: str) -> bytes:
     return bytes([BY_NAME[name].code])
 
 
-def jump(name: str, far: bool, distance: int) -> bytes:
-    size = 2 if far else 1
-    return simple(name + "_FAR" * far) + (distance & ((1 << 8 * size) - 1)).to_bytes(size, "little")
+def jump(name: str, is_far: bool, distance: int) -> bytes:
+    size = 2 if is_far else 1
+    return simple(name + "_FAR" * is_far) + (distance & ((1 << 8 * size) - 1)).to_bytes(
+        size, "little"
+    )
 
 
 def mutate_code(rng: random.Random, code: bytes, other_code: bytes) -> bytes:

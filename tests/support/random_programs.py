@@ -34,5 +34,5 @@ def random_program(seed: int) -> RandomProgram:
     wanted_run = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
     short = compile_text(text, kit)
-    plain = compile_text(text, kit, optimize=False)
-    return RandomProgram(seed, text, kit, senses, wanted_run, short, plain)
+    plain_compilation = compile_text(text, kit, optimize=False)
+    return RandomProgram(seed, text, kit, senses, wanted_run, short, plain_compilation)

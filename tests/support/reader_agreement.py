@@ -100,18 +100,18 @@ def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
     memory."""
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None
-    plain = plain_code(compilation.program)
+    plain_program = plain_code(compilation.program)
     model = Model(scan(compilation.source.text).tokens, kit, SENSOR_BYTES)
     model.program()
     fits = (
-        plain.short_length <= CODE_BYTES
+        plain_program.short_length <= CODE_BYTES
         and model.most_bytes <= room
         and model.extra_bracket_span is None
     )
     if fits and all(
         len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compilation.source.text)
     ):
-        assert answer.code == plain.code, f"{answer} {model.most_bytes}\n{data!r}"
+        assert answer.code == plain_program.code, f"{answer} {model.most_bytes}\n{data!r}"
     else:
         assert answer.problem == "FULL", f"{answer} {model.most_bytes}\n{data!r}"
 

@@ -83,13 +83,13 @@ def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pyte
     for item in items:
         for mark in item.iter_markers(MARK):
             if "files" in mark.kwargs:
-                same = files[mark.kwargs["files"], mark.kwargs["keep"]]
-                same.setdefault(item.path, []).append(item)
+                items_by_path = files[mark.kwargs["files"], mark.kwargs["keep"]]
+                items_by_path.setdefault(item.path, []).append(item)
     left_out: set[pytest.Item] = set()
-    for (name, keep), same in files.items():
+    for (name, keep), items_by_path in files.items():
         draw = random.Random(f"{seed(config)} {name}")
-        for path in draw.sample(sorted(same), len(same))[keep:]:
-            left_out |= set(same[path] if path not in _list_named_files(config) else ())
+        for path in draw.sample(sorted(items_by_path), len(items_by_path))[keep:]:
+            left_out |= set(items_by_path[path] if path not in _list_named_files(config) else ())
     return left_out
 
 

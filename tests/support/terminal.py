@@ -76,8 +76,10 @@ class Terminal:
     def whole(self) -> list[str]:
         """Return the lines with those that have scrolled away."""
         columns = range(self.screen.columns)
-        gone = ["".join(line[k].data for k in columns) for line in self.screen.history.top]
-        return [*(line.rstrip() for line in gone), *self.lines()]
+        scrolled_lines = [
+            "".join(line[k].data for k in columns) for line in self.screen.history.top
+        ]
+        return [*(line.rstrip() for line in scrolled_lines), *self.lines()]
 
     def until(self, pattern: str) -> re.Match[str]:
         """Wait until something is to be seen."""

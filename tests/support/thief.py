@@ -26,14 +26,14 @@ class Thief:
             ("replayed", "reflected", "other session", "cut", "changed", "unsealed", "moved",
              "forged", "sealed by another key")
         )  # fmt: skip
-        mine = chance.choice(self.sent)
-        frame = decode_frame(mine)
+        own_frame = chance.choice(self.sent)
+        frame = decode_frame(own_frame)
         assert frame
         if attack == "replayed":
-            return attack, mine
+            return attack, own_frame
         if attack == "reflected":
             reply = decode_frame(chance.choice(self.replies))
-            return attack, encoded(reply._replace(is_reply=False)) if reply else mine
+            return attack, encoded(reply._replace(is_reply=False)) if reply else own_frame
         if attack == "other session":
             return attack, chance.choice(self.old)
         if attack == "cut":
@@ -57,9 +57,11 @@ class Thief:
             message for message in MESSAGES if 6 <= message.number < 32 and message.number != 17
         ]
         message = chance.choice(acting)
-        low = sum(field.least_bytes for field in message.request)
-        high = min(sum(field.most_bytes for field in message.request), SEALED_PAYLOAD_BYTES)
-        asked_frame = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
+        min_bytes = sum(field.least_bytes for field in message.request)
+        max_bytes = min(sum(field.most_bytes for field in message.request), SEALED_PAYLOAD_BYTES)
+        asked_frame = Frame(
+            message.number, seq, epoch, chance.randbytes(chance.randint(min_bytes, max_bytes))
+        )
         if attack == "forged":
             counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
             forged_payload = b"\0" + counter + asked_frame.payload + chance.randbytes(8)

@@ -189,8 +189,12 @@ class Pupil:
     def types(self) -> None:
         page = self.page
         if not self.stages:
-            waits = any(draft.stays for draft in page.drafts)
-            plan = "kept" if waits and self._chance.random() < 0.5 else self._chance.choice(PLANS)
+            has_staying_draft = any(draft.stays for draft in page.drafts)
+            plan = (
+                "kept"
+                if has_staying_draft and self._chance.random() < 0.5
+                else self._chance.choice(PLANS)
+            )
             self.deeds[f"types {plan}"] += 1
             self.stages = getattr(self, f"_plan_{plan}")()
         page.type(*self.stages.pop(0)(page.lines[:], page.caret))

@@ -126,10 +126,10 @@ def edit_rows(chance: Random, rows: list[str]) -> list[str]:
         elif kind < 0.5:
             del new_rows[i : i + chance.randint(1, 4)]
         elif kind < 0.7:
-            cut = new_rows[i : i + chance.randint(1, 6)]
-            del new_rows[i : i + len(cut)]
+            cut_rows = new_rows[i : i + chance.randint(1, 6)]
+            del new_rows[i : i + len(cut_rows)]
             k = chance.randrange(len(new_rows) + 1)
-            new_rows[k:k] = cut
+            new_rows[k:k] = cut_rows
         elif kind < 0.85:
             new_rows.insert(min(len(new_rows), i + chance.randint(0, 5)), "END_LOOP")
             new_rows.insert(i, "LOOP(7)")

@@ -137,11 +137,13 @@ def _print_counts(worlds: list[World]) -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 0, "lessons")
-    if given.lessons:
+    options = make_options(10_000, 0, "lessons")
+    if options.lessons:
         for pages in (2, 3, 4):
-            _print_counts([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])
+            _print_counts(
+                [lesson(seed, pages, 600) for seed in range(options.seed, options.seed + 3)]
+            )
     else:
         per_part = 1000
-        _print_counts([history(given.seed + k, min(per_part, given.count - k * per_part), 4)
-                       for k in range(-(-given.count // per_part))])  # fmt: skip
+        _print_counts([history(options.seed + k, min(per_part, options.count - k * per_part), 4)
+                       for k in range(-(-options.count // per_part))])  # fmt: skip

@@ -54,17 +54,17 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
         sizes.append(path.stat().st_size)
         states.append((program.number, dict(program.last_count_by_page)))
     journal.close()
-    cut = chance.randint(sizes[0], sizes[-1])
-    os.truncate(path, cut)
-    resumed = Journal(path).resume("e2")
-    assert resumed is not None
-    state_index = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (resumed.number, resumed.last_count_by_page) == states[state_index]
-    assert resumed.epoch == "e2"
-    change_program(resumed, 2000)
+    journal_size = chance.randint(sizes[0], sizes[-1])
+    os.truncate(path, journal_size)
+    resumed_program = Journal(path).resume("e2")
+    assert resumed_program is not None
+    state_index = max(k for k, size in enumerate(sizes) if size <= journal_size)
+    assert (resumed_program.number, resumed_program.last_count_by_page) == states[state_index]
+    assert resumed_program.epoch == "e2"
+    change_program(resumed_program, 2000)
     whole_program = Journal(path).resume("e3")
     assert whole_program is not None
-    assert are_same(whole_program, resumed)
+    assert are_same(whole_program, resumed_program)
 
 
 def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
@@ -72,9 +72,9 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
     _, program = begin_journal(path)
     for value in (5, 0, 6):
         change_program(program, value)
-        resumed = Journal(path).resume("e2")
-        assert resumed is not None
-        assert are_same(resumed, program)
+        resumed_program = Journal(path).resume("e2")
+        assert resumed_program is not None
+        assert are_same(resumed_program, program)
 
 
 @pytest.mark.parametrize("says_so", ["write", "in part", "fsync"])
@@ -101,9 +101,9 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
         assert journal.is_incomplete
     assert change_program(program, 8)
     assert not journal.is_incomplete
-    resumed = Journal(path).resume("e2")
-    assert resumed is not None
-    assert (resumed.number, text_of(resumed.tree)) == (2, text_of(program.tree))
+    resumed_program = Journal(path).resume("e2")
+    assert resumed_program is not None
+    assert (resumed_program.number, text_of(resumed_program.tree)) == (2, text_of(program.tree))
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -116,9 +116,9 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
 
     def stop_saving() -> None:
         reopened = Journal(path)
-        resumed = reopened.resume("e2")
+        resumed_program = reopened.resume("e2")
         reopened.close()
-        assert resumed is not None and resumed.number >= kept_number
+        assert resumed_program is not None and resumed_program.number >= kept_number
 
     def checked_call(call: Callable[..., Any]) -> Callable[..., Any]:
         def write_before(*arguments: Any, **keywords: Any) -> Any:
@@ -142,9 +142,9 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
             if chance.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
                 path.write_bytes(chance.randbytes(chance.randrange(3000)))  # it is damaged
                 kept_number = 0
-            resumed = journal.resume(f"e{value}")
-            assert resumed is not None
-            program = resumed
+            resumed_program = journal.resume(f"e{value}")
+            assert resumed_program is not None
+            program = resumed_program
             kept_number = max(kept_number, program.number)
     is_full = False
     assert change_program(program, 99) and not journal.is_incomplete
@@ -162,9 +162,9 @@ def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
         change_program(program, value)
         assert path.stat().st_size < 6000
     assert path.with_name(path.name + OLD_ENDING).exists()
-    resumed = Journal(path).resume("e2")
-    assert resumed is not None
-    assert resumed.tree.checksum() == program.tree.checksum()
+    resumed_program = Journal(path).resume("e2")
+    assert resumed_program is not None
+    assert resumed_program.tree.checksum() == program.tree.checksum()
 
 
 @pytest.mark.parametrize(

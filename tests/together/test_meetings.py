@@ -278,8 +278,8 @@ def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(see
     last_value = k + 2
     assert two.ana.undo()
     for _ in range(chance.randint(1, 2)):
-        kept = json.loads(json.dumps(two.ana.store_data()))
-        two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
+        stored_data = json.loads(json.dumps(two.ana.store_data()))
+        two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
     assert f"F({last_value - 1}, 80)" in two.meet()
     assert not two.ana.undo()
     assert two.ana.redo()
@@ -344,7 +344,7 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
     """Return what Ana's page shows after each step, with a copy in its place each time, or as it
     is. Nothing hears of what is changed on the old page then."""
     chance, other_chance, two = Random(seed), Random(seed), PagePair(FLAT_PROGRAM)
-    seen = list[Any]()
+    results = list[Any]()
     for _ in range(40):
         if makes_copies:
             old_page, two.ana = two.ana, two.ana.copy()
@@ -362,11 +362,11 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
                 edits(two.luz, chance)
                 two.sends(two.luz)
             case "undo" | "redo" as does_back:
-                seen.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
+                results.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
             case message:
                 exchange(two, message)
-        seen.append([two.ana.lines[:], data(two.ana)])
-    return [*seen, two.meet()]
+        results.append([two.ana.lines[:], data(two.ana)])
+    return [*results, two.meet()]
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -435,7 +435,7 @@ def test_as_many_redos_as_undos_bring_all_back(seed: int) -> None:
         texts.append(two.meet())
     for _ in range(4):
         count_back = chance.randrange(1, 5)
-        for done in range(count_back):
-            assert two.ana.undo() and two.meet() == texts[-2 - done]
-        for done in reversed(range(count_back)):
-            assert two.ana.redo() and two.meet() == texts[-1 - done]
+        for redo_count in range(count_back):
+            assert two.ana.undo() and two.meet() == texts[-2 - redo_count]
+        for redo_count in reversed(range(count_back)):
+            assert two.ana.redo() and two.meet() == texts[-1 - redo_count]
