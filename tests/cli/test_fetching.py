@@ -456,11 +456,11 @@ def test_each_failure_has_its_own_step_cause_and_log(
     seed: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Whatever was fetched before, and where the program cannot be started at all."""
-    chance = Random(seed)
+    rng = Random(seed)
     for k in range(20):
-        keys = chance.choices(["fetch_npm_now", "fetch_node_now"], k=chance.randrange(5))
-        cause = chance.choice([*CAUSES])
-        log, exit_code = f"{k} {CAUSES[cause]}", chance.choice((0, 1, 7, None))
+        keys = rng.choices(["fetch_npm_now", "fetch_node_now"], k=rng.randrange(5))
+        cause = rng.choice([*CAUSES])
+        log, exit_code = f"{k} {CAUSES[cause]}", rng.choice((0, 1, 7, None))
 
         def pretended_run(
             command: object, folder: object, on_output: Any, *arguments: object
@@ -492,11 +492,11 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Files are put away while others come, and the last one is not all."""
-    chance, now_s, mb = Random(seed), 100.0, 40
+    rng, now_s, mb = Random(seed), 100.0, 40
     sizes = [0]
 
     def size_of(folder: Path) -> int:
-        sizes.append(chance.randrange(12) * mb * 100_000)
+        sizes.append(rng.randrange(12) * mb * 100_000)
         return sizes[-1]
 
     monkeypatch.setattr(fetching, "size_of", size_of)
@@ -507,7 +507,7 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
         percent = folder_progress.percent()
         assert newest_percent <= percent == min(99, max(sizes) // (10_000 * mb))
         newest_percent = percent
-        now_s += chance.random() / 10
+        now_s += rng.random() / 10
     most_measures = (now_s - began_s) / fetching.MEASURE_INTERVAL_S + 1
     assert most_measures / 2 < len(sizes) - 1 <= most_measures
 

@@ -169,12 +169,12 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
 ) -> None:
     """They may come at any time; without a second press, it ends by itself."""
     for seed in range(10):
-        chance = random.Random(seed)
+        rng = random.Random(seed)
         times = [5.0]
         for _ in range(presses):
             times.append(
                 times[-1]
-                + chance.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
+                + rng.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
             )
         room = Watched(monkeypatch, times[:presses])
         limit_s = opening.CONFIRM_TIMEOUT_S + 1

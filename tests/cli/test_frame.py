@@ -50,10 +50,10 @@ class Terminal:
         return ["".join(row[k].data for k in range(wide)).rstrip() for row in rows]
 
 
-def line(chance: random.Random) -> Text:
+def line(rng: random.Random) -> Text:
     text = Text()
-    while text.cell_len < chance.randrange(COLUMNS - 2):
-        text.append(chance.choice(SIGNS), style=chance.choice(STYLES))
+    while text.cell_len < rng.randrange(COLUMNS - 2):
+        text.append(rng.choice(SIGNS), style=rng.choice(STYLES))
     text.rstrip()
     return text
 
@@ -61,20 +61,20 @@ def line(chance: random.Random) -> Text:
 @pytest.mark.parametrize("seed", range(40))
 def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> None:
     """Includes lines that appear, vanish and change, and lines printed above."""
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     terminal = Terminal()
     lines_above: list[str] = []
-    lines = [line(chance) for _ in range(5)]
+    lines = [line(rng) for _ in range(5)]
     for number in range(30):
         lines = [text.copy() for text in lines]
         for k in range(len(lines)):
-            if chance.random() < 0.3:
-                lines[k] = line(chance)
-        if chance.random() < 0.2:
-            lines = lines[: chance.randrange(len(lines) + 1)]
-        if chance.random() < 0.2 and len(lines) < LINES - 4:
-            lines.append(line(chance))
-        above = f"said {number}" if chance.random() < 0.3 else ""
+            if rng.random() < 0.3:
+                lines[k] = line(rng)
+        if rng.random() < 0.2:
+            lines = lines[: rng.randrange(len(lines) + 1)]
+        if rng.random() < 0.2 and len(lines) < LINES - 4:
+            lines.append(line(rng))
+        above = f"said {number}" if rng.random() < 0.3 else ""
         lines_above += [above] if above else []
         terminal.draw(lines, above)
         expected = [*lines_above, *(text.plain for text in lines)]

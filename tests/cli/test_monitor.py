@@ -95,7 +95,7 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     capsys: pytest.CaptureFixture[str], seed: int
 ) -> None:
     """This holds for any number of losses and unanswered searches; each robot is found once."""
-    chance = Random(seed)
+    rng = Random(seed)
     searches: list[Any] = []
     is_there, losses, wait_count = True, 0, 0
 
@@ -108,14 +108,14 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
         if wait_count > 400:
             raise Over
         if is_there:
-            if losses < 5 and chance.random() < 0.1:
+            if losses < 5 and rng.random() < 0.1:
                 is_there, losses = False, losses + 1
                 return wait_count, LostEvent()
             return None
         questions = [search for search in searches if search.outcome is None]
         assert len(questions) == 1, "nobody looks for it"
-        if chance.random() < 0.3:
-            is_there = chance.random() < 0.3
+        if rng.random() < 0.3:
+            is_there = rng.random() < 0.3
             questions[0].outcome = SimpleNamespace(status=OK if is_there else LOST)
         return None
 

@@ -339,12 +339,12 @@ def test_a_recording_has_an_end_and_no_more(
 def test_whatever_a_robot_tells_after_the_end_of_its_run_is_not_recorded(
     tmp_path: Path, seed: int
 ) -> None:
-    chance, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
+    rng, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
     tested_recorder = Recorder(str(file), HEAD, monotonic(), kit=kit)
     for k in range(12):
-        name = chance.choice(["SHOW", "READING", "READING", "TEXT", *ENDING_EVENTS])
+        name = rng.choice(["SHOW", "READING", "READING", "TEXT", *ENDING_EVENTS])
         if name == "READING":
-            tested_recorder.add_reading(ReadingEvent(7, chance.randrange(3), 1000 * k, 0))
+            tested_recorder.add_reading(ReadingEvent(7, rng.randrange(3), 1000 * k, 0))
         else:
             tested_recorder.add_event(7, name, "OVERFLOW" if name == "FAULT" else str(k))
     tested_recorder.close()

@@ -92,14 +92,14 @@ OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 @pytest.mark.parametrize("seed", range(50))
 def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
     """Keys may be split anywhere, after any input: no part of a key is left for the next."""
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     whole_keys, split_keys = HeldKeys(), HeldKeys()
     for k in range(20):
         typed_text, now_s = (
-            chance.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
+            rng.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
             2.0 * k,
         )
-        offset = chance.randrange(len(typed_text) + 1)
+        offset = rng.randrange(len(typed_text) + 1)
         leave_flags = [
             split_keys.press_typed(piece, now_s)
             for piece in (typed_text[:offset], "", typed_text[offset:], "")
@@ -110,16 +110,16 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_what_was_typed_a_while_ago_holds_nothing_now(seed: int) -> None:
-    chance, used_keys, unused_keys, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
+    rng, used_keys, unused_keys, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
     for _ in range(20):
-        used_keys.press_typed(chance.choice(KEYS)[0], now_s)
-        now_s += chance.random()
+        used_keys.press_typed(rng.choice(KEYS)[0], now_s)
+        now_s += rng.random()
     now_s += FIRST_HOLD_S
     for _ in range(20):
-        typed_text = chance.choice(KEYS)[0]
+        typed_text = rng.choice(KEYS)[0]
         used_keys.press_typed(typed_text, now_s)
         unused_keys.press_typed(typed_text, now_s)
-        for _ in range(chance.randrange(9)):
+        for _ in range(rng.randrange(9)):
             assert used_keys.keys_at(now_s) == unused_keys.keys_at(now_s)
             now_s += 0.1
 
@@ -176,12 +176,12 @@ def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It hears nothing while nothing is held."""
-    chance, table, held_keys = random.Random(seed), Table(), HeldKeys()
+    rng, table, held_keys = random.Random(seed), Table(), HeldKeys()
     with remote_at(table, monkeypatch) as remote:
         for _ in range(1500):
-            table.typed = chance.choice(KEYS)[0] if chance.random() < 0.05 else ""
+            table.typed = rng.choice(KEYS)[0] if rng.random() < 0.05 else ""
             held_keys.press_typed(table.typed, table.now_s)
-            table.status = chance.choice((OK, CANCELLED, LOST, None))
+            table.status = rng.choice((OK, CANCELLED, LOST, None))
             remote.poll()
             held = held_keys.keys_at(table.now_s)
             said_s, said = table.words[-1] if table.words else (0.0, NOTHING_PRESSED)

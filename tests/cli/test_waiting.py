@@ -163,18 +163,18 @@ def test_a_bar_writes_where_something_changes_and_leaves_nothing(
     seed: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds for any amount, also for none, and however often it is drawn and ended."""
-    chance, now_s, line = Random(seed), 100.0, ""
+    rng, now_s, line = Random(seed), 100.0, ""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    bar = progress.Progress("en", total := chance.choice((0, 7, 200)))
+    bar = progress.Progress("en", total := rng.choice((0, 7, 200)))
     newest = ""  # the newest line that is no empty one
     for _ in range(60):
-        now_s += chance.choice((0.0, 0.02, 0.1))
-        if chance.random() < 0.2:
+        now_s += rng.choice((0.0, 0.02, 0.1))
+        if rng.random() < 0.2:
             bar.end()
             wanted_text = ""
         else:
-            done_count = chance.randint(0, total)
+            done_count = rng.randint(0, total)
             bar.draw(done_count)
             percent = f"{min(100 * done_count // total, 99)} %" if total else ""
             is_late = now_s - 100 >= progress.DRAW_DELAY_S and percent != newest

@@ -35,14 +35,14 @@ class Chance(Nobody):
 
     def __init__(self, seed: int) -> None:
         super().__init__(random.Random(seed).choice((9600, 38400, 115200)))
-        self.chance = random.Random(seed)
-        self.rate = self.chance.choice((0.001, 0.02, 0.5))
+        self.rng = random.Random(seed)
+        self.rate = self.rng.choice((0.001, 0.02, 0.5))
 
     def answer(self, data: bytes) -> bytes:
-        if self.chance.random() > self.rate and not data:
+        if self.rng.random() > self.rate and not data:
             return b""
-        words = [self.chance.choice(WORDS) for _ in range(self.chance.randrange(4))]
-        return b"".join([*words, self.chance.randbytes(self.chance.randrange(3)), data[:3]])
+        words = [self.rng.choice(WORDS) for _ in range(self.rng.randrange(4))]
+        return b"".join([*words, self.rng.randbytes(self.rng.randrange(3)), data[:3]])
 
 
 class Damaged(Firmware):
@@ -50,16 +50,16 @@ class Damaged(Firmware):
 
     def __init__(self, seed: int) -> None:
         super().__init__()
-        self.chance = random.Random(seed)
+        self.rng = random.Random(seed)
         for key, value in self.hello.items():
-            if isinstance(value, int) and self.chance.random() < 0.3:
-                self.hello[key] = self.chance.randrange(256)
-        self.hello["name"] = self.chance.randbytes(self.chance.randrange(17))
+            if isinstance(value, int) and self.rng.random() < 0.3:
+                self.hello[key] = self.rng.randrange(256)
+        self.hello["name"] = self.rng.randbytes(self.rng.randrange(17))
 
     def answer(self, data: bytes) -> bytes:
         reply = bytearray(super().answer(data))
-        if reply and self.chance.random() < 0.1:
-            reply[self.chance.randrange(len(reply))] ^= 1 << self.chance.randrange(8)
+        if reply and self.rng.random() < 0.1:
+            reply[self.rng.randrange(len(reply))] ^= 1 << self.rng.randrange(8)
         return bytes(reply)
 
 
@@ -80,17 +80,17 @@ def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> N
 @pytest.mark.parametrize("platform", ["linux", "darwin", "win32"])
 @pytest.mark.parametrize("seed", range(10))
 def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int) -> None:
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     parts = ('{"SPUSBDataType": [', "{}", "]}", "null", "[[", '"_items": 7', "Device", " ", ":",
              "\n", "USB\\VID_1A86&PID_7523", "BTHENUM\\DEV_000000000000", "\0", "é")  # fmt: skip
 
     class Any(FakeComputer):
         def output(self, *words: str) -> str | None:
-            return "".join(chance.choice(parts) for _ in range(chance.randrange(12)))
+            return "".join(rng.choice(parts) for _ in range(rng.randrange(12)))
 
     system = Any(tmp_path, platform)
-    system.usb("1-1", *(chance.choice(("", "1a86", "7523", "\n")) for _ in range(2)))
-    system.write("/etc/group", "".join(chance.choice(("a:x:20:b", ":", "\n")) for _ in range(9)))
+    system.usb("1-1", *(rng.choice(("", "1a86", "7523", "\n")) for _ in range(2)))
+    system.write("/etc/group", "".join(rng.choice(("a:x:20:b", ":", "\n")) for _ in range(9)))
     system.write("/sys/class/bluetooth/hci0/x", "")
     system.owners["/dev/x"] = (20, True)
     findings = diagnosis.inspect_computer(system)

@@ -100,16 +100,16 @@ def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: i
     """However often it was not, and whether somebody wanted it meanwhile: robots share a connection
     as long as that lasts.
     """
-    chance, mosquitto, is_there = Random(seed), Mosquitto(tmp_path), True
+    rng, mosquitto, is_there = Random(seed), Mosquitto(tmp_path), True
     connections = [broker.connect("127.0.0.1", mosquitto.port)]
     try:
         for _ in range(12):
-            if chance.random() < 0.5:
+            if rng.random() < 0.5:
                 is_there = not is_there
                 mosquitto.start() if is_there else mosquitto.kill()
             if not is_there:
                 until(lambda: connections[-1].end_reason != "", "the connection ends")
-            port = broker.port_of("127.0.0.1", mosquitto.port, "aula", f"{chance.randrange(3):08x}")
+            port = broker.port_of("127.0.0.1", mosquitto.port, "aula", f"{rng.randrange(3):08x}")
             if is_there:
                 broker.open_port(port, 0, 1.0).write(bytes(STOP_BYTES))
                 connections.append(broker.connect("127.0.0.1", mosquitto.port))

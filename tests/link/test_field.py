@@ -87,20 +87,20 @@ class Robot:
 
 
 def check_never_silent(cpp: CppLink, seed: int) -> str:
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     robot = Robot(cpp)
-    noise = [draw.choice(NOISE_BEFORE) for _ in range(draw.randint(0, 4))]
+    noise = [rng.choice(NOISE_BEFORE) for _ in range(rng.randint(0, 4))]
     # Before the last silence, because a mistake removes all lines that follow it directly.
     answered = 0
     in_frames = False  # only if a line needs its end
     for data in noise:
         robot.type(data)
-        pause_ms = draw.choice(PAUSES_MS)
+        pause_ms = rng.choice(PAUSES_MS)
         robot.wait(pause_ms)
         in_frames = in_frames or b"\0" in data
         if pause_ms > SILENCE_MS:
             answered, in_frames = len(robot.answers), False
-    line = draw.choice(LINES).encode() + draw.choice(LINE_ENDS[: -1 if in_frames else None])
+    line = rng.choice(LINES).encode() + rng.choice(LINE_ENDS[: -1 if in_frames else None])
     event_count = len(robot.did)
     robot.type(line)
     robot.wait(4200)
@@ -120,12 +120,12 @@ def programs_of(cpp: CppLink, text: str) -> frozenset[str]:
 
 def check_no_other_program(cpp: CppLink, seed: int) -> str:
     """A glitch is at one byte of a program: a 0x00, in its place or before it."""
-    draw = random.Random(seed)
-    text = draw.choice(PROGRAMS)
+    rng = random.Random(seed)
+    text = rng.choice(PROGRAMS)
     data = text.encode() + b"\n"
-    offset = draw.randrange(len(data))
+    offset = rng.randrange(len(data))
     # without its first byte a first line is another one, and the next ones are lines of their own
-    text_end = offset + (offset > 0 and draw.randrange(2))
+    text_end = offset + (offset > 0 and rng.randrange(2))
     wanted_programs = programs_of(cpp, text)
     robot = Robot(cpp)
     robot.type(data[:offset] + b"\0" + data[text_end:])
@@ -137,10 +137,10 @@ def check_no_other_program(cpp: CppLink, seed: int) -> str:
 
 def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     """A person and a computer, in turns, on one port."""
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     wanted_of = {text: programs_of(cpp, text) for text in TYPED_PROGRAMS}
     robot = Robot(cpp)
-    session = Session(draw.getrandbits(32), 115_200, KIT)
+    session = Session(rng.getrandbits(32), 115_200, KIT)
     session.is_attached = False
 
     def ask(request: PendingRequest[Any]) -> None:
@@ -155,11 +155,11 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     heard_count = 0
     ask(session.hello())
     for _ in range(12):
-        robot.wait(draw.choice((0, 20, 160, 360, 440, 900, 1200)))
-        if draw.random() < 0.5:
+        robot.wait(rng.choice((0, 20, 160, 360, 440, 900, 1200)))
+        if rng.random() < 0.5:
             ask(session.status())
             continue
-        event_count, text = len(robot.did), draw.choice(TYPED_PROGRAMS)
+        event_count, text = len(robot.did), rng.choice(TYPED_PROGRAMS)
         robot.type(text.encode() + b"\n")
         robot.wait(40)
         # a computer's frame without a 0x00, where the person's line has ended, may be a stop

@@ -68,9 +68,9 @@ def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording)
     also = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
         also |= {"micropython"}
-    chance = random.Random(recording.shown_text)
+    rng = random.Random(recording.shown_text)
     for _ in range(400):
-        start, end = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
+        start, end = sorted(rng.randrange(len(recording.data) + 1) for _ in range(2))
         board = identify_board(recording.data[start:end])
         assert (board and board.name) in also, recording.data[start:end]
 
@@ -132,9 +132,9 @@ def test_random_bytes_are_no_board(data: bytes) -> None:
 
 
 def test_much_noise_is_not_a_board() -> None:
-    chance = random.Random(5)
+    rng = random.Random(5)
     for _ in range(300):
-        assert identify_stranger(bytes(chance.choices(range(256), k=500))) is None
+        assert identify_stranger(bytes(rng.choices(range(256), k=500))) is None
 
 
 @given(st.lists(st.sampled_from(OWN_ROWS), min_size=1, max_size=6), st.binary(max_size=20))
@@ -161,9 +161,9 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 @pytest.mark.sampled("piece", keep=40)
 @pytest.mark.parametrize("piece", range(200))
 def test_a_piece_of_a_robot_s_bytes_is_not_a_board(piece: int) -> None:
-    chance = random.Random(piece)
-    data = b"".join(chance.choices(OWN_ROWS, k=5))
-    start, end = sorted(chance.randrange(len(data) + 1) for _ in range(2))
+    rng = random.Random(piece)
+    data = b"".join(rng.choices(OWN_ROWS, k=5))
+    start, end = sorted(rng.randrange(len(data) + 1) for _ in range(2))
     assert identify_board(data[start:end]) is None
 
 

@@ -40,24 +40,24 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
 ) -> None:
     """The robot may have taken its key, and keeps no second copy. A robot that confirms another key
     does not have the claimed one; only the newest claims of a robot and a person are kept."""
-    chance = Random(seed)
+    rng = Random(seed)
     ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
     claims: list[RobotKey] = []
     lists = [
-        [RobotKey(*slot, chance.randbytes(KEY_BYTES)) for slot in chance.sample(SLOTS, k)]
+        [RobotKey(*slot, rng.randbytes(KEY_BYTES)) for slot in rng.sample(SLOTS, k)]
         for k in (1, 2, len(SLOTS))
     ]
     for _ in range(CHANGE_COUNT):
-        slot, known_keys = chance.choice(SLOTS), ring.keys_of_robot(None)
-        key = chance.choice([*known_keys, *chance.choice(lists)])
-        match chance.choice(["claim", "import", "refuse", "confirm", "drop", "forget", "load"]):
+        slot, known_keys = rng.choice(SLOTS), ring.keys_of_robot(None)
+        key = rng.choice([*known_keys, *rng.choice(lists)])
+        match rng.choice(["claim", "import", "refuse", "confirm", "drop", "forget", "load"]):
             case "claim":
                 claim = ring.create_pending_key(*slot, "TINI")
                 assert claim is not None
                 older_claims = [claim for claim in claims if claim.slot == slot]
                 claims = [c for c in claims if c not in older_claims[:-MOST_PENDING_KEYS]] + [claim]
             case "import":
-                add(ring, chance.choice(lists))
+                add(ring, rng.choice(lists))
             case "refuse":
                 ring.mark_stale(key)
             case "confirm":
@@ -82,8 +82,8 @@ class Robot:
     """A robot that has a key for each person who has claimed it. Its answers are lost now and then,
     and its answer to a new key is arbitrary: it has it, it will keep it, or it accepts none."""
 
-    def __init__(self, chance: Random) -> None:
-        self.chance = chance
+    def __init__(self, rng: Random) -> None:
+        self.rng = rng
         self.keys: dict[int, bytes] = {}
         self.loss = 0.0
         self.has_seals = False
@@ -100,7 +100,7 @@ class Robot:
         try:
             request = next(exchange)
             while True:
-                is_heard, is_answered = (self.chance.random() >= self.loss for _ in range(2))
+                is_heard, is_answered = (self.rng.random() >= self.loss for _ in range(2))
                 reply = self._reply(request) if is_heard else None
                 if reply is None or not is_answered:
                     return None
@@ -117,7 +117,7 @@ class Robot:
         tag, key = request.values["tag"], self.keys.get(role)
         if not tag:
             return Reply(OK, 0, AuthenticateReply(0, CHALLENGE))
-        self._is_stale = not self._is_stale and self.chance.random() < 0.2
+        self._is_stale = not self._is_stale and self.rng.random() < 0.2
         if self._is_stale:  # it was stopped in this moment
             return Reply(STATUSES["STALE"])
         message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, role])
@@ -129,7 +129,7 @@ class Robot:
             self.keys.pop(role, None)
             return OK
         statuses = [OK, *ACCEPTING_STATUSES, STATUSES["NOT_OWNER"]]
-        status = self._status_by_key.setdefault(key, self.chance.choice(statuses))
+        status = self._status_by_key.setdefault(key, self.rng.choice(statuses))
         if status in (OK, *ACCEPTING_STATUSES):
             self.keys[role] = key
         return status
@@ -142,14 +142,14 @@ def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
 ) -> None:
     """The key that a robot has is never gone here, and it is shown; then it is known that this one
     is right, and that its robot seals, for ever."""
-    chance = Random(seed)
+    rng = Random(seed)
     ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
-    robot = Robot(chance)
+    robot = Robot(rng)
     sealing_keys = set[bytes]()
     for _ in range(CHANGE_COUNT):
-        robot.loss, role = chance.choice((0.0, 0.3)), chance.choice((KEY_OWNER, KEY_TEACHER))
-        robot.has_seals = chance.random() < 0.5  # it may have older firmware
-        if chance.random() < 0.7:
+        robot.loss, role = rng.choice((0.0, 0.3)), rng.choice((KEY_OWNER, KEY_TEACHER))
+        robot.has_seals = rng.random() < 0.5  # it may have older firmware
+        if rng.random() < 0.7:
             robot.does(authority.claim(ring, robot.info, role))
         else:
             robot.does(authority.disown(ring, robot.info, role))

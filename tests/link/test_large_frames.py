@@ -155,23 +155,23 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, max_byt
 
 def test_both_receivers_find_the_same_where_frames_wait() -> None:
     """Frames, noise and silence, while some of them are not taken yet."""
-    draw = random.Random(3)
+    rng = random.Random(3)
     print("seed 3")
     waited = 0
     for _ in range(300):
         stream: list[tuple[int, int]] = []
         now_ms = 0
-        for number in range(draw.randrange(1, 12)):
-            payload = draw.randbytes(draw.choice((0, 3, 56, 57, 100, 242)))
-            data = encode_frame(Frame(draw.choice(REQUESTS), number, draw.randrange(256), payload))
-            if draw.random() < 0.2:
-                noise = draw.randbytes(draw.randrange(1, 300)).replace(b"\0", b"")
-                data = draw.choice((b"\1", b"\2", b"\4", b"\5", b"\x1f")) + noise + b"\0"
-            wait_ms = draw.choice((0, 0, 0, 1200))
+        for number in range(rng.randrange(1, 12)):
+            payload = rng.randbytes(rng.choice((0, 3, 56, 57, 100, 242)))
+            data = encode_frame(Frame(rng.choice(REQUESTS), number, rng.randrange(256), payload))
+            if rng.random() < 0.2:
+                noise = rng.randbytes(rng.randrange(1, 300)).replace(b"\0", b"")
+                data = rng.choice((b"\1", b"\2", b"\4", b"\5", b"\x1f")) + noise + b"\0"
+            wait_ms = rng.choice((0, 0, 0, 1200))
             now_ms += wait_ms
             data = b"\0" * (wait_ms > 0 or number == 0) + data
             stream += [(now_ms, byte) for byte in data]
-        held_ms = draw.choice((0, 10, 100, 250))
+        held_ms = rng.choice((0, 10, 100, 250))
         rows = packets_of(stream, held_ms, is_large=True)
         assert cpp_link(is_large=True).packets(stream, held_ms) == rows
         waited += held_ms > 0
@@ -248,8 +248,8 @@ def test_a_robot_that_takes_nothing_is_given_up(
 
 
 def test_a_robot_that_jumps_to_and_fro_has_an_end() -> None:
-    draw = random.Random(5)
-    robot = AnsweringRobot(lambda *_: (OK, draw.randrange(len(WHOLE))))
+    rng = random.Random(5)
+    robot = AnsweringRobot(lambda *_: (OK, rng.randrange(len(WHOLE))))
     assert robot.run(robot.session.upload(IMAGE)) == LOST
     assert not robot.has_commit
 

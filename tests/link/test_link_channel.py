@@ -52,16 +52,16 @@ def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
 
 def one_undo(cpp: CppLink, seed: int) -> str:
     """Bring the program before back several times; return how many were confirmed."""
-    draw = random.Random(seed)
-    world = World(cpp, draw, 0, 0)
-    images = [pack("SI", 0, program(draw)) for _ in range(2)]
+    rng = random.Random(seed)
+    world = World(cpp, rng, 0, 0)
+    images = [pack("SI", 0, program(rng)) for _ in range(2)]
     for image in images:
         request = world.session.upload(unpack(image), runs=False)
         world.run(request)
     if images[0] == images[1]:
         return "the same"
-    world.to_robot.faults = world.to_computer.faults = draw.choice((0.001, 0.01, 0.03))
-    world.drops = draw.choice((0, 0.0002, 0.002))
+    world.to_robot.faults = world.to_computer.faults = rng.choice((0.001, 0.01, 0.03))
+    world.drops = rng.choice((0, 0.0002, 0.002))
     confirmed = 0
     for _ in range(4):
         old_undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")

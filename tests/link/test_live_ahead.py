@@ -45,15 +45,15 @@ def live_data(code: bytes, seq: int = 2, epoch: int = EPOCH + 1) -> bytes:
 
 def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
     """Zeros anywhere in a frame, code that is refused, and damage included."""
-    draw = random.Random(SEED)
+    rng = random.Random(SEED)
     print(f"seed {SEED}")
     started = 0
     for number in range(FRAMES):
-        epoch = draw.choice((draw.randrange(256), 255))  # the next one is 0
-        code = draw.choice((*CODES, CODES[0] + bytes(draw.randrange(4)), draw.randbytes(9)))
-        data = live_data(code, draw.randrange(2, 100), (epoch + draw.randrange(20) // 19 + 1) % 256)
+        epoch = rng.choice((rng.randrange(256), 255))  # the next one is 0
+        code = rng.choice((*CODES, CODES[0] + bytes(rng.randrange(4)), rng.randbytes(9)))
+        data = live_data(code, rng.randrange(2, 100), (epoch + rng.randrange(20) // 19 + 1) % 256)
         if number % 3 == 0:
-            data = damage_frame(data[:-1], draw) + b"\0"
+            data = damage_frame(data[:-1], rng) + b"\0"
         steps = [open_session(epoch).step(10, data, is_late=is_late) for is_late in (False, True)]
         # A late reader misses bytes after the end of another packet.
         if data.count(b"\0") == 1 and not {*b"\r\n"} & {*data}:

@@ -37,10 +37,10 @@ def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
     """Send so many lines, each with its own code, over radios that lose answers; return the
     results. A line that the computer confirms begins once, and no line twice.
     """
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     counts: Counter[str] = Counter()
     for first_number in range(0, count, LINES):
-        world = LiveWorld(cpp, draw, draw.choice((0.001, 0.005, 0.01)), draw.choice((0, 0.0005)))
+        world = LiveWorld(cpp, rng, rng.choice((0.001, 0.005, 0.01)), rng.choice((0, 0.0005)))
         for number in range(first_number, min(first_number + LINES, count)):
             world.sent = 0
             request = world.session.live(line_of(number))

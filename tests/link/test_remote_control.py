@@ -629,7 +629,7 @@ def test_the_reply_says_where_the_program_is() -> None:
 
 @pytest.mark.parametrize("seed", range(30))
 def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(seed: int) -> None:
-    chance, remote, now_ms = random.Random(seed), RemoteControl(), 0
+    rng, remote, now_ms = random.Random(seed), RemoteControl(), 0
     end_actions: dict[str, Callable[[], None]] = {
         "answer": lambda: remote.take_answer(Reply(OK, 0, EmptyReply())),
         "refusal": lambda: remote.take_answer(Reply(STATUSES["UNOWNED"])),
@@ -637,17 +637,15 @@ def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(
         "stop": remote.let_go,
     }
     for _ in range(20):
-        presses = [
-            remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))
-        ]
-        for _ in range(chance.randrange(4)):
-            now_ms += chance.randrange(400)
+        presses = [remote.press(rng.randrange(2), rng.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))]
+        for _ in range(rng.randrange(4)):
+            now_ms += rng.randrange(400)
             if remote.expire_and_check_due(now_ms):
                 remote.take_message(now_ms)
             presses.append(
-                remote.press(chance.randrange(2), chance.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))
+                remote.press(rng.randrange(2), rng.choice((NOTHING_PRESSED, KEY_UP, KEY_A)))
             )
-        end_kind = chance.choice([*end_actions])
+        end_kind = rng.choice([*end_actions])
         if end_kind in ("answer", "silence"):  # of a word after these presses
             remote.take_message(now_ms)
         end_actions[end_kind]()

@@ -70,15 +70,15 @@ def frame_of(data: bytes) -> Frame:
     return Frame(kind & 0x3F, seq, epoch, data[3:], bool(kind & 0x80), bool(kind & 0x40))
 
 
-def random_frame(chance: random.Random, is_reply: bool) -> Frame:
-    payload = chance.randbytes(chance.randrange(SEALED_PAYLOAD_BYTES + 1))
-    number, seq, epoch = chance.choice(NUMBERS), chance.randrange(256), chance.randrange(256)
+def random_frame(rng: random.Random, is_reply: bool) -> Frame:
+    payload = rng.randbytes(rng.randrange(SEALED_PAYLOAD_BYTES + 1))
+    number, seq, epoch = rng.choice(NUMBERS), rng.randrange(256), rng.randrange(256)
     return Frame(number, seq, epoch, payload, is_reply)
 
 
-def counters(chance: random.Random) -> int:
-    return chance.choice(
-        (1, 2, 0xFF, 0x100, LAST_COUNTER - 1, LAST_COUNTER, chance.randrange(1, LAST_COUNTER))
+def counters(rng: random.Random) -> int:
+    return rng.choice(
+        (1, 2, 0xFF, 0x100, LAST_COUNTER - 1, LAST_COUNTER, rng.randrange(1, LAST_COUNTER))
     )
 
 
@@ -87,16 +87,16 @@ def test_the_vectors_of_the_authors() -> None:
 
 
 def test_the_robot_has_the_same_hash_of_any_key_and_message() -> None:
-    chance = random.Random(1)
+    rng = random.Random(1)
     for _ in range(500):
-        key, message = chance.randbytes(16), chance.randbytes(chance.randrange(200))
+        key, message = rng.randbytes(16), rng.randbytes(rng.randrange(200))
         assert cpp_link().siphash(key, message) == siphash(key, message)
 
 
 def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> None:
-    chance = random.Random(1)
+    rng = random.Random(1)
     for _ in range(300):
-        frame, counter = random_frame(chance, False), counters(chance)
+        frame, counter = random_frame(rng, False), counters(rng)
         sent = sealed_by_hand(frame, counter)
         assert whole_frame(seal(sent_counter=counter - 1).seal_frame(frame)) == sent
         assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
@@ -104,9 +104,9 @@ def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> 
 
 
 def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> None:
-    chance = random.Random(2)
+    rng = random.Random(2)
     for _ in range(300):
-        frame, counter = random_frame(chance, True), counters(chance)
+        frame, counter = random_frame(rng, True), counters(rng)
         marked, sent = whole_frame(frame._replace(is_sealed=True)), sealed_by_hand(frame, counter)
         assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
         robot_seal = seal(heard_counter=counter - 1)
@@ -165,10 +165,10 @@ def test_a_counter_at_its_end_seals_nothing_more() -> None:
 
 def test_no_sealed_frame_is_a_line_of_text() -> None:
     """Its 0 comes early: so it begins with a byte up to 4."""
-    chance = random.Random(5)
+    rng = random.Random(5)
     for _ in range(2000):
         wire = encode_frame(
-            seal(sent_counter=counters(chance) - 1).seal_frame(random_frame(chance, False))
+            seal(sent_counter=counters(rng) - 1).seal_frame(random_frame(rng, False))
         )
         assert wire[0] <= 4
         receiver = Receiver()

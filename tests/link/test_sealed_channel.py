@@ -47,13 +47,13 @@ class SealedWorld(World):
 
     has_hello = True
 
-    def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
+    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drops: float) -> None:
         self.keys = Keys()
         self.says = 0.0
         self.frames: list[bytes] = []
         self.asked: Frame | None = None  # the last request
         self.greeting = b""  # the robot's answer to HELLO
-        super().__init__(cpp, draw, 0, 0)
+        super().__init__(cpp, rng, 0, 0)
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
         self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
         cpp.happens("o", OWNERS | SEALS)
@@ -67,8 +67,8 @@ class SealedWorld(World):
 
     def reconnect(self) -> None:
         """The stranger comes when a program is on the robot."""
-        self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
-        self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
+        self.says = self.rng.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
+        self.session = Session(self.rng.getrandbits(32), 9600, KIT, keys=self.keys)
 
     def overhear(self, data: bytes) -> None:
         self.frames += [part + b"\0" for part in data.split(b"\0") if part]
@@ -80,47 +80,47 @@ class SealedWorld(World):
                 self.greeting = frame.payload
 
     def disturb(self) -> None:
-        if self.says == 0 or self.draw.random() >= self.says or not self.frames:
+        if self.says == 0 or self.rng.random() >= self.says or not self.frames:
             return
         data = self.forge_frame()
-        (self.to_computer if self.draw.random() < 0.4 else self.to_robot).send(
+        (self.to_computer if self.rng.random() < 0.4 else self.to_robot).send(
             b"\0" + data, self.now_ms
         )
 
     def forge_frame(self) -> bytes:
-        draw = self.draw
-        forgery = draw.randrange(7)
-        old_frame = draw.choice(self.frames)
+        rng = self.rng
+        forgery = rng.randrange(7)
+        old_frame = rng.choice(self.frames)
         if forgery == 6 and self.asked is not None:
             return self.answer_unsealed(self.asked)
         if forgery == 0:
-            return damage_frame(old_frame, draw)
+            return damage_frame(old_frame, rng)
         frame = decode_frame(old_frame.rstrip(b"\0"))
         if forgery < 3 or frame is None:
             return old_frame
         if forgery == 3:  # a seal is removed, added, or moved to an expected frame
-            number = draw.choice((frame.number, BY_NAME["LIVE"].number))
-            frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
-            return encode_frame(frame._replace(is_sealed=draw.random() < 0.5))
+            number = rng.choice((frame.number, BY_NAME["LIVE"].number))
+            frame = frame._replace(number=number, seq=(frame.seq + rng.randrange(3)) & 0xFF)
+            return encode_frame(frame._replace(is_sealed=rng.random() < 0.5))
         if forgery == 4:  # the attacker claims that the robot has no seal, or has done it
-            status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
-            payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
+            status = rng.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
+            payload = bytes([status]) + rng.randbytes(rng.choice((0, 2, 8)))
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))
         requests = [message for message in MESSAGES if message.number < 32]
-        message = draw.choice(requests if self.has_hello else requests[1:])
+        message = rng.choice(requests if self.has_hello else requests[1:])
         max_bytes = sum(field.most_bytes for field in message.request)
         least = sum(field.least_bytes for field in message.request)
-        payload = draw.randbytes(draw.randint(least, max_bytes))
-        seq, epoch = draw.randrange(256), frame.epoch
+        payload = rng.randbytes(rng.randint(least, max_bytes))
+        seq, epoch = rng.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
 
     def answer_unsealed(self, request_frame: Frame) -> bytes:
         """Return an unsealed answer: HELLO as from a robot without seals, or success."""
         message = next(message for message in MESSAGES if message.number == request_frame.number)
-        payload = b"\0" + self.draw.randbytes(sum(field.least_bytes for field in message.reply))
+        payload = b"\0" + self.rng.randbytes(sum(field.least_bytes for field in message.reply))
         if message.name == "HELLO" and self.greeting:
             values = decode_payload(message.reply, self.greeting[1:])
-            cleared = self.draw.choice((OWNED, SEALS, OWNED | SEALS))
+            cleared = self.rng.choice((OWNED, SEALS, OWNED | SEALS))
             values["features"] = int(values["features"]) & ~cleared
             payload = b"\0" + encode_payload(message.reply, values)
         return encode_frame(request_frame._replace(payload=payload, is_reply=True, is_sealed=False))
@@ -153,7 +153,7 @@ def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, lea
 
 def test_the_frames_of_a_session_are_sealed() -> None:
     world = QuietWorld(cpp_link(), random.Random(1), 0, 0)
-    request = world.session.live(program(world.draw)[: world.line])
+    request = world.session.live(program(world.rng)[: world.line])
     world.run(request)
     assert request.outcome and request.outcome.status == 0
     frames = [decode_frame(frame.rstrip(b"\0")) for frame in world.frames[-2:]]
@@ -176,7 +176,7 @@ def test_an_event_without_a_seal_is_believed_only_of_a_robot_that_may_have_dropp
         return bool(world.session.events())
 
     for _ in range(10):
-        world.run(None, world.draw.choice((1, 100, 1000, 3000)))
+        world.run(None, world.rng.choice((1, 100, 1000, 3000)))
         assert not hears_forged()
     world.now_ms += AUTHORITY_MS  # in which nobody talks
     assert hears_forged()
@@ -187,7 +187,7 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
     stop = BY_NAME["STOP"].number
     for payload, is_sealed in ((b"", False), (b"", True), (bytes(13), True), (bytes(30), True)):
         assert world.session.robot
-        request = world.session.live(program(world.draw)[: world.line])
+        request = world.session.live(program(world.rng)[: world.line])
         world.run(request)
         assert request.outcome and request.outcome.status == 0
         frame = Frame(stop, 1, 0, payload, is_sealed=is_sealed)

@@ -49,7 +49,7 @@ class Talk:
 
     def __init__(self, line: Line, baud: int = 9600, is_large: bool = False, seed: int = 1) -> None:
         self.line, self.is_large = line, is_large
-        self.draw = random.Random(seed)
+        self.rng = random.Random(seed)
         self.robot: CppLink = cpp_link(is_large)
         self.robot.begin(room=8192 if is_large else 389, kit=KIT, epoch=9)
         self.session = Session(3, baud, KIT)
@@ -64,7 +64,7 @@ class Talk:
             return b""
         if not self.line.lost:
             return data
-        return bytes(byte for byte in data if self.draw.random() >= self.line.lost)
+        return bytes(byte for byte in data if self.rng.random() >= self.line.lost)
 
     def step(self) -> None:
         data = self.session.poll(self.now_ms)
@@ -118,10 +118,10 @@ class LossyWire(Wire):
     """Everything sent at once is lost together, at most a given number of times in a row."""
 
     in_a_row = losses = lost = 0
-    draw = random.Random()
+    rng = random.Random()
 
     def send(self, data: bytes, now_ms: int) -> None:
-        is_lost = bool(data) and self.lost < self.in_a_row and self.draw.random() < 0.7
+        is_lost = bool(data) and self.lost < self.in_a_row and self.rng.random() < 0.7
         if data:
             self.lost = self.lost + 1 if is_lost else 0
             self.losses += is_lost
@@ -136,7 +136,7 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
     line, is_large = Line(11_520, 5), seed % 2 == 1
     talk = Talk(line, 115_200, is_large)
     wire = LossyWire(line.rate * 10, line.late_ms)
-    wire.draw = random.Random(seed)
+    wire.rng = random.Random(seed)
     talk.to_robot = wire
     talk.wait(talk.session.hello())
     wire.in_a_row = in_a_row

@@ -72,61 +72,61 @@ class Line:
         return frames, lines
 
 
-def random_frame(draw: random.Random) -> Frame:
+def random_frame(rng: random.Random) -> Frame:
     """Return a frame of a computer or of a robot, of any length."""
-    is_reply, is_sealed = draw.random() < 0.5, draw.random() < 0.4
-    max_bytes = payload_bytes(draw.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
-    payload = draw.randbytes(draw.randint(0, max_bytes))
-    if draw.random() < 0.3:
-        payload = bytes(draw.choice(b"\0\0\r\n S~") for _ in payload)
+    is_reply, is_sealed = rng.random() < 0.5, rng.random() < 0.4
+    max_bytes = payload_bytes(rng.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
+    payload = rng.randbytes(rng.randint(0, max_bytes))
+    if rng.random() < 0.3:
+        payload = bytes(rng.choice(b"\0\0\r\n S~") for _ in payload)
     if is_sealed:
         payload = b"\0" + payload[: max_bytes - 1]
-    number = draw.choice(REQUESTS + EVENTS * is_reply)
-    return Frame(number, draw.randrange(256), draw.randrange(256), payload, is_reply, is_sealed)
+    number = rng.choice(REQUESTS + EVENTS * is_reply)
+    return Frame(number, rng.randrange(256), rng.randrange(256), payload, is_reply, is_sealed)
 
 
-def check_all_arrive(sender: TextSender, draw: random.Random) -> None:
+def check_all_arrive(sender: TextSender, rng: random.Random) -> None:
     """Frames and lines, whatever the pauses between them."""
     line = Line()
     for _ in range(FRAMES):
-        line.now_ms += draw.choice(PAUSES_MS)
-        if draw.random() < 0.3:
-            typed_line = draw.choice(LINES)
+        line.now_ms += rng.choice(PAUSES_MS)
+        if rng.random() < 0.3:
+            typed_line = rng.choice(LINES)
             data = sender.text(typed_line, line.now_ms)
             assert not data or line.put(data) == ([], [typed_line])
         else:
-            frame = random_frame(draw)
+            frame = random_frame(rng)
             data = sender.prepare_frames(encode_frame(frame), line.now_ms)
             assert line.put(data) == ([frame], [])
     assert line.receiver.damaged == line.receiver.dropped == 0
 
 
-def check_torn_lines_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:
+def check_torn_lines_arrive_when_repeated(sender: TextSender, rng: random.Random) -> None:
     """Check lines with a pause between any two bytes, which ends the text before it, or with lost
     bytes.
     """
     line = Line()
     for _ in range(FRAMES):
-        frame = random_frame(draw)
+        frame = random_frame(rng)
         data = sender.prepare_frames(encode_frame(frame), line.now_ms)
-        offset = draw.randrange(len(data))
+        offset = rng.randrange(len(data))
         line.receiver.put(data[0], line.now_ms)  # no client looks
         for byte in data[1:offset]:
             line.now_ms += 1
             line.receiver.put(byte, line.now_ms)
-        line.now_ms += draw.choice((0, 20, 150, 900, SILENCE_MS, 1500))
-        for byte in data[offset:] if draw.random() < 0.5 else b"":
+        line.now_ms += rng.choice((0, 20, 150, 900, SILENCE_MS, 1500))
+        for byte in data[offset:] if rng.random() < 0.5 else b"":
             line.receiver.put(byte, line.now_ms)
         line.receiver.take()
-        line.now_ms += draw.choice((0, 30, 200))
+        line.now_ms += rng.choice((0, 30, 200))
         data = sender.prepare_frames(encode_frame(frame), line.now_ms, is_repeated=True)
         assert line.put(data)[0][-1:] == [frame]
 
 
-def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> None:
+def check_no_two_zeros_before_frame(sender: TextSender, rng: random.Random) -> None:
     """Check a session that sends a program over a lossy line, stops and sends HELLO."""
-    lost_numbers = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
-    robot = AnsweringRobot(InOrderReceiver(lost_numbers), baud=draw.choice((9600, 115_200)))
+    lost_numbers = tuple(rng.randrange(12) for _ in range(rng.randrange(6)))
+    robot = AnsweringRobot(InOrderReceiver(lost_numbers), baud=rng.choice((9600, 115_200)))
     session = robot.session
     session._sender = sender
     sent_chunks: list[bytes] = []
@@ -139,9 +139,9 @@ def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> 
 
     session.poll = poll_and_record  # type: ignore[method-assign]
     robot.run(session.upload(IMAGE))
-    robot.now_ms += draw.choice((0, 300, 500))
+    robot.now_ms += rng.choice((0, 300, 500))
     session.stop(robot.now_ms)
-    for _ in range(draw.randrange(1, 20)):
+    for _ in range(rng.randrange(1, 20)):
         session.poll(robot.now_ms)
         robot.now_ms += 10
     session._stop.end()

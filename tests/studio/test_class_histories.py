@@ -42,8 +42,8 @@ class Page:
 class History:
     """Acts by chance, and looks at everything that can be seen after each act."""
 
-    def __init__(self, chance: Random) -> None:
-        self.chance = chance
+    def __init__(self, rng: Random) -> None:
+        self.rng = rng
         self.room = Room(ROBOTS)
         self.room.teaches("class_places", places=MOST_PUPILS)
         self.pages: dict[str, Page] = {}
@@ -77,10 +77,10 @@ class History:
         ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
                 self.connects, self.connects, self.ends, self.passes, self.passes, self.removes,
                 self.gives, self.takes_robot, self.next_one, self.brings)  # fmt: skip
-        self.chance.choice(ways)()
+        self.rng.choice(ways)()
 
     def comes(self) -> None:
-        name = self.chance.choice(NAMES)
+        name = self.rng.choice(NAMES)
         if name in self.pages:
             return
         page_before = self.gone.get(name)
@@ -94,7 +94,7 @@ class History:
         self.pages[name] = page
 
     def somebody(self) -> Page | None:
-        return self.chance.choice(list(self.pages.values())) if self.pages else None
+        return self.rng.choice(list(self.pages.values())) if self.pages else None
 
     def tells(self) -> None:
         page = self.somebody()
@@ -102,15 +102,15 @@ class History:
             return
         self.texts += 1
         text = f"W({self.texts})"
-        lessons = sorted({*page.lessons, self.chance.choice(LESSONS)})
-        fields: Json = self.chance.choice(({"text": text}, {"lessons": lessons}, {}))
+        lessons = sorted({*page.lessons, self.rng.choice(LESSONS)})
+        fields: Json = self.rng.choice(({"text": text}, {"lessons": lessons}, {}))
         answer = self.answer(page, "here", **fields)
         if answer is None:
             return
         page.text = fields.get("text", page.text)
         page.lessons = fields.get("lessons", page.lessons)
         given_work = answer.get("given")
-        if given_work and self.chance.random() < 0.7:
+        if given_work and self.rng.random() < 0.7:
             took = {"key": given_work["key"], "text": given_work["text"]}
             version_before = self.version(page)
             if self.answer(page, "here", took=took) is not None:
@@ -132,8 +132,8 @@ class History:
     def wants(self) -> None:
         page = self.somebody()
         if page is not None:
-            self.answer(page, "here", wants=self.chance.random() < 0.8,
-                        hand=self.chance.choice((True, False)))  # fmt: skip
+            self.answer(page, "here", wants=self.rng.random() < 0.8,
+                        hand=self.rng.choice((True, False)))  # fmt: skip
 
     def connects(self) -> None:
         page = self.somebody()
@@ -148,11 +148,11 @@ class History:
         driving = [page for page in self.pages.values() if page.robot and not page.robot.has_ended]
         if not driving:
             return
-        page = self.chance.choice(driving)
+        page = self.rng.choice(driving)
         assert page.robot is not None
         page.robot.has_ended = True
-        page.robot.was_left = self.chance.random() < 0.5
-        page.robot.name = self.chance.choice(("", "TINI"))
+        page.robot.was_left = self.rng.random() < 0.5
+        page.robot.name = self.rng.choice(("", "TINI"))
         if not page.robot.name and not page.robot.was_left:
             ports = [robot["port"] for robot in self.raw_robots() if robot["pupil"] == page.name]
             self.failed_s |= dict.fromkeys(ports, self.room.now_s)
@@ -165,15 +165,15 @@ class History:
         return self.room.made._state()["robots"]  # type: ignore[no-any-return]
 
     def passes(self) -> None:
-        for _ in range(self.chance.choice((1, 3, 8, 30))):
+        for _ in range(self.rng.choice((1, 3, 8, 30))):
             self.room.now_s += 1
             for page in list(self.pages.values()):
-                if self.chance.random() < 0.8:
+                if self.rng.random() < 0.8:
                     self.answer(page, "here")
 
     def removes(self) -> None:
         page = self.somebody()
-        if page is None or self.chance.random() < 0.5:
+        if page is None or self.rng.random() < 0.5:
             return
         driven_fake_robot = page.robot if self.has_turn(page) else None
         self.room.teaches("class_remove", pupil=self.room.number(page.name))
@@ -186,12 +186,12 @@ class History:
     def gives(self) -> None:
         kept_work, page = self.state()["kept"], self.somebody()
         if kept_work and page is not None:
-            key = self.chance.choice(kept_work)["key"]
+            key = self.rng.choice(kept_work)["key"]
             self.room.teaches("class_give_back", key=key, pupil=self.room.number(page.name))
 
     def takes_robot(self) -> None:
-        port = f"port{self.chance.randrange(ROBOTS)}"
-        gives = self.chance.random() < 0.6
+        port = f"port{self.rng.randrange(ROBOTS)}"
+        gives = self.rng.random() < 0.6
         holder = next((robot["pupil"] for robot in self.raw_robots() if robot["port"] == port), "")
         self.room.teaches("class_robot", port=port, gives=gives)
         if not gives:
@@ -299,7 +299,7 @@ def test_a_class_keeps_its_laws_whatever_has_happened(part: int) -> None:
 def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
     for seed in range(SEEDS):
         history = History(Random(1000 + seed))
-        for _ in range(history.chance.randrange(STEPS)):
+        for _ in range(history.rng.randrange(STEPS)):
             history.act()
         old_pages = list(history.pages.values())
         driven_fake_robots = [

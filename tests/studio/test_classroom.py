@@ -920,13 +920,13 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
 def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) -> None:
     """Repeated reports of pages do not matter: only changed work gets a new version, and a raised
     hand keeps its place."""
-    chance, room = Random(seed), Room()
+    rng, room = Random(seed), Room()
     tokens = [room.joins(name) for name in ("Ana", "Ben", "Eve")]
     works, hands = dict.fromkeys(tokens, ""), list[str]()
     views = room.teaches("class")["pupils"]
     for _ in range(60):
-        token, text = chance.choice(tokens), chance.choice(("", "F(1)", "F(2)"))
-        is_up = chance.random() < 0.7
+        token, text = rng.choice(tokens), rng.choice(("", "F(1)", "F(2)"))
+        is_up = rng.random() < 0.7
         room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
         for pupil_token, old_view, new_view in zip(tokens, views, pupils, strict=True):

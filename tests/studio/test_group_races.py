@@ -91,7 +91,7 @@ class Group:
 
     def __init__(self, robot: PtyRobot, seed: int) -> None:
         self.robot = robot
-        self.chance = Random(seed)
+        self.rng = Random(seed)
         self.hosting = Hosting()
         self.room = Classroom(self.hosting, [robot.port])
         self.is_over = False
@@ -103,7 +103,7 @@ class Group:
         until(lambda: self.mates[0].ask("here")["place"] == 0, "it is their turn")
 
     def later(self, act: Callable[[], None], most_s: float = LATE_S) -> None:
-        delay_s = self.chance.random() * most_s
+        delay_s = self.rng.random() * most_s
 
         def act_late() -> None:
             time.sleep(delay_s)
@@ -125,17 +125,17 @@ class Group:
 
     def races(self) -> None:
         """Let one pupil drive; then some press Run, and one presses STOP after them."""
-        driver, *other_mates = self.chance.sample(self.mates, 3)
+        driver, *other_mates = self.rng.sample(self.mates, 3)
         self.drives(driver)
-        for mate in self.chance.sample(other_mates, self.chance.randrange(3)):
+        for mate in self.rng.sample(other_mates, self.rng.randrange(3)):
             pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
             self.later(pressed)
-        if self.chance.random() < 0.5:
+        if self.rng.random() < 0.5:
             self.later(partial(driver.runs, driver.presses, driver.newest_number))
-        time.sleep(self.chance.random() * LATE_S)
-        stopper = self.chance.choice(self.mates)
+        time.sleep(self.rng.random() * LATE_S)
+        stopper = self.rng.choice(self.mates)
         stopper.presses += 1
-        for _ in range(self.chance.randrange(1, 4)):
+        for _ in range(self.rng.randrange(1, 4)):
             self.later(stopper.stops, 0.2)
         self.meet()
         until(lambda: not self.robot.moves, "the robot stands", 3)
@@ -149,7 +149,7 @@ class Group:
         """Take the robot over, as a press of Run does, and then send the program."""
         mate.connects(saw_stops)
         number = mate.newest_number
-        time.sleep(self.chance.random() * 0.3)
+        time.sleep(self.rng.random() * 0.3)
         mate.runs(stops, number)
 
     def meet(self) -> None:

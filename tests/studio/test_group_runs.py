@@ -31,8 +31,8 @@ AT_REST: tuple[Json, ...] = (
 class Robot:
     """A robot that reports random runs, and the part of the reports for other members."""
 
-    def __init__(self, chance: Random) -> None:
-        self.chance = chance
+    def __init__(self, rng: Random) -> None:
+        self.rng = rng
         self.program = self.line = ""
         self.driver = DRIVERS[0]
         self.place: int | None = None
@@ -42,19 +42,19 @@ class Robot:
         self.count = 0  # number of values in a run
 
     def tells(self) -> Json:
-        action = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
+        action = self.rng.choice(("value", "value", "value", "place", "place", "text", "next"))
         if not (self.program or self.line) or action == "next":
             if self.program or self.line:
-                replaces = self.chance.random() < 0.3
+                replaces = self.rng.random() < 0.3
                 return self._begins("program", "line") if replaces else self._ends()
-            if self.chance.random() < 0.3:
-                event = self.chance.choice(AT_REST)
+            if self.rng.random() < 0.3:
+                event = self.rng.choice(AT_REST)
                 self.connections += "connected" in event
                 return event
             return self._begins("program", "line", "button")
         program = self.program or self.line
         if action == "place":
-            place = self.chance.randrange(500)
+            place = self.rng.randrange(500)
             self.place = place if self.program else self.place
             return {"event": "PLACE", "at": place, "program": program}
         self.values += 1
@@ -72,8 +72,8 @@ class Robot:
         self.runs += 1
         self.program = self.line = ""
         self.count, self.place = 0, None
-        self.driver = self.chance.choice(DRIVERS)
-        kind = self.chance.choice(kinds)
+        self.driver = self.rng.choice(DRIVERS)
+        kind = self.rng.choice(kinds)
         program = f"{self.runs:08x}"
         if kind == "line":
             self.line = program
@@ -87,7 +87,7 @@ class Robot:
     def _ends(self) -> Json:
         self.program = self.line = ""
         self.place = None
-        return self.chance.choice(END_MESSAGES)
+        return self.rng.choice(END_MESSAGES)
 
 
 class Page:
@@ -116,15 +116,15 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     """Whatever a robot reports, and however rarely a page polls, events arrive once, begins and
     ends alternate, the newest place is the robot's, and missing values can be counted.
     """
-    chance = Random(seed)
-    runs, robot = GroupRuns(lambda: 0.0), Robot(chance)
+    rng = Random(seed)
+    runs, robot = GroupRuns(lambda: 0.0), Robot(rng)
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
     page.looks()
-    max_count = chance.choice((1, 5, 60))
+    max_count = rng.choice((1, 5, 60))
     connections: list[Json] = []
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
-        for _ in range(chance.randint(1, max_count)):
+        for _ in range(rng.randint(1, max_count)):
             count_before = len(robot.meant)
             news = robot.tells()
             values_by_driver[robot.driver] += robot.meant[count_before:]

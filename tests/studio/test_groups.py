@@ -352,7 +352,7 @@ def test_nobody_sends_as_another_page(school: School) -> None:
 def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
     """Each message is refused or makes a valid program; other groups, and the class, do not
     notice."""
-    chance = Random(3)
+    rng = Random(3)
     eve = Member(school, "Eve", "Bad")
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     values: list[Any] = [
@@ -374,9 +374,9 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
     ]
     fields = ("page", "since", "epoch", "saw", "changes", "at", "writes", "name", "text", "before")
     for k in range(400):
-        request = eve.request(do=chance.choice(("group", "group", "group_join", "group_leave")))
-        for field in chance.sample(fields, chance.randint(0, 3)):
-            request[field] = chance.choice(values)
+        request = eve.request(do=rng.choice(("group", "group", "group_join", "group_leave")))
+        for field in rng.sample(fields, rng.randint(0, 3)):
+            request[field] = rng.choice(values)
         with suppress(BadRequest):
             school.made.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
         if k % 50 == 0:
@@ -486,12 +486,12 @@ def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed: int) -> None:
     """Whatever the teacher's page does there, turns, places and robots are as without it."""
-    chance = Random(seed)
+    rng = Random(seed)
     schools = [School(tmp_path / str(k), robots=2) for k in range(2)]
     members_by_school = [[Member(school, name, name) for name in NAMES] for school in schools]
     for _ in range(40):
-        action, k = chance.choice(("wish", "connect", "join", "leave", "stop")), chance.randrange(5)
-        name, wants = chance.choice(NAMES), chance.random() < 0.8
+        action, k = rng.choice(("wish", "connect", "join", "leave", "stop")), rng.randrange(5)
+        name, wants = rng.choice(NAMES), rng.random() < 0.8
         for school, members in zip(schools, members_by_school, strict=True):
             member = members[k]
             school.now_s += 1
@@ -507,9 +507,9 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
                 member.asks("stop", group_stops=school.now_s)
         shown_groups = schools[0].teaches("class")["groups"]
         if shown_groups:
-            teacher = Teacher(schools[0], chance.choice(shown_groups)["key"])
+            teacher = Teacher(schools[0], rng.choice(shown_groups)["key"])
             teacher.sends(at="i.1", writes=True)
-            if chance.random() < 0.3:
+            if rng.random() < 0.3:
                 teacher.asks("group_leave")
         checks = [[school.checks_in(member.token) for member in members]
                 for school, members in zip(schools, members_by_school, strict=True)]  # fmt: skip
@@ -597,24 +597,24 @@ def test_whoever_joins_a_group_brings_the_earlier_place(school: School) -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: int) -> None:
     """This holds whoever joins, leaves, waits or drives, in any order."""
-    chance, school = Random(seed), School(tmp_path, robots=2)
+    rng, school = Random(seed), School(tmp_path, robots=2)
     members = [Member(school, name, name) for name in NAMES]
     for step in range(60):
-        member = chance.choice(members)
-        action = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
+        member = rng.choice(members)
+        action = rng.choice(("wish", "wish", "connect", "join", "leave", "next"))
         if action == "wish":
-            wants = chance.random() < 0.8
+            wants = rng.random() < 0.8
             place = school.checks_in(member.token, wants)["place"]
             assert wants or place < 1, "who wants none waits no more, and no one of the group"
         elif action == "connect" and school.checks_in(member.token)["place"] == 0:
             with suppress(BadRequest):
                 school.connects(member.token)
         elif action == "join":
-            member.joins(chance.choice(("Red", "Blue", "Green")))
+            member.joins(rng.choice(("Red", "Blue", "Green")))
         elif action == "leave":
             member.asks("group_leave")
         elif action == "next":
-            school.now_s += chance.choice((1, 70))
+            school.now_s += rng.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
         classroom = school.made
         for pupil in classroom._pupil_by_token.values():
@@ -652,7 +652,7 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
 def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> None:
     """It may arrive at any point in connections and runs of others, and a page that was opened
     again counts from 1: no robot that was there keeps driving."""
-    chance = Random(seed)
+    rng = Random(seed)
     members = [Member(school, name) for name in ("Ana", "Luz", "Teo")]
     school.checks_in(members[0].token, True)
     for member in members:
@@ -660,12 +660,12 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
     school.connects(members[0].token)
     presses = dict.fromkeys(members, 0)
     for _ in range(20):
-        member = chance.choice(members)
+        member = rng.choice(members)
         turn = school.made._turn_of(school.made._mates(school.made._pupil_by_token[member.token]))
         assert turn is not None and turn.pupil is not None
         robot = school.hosting.robots[turn.pupil.hosting_page]
         stops_before = robot.stopped
-        deed = chance.choice(("stop", "stop", "connect", "beat", "reload"))
+        deed = rng.choice(("stop", "stop", "connect", "beat", "reload"))
         if deed == "connect":
             if turn.pupil.token != member.token:
                 request = {"do": "connect", "page": "x", "port": "y"}
@@ -699,7 +699,7 @@ def page_of(school: School, member: Member) -> str:
 def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
     """As with HTTP, each page has a held request, and one for sending."""
     members = [Member(school, f"P{k}", f"G{k % 2}") for k in range(6)]
-    is_over, chance = Event(), Random(4)
+    is_over, rng = Event(), Random(4)
     failed_base_exceptions: list[BaseException] = []
 
     def listens(member: Member) -> None:
@@ -714,11 +714,11 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
 
     threads = [start_thread(partial(listens, member)) for member in members]
     for k in range(300):
-        member = chance.choice(members)
+        member = rng.choice(members)
         rows = member.page.lines[:]
-        rows.insert(chance.randint(0, len(rows)), f"W({1000 + k})")
+        rows.insert(rng.randint(0, len(rows)), f"W({1000 + k})")
         if len(rows) > 12:
-            del rows[chance.randrange(len(rows))]
+            del rows[rng.randrange(len(rows))]
         member.page.type(rows, 0)
         member.page.leave()
         member.page.give_up()

@@ -130,10 +130,10 @@ def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
     assert sum(map(bool, pauses)) > HISTORIES / 2
 
 
-def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -> int:
+def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], rng: Random) -> int:
     """Return the number of pauses of a run, each at the right arrival."""
     offsets = sorted({offset for _, offset in arrivals})
-    simulation = started_simulation(text, is_held=chance.random() < 0.5)
+    simulation = started_simulation(text, is_held=rng.random() < 0.5)
     breakpoints: list[int] = []
     pauses = 0
     while arrivals:
@@ -144,10 +144,10 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -
             assert (now_ms, place) == arrivals[0]
             arrivals = arrivals[1:]
             pauses += 1
-        if chance.random() < 0.5:
-            breakpoints = chance.sample(offsets, chance.choice((0, 1, len(offsets))))
+        if rng.random() < 0.5:
+            breakpoints = rng.sample(offsets, rng.choice((0, 1, len(offsets))))
             simulation.set_breakpoints(breakpoints)
-        duration_ms, is_step = chance.randint(1, 100), chance.random() < 0.2
+        duration_ms, is_step = rng.randint(1, 100), rng.random() < 0.2
         if is_step:
             simulation.step(duration_ms)
         else:

@@ -104,8 +104,8 @@ def stepped_hosting(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
 class TornPage:
     """A page that behaves like `host.js`, with torn requests and answers."""
 
-    def __init__(self, hosting: Hosting, chance: Random, ask: Callable[[Json], Json]) -> None:
-        self.hosting, self.chance, self.ask = hosting, chance, ask
+    def __init__(self, hosting: Hosting, rng: Random, ask: Callable[[Json], Json]) -> None:
+        self.hosting, self.rng, self.ask = hosting, rng, ask
         self.presses: list[int] = []  # times of the presses
         self.heard: list[int] = []  # presses sent with a beat that the robot has heard
         self._connection = self._seen = self._stops = self._number = 0
@@ -134,8 +134,8 @@ class TornPage:
         request = {"do": action, "page": "me", "connection": self._connection, "port": "p",
                    "robot": "tinibot", "language": "en", "seen": self._seen,
                    "stops": self._stops, **fields}  # fmt: skip
-        times = self.chance.choice((0, 1, 1, 1, 2))
-        self._under_way += [(World.now_ms + self.chance.choice((1, 10, 700, 2500)), request)
+        times = self.rng.choice((0, 1, 1, 1, 2))
+        self._under_way += [(World.now_ms + self.rng.choice((1, 10, 700, 2500)), request)
                             for _ in range(times)]  # fmt: skip
 
     def beat(self) -> None:
@@ -153,7 +153,7 @@ class TornPage:
             robot = cast(SteppedRobot, self.hosting.robot_of("me"))
             if is_own and robot and request["do"] == "beat" and request["stops"]:
                 self.heard.append(request["stops"])
-            if not is_own or self.chance.random() < 0.4:
+            if not is_own or self.rng.random() < 0.4:
                 continue  # the answer is lost
             if request["do"] == "connect":
                 self.is_there = answer == {}
@@ -192,8 +192,8 @@ def check_stops_kept(page: TornPage) -> None:
 def test_each_press_of_stop_stops_once_whatever_is_lost(
     stepped_hosting: Hosting, seed: int
 ) -> None:
-    chance = Random(seed)
-    page = TornPage(stepped_hosting, chance, stepped_hosting.answer)
+    rng = Random(seed)
+    page = TornPage(stepped_hosting, rng, stepped_hosting.answer)
     page.connect()
     for _ in range(1500):
         World.now_ms += LOOK_MS
@@ -206,7 +206,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
         check_stops_kept(page)
         if World.now_ms % BEAT_MS == 0:
             page.beat()
-        draw_number = chance.random()
+        draw_number = rng.random()
         if draw_number < 0.01:
             page.press_stop()
         elif draw_number < 0.03:

@@ -91,10 +91,10 @@ BUTTONS = {"connect": "#link_connect", "run": "#link_upload", "stop": "#stop",
 class BadNetwork(Network):
     """A bad network that looks like the server to the browser: it replaces the port in requests."""
 
-    def __init__(self, target: int, chance: Random) -> None:
+    def __init__(self, target: int, rng: Random) -> None:
         self.fault = Between("nothing")
         self.begun_s = 0.0
-        self._chance = chance
+        self._rng = rng
         super().__init__(target)
         self._own, self._servers = (f":{port}".encode() for port in (self.port, target))
         assert len(self._own) == len(self._servers)
@@ -118,7 +118,7 @@ class BadNetwork(Network):
         while self.is_held:
             time.sleep(0.02)
         time.sleep(self.fault.late_s)
-        if self._chance.random() < self.fault.lost:
+        if self._rng.random() < self.fault.lost:
             return None
         return data if is_back else data.replace(self._own, self._servers)
 
@@ -135,18 +135,18 @@ class TriedAction(NamedTuple):
 class Scene:
     """A page, a process of `tsc studio`, a robot, and the connections between them."""
 
-    def __init__(self, browser: Browser, chance: Random, stack: ExitStack) -> None:
+    def __init__(self, browser: Browser, rng: Random, stack: ExitStack) -> None:
         self._folders = own_folders(stack.enter_context(tempfile.TemporaryDirectory()))
-        self._chance = chance
+        self._rng = rng
         self._stack = stack
-        self.line = BadLine(Fault("nothing"), chance, 0)
+        self.line = BadLine(Fault("nothing"), rng, 0)
         stack.callback(lambda: self.line.clear_away())
         self.studio = Command("studio", "--listen", "0", "--no-browser", env=self._folders)
         stack.callback(self.studio.kill)
         assert self.studio.process.stdout
         entrance = self.studio.process.stdout.readline().decode().strip()
         target = int(re.findall(r":(\d+)/", entrance)[0])
-        self.network = BadNetwork(target, chance)
+        self.network = BadNetwork(target, rng)
         stack.callback(self.network.close)
         address = f"http://127.0.0.1:{self.network.port}/"
         self.pages = Pages(browser, address, entrance=lambda: entrance.replace(
@@ -189,7 +189,7 @@ class Scene:
         if isinstance(fault, Fault):
             self._leave()
             self.line.clear_away()
-            self.line = BadLine(Fault("nothing"), self._chance, 0)
+            self.line = BadLine(Fault("nothing"), self._rng, 0)
         if action == "connect":
             self._leave()
             self._choose()
@@ -294,12 +294,12 @@ class Scene:
 class ClassScene(Scene):
     """A scene of a class: a pupil, a teacher, and the class's robot on the bad line."""
 
-    def __init__(self, browser: Browser, chance: Random, stack: ExitStack) -> None:
+    def __init__(self, browser: Browser, rng: Random, stack: ExitStack) -> None:
         patch = stack.enter_context(pytest.MonkeyPatch.context())
         for name, value in own_folders(stack.enter_context(tempfile.TemporaryDirectory())).items():
             patch.setenv(name, value)
-        self._chance = chance
-        self.line = BadLine(Fault("nothing"), chance, 0)
+        self._rng = rng
+        self.line = BadLine(Fault("nothing"), rng, 0)
         stack.callback(self.line.clear_away)
         class_ = stack.enter_context(studio.serve_class([self.line.port]))
         self.pages = Pages(browser, class_.server.address)
@@ -354,15 +354,15 @@ CLASS_LINES = tuple(line for line in LINES if line.name in (
 
 
 @contextmanager
-def class_scene(browser: Browser, chance: Random) -> Iterator[ClassScene]:
+def class_scene(browser: Browser, rng: Random) -> Iterator[ClassScene]:
     with ExitStack() as stack:
-        yield ClassScene(browser, chance, stack)
+        yield ClassScene(browser, rng, stack)
 
 
 @contextmanager
-def scene(browser: Browser, chance: Random) -> Iterator[Scene]:
+def scene(browser: Browser, rng: Random) -> Iterator[Scene]:
     with ExitStack() as stack:
-        yield Scene(browser, chance, stack)
+        yield Scene(browser, rng, stack)
 
 
 def list_faults(tried_action: TriedAction, room_s: float = TOLERANCE_S) -> list[str]:
@@ -388,10 +388,10 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
 def test_a_sample_of_what_is_pressed_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
-    chance = Random(sampling.seed(request.config))
-    with scene(browser, chance) as opened_scene:
+    rng = Random(sampling.seed(request.config))
+    with scene(browser, rng) as opened_scene:
         faults: list[Fault | Between] = [*NETWORK_FAULTS[:5], *LINES[:6]]
-        tried_action = opened_scene.try_action(chance.choice(ACTIONS), chance.choice(faults))
+        tried_action = opened_scene.try_action(rng.choice(ACTIONS), rng.choice(faults))
         assert not list_faults(tried_action, 3.0), tried_action
 
 
@@ -399,9 +399,9 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
 def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
-    chance = Random(sampling.seed(request.config))
-    with class_scene(browser, chance) as scene:
-        tried_action = scene.try_action(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
+    rng = Random(sampling.seed(request.config))
+    with class_scene(browser, rng) as scene:
+        tried_action = scene.try_action(rng.choice(CLASS_ACTIONS), rng.choice(CLASS_LINES))
         assert not list_faults(tried_action, 3.0), tried_action
 
 

@@ -155,14 +155,14 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
     robot and person, and so does the session with a connected robot.
     """
     monkeypatch.setattr(page_line, "_robot", None)
-    chance, kept_text, known_text = Random(seed), "", ""
+    rng, kept_text, known_text = Random(seed), "", ""
     newest_keys: dict[tuple[int, int], bytes] = {}
 
     def add_in_other_tab() -> None:
         nonlocal kept_text
         other_tab_keys = PageKeys(kept_text.encode())
-        robot = chance.randrange(5, 9)
-        other_tab_keys.add(keys.encode_keys([RobotKey(robot, OWNER, chance.randbytes(KEY_BYTES))]))
+        robot = rng.randrange(5, 9)
+        other_tab_keys.add(keys.encode_keys([RobotKey(robot, OWNER, rng.randbytes(KEY_BYTES))]))
         kept_text = other_tab_keys.file()
         newest_keys.update({key.slot: key.key for key in other_tab_keys.keys})
 
@@ -172,12 +172,12 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
 
     for now_ms in range(40):
         new_keys = [
-            RobotKey(robot, chance.choice((OWNER, KEY_TEACHER)), chance.randbytes(KEY_BYTES))
-            for robot in chance.sample(range(1, 5), 2)
+            RobotKey(robot, rng.choice((OWNER, KEY_TEACHER)), rng.randbytes(KEY_BYTES))
+            for robot in rng.sample(range(1, 5), 2)
         ]
-        if chance.random() < 0.3:
+        if rng.random() < 0.3:
             add_in_other_tab()
-        match chance.choice(("connect", "import", "claim", "link")):
+        match rng.choice(("connect", "import", "claim", "link")):
             case "connect":
                 ask(kept_text.encode(), do="connect", robot="tinibot", language="en")
                 new_keys, known_text = [], kept_text
@@ -192,7 +192,7 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
                 answer = link(now_ms)
                 assert ("keys" in answer) == bool(new_keys)
                 known_text = kept_text
-                if new_keys and chance.random() < 0.3:  # in this moment, so they are not stored
+                if new_keys and rng.random() < 0.3:  # in this moment, so they are not stored
                     add_in_other_tab()
                     answer = link(now_ms)
                 known_text = kept_text = answer.get("keys", kept_text)

@@ -178,9 +178,9 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
 def test_what_cannot_be_shared_says_why(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
-    chance = random.Random(1)
+    rng = random.Random(1)
     # Text that cannot be compressed.
-    noise = "".join(f"// {chance.randbytes(40).hex()}\n" for _ in range(200))
+    noise = "".join(f"// {rng.randbytes(40).hex()}\n" for _ in range(200))
     write(page, noise)
     assert share(page) == ""
     assert "too long for a link" in page.inner_text("#shared_told")

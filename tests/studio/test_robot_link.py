@@ -84,22 +84,22 @@ class Robot:
 def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
     """Earlier runs, whoever started them, and late messages do not matter: its run counts until it
     ends, or another one begins."""
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     robot = Robot()
     link = RobotLink(cast(LinkConnection, robot), "en")
     own_programs, own_runs = set[tuple[int, int]](), 0
     for number in range(120):
-        match chance.choice((*ACTIONS, "ask", "answer")):
+        match rng.choice((*ACTIONS, "ask", "answer")):
             case "ask" if robot.pending is None:
-                robot.is_program = chance.random() < 0.5
+                robot.is_program = rng.random() < 0.5
                 fields = {"do": "start"} if robot.is_program else {"do": "live", "image": LINE}
                 link.ask({"id": number, "robot": "tinibot", **fields})
                 link.news()
             case "answer" if robot.pending is not None:
-                if chance.random() < 0.3:
-                    robot.ends(chance.choice(("STOPPED", "DONE")))  # that of the run before
-                on_end = chance.choice((lambda: None, link.news))
-                robot.begins(is_own=True, look_at_end=on_end if chance.random() < 0.3 else None)
+                if rng.random() < 0.3:
+                    robot.ends(rng.choice(("STOPPED", "DONE")))  # that of the run before
+                on_end = rng.choice((lambda: None, link.news))
+                robot.begins(is_own=True, look_at_end=on_end if rng.random() < 0.3 else None)
                 if robot.is_program:
                     own_programs.add((robot.boot, robot.run))
             case "refuse" if robot.pending is not None:
@@ -107,14 +107,14 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
             case "other":
                 robot.begins(is_own=False)
             case "end":
-                robot.ends(chance.choice(("DONE", "FAULT", "STOPPED")))
+                robot.ends(rng.choice(("DONE", "FAULT", "STOPPED")))
             case "lost" | "restart" as event_name:
                 link.news()  # earlier reports have arrived
                 robot.ends("LOST") if event_name == "lost" else robot.restarts()
                 link.news()  # no run begins soon after it
             case _:
                 continue
-        if chance.random() < 0.7:
+        if rng.random() < 0.7:
             boot_and_runs = [
                 (robot.boot, event.run) for event in robot.events if event.name == "STARTED"
             ]

@@ -159,8 +159,8 @@ def hosting(monkeypatch: pytest.MonkeyPatch) -> Hosting:
 class ComingPage:
     """A page that comes, asks for runs, and goes, reloads or falls silent, as it happens."""
 
-    def __init__(self, hosting: Hosting, name: str, chance: Random) -> None:
-        self.hosting, self.name, self.chance = hosting, name, chance
+    def __init__(self, hosting: Hosting, name: str, rng: Random) -> None:
+        self.hosting, self.name, self.rng = hosting, name, rng
         self.tab = self.port = name
         self.ports = [name]
         self.end = ""  # why its connection has ended, which it has not heard yet
@@ -178,10 +178,10 @@ class ComingPage:
 
     def _connect(self) -> None:
         self._connection += 1
-        self.end, self.port = "", self.chance.choice(self.ports)
+        self.end, self.port = "", self.rng.choice(self.ports)
         self._seen = self._number = 0
         self._asked = []
-        for _ in range(self.chance.choice((1, 2))):  # the answer was lost
+        for _ in range(self.rng.choice((1, 2))):  # the answer was lost
             self._is_there = self._ask("connect") == {}
 
     def _wants_run(self) -> None:
@@ -201,7 +201,7 @@ class ComingPage:
         return self._is_there and not self._sleeps
 
     def turn(self) -> None:
-        draw_number = self.chance.random()
+        draw_number = self.rng.random()
         if not self._is_there:
             if draw_number < 0.1:
                 self._connect()
@@ -211,7 +211,7 @@ class ComingPage:
             self._is_there, self.end = False, ""
         elif draw_number < 0.02:  # loaded again, under another name of its own or the same one
             self._is_there, self._connection = False, self._connection + 3
-            if self.chance.random() < 0.5:
+            if self.rng.random() < 0.5:
                 self.tab, self.stops = f"{self.tab}+", 0
         elif draw_number < 0.04:
             self._sleeps, self.end = not self._sleeps, ""
@@ -239,12 +239,12 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
     """Neither open pages nor new connections start anything; driving robots stop. After the latch
     time, pages drive again.
     """
-    chance = Random(seed)
-    pages = [ComingPage(hosting, f"page{k}", chance) for k in range(5)]
+    rng = Random(seed)
+    pages = [ComingPage(hosting, f"page{k}", rng) for k in range(5)]
     latched_until_ms = stops = late_runs = 0
     for _ in range(3000):
         Room.now_ms += LOOK_MS
-        if chance.random() < 0.005:
+        if rng.random() < 0.005:
             hosting.answer({"do": "stop_all"})
             latched_until_ms = Room.now_ms + round(1000 * LATCH_S)
             stops += 1
@@ -267,8 +267,8 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
     stops those that drive, and the result of each is soon known. A page's STOP stops its robot even
     after a reload. A page learns why its connection has ended, whoever connects meanwhile, and at
     the end no connection is left open."""
-    chance = Random(seed)
-    pages = [ComingPage(hosting, f"page{k}", chance) for k in range(4)]
+    rng = Random(seed)
+    pages = [ComingPage(hosting, f"page{k}", rng) for k in range(4)]
     for page in pages:
         page.ports = ["first", "second", "third"]
     stopped_ms = 0
@@ -279,11 +279,11 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
         driving = [robot for robot in Room.robots if not robot.has_ended and not robot.is_parting]
         for page in pages:
             page_robots = [robot for robot in driving if robot.tab == page.tab and page.is_beating]
-            if page_robots and chance.random() < 0.01:
+            if page_robots and rng.random() < 0.01:
                 page_robots[-1].fail()
                 page.end = "port_gone"
                 driving.remove(page_robots[-1])
-        if chance.random() < 0.005:
+        if rng.random() < 0.005:
             states = hosting.answer({"do": "stop_all"})["robots"]
             assert sorted(state["name"] for state in states) == sorted(
                 robot.name for robot in driving
@@ -295,9 +295,9 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
-            page = chance.choice(pages)
+            page = rng.choice(pages)
             driven = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
-            if driven is not None and chance.random() < 0.1:
+            if driven is not None and rng.random() < 0.1:
                 page.stop()
                 driven.step()
                 assert not driven.link.has_run
@@ -316,13 +316,13 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
 @pytest.mark.parametrize("seed", range(20))
 def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
     """However often it was silent before, and whether it drove then; one that is heard goes on."""
-    chance = Random(seed)
+    rng = Random(seed)
     attending, link = Attending(Room.clock), NotingLink()
     number = 0
     silences = 0
     for _ in range(150):
-        is_heard, lasts_ms = chance.random() < 0.5, chance.choice((100, 400, 800, 2000))
-        starts_drive, is_stopped = chance.random() < 0.6, chance.random() < 0.2
+        is_heard, lasts_ms = rng.random() < 0.5, rng.choice((100, 400, 800, 2000))
+        starts_drive, is_stopped = rng.random() < 0.6, rng.random() < 0.2
         if is_heard and starts_drive:
             number += 1
             attending.on_beat([{**RUN, "id": number, "stops": 0, "seen": 0}], 0)
@@ -453,15 +453,15 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
     seed: int,
 ) -> None:  # fmt: skip
     """The kind and the number of earlier requests there do not matter."""
-    chance = Random(seed)
+    rng = Random(seed)
     httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
     longest = request_count = 0
     for _ in range(40):
-        is_odd = chance.random() < 0.06
-        request = chance.choice(
+        is_odd = rng.random() < 0.06
+        request = rng.choice(
             ("/nothing", "{}", STRANGE) if is_odd else ("/", "/main.js", BEAT.decode())
         )
-        padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
+        padding = rng.choice(PADDINGS if is_odd else PADDINGS[:-1])
         new_connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
         expected = ask(new_connection, request, padding)
         new_connection.close()

@@ -48,43 +48,43 @@ def test_the_text_of_a_form_is_the_same_world() -> None:
 
 
 def test_random_forms_keep_every_number() -> None:
-    chance = Random(16)
+    rng = Random(16)
 
     def number(low: float, high: float) -> float:
-        return round(chance.uniform(low, high), chance.randrange(4))
+        return round(rng.uniform(low, high), rng.randrange(4))
 
     def points() -> list[list[float]]:
-        return [[number(0, 200), number(0, 150)] for _ in range(chance.randint(2, 9))]
+        return [[number(0, 200), number(0, 150)] for _ in range(rng.randint(2, 9))]
 
     for _ in range(200):
         form = {
             "name": "own",
             "labels": {
-                language: chance.choice(['my "own"', "a\\b", "own", "ñandú 🤖"])
+                language: rng.choice(['my "own"', "a\\b", "own", "ñandú 🤖"])
                 for language in LANGUAGES
             },
             "width_cm": 200.5,
             "height_cm": 150,
-            "has_border": chance.random() < 0.5,
+            "has_border": rng.random() < 0.5,
             "ambient_percent": number(0, 100),
             "start": {"x_cm": number(0, 200), "y_cm": number(0, 150), "heading": number(-180, 180)},
-            "walls": [{"points": points()} for _ in range(chance.randrange(4))],
+            "walls": [{"points": points()} for _ in range(rng.randrange(4))],
             "boxes": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "length_cm": number(1, 60),
                        "width_cm": number(1, 60), "heading": number(-179, 179)}
-                      for _ in range(chance.randrange(4))],
+                      for _ in range(rng.randrange(4))],
             "lines": [{"points": points(), "width_cm": number(0.5, 9)}
-                      for _ in range(chance.randrange(3))],
+                      for _ in range(rng.randrange(3))],
             "lamps": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300)}
-                      for _ in range(chance.randrange(3))],
+                      for _ in range(rng.randrange(3))],
             "flags": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300),
-                       "rests": chance.random() < 0.5} for _ in range(chance.randrange(3))],
-            "seconds": chance.choice([0, number(1, 600)]),
+                       "rests": rng.random() < 0.5} for _ in range(rng.randrange(3))],
+            "seconds": rng.choice([0, number(1, 600)]),
             "rings": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "radius_cm": number(20, 90),
-                       "edge_cm": number(0, 9)} for _ in range(chance.randrange(3))],
+                       "edge_cm": number(0, 9)} for _ in range(rng.randrange(3))],
             "rivals": [{"x_cm": number(0, 200), "y_cm": number(0, 150),
                         "heading": number(-180, 180), "length_cm": number(5, 50),
                         "width_cm": number(5, 50), "speed_cm_s": number(1, 200),
-                        "power_percent": number(0, 100)} for _ in range(chance.randrange(4))],
+                        "power_percent": number(0, 100)} for _ in range(rng.randrange(4))],
         }  # fmt: skip
         assert is_near(as_tuples(form_of(read(toml_of(form), "own"))), as_tuples(form))
 

@@ -74,12 +74,12 @@ class BadNetwork(Network):
         self, target: int, late_s: float = 0.02, every: int = 10, loss_rate: float = 0.0
     ) -> None:
         self.late_s, self.every, self.lost = late_s, every, loss_rate
-        self._chance = random.Random(1)
+        self._rng = random.Random(1)
         super().__init__(target)
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes:
-        time.sleep(self.late_s + RESENT_S * (self._chance.randrange(self.every) == 0))
-        return b"" if self._chance.random() < self.lost else data
+        time.sleep(self.late_s + RESENT_S * (self._rng.randrange(self.every) == 0))
+        return b"" if self._rng.random() < self.lost else data
 
 
 class CuttingNetwork(Network):

@@ -52,9 +52,9 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
     left_out = _long_left_out(config, items) | _files_left_out(config, items)
     for name, groups in tests.items():
         together = _mark(next(iter(groups.values()))).kwargs.get("draw", "")
-        draw = random.Random(f"{seed(config)} {together or name}")
-        turn = draw.randrange(1000)
-        for rows in draw.sample(list(groups.values()), len(groups)):
+        rng = random.Random(f"{seed(config)} {together or name}")
+        turn = rng.randrange(1000)
+        for rows in rng.sample(list(groups.values()), len(groups)):
             turn += not together
             chosen_items = {
                 rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))
@@ -73,8 +73,8 @@ def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytes
     ]
     if not config.getoption("--tenth"):
         return set(long_tests)
-    draw = random.Random(f"{seed(config)} {LONG}")
-    return set(draw.sample(long_tests, len(long_tests) * 9 // 10))
+    rng = random.Random(f"{seed(config)} {LONG}")
+    return set(rng.sample(long_tests, len(long_tests) * 9 // 10))
 
 
 def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
@@ -87,8 +87,8 @@ def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pyte
                 items_by_path.setdefault(item.path, []).append(item)
     left_out: set[pytest.Item] = set()
     for (name, keep), items_by_path in files.items():
-        draw = random.Random(f"{seed(config)} {name}")
-        for path in draw.sample(sorted(items_by_path), len(items_by_path))[keep:]:
+        rng = random.Random(f"{seed(config)} {name}")
+        for path in rng.sample(sorted(items_by_path), len(items_by_path))[keep:]:
             left_out |= set(items_by_path[path] if path not in _list_named_files(config) else ())
     return left_out
 

@@ -39,18 +39,18 @@ class Pupil:
     """`typed` has all that somebody has written; `focus` is where in the text this one works."""
 
     def __init__(
-        self, page: Page, chance: Random, numbers: Iterator[int], typed_texts: set[str],
+        self, page: Page, rng: Random, numbers: Iterator[int], typed_texts: set[str],
         deeds: Counter[str], spread: float = 0.5,
     ) -> None:  # fmt: skip
         self.page, self.typed, self.deeds = page, typed_texts, deeds
         self.focus = 0.5
         self.stages: list[Stage] = []
-        self._chance, self._numbers, self._spread = chance, numbers, spread
+        self._rng, self._numbers, self._spread = rng, numbers, spread
         self._cut: Text = []
 
     def acts(self) -> None:
         """Continue typing, or take another action."""
-        if self.stages or self._chance.random() < 0.55:
+        if self.stages or self._rng.random() < 0.55:
             self.types()
         else:
             self.does_by_blocks()
@@ -73,14 +73,14 @@ class Pupil:
 
     def _simple(self) -> str:
         k = next(self._numbers)
-        return self._own(self._chance.choice((
+        return self._own(self._rng.choice((
             f"F({k}, 50)", f"B({k}, 50)", f"L({k}, 60)", f"R({k}, 60)", f"W({k})", f"X = {k}",
             f"F({k}, 40) UNTIL(DISTANCE < 10)", f"SHOW({k})",
         )))  # fmt: skip
 
     def _make_head(self) -> str:
         k = next(self._numbers)
-        return self._own(self._chance.choice((f"LOOP({k})", f"WHILE(X < {k})", f"IF(X > {k})")))
+        return self._own(self._rng.choice((f"LOOP({k})", f"WHILE(X < {k})", f"IF(X > {k})")))
 
     # -- by blocks --------------------------------------------------------------------------------
 
@@ -90,7 +90,7 @@ class Pupil:
         view = page.view
         ids = [id for id in view.subtree_ids()[1:] if id != START]
         deeds = EDIT_KINDS + ("delete",) * 8 if len(ids) > LARGE_PROGRAM else EDIT_KINDS
-        deed = self._chance.choice(deeds) if ids else "insert"
+        deed = self._rng.choice(deeds) if ids else "insert"
         if deed == "undo":
             was_done = page.undo()
         else:
@@ -102,20 +102,20 @@ class Pupil:
         return was_done
 
     def _near(self, ids: list[str]) -> str:
-        k = round(self._chance.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
+        k = round(self._rng.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
         return ids[max(0, min(len(ids) - 1, k))]
 
     def _at(self, view: Tree, block_id: str) -> Place:
-        if not block_id or self._chance.random() < 0.1:
+        if not block_id or self._rng.random() < 0.1:
             return Place(ROOT, START if view[START].text else "")
-        if view[block_id].kind == BLOCK and self._chance.random() < 0.4:
+        if view[block_id].kind == BLOCK and self._rng.random() < 0.4:
             return Place(block_id, "")
         return Place(view[block_id].parent, block_id)
 
     def _insert(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         new_trees = tuple(Subtree(self.page.new_id(), self._simple())
-                    for _ in range(self._chance.choice((1, 1, 1, 2, 3))))  # fmt: skip
-        if self._chance.random() < 0.25:
+                    for _ in range(self._rng.choice((1, 1, 1, 2, 3))))  # fmt: skip
+        if self._rng.random() < 0.25:
             new_trees = (Subtree(self.page.new_id(), self._make_head(), children=new_trees),)
         return [Insert(self._at(view, block_id), new_trees)]
 
@@ -123,7 +123,7 @@ class Pupil:
         siblings = view[view[block_id].parent].children
         k = siblings.index(block_id)
         run = []
-        for id in siblings[k : k + self._chance.randint(1, max_count)]:
+        for id in siblings[k : k + self._rng.randint(1, max_count)]:
             if id == START or (not has_arms and view[id].kind == ARM):
                 break
             run.append(id)
@@ -148,7 +148,7 @@ class Pupil:
 
     def _unwrap(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         blocks = [id for id in ids if view[id].kind == BLOCK]
-        return [Unwrap(self._chance.choice(blocks))] if blocks else []
+        return [Unwrap(self._rng.choice(blocks))] if blocks else []
 
     def _replace(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         node, k = view[block_id], next(self._numbers)
@@ -171,18 +171,18 @@ class Pupil:
         ifs = [id for id in ids if view[id].text.startswith("IF")]
         if not ifs:
             return []
-        block = self._chance.choice(ifs)
-        arm = "ELSE" if self._chance.random() < 0.6 else f"ELSEIF(X > {next(self._numbers)})"
-        place = Place(block, self._chance.choice(["", *view[block].children]))
+        block = self._rng.choice(ifs)
+        arm = "ELSE" if self._rng.random() < 0.6 else f"ELSEIF(X > {next(self._numbers)})"
+        place = Place(block, self._rng.choice(["", *view[block].children]))
         return [Insert(place, (Subtree(self.page.new_id(), self._own(arm)),))]
 
     def _comment(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
-        text, is_apart = self._own(f"// c{next(self._numbers)}"), self._chance.random() < 0.5
+        text, is_apart = self._own(f"// c{next(self._numbers)}"), self._rng.random() < 0.5
         new_tree = Subtree(self.page.new_id(), text, apart=is_apart)
         return [Insert(self._at(view, block_id), (new_tree,))]
 
     def _start(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
-        return [Replace(START, (("text", self._chance.choice(("SI|", "SB|"))),))]
+        return [Replace(START, (("text", self._rng.choice(("SI|", "SB|"))),))]
 
     # -- with the keyboard ------------------------------------------------------------------------
 
@@ -192,8 +192,8 @@ class Pupil:
             has_staying_draft = any(draft.stays for draft in page.drafts)
             plan = (
                 "kept"
-                if has_staying_draft and self._chance.random() < 0.5
-                else self._chance.choice(PLANS)
+                if has_staying_draft and self._rng.random() < 0.5
+                else self._rng.choice(PLANS)
             )
             self.deeds[f"types {plan}"] += 1
             self.stages = getattr(self, f"_plan_{plan}")()
@@ -201,7 +201,7 @@ class Pupil:
         page.flush()
 
     def _line(self, text: Text) -> int:
-        k = round(self._chance.gauss(self.focus * len(text), max(2.0, len(text) * self._spread)))
+        k = round(self._rng.gauss(self.focus * len(text), max(2.0, len(text) * self._spread)))
         return max(0, min(len(text) - 1, k))
 
     def _new_line(self, text: Text) -> int:
@@ -215,7 +215,7 @@ class Pupil:
         return min(rows, key=lambda k: abs(k - aim)) if rows else None
 
     def _part_of(self, final: str) -> str:
-        return final[: self._chance.randint(1, len(final) - 1)]
+        return final[: self._rng.randint(1, len(final) - 1)]
 
     def _plan_change(self) -> list[Stage]:
         final = ""
@@ -262,7 +262,7 @@ class Pupil:
 
     def _plan_lines(self) -> list[Stage]:
         """Plan lines one below the other, each followed by Enter."""
-        rows = [self._simple() for _ in range(self._chance.randint(2, 4))]
+        rows = [self._simple() for _ in range(self._rng.randint(2, 4))]
         row_number = 0
 
         def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
@@ -287,7 +287,7 @@ class Pupil:
     def _plan_around(self) -> list[Stage]:
         head = self._make_head()
         end = {"L": "END_LOOP", "W": "END_WHILE", "I": "ENDIF"}[head[0]]
-        size = self._chance.randint(1, 4)
+        size = self._rng.randint(1, 4)
 
         def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._new_line(text)
@@ -306,7 +306,7 @@ class Pupil:
 
         def first_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._code(text)
-            size = self._chance.randint(1, 3)
+            size = self._rng.randint(1, 3)
             if k is None or any("|" in row for row in text[k : k + size]):
                 return text, caret, False
             self._cut = text[k : k + size]
@@ -319,7 +319,7 @@ class Pupil:
             self._cut = []
             return text, k, False
 
-        if self._chance.random() < 0.5:
+        if self._rng.random() < 0.5:
             return [lambda text, caret: last_step(*first_step(text, caret)[:2])]
         return [first_step, last_step]
 
@@ -327,7 +327,7 @@ class Pupil:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._code(text, lambda row: "|" not in row)
             if k is not None:
-                del text[k : k + self._chance.randint(1, 2)]
+                del text[k : k + self._rng.randint(1, 2)]
             return text, caret, False
 
         return [only]
@@ -341,7 +341,7 @@ class Pupil:
                      if row.strip().startswith(("LOOP", "WHILE", "IF"))]  # fmt: skip
             if not heads:
                 return text, caret, False
-            k = self._chance.choice(heads)
+            k = self._rng.choice(heads)
             indent = len(text[k]) - len(text[k].lstrip())
             del text[k]
             return text, min(k, len(text) - 1), False
@@ -360,7 +360,7 @@ class Pupil:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
             heads = [k for k, row in enumerate(text) if row.strip().startswith("IF(")]
             if heads:
-                k = self._chance.choice(heads) + 1 + self._chance.randint(0, 1)
+                k = self._rng.choice(heads) + 1 + self._rng.randint(0, 1)
                 text.insert(k, self._own("ELSE"))
             return text, caret, False
 
@@ -370,7 +370,7 @@ class Pupil:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._code(text)
             note = self._own(f"// t{next(self._numbers)}")
-            if k is None or self._chance.random() < 0.5:
+            if k is None or self._rng.random() < 0.5:
                 text.insert(k or 0, note)
             else:
                 text[k] += "  " + note

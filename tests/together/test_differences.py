@@ -90,48 +90,48 @@ def test_what_is_the_same_stays(
     assert sum(id.startswith("o.") for id in new_tree.subtree_ids()) == stay
 
 
-def program(chance: Random, size: int, depth: int = 0) -> list[str]:
+def program(rng: Random, size: int, depth: int = 0) -> list[str]:
     rows: list[str] = []
     for _ in range(size):
-        kind, k = chance.random(), chance.randint(2, 9)
-        inner = [] if depth > 3 else program(chance, chance.randint(0, 3), depth + 1)
+        kind, k = rng.random(), rng.randint(2, 9)
+        inner = [] if depth > 3 else program(rng, rng.randint(0, 3), depth + 1)
         if kind < 0.55 or depth > 3:
-            rows.append(f"{chance.choice('FBLR')}({k}, {chance.randint(1, 9)}0)")
+            rows.append(f"{rng.choice('FBLR')}({k}, {rng.randint(1, 9)}0)")
         elif kind < 0.65:
-            rows.append(f"// {chance.choice(('a', 'b', 'go on', 'turn'))}")
+            rows.append(f"// {rng.choice(('a', 'b', 'go on', 'turn'))}")
         elif kind < 0.75:
-            rows.append(chance.choice(("S", f"X = {k}")))
+            rows.append(rng.choice(("S", f"X = {k}")))
         elif kind < 0.85:
             rows += [f"LOOP({k})", *inner, "END_LOOP"]
         elif kind < 0.95:
             rows += [f"IF(X < {k})", *inner]
-            if chance.random() < 0.4:
-                rows += [f"ELSEIF(X > {k})", *program(chance, 1, depth + 1)]
-            if chance.random() < 0.5:
-                rows += ["ELSE", *program(chance, 1, depth + 1)]
+            if rng.random() < 0.4:
+                rows += [f"ELSEIF(X > {k})", *program(rng, 1, depth + 1)]
+            if rng.random() < 0.5:
+                rows += ["ELSE", *program(rng, 1, depth + 1)]
             rows.append("ENDIF")
         elif depth == 0:
             rows += ["TASK", *inner, "END_TASK"]
-        if chance.random() < 0.1:
+        if rng.random() < 0.1:
             rows.append("")
     return rows
 
 
-def edit_rows(chance: Random, rows: list[str]) -> list[str]:
+def edit_rows(rng: Random, rows: list[str]) -> list[str]:
     new_rows = rows[:]
-    for _ in range(chance.randint(1, 4)):
-        kind, i = chance.random(), chance.randrange(len(new_rows) + 1)
+    for _ in range(rng.randint(1, 4)):
+        kind, i = rng.random(), rng.randrange(len(new_rows) + 1)
         if kind < 0.3:
-            new_rows[i:i] = program(chance, chance.randint(1, 2), 1)
+            new_rows[i:i] = program(rng, rng.randint(1, 2), 1)
         elif kind < 0.5:
-            del new_rows[i : i + chance.randint(1, 4)]
+            del new_rows[i : i + rng.randint(1, 4)]
         elif kind < 0.7:
-            cut_rows = new_rows[i : i + chance.randint(1, 6)]
+            cut_rows = new_rows[i : i + rng.randint(1, 6)]
             del new_rows[i : i + len(cut_rows)]
-            k = chance.randrange(len(new_rows) + 1)
+            k = rng.randrange(len(new_rows) + 1)
             new_rows[k:k] = cut_rows
         elif kind < 0.85:
-            new_rows.insert(min(len(new_rows), i + chance.randint(0, 5)), "END_LOOP")
+            new_rows.insert(min(len(new_rows), i + rng.randint(0, 5)), "END_LOOP")
             new_rows.insert(i, "LOOP(7)")
         elif i < len(new_rows):
             new_rows[i] = new_rows[i].replace("(", "(1", 1)
@@ -140,10 +140,10 @@ def edit_rows(chance: Random, rows: list[str]) -> list[str]:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
-    chance, tried = Random(seed), Counter[str]()
+    rng, tried = Random(seed), Counter[str]()
     while sum(tried.values()) < PROGRAMS:
-        tree_before = program(chance, chance.randint(0, 20))
-        new_rows = edit_rows(chance, tree_before) if chance.random() < 0.8 else program(chance, 12)
+        tree_before = program(rng, rng.randint(0, 20))
+        new_rows = edit_rows(rng, tree_before) if rng.random() < 0.8 else program(rng, 12)
         numbers, new_numbers = count(1), count(1)
         try:
             old_tree = parse_tree("\n".join(tree_before), lambda: f"o.{next(numbers)}")  # noqa: B023

@@ -92,19 +92,19 @@ class Editor:
         news = self.program.news(name, self.shown["since"], self.shown["epoch"])
         self.news.append(json.loads(json.dumps(news)))
 
-    def types(self, chance: Random) -> bool:
+    def types(self, rng: Random) -> bool:
         """Press a key: of an instruction below a line, of a loose one, or any; return whether a
         line is finished.
         """
-        if not self.keys and chance.random() < 0.7:
-            end = self.text.find("\n", chance.randint(0, len(self.text)))
+        if not self.keys and rng.random() < 0.7:
+            end = self.text.find("\n", rng.randint(0, len(self.text)))
             self.goes_to(end if end >= 0 else len(self.text))
-            self.keys = list(f"\n{chance.choice(('F', 'b', 'L'))}({chance.randint(1, 99)}, 50)")
-            self.keys += ["\n"] * (chance.random() < 0.5)
-            if chance.random() < 0.2:
+            self.keys = list(f"\n{rng.choice(('F', 'b', 'L'))}({rng.randint(1, 99)}, 50)")
+            self.keys += ["\n"] * (rng.random() < 0.5)
+            if rng.random() < 0.2:
                 self.goes_to(len(self.text))
-                self.keys = list(f"\n/// F({chance.randint(1, 99)}, 50)")
-        key, line = self.keys.pop(0) if self.keys else chance.choice(KEYS), self.line
+                self.keys = list(f"\n/// F({rng.randint(1, 99)}, 50)")
+        key, line = self.keys.pop(0) if self.keys else rng.choice(KEYS), self.line
         if key == BACKSPACE:
             self.text, self.at = (
                 self.text[: max(0, self.at - 1)] + self.text[self.at :],
@@ -124,23 +124,23 @@ class Editor:
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(6))
 def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
-    chance, ids = Random(seed), count(1)
+    rng, ids = Random(seed), count(1)
     program = SharedProgram(parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e")
     editors = [Editor(name, program) for name in ("m1", "m2")]
     assert {editor.text for editor in editors} == {FIRST_PROGRAM}
     reloads = draft_count = 0
     for _ in range(TURNS):
-        editor = chance.choice(editors)
-        for _ in range(chance.randint(1, 6)):
-            if editor.types(chance):
+        editor = rng.choice(editors)
+        for _ in range(rng.randint(1, 6)):
+            if editor.types(rng):
                 editor.take(editor.step())
-        if chance.random() < 0.3:
-            editor.goes_to(chance.randint(0, len(editor.text)))
-        if chance.random() < 0.5:
+        if rng.random() < 0.3:
+            editor.goes_to(rng.randint(0, len(editor.text)))
+        if rng.random() < 0.5:
             editor.hears()
         answer = editor.step()
-        if chance.random() < 0.3:  # typing there changes something, so it is void
-            editor.types(chance)
+        if rng.random() < 0.3:  # typing there changes something, so it is void
+            editor.types(rng)
             answer = editor.step()
         row = editor.text.split("\n")[editor.line]
         editor.take(answer)
@@ -153,7 +153,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         draft_count += len(drafts)
         if editor.is_hot:  # no one else edits the line being typed
             assert editor.text.split("\n")[editor.line] == row
-        if chance.random() < 0.1:
+        if rng.random() < 0.1:
             loose = editor.loose
             editor.begin(answer["kept"])
             assert editor.loose[len(editor.loose) - len(loose) :] == loose
@@ -176,9 +176,9 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_changes_make_the_new_text_of_the_old(seed: int) -> None:
-    chance = Random(seed)
+    rng = Random(seed)
     rows = ["F(1, 80);", "f(1,80)", "", "  B(2, 40);", "// \U0001f916 a", "// b \x0b c", "W(1)"]
-    old_text, new_text = ("\n".join(chance.choices(rows, k=chance.randint(0, 8))) for _ in range(2))
+    old_text, new_text = ("\n".join(rng.choices(rows, k=rng.randint(0, 8))) for _ in range(2))
     units = old_text.encode("utf-16-le")
     for start, end, put in reversed(page_together.changes(old_text, new_text)):
         units = units[: 2 * start] + put.encode("utf-16-le") + units[2 * end :]

@@ -53,29 +53,27 @@ NEEDED_FIELDS = {
 FIELDS = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
 
 
-def an_operation(chance: Random) -> Any:
-    operation: Any = {"do": chance.choice(list(NEEDED_FIELDS))}
+def an_operation(rng: Random) -> Any:
+    operation: Any = {"do": rng.choice(list(NEEDED_FIELDS))}
     for field in NEEDED_FIELDS[operation["do"]]:
-        operation[field] = chance.choice(LIKELY_VALUES[field])
+        operation[field] = rng.choice(LIKELY_VALUES[field])
     for field in FIELDS:
-        if chance.random() < 0.07:
-            operation[field] = chance.choice(VALUES)
+        if rng.random() < 0.07:
+            operation[field] = rng.choice(VALUES)
     return operation
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_no_change_spoils_the_program(seed: int) -> None:
-    chance, ids = Random(seed), count(1)
+    rng, ids = Random(seed), count(1)
     rows: list[Any] = []
     program = SharedProgram(parse_tree(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
     page = Page.of("z", program.news("z", -1, ""))
     came: Counter[str] = Counter()
     for k in range(1, MESSAGE_COUNT + 1):
-        operation = an_operation(chance)
+        operation = an_operation(rng)
         uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
-        sent_data = json.loads(
-            json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))})
-        )
+        sent_data = json.loads(json.dumps({"uid": uid, "ops": [operation] * rng.choice((1, 1, 3))}))
         try:
             change = change_of(sent_data)
         except Refused as refusal:

@@ -45,16 +45,16 @@ def are_same(a: SharedProgram, b: SharedProgram) -> bool:
 @pytest.mark.parametrize("seed", range(20))
 def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, seed: int) -> None:
     """All announced changes are there; a row that a crash has cut off was never announced."""
-    path, chance = tmp_path / "journal", Random(seed)
+    path, rng = tmp_path / "journal", Random(seed)
     journal, program = begin_journal(path)
     sizes = [path.stat().st_size]
     states = [(program.number, dict(program.last_count_by_page))]
     for k in range(12):
-        change_program(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
+        change_program(program, rng.choice((0, 1000 + k)), rng.choice("ab"))
         sizes.append(path.stat().st_size)
         states.append((program.number, dict(program.last_count_by_page)))
     journal.close()
-    journal_size = chance.randint(sizes[0], sizes[-1])
+    journal_size = rng.randint(sizes[0], sizes[-1])
     os.truncate(path, journal_size)
     resumed_program = Journal(path).resume("e2")
     assert resumed_program is not None
@@ -110,7 +110,7 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
 def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
-    path, chance, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
+    path, rng, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
     journal, program = begin_journal(path)
     monkeypatch.setattr(journals, "MOST_BYTES", 2000)
 
@@ -132,15 +132,15 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     monkeypatch.setattr(os, "write", checked_call(os.write))
     monkeypatch.setattr(journals, "replace", checked_call(files.replace))
     for value in range(1, 40):
-        is_full = chance.random() < (0.8 if is_full else 0.2)
+        is_full = rng.random() < (0.8 if is_full else 0.2)
         assert change_program(program, value)
         kept_number = kept_number if journal.is_incomplete else program.number
         stop_saving()
-        if chance.random() < 0.2:  # it crashes, and resumes with the stored data
+        if rng.random() < 0.2:  # it crashes, and resumes with the stored data
             journal.close()
             journal = Journal(path)
-            if chance.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
-                path.write_bytes(chance.randbytes(chance.randrange(3000)))  # it is damaged
+            if rng.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
+                path.write_bytes(rng.randbytes(rng.randrange(3000)))  # it is damaged
                 kept_number = 0
             resumed_program = journal.resume(f"e{value}")
             assert resumed_program is not None

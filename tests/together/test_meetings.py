@@ -271,13 +271,13 @@ def test_a_page_that_is_loaded_again_goes_on(pair: PagePair) -> None:
 @pytest.mark.parametrize("seed", range(10))
 def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(seed: int) -> None:
     """The reload comes before the computer has heard of the undo."""
-    chance, two = Random(seed), PagePair()
-    for k in range(chance.randint(1, 3)):
+    rng, two = Random(seed), PagePair()
+    for k in range(rng.randint(1, 3)):
         two.types(two.ana, f"F({k + 1}, 80)" if k else "F(1, 80)", f"F({k + 2}, 80)")
         two.sends(two.ana)
     last_value = k + 2
     assert two.ana.undo()
-    for _ in range(chance.randint(1, 2)):
+    for _ in range(rng.randint(1, 2)):
         stored_data = json.loads(json.dumps(two.ana.store_data()))
         two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
     assert f"F({last_value - 1}, 80)" in two.meet()
@@ -313,15 +313,15 @@ def test_a_copy_of_a_page_goes_its_own_way(pair: PagePair) -> None:
 FLAT_PROGRAM = "SI|S\n" + "".join(f"F({number}, 80)\n" for number in range(1, 6))
 
 
-def edits(page: Page, chance: Random) -> None:
+def edits(page: Page, rng: Random) -> None:
     """Put a line in, take one out or change one, as somebody types it."""
     rows = page.lines[:]
-    k = chance.randrange(1, len(rows))
-    line = f"{chance.choice('FBLR')}({chance.randrange(1, 99)}, 40);"
-    if len(rows) > 4 and chance.random() < 0.4:
+    k = rng.randrange(1, len(rows))
+    line = f"{rng.choice('FBLR')}({rng.randrange(1, 99)}, 40);"
+    if len(rows) > 4 and rng.random() < 0.4:
         del rows[k]
     else:
-        rows[k : k + chance.randrange(2)] = [line]
+        rows[k : k + rng.randrange(2)] = [line]
     page.type(rows, min(k, len(rows) - 1))
     page.leave()
 
@@ -343,7 +343,7 @@ def exchange(two: PagePair, message: str) -> None:
 def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
     """Return what Ana's page shows after each step, with a copy in its place each time, or as it
     is. Nothing hears of what is changed on the old page then."""
-    chance, other_chance, two = Random(seed), Random(seed), PagePair(FLAT_PROGRAM)
+    rng, other_rng, two = Random(seed), Random(seed), PagePair(FLAT_PROGRAM)
     results = list[Any]()
     for _ in range(40):
         if makes_copies:
@@ -351,15 +351,15 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
             for function in (
                 old_page.undo,
                 old_page.redo,
-                partial(edits, old_page, other_chance),
+                partial(edits, old_page, other_rng),
                 old_page.undo,
             ):
                 function()
-        match chance.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
+        match rng.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
             case "edit":
-                edits(two.ana, chance)
+                edits(two.ana, rng)
             case "luz":
-                edits(two.luz, chance)
+                edits(two.luz, rng)
                 two.sends(two.luz)
             case "undo" | "redo" as does_back:
                 results.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
@@ -378,12 +378,12 @@ def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) ->
 def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> None:
     """Whichever messages were sent, received or lost then, no text is refused, lost or
     duplicated."""
-    chance, two = Random(seed), PagePair(FLAT_PROGRAM)
+    rng, two = Random(seed), PagePair(FLAT_PROGRAM)
     for _ in range(60):
         typed_text = program_of(two.ana)
-        match chance.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
+        match rng.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
             case "edit":
-                edits(two.ana, chance)
+                edits(two.ana, rng)
                 continue
             case "reload":
                 stored_data = json.loads(json.dumps(two.ana.store_data()))
@@ -428,13 +428,13 @@ def test_a_redo_takes_back_an_undo_until_something_else_is_done(pair: PagePair) 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_as_many_redos_as_undos_bring_all_back(seed: int) -> None:
-    chance, two = Random(seed), PagePair(FLAT_PROGRAM)
+    rng, two = Random(seed), PagePair(FLAT_PROGRAM)
     texts = [two.meet()]
     for number in range(1, 6):
         two.types(two.ana, f"F({number}, 80)", f"F({number}1, 80)")
         texts.append(two.meet())
     for _ in range(4):
-        count_back = chance.randrange(1, 5)
+        count_back = rng.randrange(1, 5)
         for redo_count in range(count_back):
             assert two.ana.undo() and two.meet() == texts[-2 - redo_count]
         for redo_count in reversed(range(count_back)):

@@ -67,7 +67,7 @@ class World:
         self, pages: int, seed: int, delay: Callable[[Random], float] = lambda r: r.uniform(0, 5),
         loss_rate: float = 0.05, asks_s: float = REQUEST_INTERVAL_S, spread: float = 0.5,
     ) -> None:  # fmt: skip
-        self.chance = Random(seed)
+        self.rng = Random(seed)
         self.now_s = 0.0
         self.counts: Counter[str] = Counter()
         self.refusals_by_reason: Counter[str] = Counter()
@@ -87,7 +87,7 @@ class World:
         self.typed = {text for id in self.first for text in (tree[id].text, tree[id].note)}
         names = "abcd"[:pages]
         self.pupils = {
-            name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.chance, numbers,
+            name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.rng, numbers,
                         self.typed, self.counts, spread)
             for name in names
         }  # fmt: skip
@@ -120,13 +120,13 @@ class World:
             self.at(0.5, self.ask, name, turn)
             return
         self.at(RETRY_S, self._ask_again, name, turn)
-        if self.chance.random() >= self._lost:
+        if self.rng.random() >= self._lost:
             sent_data = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
             seen_number = -1 if page.is_astray else page.number
             self.at(
-                self._delay(self.chance),
+                self._delay(self.rng),
                 self._reach,
                 name,
                 turn,
@@ -143,8 +143,8 @@ class World:
     def _reach(self, name: str, turn: int, sent_data: Json, seen_number: int, epoch: str) -> None:
         self.submit(sent_data["sent"])
         news = self._send_and_parse(self.program.news(name, seen_number, epoch))
-        if self.chance.random() >= self._lost and self.now_s >= self.off_until_s[name]:
-            self.at(self._delay(self.chance), self._arrive, name, turn, news)
+        if self.rng.random() >= self._lost and self.now_s >= self.off_until_s[name]:
+            self.at(self._delay(self.rng), self._arrive, name, turn, news)
 
     def submit(self, sent_data: Sequence[Json]) -> None:
         for row in sent_data:
