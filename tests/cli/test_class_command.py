@@ -165,9 +165,9 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     """A robot keeps its client for 3 s; another client waits for that, and then gets a message."""
     command = start_endless_upload(room)
     command.signal(signal.SIGSTOP)
-    begun_ms = [robot.robot_ms for robot in room]
-    for robot, began_ms in zip(room, begun_ms, strict=True):
-        assert robot.stands_after_ms(began_ms) < 2000, "the dead-man timer is a second"
+    start_times_ms = [robot.robot_ms for robot in room]
+    for robot, start_ms in zip(room, start_times_ms, strict=True):
+        assert robot.stands_after_ms(start_ms) < 2000, "the dead-man timer is a second"
     command.process.kill()
     command = start_endless_upload(room)
     command.process.kill()
@@ -242,13 +242,13 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
 def test_the_times_of_all_robots_count_from_one_start() -> None:
     printed_lines: list[str] = []
     listener = Listener(True, None)
-    began_ms = now_ms()
+    start_ms = now_ms()
     shown_event = ShownEvent(5000, False)
 
     def listen(robot: int, after_ms: int) -> None:
         def watch(_: float | None) -> Iterator[tuple[int, ShownEvent]]:
-            yield began_ms + after_ms, shown_event
-            yield began_ms + after_ms + 100, shown_event
+            yield start_ms + after_ms, shown_event
+            yield start_ms + after_ms + 100, shown_event
             raise KeyboardInterrupt
 
         connection = SimpleNamespace(
@@ -305,10 +305,10 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 ) -> None:  # fmt: skip
     """All of them are tried, and then each robot is asked whether it has stopped; if none can be
     asked, the output reports whether a message was sent."""
-    rest, calls = [*losses], []
+    losses_left, calls = [*losses], []
 
     def stop(group: str) -> bool:
-        has_gone = rest.pop(0)
+        has_gone = losses_left.pop(0)
         if has_gone is None:
             raise ConnectionResetError
         return has_gone
@@ -332,7 +332,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     else:
         with pytest.raises(CommandError):
             classroom.stop(cast(Classroom, room))
-    assert rest == []
+    assert losses_left == []
     has_gone = "the stop for all robots" in capsys.readouterr().err
     assert has_gone == (not is_there and any(losses))
 

@@ -171,9 +171,9 @@ def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> 
     assert not robot_in_network.moves
     command.wait_for_result()
     command = start_endless_upload(robot_in_network, place)
-    began_ms = robot_in_network.robot_ms
+    start_ms = robot_in_network.robot_ms
     bad_network.cut()
-    assert robot_in_network.stands_after_ms(began_ms) < 2000, (
+    assert robot_in_network.stands_after_ms(start_ms) < 2000, (
         "the connection was its dead-man timer"
     )
     assert command.wait_for_result().code == 3

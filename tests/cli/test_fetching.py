@@ -502,13 +502,13 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
     monkeypatch.setattr(fetching, "size_of", size_of)
     monkeypatch.setattr(fetching, "monotonic", lambda: now_s)
     folder_progress = fetching.FolderProgress(Path(), mb)
-    newest_percent, began_s = 0, now_s
+    newest_percent, start_s = 0, now_s
     for _ in range(200):
         percent = folder_progress.percent()
         assert newest_percent <= percent == min(99, max(sizes) // (10_000 * mb))
         newest_percent = percent
         now_s += rng.random() / 10
-    most_measures = (now_s - began_s) / fetching.MEASURE_INTERVAL_S + 1
+    most_measures = (now_s - start_s) / fetching.MEASURE_INTERVAL_S + 1
     assert most_measures / 2 < len(sizes) - 1 <= most_measures
 
 

@@ -28,8 +28,8 @@ LIBRARY_FOLDER = Path(files.__file__).parent
 
 def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Though on Linux they are found without that."""
-    chosen = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
-    for folder, home in product(chosen, (None, "", "part", "/home/ada", "/")):
+    values = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
+    for folder, home in product(values, (None, "", "part", "/home/ada", "/")):
         for name, value in (
             ("XDG_CACHE_HOME", folder),
             ("XDG_CONFIG_HOME", folder),
@@ -371,14 +371,14 @@ def test_a_lock_is_held_by_one_until_its_end_whatever_that_is(
     path = tmp_path / "data"
     for _ in range(2):
         with suppress(KeyError), files.lock_file(path):
-            began_s = now_s
+            start_s = now_s
             with pytest.raises(TimeoutError), files.lock_file(path):
                 raise AssertionError("two have the lock")
-            assert files.LOCK_WAIT_S <= now_s - began_s < files.LOCK_WAIT_S + 0.1
+            assert files.LOCK_WAIT_S <= now_s - start_s < files.LOCK_WAIT_S + 0.1
             raise KeyError
-        began_s = now_s
+        start_s = now_s
         with files.lock_file(path):
-            assert now_s == began_s
+            assert now_s == start_s
 
 
 def test_what_is_read_is_a_file_of_no_more_than_so_many_bytes(tmp_path: Path) -> None:

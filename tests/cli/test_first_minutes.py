@@ -68,12 +68,12 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     wait_for_event, look_count = Connection.event, 0
 
     def count_and_wait(
-        connection: Connection, limit_s: float = POLL_INTERVAL_S
+        connection: Connection, timeout_s: float = POLL_INTERVAL_S
     ) -> tuple[int, Event] | None:
         nonlocal look_count
         look_count += connection.is_time_over
         assert look_count < LOOKS, "its time is over, and it goes on"
-        return wait_for_event(connection, limit_s)
+        return wait_for_event(connection, timeout_s)
 
     monkeypatch.setattr(Connection, "event", count_and_wait)
 

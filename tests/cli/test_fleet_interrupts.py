@@ -177,9 +177,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
                 + rng.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
             )
         room = Watched(monkeypatch, times[:presses])
-        limit_s = opening.CONFIRM_TIMEOUT_S + 1
+        timeout_s = opening.CONFIRM_TIMEOUT_S + 1
         if interruption == "stop":  # an unreadable output acts like a first Ctrl-C
-            room.presses_s, limit_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
+            room.presses_s, timeout_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with interrupt_contained():
                 room.fleet.stop_robots()
@@ -189,9 +189,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
                 room.fleet.print_until_done(
                     cast(FleetTable, table) if interruption == "a table" else None
                 )
-        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * POLL_INTERVAL_S], (
+        assert [stop_s for stop_s in room.stopped if stop_s <= times[0] + 2 * POLL_INTERVAL_S], (
             "each is told"
         )
         assert len(room.stopped) == len(room.fleet.members)
-        end_s = times[1] if presses > 1 else times[0] + limit_s
+        end_s = times[1] if presses > 1 else times[0] + timeout_s
         assert end_s <= room.now_s <= end_s + 3 * POLL_INTERVAL_S

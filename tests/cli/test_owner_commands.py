@@ -35,9 +35,9 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
         if file is None:
             return
         assert "2 s" in words
-        began_ms = pty_robot.robot_ms
+        start_ms = pty_robot.robot_ms
         pty_robot.hold()
-        pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2400, "the press is over")
+        pty_robot.until(lambda: pty_robot.robot_ms > start_ms + 2400, "the press is over")
 
     monkeypatch.setattr(set_owner, "print", press_slowly, raising=False)
     assert main(["set", "owner", "--port", pty_robot.port]) == 0

@@ -300,10 +300,10 @@ def test_what_is_not_recorded_or_played_says_why(
 
 
 def record(
-    file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
+    file: Path, *events: tuple[str, str], start_s: float | None = None, end: str = ""
 ) -> tuple[Row, ...]:
     """Record these events of a robot; return the content of the file."""
-    recorder = Recorder(str(file), HEAD, began_s=began_s)
+    recorder = Recorder(str(file), HEAD, began_s=start_s)
     for event in events:
         recorder.add_event(7, *event)
     if end:
@@ -321,16 +321,16 @@ def test_a_recording_has_an_end_and_no_more(
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        events = record(file, show, *end_options, began_s=monotonic())
+        events = record(file, show, *end_options, start_s=monotonic())
         assert [event.event for event in events] == wanted_texts
     with monkeypatch.context() as patch:
         patch.setattr(recordings, "MOST_ROW_BYTES", 30)
         events = record(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
     assert [event.event for event in events] == ["SHOW 0", "SHOW 1"]
     assert events[0] == Row(0, "SHOW 0")  # the value shown when the recording began
-    began_s = monotonic()
+    start_s = monotonic()
     monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
-    events = record(file, show, began_s=began_s)
+    events = record(file, show, start_s=start_s)
     assert events == ()  # longer than may be
     assert record(file) == (Row(0, "STOPPED"),)
 
@@ -359,7 +359,7 @@ def test_a_recording_ends_when_the_run_does(
     """A robot that hangs after its first value and is stopped by hand has not done the same."""
     file, clock = tmp_path / "run.tsr", iter((10.2, 70.0))
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
-    events = record(file, ("SHOW", "5"), began_s=10.0, end=event)
+    events = record(file, ("SHOW", "5"), start_s=10.0, end=event)
     assert events == (Row(200, "SHOW 5"), Row(60_000, wanted_text))
     compared_divergence = play(prepare(decode(file.read_bytes()))).divergence
     assert compared_divergence is not None and compared_divergence.what == (

@@ -24,9 +24,9 @@ from tiniscript.link.transmission import CONFIRM_MS
 
 def takes_no_wait(pty_robot: PtyRobot, *arguments: str) -> bool:
     """Run `tsc` on the robot's port; return whether it took less than a stop is waited for."""
-    began_ms = pty_robot.robot_ms
+    start_ms = pty_robot.robot_ms
     assert on(pty_robot, *arguments).code == 0
-    return pty_robot.robot_ms - began_ms < CONFIRM_MS
+    return pty_robot.robot_ms - start_ms < CONFIRM_MS
 
 
 @pytest.mark.parametrize("is_shared", [False, True])

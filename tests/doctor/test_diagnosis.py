@@ -67,8 +67,8 @@ class Shared:
             raise ConnectionLost("")
         return self.replies.pop(0)
 
-    def event(self, limit_s: float) -> None:
-        assert limit_s > 0
+    def event(self, timeout_s: float) -> None:
+        assert timeout_s > 0
 
     def close(self) -> None:
         self.is_closed = True

@@ -132,7 +132,7 @@ def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
     """
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=WATCHDOG_MS)
+        hang(uno, watchdog_ms=WATCHDOG_MS)
         uno.run_ms(500)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
@@ -143,7 +143,7 @@ def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
 def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=TIMER_MS)
+        hang(uno, watchdog_ms=TIMER_MS)
         uno.run_ms(700)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
@@ -155,7 +155,7 @@ def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
     """The old bootloader would leave the watchdog on, so the robot restarts without it."""
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=TIMER_MS)
+        hang(uno, watchdog_ms=TIMER_MS)
         uno.run_ms(1000)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on"]
@@ -166,7 +166,7 @@ def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
 def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=WATCHDOG_MS)
+        hang(uno, watchdog_ms=WATCHDOG_MS)
         event_count_before = len(uno.events)
         uno.run_ms(300)
         causes = {
@@ -179,13 +179,13 @@ def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_
         assert read_reset_report(uno) == (POWER_RESET, 0, 0)
 
 
-def hang(uno: Uno, limit_ms: int) -> None:
+def hang(uno: Uno, watchdog_ms: int) -> None:
     """Make a driving robot hang: its motors must go off."""
     uno.run_ms(WAIT_MS)
     send(computer(uno), AWAY_PROGRAM)
     assert states(uno) == FORWARD
     uno.drive("button", False)
-    uno.run_ms(limit_ms + 5)
+    uno.run_ms(watchdog_ms + 5)
     assert not is_on(uno)
     uno.drive("button", None)
 

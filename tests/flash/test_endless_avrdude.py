@@ -108,13 +108,14 @@ def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")
-@pytest.mark.parametrize("rest", [WRITING_CODE.format(said="x"), "sys.exit(1)"])
-def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
+@pytest.mark.parametrize("parent_code", [WRITING_CODE.format(said="x"), "sys.exit(1)"])
+def test_its_children_end_with_it(tmp_path: Path, parent_code: str) -> None:
     note = tmp_path / "child"
     sleep = f"[{sys.executable!r}, '-c', 'import time; time.sleep(600)']"
     body = (
         f"import subprocess, sys\nchild = subprocess.Popen({sleep}, stdout=subprocess.DEVNULL,"
-        f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n{rest}\n"
+        f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n"
+        f"{parent_code}\n"
     )
     write_and_watch(tmp_path, body)
     until(partial(has_ended, note.read_text()), "its child has ended")

@@ -172,12 +172,12 @@ def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.M
     run = loop.run
     runs = 0
 
-    def count_runs(coroutine: Any, limit_s: float) -> Any:
+    def count_runs(coroutine: Any, timeout_s: float) -> Any:
         nonlocal runs
         runs += 1
         if runs == 2:
             pressed.undo()
-        return run(coroutine, limit_s)
+        return run(coroutine, timeout_s)
 
     port = bluetooth.BluetoothPort(loop, 9600)
     pressed.setattr(loop, "run", count_runs)

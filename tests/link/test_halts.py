@@ -50,13 +50,13 @@ def test_its_run_ends_and_what_others_want_is_done(make_request: Ask | None, aft
     request = make_request(session) if make_request else None
     robot.talk(session, after_ms)
     session.end_run(run, robot.now_ms)
-    began_ms = robot.now_ms
+    start_ms = robot.now_ms
     if request is not None:
         assert robot.until(session, request) == OK
     robot.talk(session, 1000)
     assert not is_moving(robot)
     motor_stops = [line for line in robot.did if line.endswith("MOTORS 0 0")]
-    assert int(motor_stops[-1].split()[0]) - began_ms < 300
+    assert int(motor_stops[-1].split()[0]) - start_ms < 300
     events = [event.name for event in session.events()]
     assert events.count("STOPPED") <= 1
     if make_request in (live, upload, long_upload):

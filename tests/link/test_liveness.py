@@ -98,10 +98,10 @@ def finish_request(
     robot: HostFirmware,
     line: BadLine,
     request: PendingRequest[Any],
-    limit_ms: int,
+    timeout_ms: int,
 ) -> int:
     """Return how a request has ended, which it does in so long a time."""
-    end_ms = robot.now_ms + limit_ms
+    end_ms = robot.now_ms + timeout_ms
     while request.outcome is None:
         assert robot.now_ms < end_ms, "it waits for ever"
         turn(session, robot, line)
@@ -155,9 +155,9 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
             new_robot.now_ms = robot.now_ms
             new_robot.wait(200)
             robot = new_robot
-        limit_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
+        timeout_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
         for request in pending_requests:
-            finish_request(session, robot, line, request, limit_ms)
+            finish_request(session, robot, line, request, timeout_ms)
         robot.talk(session, 2000)
         if finish_request(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
             raise AssertionError(f"seed {seed}: it is there")
@@ -196,12 +196,12 @@ def test_who_polls_when_a_session_wants_it_does_so_seldom_and_misses_nothing(see
 
 def lost_after_ms(session: Session, robot: HostFirmware) -> int:
     """Return how long a line is dead before the session reports it."""
-    began_ms = robot.now_ms
+    start_ms = robot.now_ms
     while "LOST" not in [event.name for event in session.events()]:
         session.poll(robot.now_ms)
         robot.wait(10)
-        assert robot.now_ms - began_ms < 3 * DEAF_MS, "it is never told"
-    return robot.now_ms - began_ms
+        assert robot.now_ms - start_ms < 3 * DEAF_MS, "it is never told"
+    return robot.now_ms - start_ms
 
 
 REQUESTS_AND_STOPS: dict[str, Callable[[Session, HostFirmware], object]] = {

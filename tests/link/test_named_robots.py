@@ -226,9 +226,9 @@ def test_names_without_an_address_do_not_hold_up_the_list(
 ) -> None:
     query, limits_ms = network.query_service, []
 
-    def look(zeroconf: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
-        limits_ms.append(limit_ms)
-        service_info: ServiceInfo | None = query(zeroconf, name, limit_ms)
+    def look(zeroconf: Zeroconf, name: str, timeout_ms: int) -> ServiceInfo | None:
+        limits_ms.append(timeout_ms)
+        service_info: ServiceInfo | None = query(zeroconf, name, timeout_ms)
         return service_info
 
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)

@@ -26,8 +26,8 @@ class Waits:
     def ring(self) -> None:
         """No one else is connected."""
 
-    def wait(self, limit_s: float) -> None:
-        assert limit_s == READ_S
+    def wait(self, timeout_s: float) -> None:
+        assert timeout_s == READ_S
         self.count += 1
         if self.then and self.port is not None:
             self.port.add_received(self.then.pop())

@@ -135,13 +135,13 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Sai
             session.fetch,
             session.identify,
         ]
-        began_ms = robot.now_ms
+        start_ms = robot.now_ms
         request = rng.choice(request_makers)()
         status = robot.until(session, request)
         assert request.outcome
         results.append(f"{status} {request.outcome.values if status == OK else ''}")
-        took_ms.append(robot.now_ms - began_ms)
-        began_ms = robot.now_ms
+        took_ms.append(robot.now_ms - start_ms)
+        start_ms = robot.now_ms
         if rng.random() < 0.3:
             session.stop(robot.now_ms)
         elif rng.random() < 0.3 and session.is_running:  # a robot at rest was stopped earlier

@@ -91,10 +91,10 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
         """Ask, and be answered; return how long after each sending the next one came."""
         nonlocal now_ms
         session.ping()
-        begun_ms = now_ms
+        start_ms = now_ms
         data = session.poll(now_ms)
-        times = [sent_ms - begun_ms for sent_ms, _ in list_packets(session, begun_ms + took_ms)]
-        now_ms = begun_ms + took_ms
+        times = [sent_ms - start_ms for sent_ms, _ in list_packets(session, start_ms + took_ms)]
+        now_ms = start_ms + took_ms
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
         return [later - earlier for earlier, later in pairwise([0, *times])]
 
@@ -115,14 +115,14 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
     session.receive(answer(session.poll(0), receipt(1)), 0)
     assert live_request.outcome and session.is_running
     for _ in range(3):
-        begun_ms = session.next_wake_ms()
-        assert begun_ms is not None
-        data = session.poll(begun_ms)
-        late_ms = begun_ms + 900
+        start_ms = session.next_wake_ms()
+        assert start_ms is not None
+        data = session.poll(start_ms)
+        late_ms = start_ms + 900
         gaps = [
             b - a
             for a, b in pairwise(
-                [begun_ms, *(sent_ms for sent_ms, _ in list_packets(session, late_ms))]
+                [start_ms, *(sent_ms for sent_ms, _ in list_packets(session, late_ms))]
             )
         ]
         assert gaps and max(gaps) <= MOST_RETRY_MS < messages.DEAD_MAN_MS / 2

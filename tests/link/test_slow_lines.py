@@ -173,9 +173,9 @@ def test_whoever_asks_again_after_an_answer_finds_the_line_free() -> None:
     talk = Talk(Line(11_520, 1000))
     talk.wait(talk.session.hello())
     for _ in range(5):
-        began_ms = talk.now_ms
+        start_ms = talk.now_ms
         talk.wait(talk.session.ping())
-        assert talk.now_ms - began_ms < 2200
+        assert talk.now_ms - start_ms < 2200
         talk.step()
 
 
@@ -245,11 +245,11 @@ def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool)
         request = talk.session.upload(program(380), runs=False)
         while request.done_bytes == 0:
             talk.step()
-        begun_ms = talk.now_ms
+        start_ms = talk.now_ms
         talk.is_cut = True
-        while talk.now_ms < begun_ms + cut_ms and request.outcome is None:
+        while talk.now_ms < start_ms + cut_ms and request.outcome is None:
             talk.step()
-        assert talk.now_ms <= begun_ms + EXCHANGE_TIMEOUT_MS + 1000
+        assert talk.now_ms <= start_ms + EXCHANGE_TIMEOUT_MS + 1000
         talk.is_cut = False
         assert talk.wait(request) == status
 

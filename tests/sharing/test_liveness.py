@@ -48,9 +48,13 @@ class Holder:
         return self.now_s
 
     def says(self, message: JsonMessage, after_s: float) -> None:
-        at_s = self.now_s + after_s
-        if at_s < self.dies_s:
-            insort(self._coming, (at_s, protocol.encode_message(message)), key=lambda item: item[0])
+        arrival_s = self.now_s + after_s
+        if arrival_s < self.dies_s:
+            insort(
+                self._coming,
+                (arrival_s, protocol.encode_message(message)),
+                key=lambda item: item[0],
+            )
 
     def settimeout(self, seconds: float) -> None:
         self._limit_s = seconds
@@ -68,8 +72,8 @@ class Holder:
         if not self._coming or self._coming[0][0] > end_s:
             self.now_s = end_s
             raise TimeoutError
-        at_s, data = self._coming.pop(0)
-        self.now_s = max(self.now_s, at_s)
+        arrival_s, data = self._coming.pop(0)
+        self.now_s = max(self.now_s, arrival_s)
         return data
 
     def close(self) -> None:
@@ -85,14 +89,14 @@ def open_shared_connection(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> S
 
 def listen_until_lost(line: SharedConnection, holder: Holder, seconds: float) -> float:
     """Listen for events until the end; return the time."""
-    began_s = holder.now_s
-    while holder.now_s - began_s < seconds:
+    start_s = holder.now_s
+    while holder.now_s - start_s < seconds:
         try:
             line.event(POLL_INTERVAL_S)
         except ConnectionLost as caught:
             assert caught.is_server
             break
-    return holder.now_s - began_s
+    return holder.now_s - start_s
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -16,8 +16,8 @@ from tiniscript.link.sharing.shared_connection import join
 def list_events_until_done(connection: LinkConnection) -> list[Event]:
     """Return the events up to the end of a run."""
     events: list[Event] = []
-    limit_s = monotonic() + HANG_LIMIT_S
-    while monotonic() < limit_s:
+    end_s = monotonic() + HANG_LIMIT_S
+    while monotonic() < end_s:
         row = connection.event(0.2)
         if row is not None:
             events.append(row[1])

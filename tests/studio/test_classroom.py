@@ -93,12 +93,12 @@ def test_whoever_leaves_in_whatever_way_is_followed_within_three_seconds() -> No
         room.checks_in(ana, True)
         room.checks_in(luz, True)
         leave_room(room, ana)
-        began_s = room.now_s
+        start_s = room.now_s
         while room.checks_in(luz)["place"] != 0:
             room.now_s += 0.3  # about the interval of the next page's requests
             for robot in asleep:
                 robot.silent_s += 0.3
-        return room.now_s - began_s
+        return room.now_s - start_s
 
     def leaves_before(room: Room, ana: str) -> None:
         room.now_s += 1  # her last request
@@ -466,17 +466,17 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
     assert texts_of(room) == ["F(1, 50)"]
 
 
-@pytest.mark.parametrize("given_s", [None, 120])
-def test_a_class_goes_on_with_its_turns_unless_others_are_given(given_s: int | None) -> None:
+@pytest.mark.parametrize("turn_s", [None, 120])
+def test_a_class_goes_on_with_its_turns_unless_others_are_given(turn_s: int | None) -> None:
     room = Room()
     room.teaches("class_turn", seconds=300)
     state = json.loads(json.dumps(room.made.state_to_keep()))
-    resumed_room = classroom.Classroom(FakeHosting(), [], given_s)  # type: ignore[arg-type]
+    resumed_room = classroom.Classroom(FakeHosting(), [], turn_s)  # type: ignore[arg-type]
     resumed_room.resume(state)
-    assert resumed_room.teach({"do": "class"})["turn_s"] == (given_s or 300)
+    assert resumed_room.teach({"do": "class"})["turn_s"] == (turn_s or 300)
 
 
-def test_a_crash_between_giving_and_having_loses_no_work(kept_at: Path) -> None:
+def test_a_crash_between_giving_and_having_loses_no_work(class_file: Path) -> None:
     """This holds whichever state of a class was the last one saved."""
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
@@ -611,14 +611,14 @@ def test_who_was_removed_finds_the_work_again() -> None:
 
 
 @pytest.fixture
-def kept_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def class_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "class.json"
     monkeypatch.setattr(class_keeping, "path", lambda: file)
     return file
 
 
 @pytest.fixture
-def keeper(kept_at: Path) -> Iterator[Keeper]:
+def keeper(class_file: Path) -> Iterator[Keeper]:
     with closing(Keeper()) as started_keeper:
         yield started_keeper
 
@@ -627,7 +627,7 @@ def resume_class(room: Room, keeper: Keeper) -> int:
     return command._resume_class(command._Class(room.made, keeper))
 
 
-def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
+def test_a_crash_ends_no_class(class_file: Path, keeper: Keeper) -> None:
     """The next `tsc studio --class` has the same pupils, with their tokens, and their work."""
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
@@ -635,10 +635,10 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     room.checks_in(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
     keeper.keep(room.made.state_to_keep())
-    assert kept_at.stat().st_mode & 0o077 == 0  # the file contains tokens
-    when_s = kept_at.stat().st_mtime_ns
+    assert class_file.stat().st_mode & 0o077 == 0  # the file contains tokens
+    when_s = class_file.stat().st_mtime_ns
     keeper.keep(room.made.state_to_keep())
-    assert kept_at.stat().st_mtime_ns == when_s
+    assert class_file.stat().st_mtime_ns == when_s
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
     state = room_after.teaches("class")
@@ -653,15 +653,15 @@ def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
     assert not room_after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
     keeper.keep(room.made.state_to_keep())
-    assert not kept_at.exists() and resume_class(Room(), keeper) == 0
+    assert not class_file.exists() and resume_class(Room(), keeper) == 0
 
 
-def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keeper) -> None:
+def test_a_damaged_class_goes_on_with_what_is_whole(class_file: Path, keeper: Keeper) -> None:
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)", robot="tinibot")
     keeper.keep(room.made.state_to_keep())
-    class_data = json.loads(kept_at.read_text())
+    class_data = json.loads(class_file.read_text())
     row = class_data["pupils"][0]
     bad_pupils = [
         5,
@@ -677,32 +677,32 @@ def test_a_damaged_class_goes_on_with_what_is_whole(kept_at: Path, keeper: Keepe
         "robots": [5, ""],
     }
     odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
-    kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
+    class_file.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
     assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
     assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
     many_pupils = [{**row, "token": f"{k:032x}"} for k in range(99)]
-    kept_at.write_text(json.dumps({**class_data, "pupils": many_pupils, "kept": many_pupils}))
+    class_file.write_text(json.dumps({**class_data, "pupils": many_pupils, "kept": many_pupils}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == class_keeping.MOST_PUPILS
     works = len(room_after.teaches("class_work")["pupils"])
     assert works == class_keeping.MOST_WORKS
 
 
-def test_an_invalid_class_file_is_put_aside(kept_at: Path, keeper: Keeper) -> None:
+def test_an_invalid_class_file_is_put_aside(class_file: Path, keeper: Keeper) -> None:
     """Another version, or a teacher, may be able to read it."""
-    aside = kept_at.with_name("class.unread.json")
+    aside = class_file.with_name("class.unread.json")
     for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):
-        kept_at.write_text(data)
+        class_file.write_text(data)
         assert resume_class(Room(), keeper) == 0
-        assert aside.read_text() == data and not kept_at.exists()
+        assert aside.read_text() == data and not class_file.exists()
     keeper.keep(None)
     assert not aside.exists()  # the class is over
 
 
 def test_a_full_disk_that_has_room_again_is_written_to_at_once(
-    kept_at: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
+    class_file: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     room = Room()
     room.checks_in(room.joins("Ana"), text="F(1, 50)")
@@ -714,33 +714,33 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
         patched.setattr(class_keeping, "replace", fail_full_disk)
         for _ in range(3):
             keeper.keep(room.made.state_to_keep())
-    assert not kept_at.exists()
+    assert not class_file.exists()
     keeper.keep(room.made.state_to_keep())  # unchanged state
-    assert "F(1, 50)" in kept_at.read_text()
+    assert "F(1, 50)" in class_file.read_text()
 
 
-def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Keeper) -> None:
+def test_a_clock_that_is_after_or_jumps_loses_no_work(class_file: Path, keeper: Keeper) -> None:
     """A board without a battery begins in the past, and hears the time later."""
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)")
     keeper.keep(room.made.state_to_keep())
-    class_data = json.loads(kept_at.read_text())
-    for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
-        kept_at.write_text(json.dumps({**class_data, "kept_s": class_data["kept_s"] - passed_s}))
+    class_data = json.loads(class_file.read_text())
+    for age_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
+        class_file.write_text(json.dumps({**class_data, "kept_s": class_data["kept_s"] - age_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 1
         assert (
             room_after.checks_in(token)["name"] == "Ana" and room_after.made.code == room.made.code
         )
     for kept_s in (class_data["kept_s"] - 3700, 5, -5, None, "x", 1e400):
-        kept_at.write_text(json.dumps({**class_data, "kept_s": kept_s}))
+        class_file.write_text(json.dumps({**class_data, "kept_s": kept_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 0
         assert texts_of(room_after) == ["F(1, 50)"]
         assert room_after.made.code != room.made.code and room_after.teaches("class")["goes_on"]
         keeper.keep(room_after.made.state_to_keep())
-        assert "F(1, 50)" in kept_at.read_text()  # nor does the next crash lose it
+        assert "F(1, 50)" in class_file.read_text()  # nor does the next crash lose it
         with pytest.raises(BadRequest):
             room_after.checks_in(token)
         request = {"do": "join", "code": room_after.made.code, "name": "Ana", "before": token}
@@ -748,20 +748,20 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(kept_at: Path, keeper: Kee
         assert texts_of(room_after) == ["F(1, 50)"]
 
 
-def test_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None:
+def test_one_class_of_a_user_has_the_file(class_file: Path, keeper: Keeper) -> None:
     keeper.keep(Room().made.state_to_keep())
     with pytest.raises(class_keeping.ClassTaken):
         Keeper()
-    assert kept_at.exists()
+    assert class_file.exists()
     keeper.close()  # the command has ended
     with closing(Keeper()) as other_keeper:
         assert other_keeper.read() is not None
         keeper.keep(None)  # a closed keeper has no effect
-        assert kept_at.exists()
+        assert class_file.exists()
 
 
 def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
-    kept_at: Path, monkeypatch: pytest.MonkeyPatch
+    class_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Once there is room, it gets its file, unless another class has it."""
     room = Room()
@@ -774,9 +774,9 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
         early_keeper, late_keeper = Keeper(), Keeper()
     with closing(early_keeper), closing(late_keeper):
         early_keeper.keep(room.made.state_to_keep())
-        assert kept_at.exists()
+        assert class_file.exists()
         late_keeper.keep(None)
-        assert kept_at.exists()
+        assert class_file.exists()
 
 
 # -- the teacher

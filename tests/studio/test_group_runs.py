@@ -187,8 +187,8 @@ def begin_and_end_by_turns(page: Page) -> bool:
 
 def is_part(texts: list[str], all_of_them: list[str]) -> bool:
     """Return whether they are a subsequence."""
-    rest = iter(all_of_them)
-    return all(text in rest for text in texts)
+    texts_left = iter(all_of_them)
+    return all(text in texts_left for text in texts)
 
 
 def count_missed_values(page: Page) -> int:

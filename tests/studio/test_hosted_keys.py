@@ -58,11 +58,11 @@ class Hand(AskingPage):
     def drives(self, robot: PtyRobot, power: int) -> None:
         """Hold the stick until the robot does so."""
 
-        def is_so() -> bool:
+        def has_power() -> bool:
             self.holds(power)
             return power_of(robot) == power
 
-        until(is_so, f"it has {power} %")
+        until(has_power, f"it has {power} %")
 
 
 def power_of(robot: PtyRobot) -> int:

@@ -46,13 +46,13 @@ class Page:
             self.news.append(item)
 
     def until(
-        self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = HANG_LIMIT_S
+        self, is_reached: Callable[[dict[str, Any]], bool], timeout_s: float = HANG_LIMIT_S
     ) -> dict[str, Any]:
         """Wait for news, beating."""
-        end_s = time.monotonic() + limit_s
+        end_s = time.monotonic() + timeout_s
         while True:
             for item in self.news:
-                if is_so(item):
+                if is_reached(item):
                     self.news.remove(item)
                     return item
             assert time.monotonic() < end_s, self.news
@@ -152,10 +152,10 @@ def check_stopped(robot: PtyRobot) -> None:
 @pytest.mark.usefixtures("always_attended")
 def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
-    began_s = time.monotonic()
+    start_s = time.monotonic()
     page.beat()
     check_stopped(robot)
-    assert time.monotonic() - began_s >= attending.ATTENDED_S
+    assert time.monotonic() - start_s >= attending.ATTENDED_S
 
 
 @pytest.mark.usefixtures("always_attended")
@@ -239,16 +239,16 @@ def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
     )
     other_command.until("running")
     page.beat(action="leave")
-    began_ms = robot.robot_ms
-    robot.until(lambda: robot.robot_ms > began_ms + 2000, "it goes on")
+    start_ms = robot.robot_ms
+    robot.until(lambda: robot.robot_ms > start_ms + 2000, "it goes on")
     assert robot.moves and other_command.process.poll() is None
     assert hosting.is_free(robot.port)
     second_page = Page(hosting, "another")
     assert second_page.connect(robot.port) == {}
     second_page.until(lambda item: "connected" in item)
     second_page.beat(action="leave")
-    began_ms = robot.robot_ms
-    robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
+    start_ms = robot.robot_ms
+    robot.until(lambda: robot.robot_ms > start_ms + 1000, "it goes on")
     assert robot.moves and other_command.process.poll() is None
     assert hosting.close() == []
     robot.until(lambda: not robot.moves, "it stands")

@@ -83,12 +83,12 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
     state = judged_run.state()
     assert (state["touches"] is not None) is touches
     assert not state["is_running"]
-    took_s = (state["now_ms"] - state["began_ms"]) / 1000
+    run_s = (state["now_ms"] - state["began_ms"]) / 1000
     if touches:
         match = re.search(r"after (\d+\.\d) s", " ".join(answer["said"]))  # type: ignore[arg-type]
-        assert match and abs(took_s - float(match[1])) < 0.1
+        assert match and abs(run_s - float(match[1])) < 0.1
     if seconds is not None:
-        assert round(took_s, 1) == seconds
+        assert round(run_s, 1) == seconds
 
 
 def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:

@@ -47,7 +47,7 @@ class CountedLink:
         self._does("run", request["stops"])
         self._news.append({"id": request["id"], "ok": True})
 
-    def news(self, limit_s: float = 0) -> list[Json]:
+    def news(self, timeout_s: float = 0) -> list[Json]:
         news, self._news = self._news, []
         return news
 
@@ -145,7 +145,7 @@ class TornPage:
             self._send("connect")
 
     def arrive(self) -> None:
-        due = [request for at_ms, request in self._under_way if at_ms <= World.now_ms]
+        due = [request for arrival_ms, request in self._under_way if arrival_ms <= World.now_ms]
         self._under_way = [pair for pair in self._under_way if pair[0] > World.now_ms]
         for request in due:
             answer = self.ask(request)
@@ -180,8 +180,8 @@ def check_stops_kept(page: TornPage) -> None:
             assert stops >= newest, "it was asked for before"
             accepted_count = max(accepted_count, stops)
     for number in page.heard:
-        stop_times_ms = [at_ms for action, _, at_ms in World.actions
-                 if action == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
+        stop_times_ms = [time_ms for action, _, time_ms in World.actions
+                 if action == "stop" and time_ms >= page.presses[number - 1]]  # fmt: skip
         assert stop_times_ms or accepted_count >= number, (
             f"press {number} was told, and stopped nothing"
         )

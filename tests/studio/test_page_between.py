@@ -160,7 +160,7 @@ class Scene:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
-        begun_ms = page.evaluate(LISTENING_SCRIPT, place)
+        start_ms = page.evaluate(LISTENING_SCRIPT, place)
         self._begin(fault)
         page.click(BUTTONS[action])
         has_ended = self._until(END_PATTERNS[action], LONGEST_END_S, page)
@@ -173,14 +173,14 @@ class Scene:
             f"said twice: {text}" for text, next_text in pairwise(texts) if text == next_text
         ]
         errors += self._next_try()
-        times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
+        times = [start_ms, *(time_ms for time_ms, _ in timed_messages)]
         gaps = [(end_ms - start_ms) / 1000 for k, (start_ms, end_ms) in enumerate(pairwise(times))
                 if not k or not UNFINISHED_MESSAGE.search(texts[k - 1])]  # fmt: skip
         end_times_ms = [
-            at_ms for at_ms, text in timed_messages if re.search(END_PATTERNS[action], text)
+            time_ms for time_ms, text in timed_messages if re.search(END_PATTERNS[action], text)
         ]
         took_s = (
-            (end_times_ms[0] if end_times_ms else begun_ms + 1000 * LONGEST_END_S) - begun_ms
+            (end_times_ms[0] if end_times_ms else start_ms + 1000 * LONGEST_END_S) - start_ms
         ) / 1000
         return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
                            tuple(errors), tuple(texts))  # fmt: skip
@@ -228,8 +228,8 @@ class Scene:
         """Return the page with the button, and the element with its result."""
         return self.page, MESSAGE_PLACE
 
-    def _until(self, pattern: str, limit_s: float, page: Page | None = None) -> bool:
-        end_s, page = CLOCK.now_s + limit_s, page or self.page
+    def _until(self, pattern: str, timeout_s: float, page: Page | None = None) -> bool:
+        end_s, page = CLOCK.now_s + timeout_s, page or self.page
         while CLOCK.now_s < end_s:
             timed_messages = page.evaluate("window.told")
             if any(re.search(pattern, text) for _, text in timed_messages):

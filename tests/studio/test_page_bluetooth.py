@@ -88,8 +88,8 @@ class Radio:
         # The prompt comes twice; a second answer ends the browser.
         if prompt["devices"] and not self._chosen:
             self._chosen = True
-            chosen = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
-            self._page.send("DeviceAccess.selectPrompt", chosen)
+            selection = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
+            self._page.send("DeviceAccess.selectPrompt", selection)
 
     def _gatt(self, request: Any) -> None:
         if request["type"] == "discovery" and not self._made:

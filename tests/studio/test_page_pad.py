@@ -221,8 +221,8 @@ def press_until_driven(
     for _ in range(UPLOADS):
         press()
 
-        def is_over(began_ms: int = robot.robot_ms) -> bool:
-            has_driven = robot.moves and robot.robot_ms >= began_ms + least_ms
+        def is_over(start_ms: int = robot.robot_ms) -> bool:
+            has_driven = robot.moves and robot.robot_ms >= start_ms + least_ms
             return has_driven or "Stopped: " in word.inner_text()
 
         wait_for(page, is_over, "it drives or is stopped")

@@ -67,9 +67,9 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
         times.append(seconds(page))
         shown_values.append(value(page, "X"))
     assert shown_values[0] == "3" and shown_values[-1] in ("0", "1")
-    for at_s in times[-2::-1]:
+    for time_s in times[-2::-1]:
         page.keyboard.press("ArrowRight")
-        assert seconds(page) == at_s
+        assert seconds(page) == time_s
     assert page.locator("#where").text_content() == pose
     page.keyboard.press("Home")
     assert seconds(page) == 0

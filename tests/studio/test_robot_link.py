@@ -48,7 +48,7 @@ class Robot:
         self.pending.starts = True
         return self.pending
 
-    def event(self, limit_s: float) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float) -> tuple[int, Event] | None:
         return (0, self.events.pop(0)) if self.events else None
 
     def ends(self, event_name: str) -> None:

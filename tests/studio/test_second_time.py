@@ -70,7 +70,7 @@ class NotingLink:
         Room.actions.append(("run", Room.now_ms))
         self._news.append({"id": request["id"], "ok": True})
 
-    def news(self, limit_s: float = 0) -> list[Json]:
+    def news(self, timeout_s: float = 0) -> list[Json]:
         news, self._news = self._news, []
         return news
 
@@ -107,7 +107,7 @@ class ThreadlessRobot:
         if not self.has_ended and not self.is_parting:
             self.is_parting, self._closed_ms = True, Room.now_ms + 200
 
-    def join(self, limit_s: float) -> None:
+    def join(self, timeout_s: float) -> None:
         self._closed_ms = Room.now_ms
         self.step()
 
@@ -358,7 +358,7 @@ class HeldClient:
         self.connection = SimpleNamespace(
             holder_verb="upload",
             enable_place_events=lambda: None,
-            event=lambda limit_s: sleep(limit_s),
+            event=lambda timeout_s: sleep(timeout_s),
         )
 
     def meet(self, is_patient: object) -> SimpleNamespace:

@@ -51,7 +51,9 @@ class Meeting:
             now_ms = self.robot.now_ms + step_ms
             heard_bytes = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
             self._sent = self.line.advance(b"" if self.is_cut else heard_bytes, now_ms)
-            arrived_answers = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
+            arrived_answers = [
+                answer for arrival_ms, answer in self._under_way if arrival_ms <= now_ms
+            ]
             self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
             if arrived_answers or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
@@ -155,8 +157,8 @@ class LateLink:
     def stop(self) -> None:
         self._confirms_ms = self.now_ms + self._late_ms
 
-    def news(self, limit_s: float = 0) -> list[dict[str, Any]]:
-        self.now_ms += round(1000 * limit_s)
+    def news(self, timeout_s: float = 0) -> list[dict[str, Any]]:
+        self.now_ms += round(1000 * timeout_s)
         if self.now_ms >= self._confirms_ms:
             self._confirms_ms = float("inf")
             self._news.append({"event": "STOPPED"})

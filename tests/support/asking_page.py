@@ -30,10 +30,12 @@ class AskingPage:
         self.news += [item for item in answer.get("news", ()) if item["number"] > number]
         return answer
 
-    def beats_until(self, is_so: Callable[[Json], object], description: str, **fields: Any) -> None:
+    def beats_until(
+        self, is_reached: Callable[[Json], object], description: str, **fields: Any
+    ) -> None:
         def looks() -> bool:
             self.asks("beat", **fields)
-            return any(is_so(item) for item in self.news)
+            return any(is_reached(item) for item in self.news)
 
         until(looks, description)
 

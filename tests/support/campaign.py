@@ -26,7 +26,7 @@ def each_seed(check: Callable[[int], object], options: Namespace) -> None:
     `check` returns the outcome, or None if that is always the same.
     """
     counts: Counter[str] = Counter()
-    begun_s = time.monotonic()
+    start_s = time.monotonic()
     for seed in range(options.seed, options.seed + options.count):
         try:
             came = check(seed)
@@ -35,7 +35,7 @@ def each_seed(check: Callable[[int], object], options: Namespace) -> None:
             raise
         if came is not None:
             counts[str(came)] += 1
-    print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - begun_s:.0f} s")
+    print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - start_s:.0f} s")
 
 
 def failure_text(error: AssertionError) -> str:

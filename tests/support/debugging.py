@@ -55,18 +55,18 @@ class Debugged:
         self.events += events
         return events
 
-    def halt(self, limit_ms: int = 5000) -> Halt | None:
+    def halt(self, timeout_ms: int = 5000) -> Halt | None:
         """Wait for the next halt; None if the run ends first, or the time is over."""
         event = self.until(
-            lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
+            lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), timeout_ms
         )
         return Halt(event.at, event.task) if isinstance(event, HaltedEvent) else None
 
-    def until(self, is_it: Callable[[Event], bool], limit_ms: int = 5000) -> Event | None:
-        end_ms = self.robot.now_ms + limit_ms
+    def until(self, matches: Callable[[Event], bool], timeout_ms: int = 5000) -> Event | None:
+        end_ms = self.robot.now_ms + timeout_ms
         event: Event | None = None
         while self.robot.now_ms < end_ms and event is None:
-            event = next(filter(is_it, self.talk(1)), None)
+            event = next(filter(matches, self.talk(1)), None)
         return event
 
     def is_halted(self) -> bool:

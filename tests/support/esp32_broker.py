@@ -35,8 +35,8 @@ def connect_to_broker(
     return robot, owner
 
 
-def until(robot: Esp32Robot, is_reached: Callable[[], bool], limit_ms: int = 60_000) -> None:
-    for _ in range(limit_ms // 20):
+def until(robot: Esp32Robot, is_reached: Callable[[], bool], timeout_ms: int = 60_000) -> None:
+    for _ in range(timeout_ms // 20):
         if is_reached():
             return
         for _ in range(20):

@@ -13,11 +13,11 @@ def interrupted_bell(until_pressed: Callable[[], object]) -> type[Bell]:
     class InterruptedBell(Bell):
         has_waited = False
 
-        def wait(self, limit_s: float) -> bool:
+        def wait(self, timeout_s: float) -> bool:
             if not self.has_waited:
                 self.has_waited = True
                 until_pressed()
                 raise KeyboardInterrupt
-            return super().wait(limit_s)
+            return super().wait(timeout_s)
 
     return InterruptedBell

@@ -234,6 +234,8 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     world.run(None, 300)
     new_actions = world.did[count_before:]
     if "PINS OFF" in new_actions:
-        rest = new_actions[new_actions.index("PINS OFF") :]
-        assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"
+        last_actions = new_actions[new_actions.index("PINS OFF") :]
+        assert not any(row.startswith("START") for row in last_actions), (
+            f"seed {seed}: {last_actions}"
+        )
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)

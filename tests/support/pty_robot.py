@@ -134,18 +134,18 @@ class PtyRobot(PtyPort):
         if self._robot:
             self._robot.close()
 
-    def until(self, is_so: Callable[[], bool], description: str) -> None:
+    def until(self, is_reached: Callable[[], bool], description: str) -> None:
         """Wait until something is so."""
-        waiting.until(is_so, description)
+        waiting.until(is_reached, description)
 
-    def stands_after_ms(self, began_ms: int) -> int:
+    def stands_after_ms(self, start_ms: int) -> int:
         """Wait until the motors are off; return how long that took of the robot's own time.
 
         It goes on like the time of the wall, and no further than this computer has come.
         """
         self.until(lambda: not self.moves, "it stands")
         off_actions = [line for line in self.timed_actions if line.split(" ", 1)[1] == "MOTORS 0 0"]
-        return int(off_actions[-1].split()[0]) - began_ms
+        return int(off_actions[-1].split()[0]) - start_ms
 
     def _make_robot(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
         """Return a robot that starts with its stored memory."""

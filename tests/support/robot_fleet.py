@@ -85,9 +85,9 @@ class RobotFleet:
         for pupil in self.pupils:
             pupil.close()
 
-    def until(self, is_so: Callable[[], bool], description: str) -> None:
+    def until(self, is_reached: Callable[[], bool], description: str) -> None:
         """Wait until something is so."""
-        waiting.until(is_so, description)
+        waiting.until(is_reached, description)
 
     def _run(self) -> None:
         by_end = {pupil.ours: pupil for pupil in self.pupils}

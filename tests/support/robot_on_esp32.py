@@ -27,10 +27,10 @@ def boot(name: str = "tinibot32", major: int = 2) -> Esp32Robot:
 
 
 def wait_for_outcome(
-    robot: Esp32Robot, clients: Ends, request: PendingRequest[Any], limit_ms: int = 5000
+    robot: Esp32Robot, clients: Ends, request: PendingRequest[Any], timeout_ms: int = 5000
 ) -> str:
     """Let all talk until a request is over; return its result."""
-    for _ in range(limit_ms):
+    for _ in range(timeout_ms):
         if request.outcome is not None:
             status = request.outcome.status
             return STATUS_NAMES.get(status, str(status))

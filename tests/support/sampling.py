@@ -108,12 +108,12 @@ def _mark(rows: list[pytest.Item]) -> pytest.Mark:
 
 
 def sample_of(
-    config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1
+    config: pytest.Config, sample_name: str, rows: Sequence[Row], keep: int = 1
 ) -> Sequence[Row]:
     """Return a sample of the rows that one test iterates over, in their order."""
     if config.getoption("--whole") or is_narrowed(config):
         return rows
-    kept_indexes = random.Random(f"{seed(config)} {draw}").sample(range(len(rows)), keep)
+    kept_indexes = random.Random(f"{seed(config)} {sample_name}").sample(range(len(rows)), keep)
     return [rows[k] for k in sorted(kept_indexes)]
 
 

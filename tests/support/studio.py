@@ -357,10 +357,10 @@ def wait_for_phase(page: Page, phase: str) -> None:
     page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
 
 
-def wait_for(page: Page, is_so: Callable[[], object], description: str) -> None:
+def wait_for(page: Page, is_reached: Callable[[], object], description: str) -> None:
     """Wait until something is so that a page tells of while it is waited for."""
     end_s = monotonic() + HANG_LIMIT_S
-    while not is_so():
+    while not is_reached():
         assert monotonic() < end_s, f"not after {HANG_LIMIT_S} s: {description}"
         page.wait_for_timeout(20)
 

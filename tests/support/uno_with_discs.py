@@ -82,15 +82,15 @@ class Driven(Wired):
         is_backward = self._pins[f"D{pins[f'{side}_backward']}"]["is"] == "high"
         return (-level if is_backward else level) * 100 / FULL_PWM
 
-    def drive(self, text: str, limit_ms: int = 20_000) -> str:
+    def drive(self, text: str, timeout_ms: int = 20_000) -> str:
         """Run a program to its end and a little longer; return the cause of its end."""
         image = image_of(text, ROBOT.kit)
         assert self.until(self.session.hello()) == OK
         assert self.until(self.session.upload(image)) == OK
-        for _ in range(limit_ms // 10):
+        for _ in range(timeout_ms // 10):
             self.run(10)
             for event in self.session.events():
                 if event.name in ("DONE", "FAULT"):
                     self.run(500)
                     return event.name
-        raise AssertionError(f"not over after {limit_ms} ms")
+        raise AssertionError(f"not over after {timeout_ms} ms")
