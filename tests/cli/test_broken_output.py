@@ -28,7 +28,7 @@ from tiniscript.link.messages import STATUSES, STOP_ZEROS
 from tiniscript.link.payloads import SentReply
 from tiniscript.link.requests import Reply, reply_of
 
-SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
+SHOW_PROGRAM = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
 
 
 def after_lines(count: int, *words: str, joins_err: bool = False) -> tuple[int, str]:
@@ -48,7 +48,7 @@ def after_lines(count: int, *words: str, joins_err: bool = False) -> tuple[int, 
 def test_upload_into_a_pipe_that_closes_stops_the_robot(
     pty_robot: PtyRobot, lines: int, extra: list[str]
 ) -> None:
-    code, err = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
+    code, err = after_lines(lines, "upload", "-e", SHOW_PROGRAM, "--port", pty_robot.port, *extra)
     assert code == EXIT_OF_CLOSED_PIPE
     assert err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
@@ -97,7 +97,7 @@ def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     port_option = ("--port", pty_robot.port)
-    assert after_lines(1, "upload", "-e", SHOWS, *port_option, joins_err=True) == (
+    assert after_lines(1, "upload", "-e", SHOW_PROGRAM, *port_option, joins_err=True) == (
         EXIT_OF_CLOSED_PIPE,
         "",
     )
@@ -111,7 +111,7 @@ def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
 
 def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
     port_option = ("--port", pty_robot.port)
-    code, err = after_lines(0, "upload", "-e", SHOWS, "--detach", *port_option)
+    code, err = after_lines(0, "upload", "-e", SHOW_PROGRAM, "--detach", *port_option)
     assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
     code, err = after_lines(0, "doctor", *port_option)
@@ -126,7 +126,7 @@ def test_many_robots_are_stopped() -> None:
     """All stop at once, not only by their timers a second later."""
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        code, _ = after_lines(4, "upload", "-e", SHOWS, *port_options)
+        code, _ = after_lines(4, "upload", "-e", SHOW_PROGRAM, *port_options)
         assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
@@ -160,7 +160,7 @@ def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
     with Path("/dev/full").open("wb") as full:
-        completed = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
+        completed = subprocess.run([*TSC, "upload", "-e", SHOW_PROGRAM, "--port", pty_robot.port],
                                    stdout=full, stderr=subprocess.PIPE,
                                    timeout=HANG_LIMIT_S)  # fmt: skip
     assert completed.returncode == 2
@@ -236,7 +236,7 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
 
 # -- an output without a reader --------------------------------------------------------------------
 
-TALKS = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
+TALKING_PROGRAM = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
 PIPE_BYTES = 4096
 
 
@@ -261,7 +261,7 @@ def start_unread_command(*words: str) -> Command:
 def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        command = start_unread_command("upload", "-e", TALKS, *port_options, *extra)
+        command = start_unread_command("upload", "-e", TALKING_PROGRAM, *port_options, *extra)
         assert any(pupil.moves for pupil in room.pupils)
         command.signal(signal.SIGINT)
         assert command.process.wait(HANG_LIMIT_S) == 2
@@ -276,8 +276,10 @@ def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
 def test_a_command_with_unread_output_ends_with_ctrl_c(pty_robot: PtyRobot, verb: str) -> None:
     port_option = ("--port", pty_robot.port)
     if verb == "monitor":
-        assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
-    command = start_unread_command(verb, *port_option, *(("-e", TALKS) if verb == "upload" else ()))
+        assert on(pty_robot, "upload", "-e", TALKING_PROGRAM, "--detach").code == 0
+    command = start_unread_command(
+        verb, *port_option, *(("-e", TALKING_PROGRAM) if verb == "upload" else ())
+    )
     command.signal(signal.SIGINT)
     assert command.process.wait(HANG_LIMIT_S) in (0, 2)
     if verb == "upload":

@@ -15,7 +15,7 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli import main
 from tiniscript.cli.texts import has_text
 
-WAYS = (
+VERB_OPTIONS = (
     "check", "compile", "compile -o a.bin", "compile --text", "compile --text -o a.txt", "fmt",
     "fmt --check", "show", "show --json", "show --arduino", "show --arduino -o a.ino", "run",
     "run --machine cpp", "run --record a.tsr", "run --record a.tsr --world line", "upload --port a",
@@ -23,7 +23,7 @@ WAYS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("verb_options", WAYS)
+@pytest.mark.parametrize("verb_options", VERB_OPTIONS)
 def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
     tsc: Tsc, working_folder: Path, verb_options: str
 ) -> None:

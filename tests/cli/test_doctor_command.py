@@ -140,7 +140,7 @@ def test_other_devices_and_foreign_firmware_are_recognized(tsc: Tsc) -> None:
     assert len(result.out.split("\n\n")[0].splitlines()) == 4
 
 
-SEVEN = [
+SEVEN_BOARDS = [
     (boards.FirmataBoard(57_600), "firmata", "The board runs Firmata", "StandardFirmata.ino 2.5"),
     (boards.MbotBoard(115_200), "mbot", "The board has the firmware of an mBot", "06.01.009"),
     (boards.LineEchoSketch(9600), "echo_sketch", "a sketch that sends back", "came back"),
@@ -153,7 +153,7 @@ SEVEN = [
 
 
 @pytest.mark.parametrize(
-    ("end", "cause", "board_name", "heard_text"), SEVEN, ids=[row[1] for row in SEVEN]
+    ("end", "cause", "board_name", "heard_text"), SEVEN_BOARDS, ids=[row[1] for row in SEVEN_BOARDS]
 )
 def test_a_board_that_is_not_ours_at_a_real_port(
     tsc: Tsc, end: boards.Board, cause: str, board_name: str, heard_text: str

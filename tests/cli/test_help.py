@@ -205,7 +205,7 @@ def test_every_text_of_help_is_shown() -> None:
 
 
 # Robots whose board `tsc firmware` writes to.
-WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AVRS]
+AVR_ROBOTS = [name for name in robots.names() if robots.load(name).board.chip in AVRS]
 
 
 @in_both
@@ -214,7 +214,7 @@ WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AV
     [
         ("robot", "--world", worlds.names()),
         ("firmware", "--chip", BOARDS),
-        ("firmware", "--robot", WRITTEN),
+        ("firmware", "--robot", AVR_ROBOTS),
     ],
 )
 def test_names_that_help_lists_are_those_that_there_are(

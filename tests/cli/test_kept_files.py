@@ -41,7 +41,7 @@ LONG_TEXT = "x" * 5000  # a disk that is full cuts it in its middle
 LINES = 8  # lines at which a commit kills each action; --whole tries all
 
 
-class Kept(NamedTuple):
+class KeptNumbers(NamedTuple):
     """`add` keeps a number, with the earlier ones unless it `is_alone`; `all` returns them."""
 
     add: Callable[[int], object]
@@ -85,33 +85,33 @@ def found_output() -> list[int]:
 
 
 KEPT_FILES = {
-    "ports": Kept(
+    "ports": KeptNumbers(
         lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG_TEXT),
         lambda: [int(name[-1]) for name in known_ports.remembered_ports().name_by_port],
         known_ports,
     ),
-    "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
-    "robots that were met": Kept(
+    "keys": KeptNumbers(add_key, lambda: [key.id for key in key_file().all()], keys),
+    "robots that were met": KeptNumbers(
         lambda number: met_robots.remember_robot(met_robots_file(), f"{number}{LONG_TEXT}", number),
         lambda: [*met_robots.read_met_robots(met_robots_file()).id_by_place.values()],
         met_robots,
     ),
-    "robots that may answer": Kept(
+    "robots that may answer": KeptNumbers(
         lambda number: met_robots.accept(met_robots_file(), number),
         lambda: met_robots.read_met_robots(met_robots_file()).accepted_ids,
         met_robots,
     ),
-    "profiles": Kept(
+    "profiles": KeptNumbers(
         lambda number: given.remember(f"/{LONG_TEXT}{number}", number),
         lambda: [number for number, _ in given._remembered_profiles()],
         given,
     ),
-    "maps": Kept(
+    "maps": KeptNumbers(
         lambda number: source_map.remember(program(number), SourceMap(LONG_TEXT, (), ())),
         found_maps,
         source_map,
     ),
-    "a program": Kept(
+    "a program": KeptNumbers(
         lambda number: outputs.write_output(str(output()), bytes((number,)) * len(LONG_TEXT)),
         found_output,
         outputs,
@@ -145,7 +145,7 @@ def wait_for_child(number: int) -> int:
 
 
 def trace_until_line(
-    kept_memory: Kept, line: int, action: Callable[[], object]
+    kept_memory: KeptNumbers, line: int, action: Callable[[], object]
 ) -> Callable[[], None]:
     """Return a tracer that counts the executed lines of the writing code, and acts at one."""
     traced_files = {kept_memory.module.__file__, files.__file__}
@@ -163,7 +163,7 @@ def trace_until_line(
     return lambda: sys.settrace(trace)
 
 
-def lines_of(kept_memory: Kept, number: int) -> int:
+def lines_of(kept_memory: KeptNumbers, number: int) -> int:
     """Return the number of lines of a first execution."""
     read_end, write = os.pipe()
     count = [0]
@@ -187,7 +187,7 @@ def lines_of(kept_memory: Kept, number: int) -> int:
     return line_count
 
 
-def restore(kept_memory: Kept, tmp_path: Path) -> list[int]:
+def restore(kept_memory: KeptNumbers, tmp_path: Path) -> list[int]:
     """Restore the state with the first value stored; return the stored values."""
     for folder in tmp_path.iterdir():
         for path in sorted(folder.rglob("*"), reverse=True):
@@ -228,7 +228,7 @@ def test_a_kill_at_any_line_leaves_what_was_kept(
     assert lines_reached
 
 
-def expected_values(kept_memory: Kept, counts_before: list[int], number: int) -> list[int]:
+def expected_values(kept_memory: KeptNumbers, counts_before: list[int], number: int) -> list[int]:
     return [number] if kept_memory.is_alone else [*counts_before, number]
 
 

@@ -17,7 +17,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript.cli import lesson_check
 from tiniscript.lessons import catalogue
 
-RIGHT, SHORT, WRONG = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
+RIGHT_ANSWER, SHORT_ANSWER, WRONG_ANSWER = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
 
 
 @pytest.fixture
@@ -25,9 +25,14 @@ def folder(tmp_path: Path) -> Path:
     """A folder with the programs of a class."""
     pupils = tmp_path / "class"
     pupils.mkdir()
-    for name, text in {"ana": RIGHT, "beto": SHORT, "carla": WRONG, "=dani": "SI|F(5, 80)"}.items():
+    for name, text in {
+        "ana": RIGHT_ANSWER,
+        "beto": SHORT_ANSWER,
+        "carla": WRONG_ANSWER,
+        "=dani": "SI|F(5, 80)",
+    }.items():
         (pupils / f"{name}.ts").write_text(text, encoding="utf-8")
-    (pupils / "eva.ts.txt").write_text(RIGHT, encoding="utf-8")
+    (pupils / "eva.ts.txt").write_text(RIGHT_ANSWER, encoding="utf-8")
     (pupils / "fox.ts").write_bytes(b"\xff\xfe\x00")
     (pupils / "notes.pdf").write_bytes(b"%PDF")
     return pupils
@@ -47,7 +52,7 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
-    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="fix the mistakes first")
+    tsc("lesson", "check", "1", "-e", WRONG_ANSWER).gives(1, "TS017", out="fix the mistakes first")
 
 
 def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
@@ -103,13 +108,13 @@ def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
         "failed", "passed", "failed", "mistakes", "passed", "mistakes"]  # fmt: skip
     assert rows[2]["findings"][0]["kind"] == "ends_in"
     assert rows[2]["seed"] == 1
-    (result,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT, "--json").out)
+    (result,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT_ANSWER, "--json").out)
     assert result == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
 
 def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
-    assert tsc("lesson", "check", "1", "-e", SHORT, "--plot", picture).code == 1
+    assert tsc("lesson", "check", "1", "-e", SHORT_ANSWER, "--plot", picture).code == 1
     assert picture.read_bytes().startswith(b"\x89PNG")
     result = tsc("lesson", "show", "4", "--teacher").gives(
         0, out=("    SI|LOOP(4)\n", "Answers\n-------")
@@ -174,13 +179,13 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
     shipped_path = catalogue.folders()[0]
     for name in ("lesson.toml", "world.toml"):
         (tmp_path / name).write_bytes((shipped_path / name).read_bytes())
-    assert tsc("lesson", "check", tmp_path, "-e", RIGHT).code == 0
+    assert tsc("lesson", "check", tmp_path, "-e", RIGHT_ANSWER).code == 0
     tsc("lesson", "show", tmp_path).gives(2, "pupil.en.md is missing")
     text = (tmp_path / "world.toml").read_text(encoding="utf-8")
     (tmp_path / "world.toml").write_text(text.replace("x_cm = 30", "x_cm = 2"), encoding="utf-8")
-    tsc("lesson", "check", tmp_path, "-e", RIGHT).gives(2, "the robot does not fit")
+    tsc("lesson", "check", tmp_path, "-e", RIGHT_ANSWER).gives(2, "the robot does not fit")
     (tmp_path / "lesson.toml").write_text("worlds = 0", encoding="utf-8")
-    tsc("lesson", "check", tmp_path, "-e", RIGHT).gives(2, "robot is missing")
+    tsc("lesson", "check", tmp_path, "-e", RIGHT_ANSWER).gives(2, "robot is missing")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -222,15 +227,16 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
         "binary.ts": (bytes(range(256)) * 10, "mistakes"),
         "huge.ts": (b"F(1,80);" * 200_000, "mistakes"),
         "latin1.ts": ("SI|F(2.5, 80) // año".encode("latin-1"), "mistakes"),
-        "utf16.ts": (RIGHT.encode("utf-16"), "mistakes"),
-        "notepad.txt": (b"\xef\xbb\xbf" + RIGHT.encode() + b"\r\n", "done"),
+        "utf16.ts": (RIGHT_ANSWER.encode("utf-16"), "mistakes"),
+        "notepad.txt": (b"\xef\xbb\xbf" + RIGHT_ANSWER.encode() + b"\r\n", "done"),
         "ping.ts": (b"PING|CHECK_CONNECTION", "not yet"),
-        "José Ñañez.ts": (RIGHT.encode(), "done"), "red\x1b[31m.ts": (RIGHT.encode(), "done"),
+        "José Ñañez.ts": (RIGHT_ANSWER.encode(), "done"),
+        "red\x1b[31m.ts": (RIGHT_ANSWER.encode(), "done"),
     }  # fmt: skip
     for name, (data, _) in odd.items():
         (pupils / name).write_bytes(data)
     for number in range(30 - len(odd)):
-        (pupils / f"pupil {number}.ts").write_text(RIGHT, encoding="utf-8")
+        (pupils / f"pupil {number}.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     (pupils / "folder.ts").mkdir()
     rows = tmp_path / "marks.csv"
     result = tsc("lesson", "check", "1", pupils, "--csv", rows).gives(1)
@@ -249,20 +255,20 @@ def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Pat
     pupils = tmp_path / "año 3 ñandú"
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name).mkdir(parents=True)
-        (pupils / name / "square.ts").write_text(RIGHT, encoding="utf-8")
+        (pupils / name / "square.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     notes = {
         "README.txt": "Para entregar: los de tercero.\nGracias (a todos).\n",
         "Léeme primero.TXT": "Ana 15\nBeto 12\n", "notas (2).txt": "Todo bien",
     }  # fmt: skip
     files = {
-        "notepad.txt": RIGHT, "wrong.txt": "ADELANTE (2)", "notasio.txt": "hola",
-        "readme ana.txt": RIGHT, "notes.txt": "SI\rforward 5", "notas.txt": "F 2 80;R 1 60",
+        "notepad.txt": RIGHT_ANSWER, "wrong.txt": "ADELANTE (2)", "notasio.txt": "hola",
+        "readme ana.txt": RIGHT_ANSWER, "notes.txt": "SI\rforward 5", "notas.txt": "F 2 80;R 1 60",
         "empty.txt": "", "note.ts": "Ana 15", "also.ts.txt": "Ana 15", "lista.txt": "Ana 15",
     }  # fmt: skip
     for name, content in {**files, **notes}.items():
         (pupils / name).write_text(content, encoding="utf-8")
     (pupils / ".hidden").mkdir()
-    (pupils / ".hidden" / "old.ts").write_text(RIGHT, encoding="utf-8")
+    (pupils / ".hidden" / "old.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     rows = tmp_path / "marks.csv"
     result = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows).gives(1)
     verdict_by_file = {

@@ -24,7 +24,7 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 
-TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
+TINIBOT_KIT, LINER_KIT = robots.load("tinibot").kit, robots.load("liner").kit
 SHORT_PROGRAM = "SI|F(0.3, 80);SHOW(DISTANCE)"
 ROBOT_COUNT = 30
 SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT = 3, 7, 11  # robots with which something is wrong
@@ -33,7 +33,7 @@ NOISY_ROBOTS = (5, 13, 17, 21)
 
 @pytest.fixture
 def class_() -> Iterator[RobotFleet]:
-    with known_fleet([TINIBOT] * 4) as robot_fleet:
+    with known_fleet([TINIBOT_KIT] * 4) as robot_fleet:
         yield robot_fleet
 
 
@@ -44,7 +44,9 @@ def results(result: CommandResult) -> dict[str, dict[str, object]]:
 
 @pytest.mark.sampled(of="slow commands")
 def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
-    kits = [LINER if number == OTHER_KIT_ROBOT else TINIBOT for number in range(ROBOT_COUNT)]
+    kits = [
+        LINER_KIT if number == OTHER_KIT_ROBOT else TINIBOT_KIT for number in range(ROBOT_COUNT)
+    ]
     with RobotFleet(kits) as room:
         pupils = room.pupils
         pupils[SILENT_ROBOT].deaf_after = 0
@@ -264,7 +266,7 @@ def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
     robot that this person has driven before."""
     monkeypatch.setattr(ports, "list_ports", list)
     known_ports.remember("own", "MINE")
-    with RobotFleet([TINIBOT] * 2) as fleet:
+    with RobotFleet([TINIBOT_KIT] * 2) as fleet:
         places = [pupil.port for pupil in fleet.pupils]
         words = [word for place in places for word in ("--port", place)]
         run_in_process("upload", "-e", "SI|W(0.1)", "--no-save", *words).gives(0)

@@ -29,7 +29,7 @@ from tiniscript.cli.verbless import is_help
 
 OLD_VERBS = "|".join(FORMER_COMMANDS)
 # `tsc name`, as a command or in a list of words; the changelog may mention former names.
-OLD_USE = re.compile(
+OLD_VERB_PATTERN = re.compile(
     rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD_VERBS})\b(?!=)"
 )
 FILES_WITH_OLD_VERBS = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
@@ -58,7 +58,9 @@ def test_no_file_names_an_old_verb() -> None:
     for path in files():
         count += 1
         text = path.read_text(encoding="utf-8", errors="replace")
-        old_uses += [f"{path.relative_to(ROOT)}: {match[0]}" for match in OLD_USE.finditer(text)]
+        old_uses += [
+            f"{path.relative_to(ROOT)}: {match[0]}" for match in OLD_VERB_PATTERN.finditer(text)
+        ]
     assert count > 1000 and not old_uses, "\n".join(old_uses)
 
 
@@ -66,9 +68,9 @@ def test_what_is_searched_for_is_found() -> None:
     for name in FORMER_COMMANDS:
         for words in ("Try:  tsc {}", "`tsc {} x`", '["tsc", "{}"]', "python -m tiniscript {}",
                       '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
-            assert OLD_USE.search(words.format(name)), words
+            assert OLD_VERB_PATTERN.search(words.format(name)), words
     for command in COMMANDS:
-        assert not OLD_USE.search(f"tsc {command_words(command)}"), command
+        assert not OLD_VERB_PATTERN.search(f"tsc {command_words(command)}"), command
 
 
 # -- commands in texts ----------------------------------------------------------------------------

@@ -107,7 +107,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert "el virtual, 5 a los 0.2 s" in result.err
 
 
-READS = """LOOP(6)
+SENSOR_PROGRAM = """LOOP(6)
   F(0.2, 60)
   X = DISTANCE * 2
   SHOW(X)
@@ -121,7 +121,7 @@ def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
     tmp_path: Path,
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
-    program.write_text(READS)
+    program.write_text(SENSOR_PROGRAM)
     result = run_in_process(
         "upload", program, "--virtual", "--world", "obstacles", "--record", file
     )

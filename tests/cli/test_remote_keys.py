@@ -26,9 +26,9 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.remote import NOTHING_PRESSED, RemoteState, remote_state_of
 from tiniscript.link.requests import OK, Reply
 
-UP, LEFT = "\x1b[A", "\x1b[D"
+UP_KEY, LEFT_KEY = "\x1b[A", "\x1b[D"
 KEYS = (
-    (UP, "UP"), ("\x1b[B", "DOWN"), ("\x1b[C", "RIGHT"), (LEFT, "LEFT"), ("\x1bOA", "UP"),
+    (UP_KEY, "UP"), ("\x1b[B", "DOWN"), ("\x1b[C", "RIGHT"), (LEFT_KEY, "LEFT"), ("\x1bOA", "UP"),
     ("\x1bOD", "LEFT"), ("\x1b[1;2A", "UP"), ("a", "A"), ("A", "A"), ("b", "B"), ("B", "B"),
 )  # fmt: skip
 
@@ -50,11 +50,11 @@ def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed_text: str, name
 def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
     for delay_s in (0.25, 0.5, 0.66):
         keys = HeldKeys()
-        keys.press_typed(UP, 0.0)
+        keys.press_typed(UP_KEY, 0.0)
         now_s = 0.0
         while now_s < 2.0:
             if now_s >= delay_s:
-                keys.press_typed(UP, now_s)
+                keys.press_typed(UP_KEY, now_s)
             for _ in range(4):
                 assert keys.keys_at(now_s) == remote_state_of(["UP"]), (delay_s, now_s)
                 now_s += 0.01
@@ -63,9 +63,9 @@ def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
 @pytest.mark.parametrize("split", [1, 2])
 def test_a_key_that_comes_in_two_pieces(split: int) -> None:
     keys = HeldKeys()
-    keys.press_typed("a" + UP[:split], 0.0)
+    keys.press_typed("a" + UP_KEY[:split], 0.0)
     assert keys.keys_at(0.1) == remote_state_of(["A"])
-    keys.press_typed(UP[split:] + LEFT, 0.1)
+    keys.press_typed(UP_KEY[split:] + LEFT_KEY, 0.1)
     assert keys.keys_at(0.2) == remote_state_of(["A", "UP", "LEFT"])
 
 
@@ -81,12 +81,12 @@ def test_anything_but_a_remote_control_key_holds_nothing(typed_text: str) -> Non
     assert keys.keys_at(0.2) == remote_state_of(["B"])
 
 
-@pytest.mark.parametrize("typed_text", ["q", "Q", "\x04", UP + "q", "aaaq"])
+@pytest.mark.parametrize("typed_text", ["q", "Q", "\x04", UP_KEY + "q", "aaaq"])
 def test_who_wants_to_leave(typed_text: str) -> None:
     assert HeldKeys().press_typed(typed_text, 0.0)
 
 
-OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
+OTHER_KEYS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -96,7 +96,7 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
     whole_keys, split_keys = HeldKeys(), HeldKeys()
     for k in range(20):
         typed_text, now_s = (
-            rng.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
+            rng.choice([*(typed_text for typed_text, _ in KEYS), *OTHER_KEYS]),
             2.0 * k,
         )
         offset = rng.randrange(len(typed_text) + 1)
@@ -127,7 +127,7 @@ def test_what_was_typed_a_while_ago_holds_nothing_now(seed: int) -> None:
 # -- a terminal and a robot ------------------------------------------------------------------------
 
 
-class Refused(Exception):
+class KeysRefused(Exception):
     """The robot accepts no keys."""
 
 
@@ -162,7 +162,7 @@ class Table:
         return request
 
     def error_for_reply(self, reply: Reply[Any]) -> Exception:
-        return Refused(reply.status)
+        return KeysRefused(reply.status)
 
 
 def remote_at(table: Table, monkeypatch: pytest.MonkeyPatch) -> TerminalRemote:
@@ -200,13 +200,13 @@ def test_a_robot_that_accepts_no_keys_is_an_error(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     table = Table()
-    with remote_at(table, monkeypatch) as remote, pytest.raises(Refused):
+    with remote_at(table, monkeypatch) as remote, pytest.raises(KeysRefused):
         table.status, table.typed = STATUSES[name], "a"
         remote.poll()
         remote.poll()
     assert not table.is_entered
     older = Table(features=0)
-    with pytest.raises(Refused), remote_at(older, monkeypatch):
+    with pytest.raises(KeysRefused), remote_at(older, monkeypatch):
         pass
     assert not older.is_entered and not older.words
 

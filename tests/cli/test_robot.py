@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, Tsc, run_in_process
+from tests.support.command import LONG_PROGRAM, Tsc, run_in_process
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.simulated_port import simulate
 from tiniscript import compile_text, robots
@@ -66,7 +66,7 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
     with PtyRobot(KIT, bytes_per_ms=2) as pty_robot:
         assert on(pty_robot, "upload", "-e", "SB|F(0.1, 40)").code == 0
         pty_robot.off_after = 250
-        result = run_in_process("upload", "-e", LONG, "--port", pty_robot.port)
+        result = run_in_process("upload", "-e", LONG_PROGRAM, "--port", pty_robot.port)
         assert result.code == 3
         assert "lost the connection to the robot" in result.err
         pty_robot.switch_on()

@@ -10,7 +10,7 @@ from tests.support.command import PROGRAM, Tsc
 from tiniscript import robots
 
 READINGS = robots.load("tinibot").kit.readings
-OWN = len(robots.load("tinibot").kit.sensors)
+TINIBOT_SENSOR_COUNT = len(robots.load("tinibot").kit.sensors)
 
 
 def test_it_prints_a_sketch(tsc: Tsc) -> None:
@@ -61,7 +61,7 @@ def test_a_reading_is_in_a_sketch_or_is_said_to_have_none(tsc: Tsc, k: int) -> N
                  f"IF({condition});S;ENDIF", f"DEF DEF_1;{name};END_DEF;LOOP(2);DEF_1;END_LOOP",
                  f"WHILE({condition});S;END_WHILE"):  # fmt: skip
         result = tsc("show", "--arduino", "-e", f"SI|{text}")
-        if k < OWN:
+        if k < TINIBOT_SENSOR_COUNT:
             result.gives(0, out="void loop()")
         else:
             result.gives(2, "no remote control")

@@ -124,7 +124,7 @@ def suspend(command: Command) -> Command:
 
 
 # A reader is woken for bytes and reads them a little later, when another one may have taken them.
-TOLD = """
+TOLD_SCRIPT = """
 import select, sys, time
 from tiniscript.cli import main
 waited = select.select
@@ -138,7 +138,7 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-@pytest.mark.parametrize("code", ["", TOLD], ids=["anywhere", "before it reads"])
+@pytest.mark.parametrize("code", ["", TOLD_SCRIPT], ids=["anywhere", "before it reads"])
 @pytest.mark.parametrize("verb", ["monitor", "monitor --hold"])
 def test_a_stop_gets_through_beside_a_suspended_tsc(
     pty_robot: PtyRobot, verb: str, code: str
@@ -161,7 +161,7 @@ def test_a_stop_gets_through_beside_a_suspended_tsc(
     assert holder.wait_for_result().code == 0
 
 
-LOCKS = """
+LOCK_SCRIPT = """
 import fcntl, os, sys, time
 port = os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
 fcntl.flock(port, fcntl.LOCK_EX)
@@ -173,7 +173,7 @@ time.sleep(1000)
 def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRobot) -> None:
     """A running command may be writing firmware, so it is named."""
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    holder = Command(pty_robot.port, code=LOCKS)
+    holder = Command(pty_robot.port, code=LOCK_SCRIPT)
     holder.until("locked")
     heard_bytes = pty_robot.heard
     with mock.patch.object(opening, "STOP_BUSY_TIMEOUT_S", 0.2):

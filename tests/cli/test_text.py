@@ -10,7 +10,7 @@ from tests.support.command import Tsc
 
 PROGRAM = "si|\n  f(2, 80) // go\n"
 LINE = "SI|F(2,80)~72CA4271\n"
-LONG = "S\n" * 260
+LONG_PROGRAM = "S\n" * 260
 
 
 @pytest.fixture
@@ -46,23 +46,23 @@ def test_a_line_that_has_changed_does_nothing(tsc: Tsc) -> None:
 
 
 def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
-    result = tsc("check", "--text-level", "uno", "-e", LONG)
+    result = tsc("check", "--text-level", "uno", "-e", LONG_PROGRAM)
     assert result.code == 1
     assert "line 256:  S\n" in result.err
     assert (
         "level uno turns this text into 260 bytes of code, 5 too many: it has room for 255"
         in result.err
     )
-    data = tsc("check", "--json", "--text-level", "mega", "-e", LONG)
+    data = tsc("check", "--json", "--text-level", "mega", "-e", LONG_PROGRAM)
     assert '"code": "TS309"' in data.out and '"line": 256' in data.out
-    assert tsc("check", "-e", LONG).code == 0
+    assert tsc("check", "-e", LONG_PROGRAM).code == 0
 
 
 def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "line.ts"
-    result = tsc("compile", "--text", "--text-level", "esp32", "-e", LONG, "-o", target)
+    result = tsc("compile", "--text", "--text-level", "esp32", "-e", LONG_PROGRAM, "-o", target)
     assert result.code == 1 and "[TS309]" in result.err and not target.exists()
-    assert tsc("compile", "--text", "-e", LONG, "-o", target).code == 0
+    assert tsc("compile", "--text", "-e", LONG_PROGRAM, "-o", target).code == 0
     result = tsc("compile", "--text", "-e", "F(2", "-o", tmp_path / "wrong.ts")
     assert result.code == 1 and not (tmp_path / "wrong.ts").exists()
 

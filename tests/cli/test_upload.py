@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, OBSTACLE, Command, CommandResult, run_in_process
+from tests.support.command import LONG_PROGRAM, OBSTACLE, Command, CommandResult, run_in_process
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
@@ -74,7 +74,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
 ) -> None:
     """Noise on the line costs only time."""
     compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    compiled_file.write_bytes(compile_text(LONG, KIT).image)
+    compiled_file.write_bytes(compile_text(LONG_PROGRAM, KIT).image)
     for damages in (0, 211):
         pty_robot.damages = damages
         result = on(pty_robot, "upload", compiled_file, "--no-run", "--no-save")
@@ -129,7 +129,7 @@ def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: P
 
 def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
     with PtyRobot(KIT, bytes_per_ms=1) as pty_robot:
-        words = ("upload", "-e", LONG, "--no-run", "--no-save", "--port", pty_robot.port)
+        words = ("upload", "-e", LONG_PROGRAM, "--no-run", "--no-save", "--port", pty_robot.port)
         terminal = Terminal(*words, size=(200, 5), types=False)
         assert terminal.end() == 0
     assert b"sending [" in terminal.written

@@ -16,7 +16,7 @@ from tests.between.lines import BadLine, Fault
 from tests.support.command import Tsc
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on
-from tests.support.simulated_ends import Nobody
+from tests.support.simulated_ends import UnpoweredEnd
 from tests.support.terminal import Terminal
 from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.cli import main
@@ -44,7 +44,7 @@ def silent_port(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A port without a robot; the computer soon gives up."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 200)
-    with PtyEnd(Nobody()) as end:
+    with PtyEnd(UnpoweredEnd()) as end:
         yield end.port
 
 

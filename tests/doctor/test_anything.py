@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.fake_computer import FakeComputer
-from tests.support.simulated_ends import Firmware, Nobody
+from tests.support.simulated_ends import Firmware, UnpoweredEnd
 from tests.support.simulated_wire import SimulatedWire
 from tiniscript.doctor import computer, diagnosis
 from tiniscript.doctor.examination import Expectations
@@ -30,7 +30,7 @@ WORDS = (
 LONGEST_MS = 400_000  # simulated time after which a sender that never stops is left
 
 
-class Chance(Nobody):
+class RandomEnd(UnpoweredEnd):
     """Sends words of modules, bootloaders and robots, and anything else."""
 
     def __init__(self, seed: int) -> None:
@@ -45,7 +45,7 @@ class Chance(Nobody):
         return b"".join([*words, self.rng.randbytes(self.rng.randrange(3)), data[:3]])
 
 
-class Damaged(Firmware):
+class DamagedFirmware(Firmware):
     """A robot with arbitrary fields, whose answers are sometimes damaged."""
 
     def __init__(self, seed: int) -> None:
@@ -65,8 +65,8 @@ class Damaged(Firmware):
 
 @pytest.mark.sampled("seed", keep=7)
 @pytest.mark.parametrize("seed", range(15))
-@pytest.mark.parametrize("kind", [Chance, Damaged])
-def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> None:
+@pytest.mark.parametrize("kind", [RandomEnd, DamagedFirmware])
+def test_anything_at_the_other_end(kind: type[RandomEnd | DamagedFirmware], seed: int) -> None:
     for is_radio in (False, True):
         wire = SimulatedWire(kind(seed))
         findings = diagnose_line(
@@ -74,7 +74,7 @@ def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> N
         )
         assert findings and {finding.cause for finding in findings} <= set(CAUSES)
         assert wire.now_ms < LONGEST_MS
-    find_module(SimulatedWire(Chance(seed)))
+    find_module(SimulatedWire(RandomEnd(seed)))
 
 
 @pytest.mark.parametrize("platform", ["linux", "darwin", "win32"])

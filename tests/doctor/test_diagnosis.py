@@ -14,7 +14,7 @@ import pytest
 
 from tests.support.fake_computer import FakeComputer
 from tests.support.foreign_boards import FIRMATA
-from tests.support.simulated_ends import KIT, Firmware, Nobody
+from tests.support.simulated_ends import KIT, Firmware, UnpoweredEnd
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.diagnosis import Diagnosis, DoctorServices, Question, diagnose
@@ -44,7 +44,7 @@ STATUS = StatusReply(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, b"\0\0")
 PONG = PingReply(0, 0, b"")
 
 
-class Shared:
+class OtherCommand:
     """The connection of another tsc: its requests are answered with `replies`, or it has ended."""
 
     robot = None
@@ -87,8 +87,8 @@ class Case:
         self.wire: SimulatedWire | None = None
         self.asked: list[str] = []
         self.other: OtherVersion | None = None
-        self.shared: Shared | None = None
-        self.watched = Shared(Reply(LOST))
+        self.shared: OtherCommand | None = None
+        self.watched = OtherCommand(Reply(LOST))
         self.watch_ms = 0
         self.virtual: tuple[str, ...] = ()
         self.expected = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
@@ -160,7 +160,7 @@ def _port_of_dialout(member: str) -> Make:
     return set_case
 
 
-_member, _stranger = _port_of_dialout("somebody"), _port_of_dialout("")
+_set_member, _set_stranger = _port_of_dialout("somebody"), _port_of_dialout("")
 
 
 def _port_in_use(name: str) -> Make:
@@ -199,7 +199,7 @@ def _ports(*names: str) -> Make:
 
 
 HUB, CH340 = ("1d6b", "0002"), ("1a86", "7523")
-REFUSED = os.strerror(errno.ECONNREFUSED)
+REFUSED_DETAIL = os.strerror(errno.ECONNREFUSED)
 ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (None, _ports(), "no_port", True),
     (CABLE, _ports(), "no_port", True),
@@ -214,8 +214,8 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (RADIO, _pair(errors.MISSING, is_off=True), "bluetooth_off", True),
     (RADIO, _pair(errors.MISSING, "Telephone"), "not_paired", True),
     (RADIO, _pair(errors.MISSING, "HC-05"), "no_rfcomm", True),
-    (CABLE, _stranger, "no_permission", True),
-    (CABLE, _member, "login_again", True),
+    (CABLE, _set_stranger, "no_permission", True),
+    (CABLE, _set_member, "login_again", True),
     (CABLE, _port_in_use("minicom"), "busy", True),
     (CABLE, _port_in_use("ModemManager"), "modem_manager", True),
     (CABLE, _other_tsc, "other_tsc", True),
@@ -223,7 +223,7 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (RADIO, _failing(errors.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
     (RADIO, _pair(errors.UNREACHABLE, "HC-05"), "out_of_reach", False),
     (RADIO, _pair(errors.UNREACHABLE, "Telephone"), "not_paired", False),
-    (RADIO, _failing(errors.UNREACHABLE, REFUSED), "other_host", False),
+    (RADIO, _failing(errors.UNREACHABLE, REFUSED_DETAIL), "other_host", False),
     (RADIO, _pair(errors.SLOW, "HC-05"), "slow_port", False),
     (RADIO, _failing(errors.NO_PORT), "no_serial_port", True),
     (RADIO, _failing(errors.BROKEN, "Input/output error"), "port_broken", True),
@@ -279,7 +279,9 @@ def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> No
     assert case.diagnosis(None).port == CABLE
 
 
-@pytest.mark.parametrize("set_case", [_stranger, _member, _port_in_use("minicom"), _other_tsc])
+@pytest.mark.parametrize(
+    "set_case", [_set_stranger, _set_member, _port_in_use("minicom"), _other_tsc]
+)
 def test_a_port_that_is_not_ours_is_not_opened(case: Case, set_case: Make) -> None:
     set_case(case)
     case.says_yes = True
@@ -313,7 +315,7 @@ def test_the_only_port_of_each_system(
     [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
 )
 def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) -> None:
-    class Gone(Nobody):
+    class Gone(UnpoweredEnd):
         def answer(self, data: bytes) -> bytes:
             raise OSError("gone")
 
@@ -333,7 +335,7 @@ def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) 
     ],
 )
 def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) -> None:
-    case.shared = Shared(*replies)
+    case.shared = OtherCommand(*replies)
     diagnosis = case.diagnosis()
     assert [finding.cause for finding in diagnosis.findings] == [cause]
     assert diagnosis.is_opened and case.shared.is_closed
@@ -341,7 +343,7 @@ def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) 
 
 
 def test_what_another_tsc_has_heard_of_a_board_that_is_not_ours(case: Case) -> None:
-    case.shared = Shared(Reply(LOST))
+    case.shared = OtherCommand(Reply(LOST))
     case.shared.early_bytes = FIRMATA
     (finding,) = case.diagnosis().findings
     assert (finding.cause, finding.values["said"]) == ("firmata", "StandardFirmata.ino 2.5")
@@ -358,9 +360,9 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
         *[Reply(OK, 0, PONG)] * answered_count,
     ]
     lost_replies: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
-    case.shared = Shared(*known_replies, *lost_replies)
+    case.shared = OtherCommand(*known_replies, *lost_replies)
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = Shared(
+    case.shared = OtherCommand(
         *known_replies, *lost_replies[1:], *[Reply(OK, 0, PONG)] * 3, *lost_replies
     )
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
@@ -372,7 +374,7 @@ def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(c
     # The reason that the shared connection reports.
     assert case.cause(RADIO) == ("falls_silent", False)
     assert case.wire is not None and case.wire.is_gone
-    case.end = Nobody()
+    case.end = UnpoweredEnd()
     assert case.cause(RADIO) == ("crossed", False)
 
 
@@ -405,9 +407,9 @@ def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
 
 def test_the_ownership_of_a_robot_is_shown_by_its_answer_to_a_key(case: Case) -> None:
     case.expected = case.expected._replace(has_key=lambda robot: True)
-    case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
+    case.shared = OtherCommand(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
     assert "of_another_owner" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST))
+    case.shared = OtherCommand(Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST))
     assert "of_another_owner" not in [finding.cause for finding in case.diagnosis().findings]
 
 

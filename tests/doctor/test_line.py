@@ -8,12 +8,12 @@ from tests.support import foreign_boards as boards
 from tests.support.simulated_ends import (
     KIT,
     QUESTIONS,
-    Babble,
+    BabblingEnd,
     Board,
     Echo,
     Firmware,
-    Nobody,
     Sketch,
+    UnpoweredEnd,
     reset,
     state,
 )
@@ -39,12 +39,15 @@ from tiniscript.link.wire import QUIET_MS
 from tiniscript.robots import load
 
 # Devices that are silent after their start.
-SAY_NOTHING = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
-RESTARTED = (115200, 57600)  # the speeds of bootloaders: there a board is heard when it starts
+SILENT_BOARDS = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
+BOOTLOADER_BAUDS = (
+    115200,
+    57600,
+)  # the speeds of bootloaders: there a board is heard when it starts
 NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
-SAVED_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED_STATES)}
-MEGA = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
-STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
+SAVED_NUMBER_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED_STATES)}
+MEGA_GREETING = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
+STALL_NUMBER = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 
 
 def findings_on(
@@ -118,9 +121,9 @@ def test_a_robot_that_is_fine_and_is_only_asked(is_radio: bool) -> None:
         ({"reset": reset("WATCHDOG")}, "hung"),
         ({"reset": 5}, "fine"),
         ({"reset": 99}, "fine"),
-        ({"fault": STALL}, "hung"),
+        ({"fault": STALL_NUMBER}, "hung"),
         ({"features": WIFI_RESTS}, "wifi_rests"),
-        ({"saved": SAVED_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
+        ({"saved": SAVED_NUMBER_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
     ],
 )
 def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
@@ -132,8 +135,8 @@ def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
     [
         ({"state": state("STOPPED")}, "stopped"),
         ({"state": state("FAULTED")}, "stopped"),
-        ({"saved": SAVED_BY_NAME["SAVING"]}, "not_saved_yet"),
-        ({"saved": SAVED_BY_NAME["OTHER_VERSION"]}, "other_program"),
+        ({"saved": SAVED_NUMBER_BY_NAME["SAVING"]}, "not_saved_yet"),
+        ({"saved": SAVED_NUMBER_BY_NAME["OTHER_VERSION"]}, "other_program"),
         ({"features": OWNERS | OWNED}, "of_another_owner"),
     ],
 )
@@ -301,7 +304,7 @@ def test_a_robot_at_another_speed(baud: int) -> None:
 
 
 def test_a_robot_at_another_speed_with_another_trouble() -> None:
-    end = Firmware(115200, saved=SAVED_BY_NAME["LOW_SUPPLY"])
+    end = Firmware(115200, saved=SAVED_NUMBER_BY_NAME["LOW_SUPPLY"])
     assert [finding.cause for finding in findings_on(end)] == ["wrong_baud", "low_supply"]
 
 
@@ -319,9 +322,10 @@ def test_a_robot_at_another_speed_with_another_trouble() -> None:
         (Board(57600), "other_sketch", False),
         (Board(open_ms=None), "bootloader_only", True),
         (Board(57600, open_ms=None), "bootloader_only", True),
-        (Board(115200, MEGA, b"\x1b\x01\0\x0b\x0e\x01\0\x08AVRISP_2!"), "other_sketch", False),
-        (Babble(), "garbled", False),
-        (Nobody(), "silent", False),
+        (Board(115200, MEGA_GREETING, b"\x1b\x01\0\x0b\x0e\x01\0\x08AVRISP_2!"), "other_sketch",
+            False),
+        (BabblingEnd(), "garbled", False),
+        (UnpoweredEnd(), "silent", False),
     ],
 )  # fmt: skip
 def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
@@ -337,7 +341,7 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
             heard_bytes = super().receive(wait_ms, quiet_ms)
             return heard_bytes if self.baud == speed else b""
 
-    wire = Deaf(Babble(speed), BAUDS[0])
+    wire = Deaf(BabblingEnd(speed), BAUDS[0])
     expected = Expectations(None, "tinibot", NAMES.get)
     (finding,) = diagnose_line(wire, PortFacts(BAUDS[0], False, 4711), expected)
     assert finding.cause == "garbled"
@@ -348,8 +352,8 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
     [
         (Echo(), "echo", False),  # radios have one speed, so this may be a sketch
         (Sketch(), "other_sketch", True),
-        (Babble(), "module_baud", False),  # the module's wire garbles the radio's data
-        (Nobody(), "crossed", False),
+        (BabblingEnd(), "module_baud", False),  # the module's wire garbles the radio's data
+        (UnpoweredEnd(), "crossed", False),
     ],
 )
 def test_by_radio(end: OtherEnd, cause: str, is_sure: bool) -> None:
@@ -382,7 +386,7 @@ def test_a_board_that_is_not_ours_on_a_cable(
     """This holds for any speed of the board, and any speed of a robot here."""
     for baud in (9600, 115200):
         (finding,) = findings_on(kind(its_baud), baud=baud)
-        if kind in SAY_NOTHING and its_baud not in (baud, *RESTARTED):
+        if kind in SILENT_BOARDS and its_baud not in (baud, *BOOTLOADER_BAUDS):
             assert finding.cause == "garbled", baud
             continue
         assert (finding.cause, finding.is_sure) == (cause, True), baud
@@ -408,7 +412,7 @@ def test_a_board_that_is_not_ours_by_radio(
 def test_a_robot_that_sends_and_hears_nothing() -> None:
     """Its frames and lines are never those of a foreign board."""
 
-    class OneWay(Nobody):
+    class OneWay(UnpoweredEnd):
         sent = b"// OK\r\n"
 
         def answer(self, data: bytes) -> bytes:

@@ -65,7 +65,7 @@ VALUES = {
 
 
 # Parts with a single cause need no further symptom; several causes may share a next step.
-OF_A_PART = [
+PART_CAUSES = [
     value for value, row in CAUSES.items() if row.next_key or (row.verdict == OK and row.part)
 ]
 
@@ -79,12 +79,12 @@ def sentences(cause: str, *kinds: str) -> Iterator[str]:
             yield sentence
 
 
-@each_row("cause", [cause for cause in CAUSES if cause not in (*OF_A_PART, *foreign.NAMES)])
+@each_row("cause", [cause for cause in CAUSES if cause not in (*PART_CAUSES, *foreign.NAMES)])
 def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
     assert len([*sentences(cause, "found", "seen", "next")]) > 3
 
 
-@each_row("cause", OF_A_PART)
+@each_row("cause", PART_CAUSES)
 def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> None:
     values = dict.fromkeys(VALUES.get(cause, ()), "7")
     assert [*sentences(cause, "found")]
@@ -113,11 +113,11 @@ def test_no_sentence_is_of_a_board_that_has_no_row() -> None:
 def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known_names = {f"found_{cause}" for cause in CAUSES}
     known_names |= {f"next_{row.next_key or cause}" for cause, row in CAUSES.items()}
-    known_names -= {f"next_{cause}" for cause in OF_A_PART}
+    known_names -= {f"next_{cause}" for cause in PART_CAUSES}
     known_names |= {
-        f"next_{CAUSES[cause].next_key}" for cause in OF_A_PART if CAUSES[cause].next_key
+        f"next_{CAUSES[cause].next_key}" for cause in PART_CAUSES if CAUSES[cause].next_key
     }
-    known_names |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
+    known_names |= {f"seen_{cause}" for cause in CAUSES if cause not in PART_CAUSES}
     for kind in ("found", "seen", "next"):  # texts about other boards have their own catalogue
         known_names -= {f"{kind}_{cause}" for cause in foreign.NAMES}
     known_names |= {

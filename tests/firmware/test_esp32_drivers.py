@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.esp32_radio import LowEnergy, RawClient, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -97,7 +97,7 @@ def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
 
 def test_a_page_gives_way_to_nobody_without_a_key() -> None:
     robot, page, _ = pair(is_owned=True)
-    stranger, typed_bytes = session(5, robot), Bytes()
+    stranger, typed_bytes = session(5, robot), RawClient()
     end = LowEnergy(robot)
     assert upload_text(robot, [(None, page)], page, SHORT) == "OK"
     talk(robot, [(None, page)], 5000)

@@ -11,11 +11,11 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
-    Bytes,
     Client,
     End,
     LowEnergy,
     Network,
+    RawClient,
     SerialPort,
     limit_accepted_bytes,
     radios,
@@ -62,7 +62,7 @@ def claim_as_stranger(robot: Esp32Robot, end: End, keys: Keys) -> None:
 
 def sender_of(data: bytes) -> Callable[[Esp32Robot, End, Keys], None]:
     def send(robot: Esp32Robot, end: End, keys: Keys) -> None:
-        talk(robot, [(end, Bytes(data))], 30)
+        talk(robot, [(end, RawClient(data))], 30)
 
     return send
 
@@ -100,7 +100,7 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
         return robot, keys
 
     robot, keys = connected_place()
-    talk(robot, [(end := make(robot), Bytes())], 300)
+    talk(robot, [(end := make(robot), RawClient())], 300)
     end.leave()
     talk(robot, [], 5)
     usual_ms = owner_time_ms(robot, make, keys)
@@ -120,10 +120,10 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
 def test_nobody_is_told_what_another_one_has_typed(make: Make, typed_bytes: bytes) -> None:
     robot, _ = make_owned_robot(Keys())
     talk(robot, [], AUTHORITY_MS)
-    talk(robot, [(end := make(robot), Bytes(typed_bytes))], 2)
+    talk(robot, [(end := make(robot), RawClient(typed_bytes))], 2)
     end.leave()
     talk(robot, [], 1)
-    talk(robot, [(make(robot), other := Bytes(b"\0"))], 4000)
+    talk(robot, [(make(robot), other := RawClient(b"\0"))], 4000)
     assert other.heard == b""
 
 
@@ -154,11 +154,11 @@ def test_bytes_of_two_clients_do_not_form_a_stop(make: Make, pause_ms: int) -> N
     assert upload_text(robot, ends, owner, AWAY_PROGRAM) == "OK"
     for parts in CUT_STOPS:
         for part in parts:
-            talk(robot, [*ends, (other := make(robot), Bytes(part))], 20)
+            talk(robot, [*ends, (other := make(robot), RawClient(part))], 20)
             other.leave()
             talk(robot, ends, 5 + pause_ms)
         assert actions_of(robot)[-1] == "MOTORS 80 80", parts
-    talk(robot, [*ends, (make(robot), Bytes(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
+    talk(robot, [*ends, (make(robot), RawClient(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
     assert actions_of(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
 
 
@@ -178,12 +178,12 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
     rests = 0
     for moment_ms in (1, 2, 3, 5, 9, 100):
         limit_accepted_bytes(robot, most)
-        first = Bytes(b"\0" + frames)
+        first = RawClient(b"\0" + frames)
         talk(robot, [(end := Network(robot), first)], moment_ms)
         end.leave()
         talk(robot, [], 3)
         limit_accepted_bytes(robot, 1000)
-        other = Bytes(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
+        other = RawClient(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
         talk(robot, [(end := Network(robot), other)], 60)
         end.leave()
         talk(robot, [], 3)
@@ -215,11 +215,11 @@ class Late(LowEnergy):
 
 def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
     robot, _ = make_owned_robot(Keys())
-    talk(robot, [(end := LowEnergy(robot), Bytes(b"\0"))], 20)
+    talk(robot, [(end := LowEnergy(robot), RawClient(b"\0"))], 20)
     for number in range(3):
         end.leave()
         talk(robot, [], 5)
-        end, who = Late(robot), Bytes()
+        end, who = Late(robot), RawClient()
         for seq in (number, PING_SEQ):
             end.send(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq, 0)))
             talk(robot, [(end, who)], 30)
@@ -244,11 +244,11 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
     talk(robot, [], AUTHORITY_MS)
     phone, first = LowEnergy(robot), remote(robot, keys, 2)
     assert upload_text(robot, [(phone, first)], first, "SI|F(0.1, 30)") == "OK"
-    talk(robot, [(phone, Bytes())], PLACE_MS - 50)
+    talk(robot, [(phone, RawClient())], PLACE_MS - 50)
     early = LowEnergy(robot)
     assert early.has_ended and not phone.has_ended, "never before"
     assert wait_for_outcome(robot, [(phone, first)], first.ping()) == "OK"
-    talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
+    talk(robot, [(phone, RawClient())], 3 * PLACE_MS)
     assert not phone.has_ended, "while nobody else comes"
     owner = remote(robot, keys, 3)
     ends: Ends = [(end := LowEnergy(robot), owner)]
@@ -292,7 +292,7 @@ def test_whoever_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
     for _ in range(5):
         phone, first = LowEnergy(robot), remote(robot, keys, 2)
         assert wait_for_outcome(robot, [(phone, first)], first.ping()) == "OK"
-        talk(robot, [(phone, Bytes())], PLACE_MS)
+        talk(robot, [(phone, RawClient())], PLACE_MS)
         end, owner = LowEnergy(robot), remote(robot, keys, 3)
         phone.leave()  # again, and the number of its connection is free
         refused_low_energy = LowEnergy(robot)
@@ -330,7 +330,7 @@ def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
     for number in range(15):
         end = Network(robot)
         if rng.random() < 0.6:
-            guests.append((end, Bytes(rng.choice(FIRST_BYTES))))
+            guests.append((end, RawClient(rng.choice(FIRST_BYTES))))
         else:
             owners.append((end, remote(robot, keys if rng.random() < 0.7 else None, 20 + number)))
             guests.append(owners[-1])
@@ -370,10 +370,10 @@ def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     first.stop(robot.now_ms)
     talk(robot, [(phone, first)], 20)
-    talk(robot, [(phone, Bytes())], PLACE_MS - 1000)
+    talk(robot, [(phone, RawClient())], PLACE_MS - 1000)
     SerialPort(robot)
     assert has_client(robot), "never before"
-    talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
+    talk(robot, [(phone, RawClient())], 3 * PLACE_MS)
     assert has_client(robot), "while nobody else comes"
     owner = remote(robot, keys, 3)
     SerialPort(robot)

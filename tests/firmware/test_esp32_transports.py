@@ -9,10 +9,10 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
-    Bytes,
     Client,
     End,
     LowEnergy,
+    RawClient,
     SerialPort,
     radios,
     session,
@@ -237,7 +237,7 @@ def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> Non
     talk(robot, ends[1:], AUTHORITY_MS + 50)  # the first one is out of reach
     assert upload_text(robot, ends[1:], second, "SB|F(1, 10)") == "OK"
     talk(robot, ends[1:], 20)
-    talk(robot, [(ends[1][0], Bytes())], AUTHORITY_MS + 50)
+    talk(robot, [(ends[1][0], RawClient())], AUTHORITY_MS + 50)
     assert wait_for_outcome(robot, ends[:1], request, 20_000) in ("OK", "NOT_BEGUN")
     fetch = first.fetch()
     assert wait_for_outcome(robot, ends[:1], fetch) == "OK"
@@ -279,7 +279,7 @@ def test_slow_notifications_delay_nobody_else() -> None:
 
 def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     robot = boot()
-    once = Bytes(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
+    once = RawClient(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
     end = LowEnergy(robot)
     ends: Ends = [(end, once)]
     robot.radio("k", b"\1")
@@ -295,7 +295,7 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     end.leave()
     second = LowEnergy(robot)
     robot.radio("k", b"\0")
-    talk(robot, [(second, Bytes())], 100)
+    talk(robot, [(second, RawClient())], 100)
     assert not second.lengths, "what waits for one client is not told to the next one"
 
 
@@ -308,7 +308,9 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
     assert upload_text(robot, ends, driver) == "OK"
     end.subscribe(False)
     talk(
-        robot, [(None, driver), (end, Bytes(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))], 3000
+        robot,
+        [(None, driver), (end, RawClient(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))],
+        3000,
     )
     assert actions_of(robot) == ["MOTORS 80 80"]
     end.send(bytes(STOP_BYTES))
@@ -331,7 +333,7 @@ def test_whoever_comes_again_begins_anew() -> None:
 
 def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
     robot = boot()
-    driver, typed_bytes = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
+    driver, typed_bytes = session(1, robot), RawClient(b"SI|F(0.2, 50)\n")
     end = SerialPort(robot)
     talk(robot, [(end, typed_bytes)], 400)
     assert actions_of(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
@@ -353,12 +355,12 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
     """An app that ends no lines may follow one that does: its line runs after three seconds all the
     same."""
     robot = boot()
-    end, typed_bytes = make(robot), Bytes(b"SHOW(1)\n")
+    end, typed_bytes = make(robot), RawClient(b"SHOW(1)\n")
     talk(robot, [(end, typed_bytes)], 100)
     assert b"// OK" in typed_bytes.heard
     end.leave()
     talk(robot, [], AUTHORITY_MS)
-    ends: Ends = [(make(robot), Bytes(b"SI|F(60, 50)"))]
+    ends: Ends = [(make(robot), RawClient(b"SI|F(60, 50)"))]
     talk(robot, ends, 2900)
     assert "MOTORS 50 50" not in actions_of(robot)
     talk(robot, ends, 300)
@@ -368,7 +370,7 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
 def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
     """Both would be read in the same memory: no program is of two."""
     robot = boot()
-    first, second = Bytes(b"SI|LOOP(2);"), Bytes()
+    first, second = RawClient(b"SI|LOOP(2);"), RawClient()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, ends, 50)
     second.to_send = b"SI|F(0.1, "
@@ -389,7 +391,7 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
 )
 def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes) -> None:
     robot = boot()
-    first, second = Bytes(bytes(4)), Bytes()
+    first, second = RawClient(bytes(4)), RawClient()
     ends: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, ends, 1500)
     first.to_send = b"SI|LOOP(2)\n"
@@ -445,7 +447,7 @@ def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
     for stop in (bytes(STOP_BYTES), b"\r\nS\r\n"):
         robot = boot()
         end = make(robot)
-        talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
+        talk(robot, [(end, RawClient(b"F(60, 80)\r\n"))], 50)
         assert actions_of(robot) == ["MOTORS 80 80"]
         end.send(b"// " + b"x" * 600 + stop)
         robot.wait(3)
@@ -460,7 +462,7 @@ def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
     """The core's `write` waits for a second meanwhile."""
     robot = boot()
     end = SerialPort(robot)
-    talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
+    talk(robot, [(end, RawClient(b"F(60, 80)\r\n"))], 50)
     robot.radio("Z", b"\1")
     end.send(b"?\r\n")  # the client has data to send
     robot.wait(100)
@@ -480,10 +482,12 @@ def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
     assert (status.outcome.values.damaged, status.outcome.values.overrun) == (0, 0)
 
 
-def paste(size: int, burst: int, gap_ms: int) -> Callable[[Esp32Robot, End, bytes, Bytes], None]:
+def paste(
+    size: int, burst: int, gap_ms: int
+) -> Callable[[Esp32Robot, End, bytes, RawClient], None]:
     """Return a function that sends a text at a radio's pace: writes of a size, so many at once."""
 
-    def send(robot: Esp32Robot, end: End, text: bytes, who: Bytes) -> None:
+    def send(robot: Esp32Robot, end: End, text: bytes, who: RawClient) -> None:
         for at in range(0, len(text), size * burst):
             for k in range(at, min(at + size * burst, len(text)), size):
                 end.send(text[k : k + size])
@@ -512,7 +516,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     by_cable.wait(2500)
     robot = boot()
     make, send = PACES[pace]
-    end, who = make(robot), Bytes()
+    end, who = make(robot), RawClient()
     send(robot, end, text, who)
     talk(robot, [(end, who)], 2500)
     assert who.heard == b"// OK\r\n// DONE\r\n"
@@ -524,7 +528,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
 def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> None:
     """Each has an answer, which a client reads late; earlier lines are not lost either."""
     robot = boot()
-    end, who = make(robot), Bytes()
+    end, who = make(robot), RawClient()
     if isinstance(end, LowEnergy):
         robot.radio("k", b"\1")
     else:

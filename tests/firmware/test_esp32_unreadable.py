@@ -12,7 +12,7 @@ from tests.machines.esp32 import (
     Esp32Robot,
     Kept,
 )
-from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.esp32_radio import LowEnergy, RawClient, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -48,7 +48,7 @@ def read_saved_state(robot: Esp32Robot, who: Session) -> str:
 @FAULTS
 def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     robot = boot(claimed_with_program(Keys()), fault)
-    stranger, typed_bytes = session(2, robot), Bytes(b"SI|F(60, 80)\n")
+    stranger, typed_bytes = session(2, robot), RawClient(b"SI|F(60, 80)\n")
     ends: Ends = [(None, stranger)]
     assert read_saved_state(robot, stranger) == "UNREADABLE"
     for request in (

@@ -17,9 +17,9 @@ from tests.machines.esp32 import (
     Kept,
 )
 from tests.support.esp32_radio import (
-    Bytes,
     LowEnergy,
     Network,
+    RawClient,
     port_of,
     radios,
     session,
@@ -225,7 +225,7 @@ def test_no_two_transports_have_the_same_challenge() -> None:
         "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
     asks = b"\0" + encode_frame(Frame(1, 1, 0, hello))
-    first, second = Bytes(asks), Bytes(asks)
+    first, second = RawClient(asks), RawClient(asks)
     ends: Ends = [(None, first), (LowEnergy(rebooted_robot), second)]
     talk(rebooted_robot, ends, 60)
     frames = [decode_frame(client.heard.strip(b"\0")) for client in (first, second)]
@@ -261,7 +261,7 @@ def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
     assert wait_for_outcome(robot, [(None, owner)], owner.disown(0)) == "OK"
     talk(robot, [], AUTHORITY_MS + 100)
     count_before = len(robot.did)
-    client, typed_bytes = remote(robot, None), Bytes(b"SI|F(1, 80)\n")
+    client, typed_bytes = remote(robot, None), RawClient(b"SI|F(1, 80)\n")
     ends: Ends = [(Network(robot), client), (Network(robot), typed_bytes)]
     for request in (client.hello(), client.ping(), client.status(), client.identify()):
         assert wait_for_outcome(robot, ends, request) == "OK"

@@ -16,7 +16,7 @@ from tests.support.owners import (
     BUTTON_RELEASED,
     FOREVER,
     Keys,
-    Owned,
+    OwnedRobot,
     owner_of,
     robots_of_both_kinds,
     state_of,
@@ -44,30 +44,30 @@ __all__ = ("robots_of_both_kinds",)  # a fixture
 
 
 def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == OWNED_BY_YOU
     assert table.tries(session) == "OK"
-    later = Owned(table.robot.memory(), seed=7)
+    later = OwnedRobot(table.robot.memory(), seed=7)
     assert owner_of(later, later.session()) == OWNED_BY_OTHER
     assert owner_of(later, later.session(keys, nonce=2)) == OWNED_BY_YOU
 
 
-def a_shorter_press(table: Owned, session: Session) -> PendingRequest[Any]:
+def a_shorter_press(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     table.hold(session, 1900)
     return request
 
 
-def a_press_before_it(table: Owned, session: Session) -> PendingRequest[Any]:
+def a_press_before_it(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     assert table.outcome(session, session.hello()) == "OK"
     table.hold(session, 2500)
     return session.claim(KEY_OWNER)
 
 
-def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
+def spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     for _ in range(40):  # edges down that no press follows
@@ -77,8 +77,8 @@ def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
 
 
 @pytest.mark.parametrize("what", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
-def test_what_confirms_no_claim(what: Callable[[Owned, Session], PendingRequest[Any]]) -> None:
-    table, keys = Owned(), Keys()
+def test_what_confirms_no_claim(what: Callable[[OwnedRobot, Session], PendingRequest[Any]]) -> None:
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
     assert keys.stored_keys == []
@@ -88,7 +88,7 @@ def test_what_confirms_no_claim(what: Callable[[Owned, Session], PendingRequest[
 class Late:
     """A session and its robot, with a line between them on which bytes are late, or is cut."""
 
-    def __init__(self, table: Owned, session: Session, late_ms: int) -> None:
+    def __init__(self, table: OwnedRobot, session: Session, late_ms: int) -> None:
         self.table, self.session = table, session
         self.ways = [Way(Fault("late", late_ms=late_ms), False, Random(0)) for _ in range(2)]
         self.is_cut = False
@@ -124,7 +124,7 @@ CLAIM_CASES = ["nothing", "cut", "cut, later not", "held", "held and cut", "take
 def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:
     """However long answers take, and whatever the result of the press. A key that the robot may
     have taken is kept: it is shown the next time."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     line = Late(table, session, late_ms)
     began_ms = table.robot.now_ms
@@ -151,7 +151,7 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
 
 
 def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() -> None:
-    table = Owned()
+    table = OwnedRobot()
     first, second = Keys(1), Keys(50)
     early, late = table.session(first, nonce=1), table.session(second, nonce=2)
     early.claim(KEY_OWNER)
@@ -177,7 +177,7 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
 @pytest.mark.sampled("cut_ms", keep=9)
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
 def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
@@ -185,13 +185,13 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     table.pass_time(session, 31)
     table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, cut_ms)
-    later = Owned(table.robot.memory(), seed=cut_ms)
+    later = OwnedRobot(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
     assert owner_of(later, later.session(keys, nonce=77)) == OWNED_BY_YOU
 
 
 def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     for _ in range(7):  # claims that were left before the button was held
         session.claim(KEY_OWNER)
@@ -217,7 +217,7 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
 
 
 def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     keys.is_full = True
     session = table.session(keys)
     assert table.outcome(session, session.claim(KEY_OWNER)) == str(UNKEPT)
@@ -230,7 +230,7 @@ def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
 
 
 def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     for place in (4, 4 + 31):  # both slots of the name
         table.robot.wear_out(place + 12)  # the first letter of its name
     session = table.session(keys)
@@ -238,12 +238,12 @@ def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> Non
     table.pass_time(session, 500)  # the robot has tried again
     assert table.claim(session) == "OK"
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
-    restarted_robot = Owned(table.robot.memory())
+    restarted_robot = OwnedRobot(table.robot.memory())
     assert owner_of(restarted_robot, restarted_robot.session()) == OWNED_BY_OTHER
 
 
 def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     assert table.outcome(session, session.name(b"NEW")) == "OK"
     table.robot.wear_out(536 + 8)
@@ -257,7 +257,7 @@ def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
 @pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])
 def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> None:
     """A confirmed claim does not confirm the next one, whatever its number of requests."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys, first)
     if by == "one whose answer was lost":
         session = table.claim_session(keys, first)
@@ -278,7 +278,7 @@ def test_a_press_for_who_has_gone_confirms_nobody_else(
     which: int, has_pressed: bool, silent_ms: int
 ) -> None:
     """Nor does that client's request turn the next press into another client's."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     first = table.session()
     assert table.outcome(first, first.hello()) == "OK"
     answer = table.ask_unsealed(first, "CLAIM", bytes([which]) + bytes([70] * KEY_BYTES))
@@ -299,7 +299,7 @@ def test_a_press_for_who_has_gone_confirms_nobody_else(
 
 
 def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
-    table, teacher_session, other = Owned(), Keys(), Keys(70)
+    table, teacher_session, other = OwnedRobot(), Keys(), Keys(70)
     table.claim_session(teacher_session)
     session = table.session(teacher_session, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
@@ -314,7 +314,7 @@ def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
 
 def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
     """Another session may come between challenge and tag."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     keys.mark_stale(keys.stored_keys[0])
     session = table.session(keys, nonce=9)
@@ -328,7 +328,7 @@ def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
 
 
 def test_a_teachers_key_drives_and_gives_a_robot_back() -> None:
-    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     session = table.session(teacher, nonce=2)
     assert table.claim(session, KEY_TEACHER) == "OK"
     assert owner_of(table, session) == FREE
@@ -345,7 +345,7 @@ def test_a_teachers_key_drives_and_gives_a_robot_back() -> None:
 
 
 def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
-    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     teacher_session = table.session(pupil, nonce=5)
@@ -374,7 +374,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: int) -> None:
     """This holds for any number of stops, and for any stops, starts and presses in between."""
-    rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
+    rng, table, pupil, teacher = Random(seed), OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     teacher_session = table.session(pupil, nonce=5)
@@ -410,7 +410,7 @@ def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: in
 
 
 def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys, KEY_TEACHER)
     table.claim_session(keys)
     table.hold(None, 11_000)
@@ -418,7 +418,7 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
         "later they forget nothing"
     )
     for milliseconds, owner in ((9800, OWNED_BY_YOU), (10_800, FREE)):
-        table = Owned(table.robot.memory(), seed=milliseconds)
+        table = OwnedRobot(table.robot.memory(), seed=milliseconds)
         table.pass_time(None, 1, BUTTON_HELD)  # a button that was down before the reset
         table.pass_time(None, milliseconds - 1)
         table.pass_time(None, 1, BUTTON_RELEASED)
@@ -434,7 +434,7 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
 
 def test_text_drives_an_owned_robot_only_where_it_may() -> None:
     """The owner may allow text, or a press of two seconds does until power-off."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
 
     def answer(line: bytes = b"SI|F(1, 80)\n") -> bytes:
@@ -453,12 +453,12 @@ def test_text_drives_an_owned_robot_only_where_it_may() -> None:
     assert table.robot.is_latched, "S stops it whatever text may do"
     table.hold(None, 2100)
     assert b"OK" in answer()
-    table = Owned(table.robot.memory())
+    table = OwnedRobot(table.robot.memory())
     assert b"tsc set text on" in answer()
 
 
 def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None:
-    table = Owned()
+    table = OwnedRobot()
     session = table.session()
     assert table.outcome(session, session.identify()) == "OK"
     table.pass_time(session, 3500)
@@ -480,7 +480,7 @@ HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what
 @pytest.mark.parametrize("holds", HELD_PROGRAMS)
 def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds: str) -> None:
     """Also while it still shows itself, or has just done so. Then its light shows the result."""
-    table = Owned()
+    table = OwnedRobot()
     robot, session = table.robot, table.session()
     assert table.outcome(session, session.hello()) == "OK"
     if text := HELD_PROGRAMS[holds]:
@@ -511,7 +511,7 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
 
 def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
     """A stranger may ask as often as the line carries it."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     assert table.tries(session) == "OK"
     table.robot.did.clear()
@@ -527,7 +527,7 @@ def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
 
 @pytest.mark.sampled(of="other builds of the firmware")
 def test_a_firmware_without_owners_says_so_and_is_free() -> None:
-    table = Owned(defines=("tiniscript_without_owners",))
+    table = OwnedRobot(defines=("tiniscript_without_owners",))
     session = table.session(Keys())
     assert table.claim(session) == "UNKNOWN_MESSAGE"
     assert session.robot

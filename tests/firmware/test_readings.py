@@ -10,7 +10,7 @@ from math import inf
 
 import pytest
 
-from tests.support.debugging import Debugged
+from tests.support.debugging import DebuggedRobot
 from tests.support.robot_on_host import KIT
 from tests.support.sensed_runs import BYTE_TICKS, LARGEST_DELAY_MS, is_steady, sensed_run
 from tests.support.shown_in_loops import largest_difference_ms, program
@@ -95,7 +95,7 @@ def test_no_reading_takes_more_of_a_line_than_a_value() -> None:
 
 
 def test_another_session_is_told_nothing() -> None:
-    robot = Debugged("SI|LOOP(FOREVER);X = DISTANCE;W(0.05);END_LOOP")
+    robot = DebuggedRobot("SI|LOOP(FOREVER);X = DISTANCE;W(0.05);END_LOOP")
     assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
     robot.session = Session(2, 9600, KIT.fingerprint)
     assert robot.robot.until(robot.session, robot.session.hello()) == OK
@@ -104,7 +104,7 @@ def test_another_session_is_told_nothing() -> None:
 
 
 def test_a_robot_that_cannot_is_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    robot = Debugged("SI|SHOW(1)")
+    robot = DebuggedRobot("SI|SHOW(1)")
     assert robot.session.robot is not None
     assert robot.session.robot.values.features & READINGS
     monkeypatch.setattr(handshake, "READINGS", 0)

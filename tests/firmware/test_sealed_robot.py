@@ -17,7 +17,7 @@ from tests.support.owners import (
     BUTTON_PRESSED,
     FOREVER,
     Keys,
-    Owned,
+    OwnedRobot,
     grants_key_request,
     owner_of,
     state_of,
@@ -51,15 +51,15 @@ MOST_TIMES, SHOWN_MS = 3, 500  # each piece again, and a key is shown
 
 
 def upload_and_capture(
-    table: Owned, session: Session, text: str
+    table: OwnedRobot, session: Session, text: str
 ) -> tuple[list[bytes], list[bytes]]:
     """Run a program; return the frames to the robot and those back."""
     return table.frames(session, session.upload(image_of(text), saves=False))
 
 
-def open_sealed_session(*defines: str) -> tuple[Owned, Session, Keys]:
+def open_sealed_session(*defines: str) -> tuple[OwnedRobot, Session, Keys]:
     """Return a robot, and a session whose seal both know, with its keys."""
-    table, keys = Owned(defines=defines), Keys()
+    table, keys = OwnedRobot(defines=defines), Keys()
     table.claim_session(keys)
     session = table.session(keys, nonce=4)
     assert owner_of(table, session) == OWNED_BY_YOU
@@ -161,7 +161,7 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
     assert request.outcome and request.outcome.status in (LOST, STATUSES["NOT_OWNER"])
 
 
-def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply[HelloReply]:
+def refused_by_a_stranger(table: OwnedRobot, session: Session, is_cut: bool) -> Reply[HelloReply]:
     """Open a session while a stranger refuses each tag before the robot answers; where the line
     `is_cut`, the tags do not reach the robot.
     """
@@ -223,7 +223,7 @@ def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
     for is_claimed in (False, True):
         table, session, _ = open_sealed_session()
         if not is_claimed:
-            table = Owned()
+            table = OwnedRobot()
             session = table.session()
         upload_and_capture(table, session, FOREVER)
         table.answer(Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
@@ -232,7 +232,7 @@ def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
 
 def test_a_teachers_stop_needs_the_teachers_seal() -> None:
     """A STOP written into the teacher's line has no authority: the owner's program continues."""
-    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     session = table.session(teacher, nonce=6)
@@ -272,12 +272,12 @@ def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
 PIECES = {1: "F(0.1, 80);", 3: "F(0.1, 80);B(0.1, 60);" * 20, 7: "F(0.1, 80);B(0.1, 60);" * 45}
 
 
-def unplug_cable(table: Owned, session: Session) -> None:
+def unplug_cable(table: OwnedRobot, session: Session) -> None:
     """The robot forgets the seal."""
     table.robot.step(flags=UNPLUGGED)
 
 
-def spend_number(table: Owned, session: Session) -> None:
+def spend_number(table: OwnedRobot, session: Session) -> None:
     """The session has one more number for it."""
     if session._sealing.seal:
         session._sealing.seal.sent_counter = LAST_COUNTER - 1
@@ -286,7 +286,7 @@ def spend_number(table: Owned, session: Session) -> None:
 @pytest.mark.parametrize("loses", [unplug_cable, spend_number])
 @pytest.mark.parametrize("pieces", PIECES)
 def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
-    pieces: int, loses: Callable[[Owned, Session], None]
+    pieces: int, loses: Callable[[OwnedRobot, Session], None]
 ) -> None:
     """It costs no time either: the computer waits for no piece that was under way."""
     image = image_of("SI|" + PIECES[pieces])
@@ -308,7 +308,7 @@ def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
 def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
     """This holds whatever the first request is, including one that needs no HELLO."""
     table, session, _ = open_sealed_session()
-    later = Owned(table.robot.memory(), seed=7)
+    later = OwnedRobot(table.robot.memory(), seed=7)
     later.robot.now_ms = table.robot.now_ms
     assert later.outcome(session, session.status()) == "OK"
     assert session._sealing.seal
@@ -321,7 +321,7 @@ def test_another_session_with_the_same_numbers_is_another_seal() -> None:
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
-        later = Owned(memory, seed=seed)
+        later = OwnedRobot(memory, seed=seed)
         assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
         for data in sent_bytes * 3:
             later.robot.wait(5, b"\0" + data + b"\0")

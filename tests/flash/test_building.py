@@ -258,7 +258,7 @@ print("Compiling a"); \
 print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)"); \
 sys.exit(1)"""
 # Makes the file of a board: its name, and the rows in it.
-MAKES = """
+BUILD_CODE = """
 def make(name, rows):
     made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", name)
     os.makedirs(made)
@@ -313,7 +313,7 @@ def test_a_firmware_that_is_too_large_is_built_with_less_and_says_so(
     chip: str, lacks: str, clone: Path, tmp_path: Path
 ) -> None:
     body = f"""
-{MAKES}
+{BUILD_CODE}
 name = sys.argv[sys.argv.index("-e") + 1]
 if name == "{chip}":
     {TOO_LARGE}
@@ -326,7 +326,7 @@ make(name, ":00000001FF\\n")
 
 
 def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
-    body = f'{MAKES}\nmake("uno", ":0400")'
+    body = f'{BUILD_CODE}\nmake("uno", ":0400")'
     build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
@@ -337,7 +337,7 @@ def test_a_build_that_does_not_end_well_has_made_nothing(
     end: str, clone: Path, tmp_path: Path
 ) -> None:
     """Files that it leaves do not count."""
-    body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
+    body = f'import signal\n{BUILD_CODE}\nmake("uno", ":00000001FF\\n")\n{end}'
     build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
@@ -373,7 +373,7 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
 
 
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
-    body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
+    body = f'{BUILD_CODE}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
     result = build_firmware(clone, fake_platformio(tmp_path, body))
     result.gives(2, "make room there", str(tmp_path / "cache"))

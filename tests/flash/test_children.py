@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
 PARENT_SCRIPT = 'sleep 3600 </dev/null >/dev/null 2>&1 & echo $! > "$1"; echo begun; {}'
 
 
-class Broken(Exception):
+class ProgressError(Exception):
     """The look at it has failed."""
 
 
@@ -32,7 +32,7 @@ def let_continue(text: str) -> None:
 
 def break_at_begin(text: str) -> None:
     if "begun" in text:
-        raise Broken
+        raise ProgressError
 
 
 def interrupt_at_begin(text: str) -> None:
@@ -47,10 +47,10 @@ CHILD_ENDS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | No
     "it is killed": ("kill -9 $$", let_continue, None),
     "it closes its ends and stays": ("exec sleep 3600 >&- 2>&-", let_continue,
                                      subprocess.TimeoutExpired),
-    "it is not waited for": ("sleep 3600", break_at_begin, Broken),
+    "it is not waited for": ("sleep 3600", break_at_begin, ProgressError),
     "Ctrl-C": ("sleep 3600", interrupt_at_begin, KeyboardInterrupt),
-    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", break_at_begin, Broken),
-    FIRST_WAITS_FOR_END: ("sleep 0.2", break_at_begin, Broken),
+    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", break_at_begin, ProgressError),
+    FIRST_WAITS_FOR_END: ("sleep 0.2", break_at_begin, ProgressError),
 }  # fmt: skip
 
 

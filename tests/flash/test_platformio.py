@@ -107,7 +107,7 @@ SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "
             "nano_elegoo4", "mega_elegoo4", "uno_sumo", "nano_sumo", "mega_sumo", "uno_tinibot2",
             "nano_tinibot2", "mega_tinibot2")  # fmt: skip
 
-NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner",
+OLD_BY_NEW_NANO = {"nano_new": "nano", "nano_new_liner": "nano_liner",
              "nano_new_elegoo4": "nano_elegoo4", "nano_new_sumo": "nano_sumo",
              "nano_new_tinibot2": "nano_tinibot2"}  # fmt: skip
 # Boards of PlatformIO, and where Arduino's `boards.txt` has them.
@@ -124,7 +124,7 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     names = re.findall(r"\[env:(\w+)\]", text)
-    assert set(names) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
+    assert set(names) == {*SKETCHES, *OLD_BY_NEW_NANO, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board
@@ -177,7 +177,7 @@ def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-@pytest.mark.parametrize(("new_env", "old_env"), NEW_NANOS.items())
+@pytest.mark.parametrize(("new_env", "old_env"), OLD_BY_NEW_NANO.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new_env: str, old_env: str
 ) -> None:

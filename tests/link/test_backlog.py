@@ -22,15 +22,15 @@ from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.session import Session
 
 CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
-PIECES = 400  # of it, 8,000 lines: half a minute at 115200 baud
-MOST_BYTES = 500_000  # most bytes kept of these
+PIECE_COUNT = 400  # of it, 8,000 lines: half a minute at 115200 baud
+MAX_KEPT_BYTES = 500_000  # most bytes kept of these
 
 
 class Chatterbox:
     """A port at which something talks, as fast as it is heard, and ends."""
 
     def __init__(self) -> None:
-        self.pieces = PIECES
+        self.pieces = PIECE_COUNT
         self.rest = b""
         self.is_over = threading.Event()
 
@@ -71,10 +71,10 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
     while (row := line.event(0.5)) is not None:
         events.append(row[1])
     line.close()
-    assert kept_bytes < MOST_BYTES
+    assert kept_bytes < MAX_KEPT_BYTES
     assert len(events) <= MOST_EVENTS + 1
     assert events[0].name == "MISSED"
-    assert events[0].count + len(events) - 1 == 20 * PIECES
+    assert events[0].count + len(events) - 1 == 20 * PIECE_COUNT
 
 
 class Socket(Chatterbox):

@@ -12,8 +12,8 @@ import tiniscript
 from tests.support.ble_robot import (
     ADDRESS,
     ADDRESS_PORT,
-    DRIVE,
     DRIVE_ACTIONS,
+    DRIVE_PROGRAM,
     HM10,
     LAMP_SERVICE,
     NAME,
@@ -23,7 +23,7 @@ from tests.support.ble_robot import (
     Peripheral,
     start_endless_upload,
 )
-from tests.support.command import LONG, Command, run_in_process
+from tests.support.command import LONG_PROGRAM, Command, run_in_process
 from tests.support.fake_bluez import ADVERTISING_INTERVAL_S, FakeBluez
 from tests.support.interrupted import interrupted_bell
 from tests.support.pty_robot import PtyRobot
@@ -31,7 +31,7 @@ from tests.support.waiting import until
 from tiniscript.link import known_ports
 from tiniscript.link.transports import event_loop
 
-OTHER = "AA:BB:CC:DD:EE:02"
+OTHER_ADDRESS = "AA:BB:CC:DD:EE:02"
 LARGEST = 65  # bytes of a frame on the wire
 
 
@@ -53,7 +53,7 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
     for count, port in enumerate((NAME, ADDRESS_PORT, "BLE://tini 1", ADDRESS_PORT.lower()), 1):
-        result = run_in_process("upload", "-e", DRIVE, "--port", port)
+        result = run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert result.out.splitlines()[-2:] == ["Done.", "Saved. The button starts it."]
         assert (ble.robot.actions, ble.connections) == (DRIVE_ACTIONS * count, 2 * count - 1)
@@ -78,7 +78,7 @@ def test_a_long_program_arrives_whole(
     ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
     bluez.add(ble)
     compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    run_in_process("compile", "-e", LONG, "-o", compiled_file)
+    run_in_process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
     assert run_in_process("upload", compiled_file, "--no-run", "--port", ADDRESS_PORT).code == 0
     assert run_in_process("show", "-o", robot_file, "--port", ADDRESS_PORT).code == 0
     assert robot_file.read_bytes() == compiled_file.read_bytes()
@@ -93,7 +93,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     ble = BleRobot(pty_robot)
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
-    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
     assert {kind for kind, _ in ble.written} == {"request"}
     assert pty_robot.actions == DRIVE_ACTIONS
 
@@ -153,7 +153,7 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, ADDRESS_PORT):
-        assert run_in_process("upload", "-e", DRIVE, "--port", port).code == 0
+        assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", port).code == 0
     assert ble.robot.actions[-3:] == DRIVE_ACTIONS
 
 
@@ -163,14 +163,14 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
 @pytest.mark.parametrize("delay_ms", [0, 4])
 def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, delay_ms: int) -> None:
     """Also where one says its name later."""
-    twin = Peripheral("TINI 1", OTHER)
+    twin = Peripheral("TINI 1", OTHER_ADDRESS)
     twin.late = delay_ms
     bluez.add(twin)
-    run_in_process("upload", "-e", DRIVE, "--port", NAME).gives(
-        3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER}"
+    run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", NAME).gives(
+        3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER_ADDRESS}"
     )
     assert ble.connections == 0
-    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
 
 
 @pytest.mark.parametrize(("name", "typed_name"), [
@@ -187,7 +187,7 @@ def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed_
 
 
 def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: BleRobot) -> None:
-    fake = Peripheral(ADDRESS, OTHER)
+    fake = Peripheral(ADDRESS, OTHER_ADDRESS)
     bluez.add(fake)
     assert run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).code == 0
     assert (ble.connections, fake.connections) == (1, 0)
@@ -195,12 +195,15 @@ def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: 
 
 def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBluez) -> None:
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
-    bluez.add(Echo(hostile, OTHER))
+    bluez.add(Echo(hostile, OTHER_ADDRESS))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP_SERVICE))
     result = run_in_process("doctor", "--ports", "--ask").gives(0)
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in result.out.splitlines()}
     assert rows[ADDRESS_PORT] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
-    assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", ADDRESS_PORT]
+    assert [port for port in rows if port.startswith("ble")] == [
+        f"ble://{OTHER_ADDRESS}",
+        ADDRESS_PORT,
+    ]
     assert not any(sign in result.out for sign in "\x1b\r\u202e")
     # from now on it has this name
     assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
@@ -215,16 +218,16 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
 
 def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
     with PtyRobot(ble.robot.kit) as second_robot:
-        bluez.add(BleRobot(second_robot, "Tini 2", OTHER, NORDIC))
+        bluez.add(BleRobot(second_robot, "Tini 2", OTHER_ADDRESS, NORDIC))
         ports = ("--port", NAME, "--port", "ble://tini 2")
-        for words in (("upload", "-e", DRIVE), ("stop",)):
+        for words in (("upload", "-e", DRIVE_PROGRAM), ("stop",)):
             run_in_process(*words, *ports).gives(0, "Done: 2 of 2.")
         assert (ble.robot.actions[:3], second_robot.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
 
 
 def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
     assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
-    for words in (("stop",), ("upload", "-e", DRIVE)):
+    for words in (("stop",), ("upload", "-e", DRIVE_PROGRAM)):
         run_in_process(*words, "--all").gives(0, "Done: 1 of 1.")
 
 
@@ -232,7 +235,7 @@ def test_a_device_that_is_not_a_robot_is_reported(
     bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
-    bluez.add(Peripheral("lamp", OTHER, LAMP_SERVICE))
+    bluez.add(Peripheral("lamp", OTHER_ADDRESS, LAMP_SERVICE))
     run_in_process("doctor", "--identify", "--port", "ble://lamp").gives(
         3, "does not offer a robot's"
     )
@@ -256,7 +259,7 @@ def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(
 ) -> None:
     for count in (1, 2):
         with tiniscript.connect(ADDRESS_PORT) as robot:
-            robot.upload(DRIVE)
+            robot.upload(DRIVE_PROGRAM)
             robot.wait()
             assert bluez.devices[ADDRESS].is_connected
         assert not bluez.devices[ADDRESS].is_connected

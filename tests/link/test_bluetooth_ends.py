@@ -12,8 +12,8 @@ import pytest
 
 from tests.support.ble_robot import (
     ADDRESS_PORT,
-    DRIVE,
     DRIVE_ACTIONS,
+    DRIVE_PROGRAM,
     HM10,
     NAME,
     NORDIC,
@@ -21,7 +21,7 @@ from tests.support.ble_robot import (
     Peripheral,
     start_endless_upload,
 )
-from tests.support.command import LONG, Tsc, run_in_process
+from tests.support.command import LONG_PROGRAM, Tsc, run_in_process
 from tests.support.fake_bluez import FakeBluez
 from tiniscript.link import errors, ports
 
@@ -39,13 +39,13 @@ def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
     ble.fails_at = stage
     for language in ("en", "es"):
         result = run_in_process(
-            "upload", "-e", DRIVE, "--port", ADDRESS_PORT, "--lang", language
+            "upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT, "--lang", language
         ).gives(3, out="")
         assert result.err.startswith("tsc: ")
         assert ADDRESS_PORT.upper() in result.err.upper()
     assert ble.robot.actions == []
     ble.fails_at = ""
-    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
     assert ble.robot.actions == DRIVE_ACTIONS
 
 
@@ -59,16 +59,18 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     assert run_in_process("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
     assert run_in_process("show", "-o", old_path, "--port", ADDRESS_PORT).code == 0
     ble.parts_after = len(ble.received_data) + heard_count
-    result = run_in_process("upload", "-e", LONG, "--port", ADDRESS_PORT)
+    result = run_in_process("upload", "-e", LONG_PROGRAM, "--port", ADDRESS_PORT)
     assert result.code == 3
     assert f"lost the Bluetooth connection to {ADDRESS_PORT}" in result.err
     ble.parts_after = None
     wait_for_dead_man_stop(ble)
     compiled_file = tmp_path / "ours.bin"
-    run_in_process("compile", "-e", LONG, "-o", compiled_file)
+    run_in_process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
     assert run_in_process("show", "-o", new_path, "--port", ADDRESS_PORT).code == 0
     assert new_path.read_bytes() in (old_path.read_bytes(), compiled_file.read_bytes())
-    assert run_in_process("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
+    assert (
+        run_in_process("upload", "-e", LONG_PROGRAM, "--no-run", "--port", ADDRESS_PORT).code == 0
+    )
 
 
 def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
@@ -78,7 +80,7 @@ def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
     bluez.part(ble)
     command.wait_for_result().gives(3, f"lost the Bluetooth connection to {ADDRESS_PORT}")
     wait_for_dead_man_stop(ble)
-    assert run_in_process("upload", "-e", DRIVE, "--port", NAME).code == 0
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", NAME).code == 0
     port = ports.open_port(ADDRESS_PORT, 9600)
     assert port.read(1) == b""
     bluez.part(ble)

@@ -26,9 +26,9 @@ from tiniscript.link.transports import broker  # noqa: E402
 from tiniscript.link.transports.broker import MESSAGE_BYTES, SKIPPED_BYTES, Access, Broker  # noqa: E402
 
 ROBOTS = 30
-LAST = "tests/last"
-LET_IN = bytes((0x20, 2, 0, 0))
-PIECE = bytes(65_536)
+LAST_TOPIC = "tests/last"
+CONNACK = bytes((0x20, 2, 0, 0))
+LARGE_PIECE = bytes(65_536)
 
 
 @pytest.fixture
@@ -129,7 +129,7 @@ def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: i
 
 def flush(client: Broker) -> None:
     """Wait until the broker has taken all that a client has said."""
-    client._client.publish(LAST, b"", qos=1).wait_for_publish(HANG_LIMIT_S)
+    client._client.publish(LAST_TOPIC, b"", qos=1).wait_for_publish(HANG_LIMIT_S)
 
 
 def retained_topics(mosquitto: Mosquitto) -> list[str]:
@@ -142,10 +142,10 @@ def retained_topics(mosquitto: Mosquitto) -> list[str]:
 
     late_client._client.on_message = keep
     late_client._client.subscribe("#")
-    late_client._client.publish(LAST, b"")  # retained messages precede later ones
-    until(lambda: LAST in texts, "all that is retained has come")
+    late_client._client.publish(LAST_TOPIC, b"")  # retained messages precede later ones
+    until(lambda: LAST_TOPIC in texts, "all that is retained has come")
     late_client.close()
-    return texts[: texts.index(LAST)]
+    return texts[: texts.index(LAST_TOPIC)]
 
 
 def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
@@ -213,11 +213,11 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
         peer, _ = listening.accept()
         with peer:
             peer.recv(4096)
-            peer.sendall(LET_IN + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
+            peer.sendall(CONNACK + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
             peer.sendall(message(size))
             try:
                 while sent_count < size:
-                    sent_count += peer.send(PIECE)
+                    sent_count += peer.send(LARGE_PIECE)
             except ConnectionError:
                 pass
 

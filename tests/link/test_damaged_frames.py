@@ -22,9 +22,9 @@ from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 FRAMES = 250_000  # damaged ones, in the tests
 LARGE_FRAMES = 100_000
 LINES = 200  # that are judged at a time; a line has about 500 damaged frames
-SAMPLED = 5  # lines in the tests
-LARGE_SAMPLED = 1
-SAMPLED_OF = 1000  # one in so many lines, in a campaign
+LINE_COUNT = 5  # lines in the tests
+LARGE_LINE_COUNT = 1
+SAMPLE_INTERVAL = 1000  # one in so many lines, in a campaign
 SEED = 4
 
 
@@ -109,7 +109,7 @@ def test_no_wrong_frame_of_many_damaged_ones(is_large: bool) -> None:
 
 @pytest.mark.parametrize("is_large", [False, True])
 def test_python_finds_the_same_in_them(is_large: bool) -> None:
-    for number in range(LARGE_SAMPLED if is_large else SAMPLED):
+    for number in range(LARGE_LINE_COUNT if is_large else LINE_COUNT):
         judge_in_python(cpp_damage(is_large).line(SEED, number), is_large)
 
 
@@ -117,6 +117,6 @@ if __name__ == "__main__":
     options = make_options(10_000_000, 1_000_000, "large")
     judges = cpp_damage(options.large)
     damaged, lines = damage_frames(judges, options.count, options.seed)
-    for sampled in range(0, lines, SAMPLED_OF):
+    for sampled in range(0, lines, SAMPLE_INTERVAL):
         judge_in_python(judges.line(options.seed, sampled), options.large)
     print(f"{damaged} damaged frames in {lines} lines: nothing wrong")

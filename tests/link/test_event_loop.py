@@ -17,7 +17,7 @@ async def fail() -> None:
     raise ValueError("so it is")
 
 
-class Endless:
+class EndlessCoroutine:
     """A coroutine that ends when it is cancelled."""
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ def test_results_and_failures_come_back() -> None:
 
 
 def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
-    loop, endless = EventLoop(), Endless()
+    loop, endless = EventLoop(), EndlessCoroutine()
     with pytest.raises(TimeoutError):
         loop.run(endless.work(), 0)
     loop.run(asyncio.sleep(0), 100)
@@ -51,7 +51,7 @@ def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
 
 
 def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> None:
-    loop, endless = EventLoop(), Endless()
+    loop, endless = EventLoop(), EndlessCoroutine()
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(event_loop, "Bell", interrupted_bell(lambda: endless.has_begun.wait(100)))
         loop.run(endless.work(), 100)

@@ -38,12 +38,12 @@ def recorded_bytes() -> list[bytes]:
     return recordings
 
 
-OWN_ROWS = recorded_bytes()
+ROBOT_RECORDING = recorded_bytes()
 
 
 def test_there_are_a_robot_s_bytes_to_look_at() -> None:
-    assert len(OWN_ROWS) > 100
-    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in OWN_ROWS) > 20
+    assert len(ROBOT_RECORDING) > 100
+    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in ROBOT_RECORDING) > 20
 
 
 # -- each board ---------------------------------------------------------------------------------
@@ -137,7 +137,7 @@ def test_much_noise_is_not_a_board() -> None:
         assert identify_stranger(bytes(rng.choices(range(256), k=500))) is None
 
 
-@given(st.lists(st.sampled_from(OWN_ROWS), min_size=1, max_size=6), st.binary(max_size=20))
+@given(st.lists(st.sampled_from(ROBOT_RECORDING), min_size=1, max_size=6), st.binary(max_size=20))
 def test_a_robot_is_not_a_board(traffic: list[bytes], noise: bytes) -> None:
     """Frames and lines are recognized first, with any noise around them."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
@@ -162,7 +162,7 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 @pytest.mark.parametrize("piece", range(200))
 def test_a_piece_of_a_robot_s_bytes_is_not_a_board(piece: int) -> None:
     rng = random.Random(piece)
-    data = b"".join(rng.choices(OWN_ROWS, k=5))
+    data = b"".join(rng.choices(ROBOT_RECORDING, k=5))
     start, end = sorted(rng.randrange(len(data) + 1) for _ in range(2))
     assert identify_board(data[start:end]) is None
 

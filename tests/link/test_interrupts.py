@@ -22,7 +22,7 @@ from tiniscript.link.transports.pushed import PushedTransport
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no timer of signals")
 
 INTERRUPT_COUNT = 1_500
-FEW_HAILS = 8  # a task that takes a while to cancel
+HAIL_COUNT = 8  # a task that takes a while to cancel
 
 
 class Port(PushedTransport):
@@ -76,7 +76,7 @@ def test_a_line_goes_on_and_still_stops() -> None:
 @pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
 def test_an_event_loop_goes_on() -> None:
     loop = EventLoop()
-    interrupt_often(lambda: loop.run(asyncio.sleep(0), 100), FEW_HAILS)
+    interrupt_often(lambda: loop.run(asyncio.sleep(0), 100), HAIL_COUNT)
     assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     loop.close()
 

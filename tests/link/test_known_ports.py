@@ -10,21 +10,22 @@ import pytest
 
 from tiniscript.link import known_ports
 
-COMMANDS, PORTS = 6, 8
-REMEMBERS = f"""
+COMMAND_COUNT, PORT_COUNT = 6, 8
+REMEMBER_SCRIPT = f"""
 import sys
 from tiniscript.link import known_ports
-for number in range({PORTS}):
+for number in range({PORT_COUNT}):
     known_ports.remember(f"socket://10.0.{{sys.argv[1]}}.{{number}}:1", "R", is_used=False)
 """
 
 
 def test_commands_at_once_lose_no_port() -> None:
     processes = [
-        subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)
+        subprocess.Popen([sys.executable, "-c", REMEMBER_SCRIPT, str(k)])
+        for k in range(COMMAND_COUNT)
     ]
-    assert [process.wait() for process in processes] == [0] * COMMANDS
-    assert len(known_ports.remembered_ports().name_by_port) == COMMANDS * PORTS
+    assert [process.wait() for process in processes] == [0] * COMMAND_COUNT
+    assert len(known_ports.remembered_ports().name_by_port) == COMMAND_COUNT * PORT_COUNT
 
 
 def test_a_school_has_more_than_a_hundred_robots() -> None:

@@ -181,7 +181,7 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
 # -- the computer ---------------------------------------------------------------------------------
 
 
-WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the checksum
+SENT_BYTES = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the checksum
 
 
 @pytest.mark.parametrize(
@@ -201,7 +201,7 @@ def test_what_is_lost_is_sent_again_and_no_more(
     taking = InOrderReceiver(lost_numbers, unanswered)
     robot = AnsweringRobot(taking)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.received == WHOLE and robot.has_commit
+    assert taking.received == SENT_BYTES and robot.has_commit
     assert len(robot.data) == count
     assert len({seq for seq, *_ in robot.data}) == count, "two frames have one number"
     assert 2 <= robot.most_waiting <= LARGE_WINDOW
@@ -216,7 +216,7 @@ def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window
     taking = InOrderReceiver()
     robot = AnsweringRobot(taking, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.received == WHOLE
+    assert taking.received == SENT_BYTES
     is_small = largest <= SMALL_FRAME
     assert robot.longest == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
     assert robot.most_waiting == max(1, min(window, LARGE_WINDOW))
@@ -249,7 +249,7 @@ def test_a_robot_that_takes_nothing_is_given_up(
 
 def test_a_robot_that_jumps_to_and_fro_has_an_end() -> None:
     rng = random.Random(5)
-    robot = AnsweringRobot(lambda *_: (OK, rng.randrange(len(WHOLE))))
+    robot = AnsweringRobot(lambda *_: (OK, rng.randrange(len(SENT_BYTES))))
     assert robot.run(robot.session.upload(IMAGE)) == LOST
     assert not robot.has_commit
 

@@ -25,7 +25,7 @@ UNDOS = 100
 # -- a radio --------------------------------------------------------------------------------------
 
 
-class Split(World):
+class SplitWorld(World):
     """Radios that send pieces."""
 
     is_split = True
@@ -46,7 +46,9 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> N
 @pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
 def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""
-    counts = Counter(run_upload_scenario(cpp_link(is_large), seed, Split) for seed in range(count))
+    counts = Counter(
+        run_upload_scenario(cpp_link(is_large), seed, SplitWorld) for seed in range(count)
+    )
     assert counts["done"] > count * least, counts
 
 
@@ -92,6 +94,6 @@ if __name__ == "__main__":
     one = (
         one_undo
         if options.undos
-        else partial(run_upload_scenario, world_of=Split if options.pieces else World)
+        else partial(run_upload_scenario, world_of=SplitWorld if options.pieces else World)
     )
     each_seed(partial(one, link_library(options.large)), options)

@@ -19,13 +19,13 @@ from tiniscript.link import messages
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
 
 LIVE, HELLO = (messages.BY_NAME[name].number for name in ("LIVE", "HELLO"))
-RUN = 16
+RUN_MODE = 16
 KIT = robots.load("tinibot").kit
 EPOCH = 9  # of the robot when it begins; HELLO makes it one more
 TEXTS = ("SI|F(5, 80)", "SI|X = 0; LOOP(3); X = X + 1; END_LOOP; SHOW(X)", "SI|SHOW(DISTANCE)")
 CODES = [unpack(compile_text(text, KIT).image).code for text in TEXTS]
-STARTED = "START live, run 1"
-NOTHING = Step(b"", [])
+STARTED_ACTION = "START live, run 1"
+EMPTY_STEP = Step(b"", [])
 SEED = 5
 FRAMES = 1500
 
@@ -40,7 +40,7 @@ def open_session(epoch: int = EPOCH) -> CppLink:
 
 
 def live_data(code: bytes, seq: int = 2, epoch: int = EPOCH + 1) -> bytes:
-    return encode_frame(Frame(LIVE, seq, epoch, bytes([RUN]) + code))
+    return encode_frame(Frame(LIVE, seq, epoch, bytes([RUN_MODE]) + code))
 
 
 def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
@@ -60,7 +60,7 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
             assert steps[0] == steps[1], data.hex()
         if number % 3 == 0 and data != live_data(code):
             continue
-        started += STARTED in steps[0].did
+        started += STARTED_ACTION in steps[0].did
     assert started > FRAMES // 4
 
 
@@ -91,14 +91,14 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
     for offset in (2, 3, 7, 9, 10, 11):
         damage = bytearray(live_data(CODES[0]))
         damage[offset] ^= 0x40 if offset < 8 else 0x11
-        assert open_session().step(10, bytes(damage)) == NOTHING, offset
+        assert open_session().step(10, bytes(damage)) == EMPTY_STEP, offset
     wrong_packets = (b"\x01\0", b"\x05\0", b"\x01\x01\0", b"\xff\0")
     ends = [(10 + messages.SILENCE_MS, b"\0"), *((10, data) for data in wrong_packets)]
     for code in CODES:
         for now_ms, end in ends:
             robot = open_session()
             assert not robot.step(10, live_data(code)[:-1]).did
-            assert robot.step(now_ms, end) == NOTHING, (code, end)
+            assert robot.step(now_ms, end) == EMPTY_STEP, (code, end)
 
 
 @pytest.mark.parametrize(("verb", "interruption"), [("", "b"), ("r", "f")], ids=["button", "fault"])
@@ -118,7 +118,7 @@ def test_a_stop_ends_the_frame_and_then_the_run() -> None:
     robot = open_session()
     assert not robot.step(10, live_data(CODES[0])[:-1]).did
     actions = robot.step(10, bytes(8)).did
-    assert actions.index(STARTED) < actions.index("PINS OFF") < actions.index("STOP")
+    assert actions.index(STARTED_ACTION) < actions.index("PINS OFF") < actions.index("STOP")
     assert not robot.step(20, bytes(1)).did
 
 

@@ -17,7 +17,7 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.statuses import name_of
 
-LIVES = 2000  # in the tests
+LINE_COUNT = 2000  # in the tests
 LINES = 50  # of one robot
 SEED = 4
 LIVE = BY_NAME["LIVE"].number
@@ -72,8 +72,8 @@ def line_of(number: int) -> bytes:
 
 def test_live_lines_over_a_bad_radio() -> None:
     """None is executed twice, however many times its answer is lost."""
-    counts = send_live_lines(cpp_link(), LIVES, SEED)
-    assert counts["OK"] > LIVES * 0.8 and counts["sent again"] > LIVES * 0.1, counts
+    counts = send_live_lines(cpp_link(), LINE_COUNT, SEED)
+    assert counts["OK"] > LINE_COUNT * 0.8 and counts["sent again"] > LINE_COUNT * 0.1, counts
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.command import LONG, Command, Tsc, process, run_in_process
+from tests.support.command import LONG_PROGRAM, Command, Tsc, process, run_in_process
 from tests.support.network import BadNetwork
 from tests.support.virtual_command import FOREVER, Robot, robot
 from tests.support.waiting import HANG_LIMIT_S, until
@@ -294,7 +294,7 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
         ) as network,
         announce(f"far-{PROCESS_ID}", "127.0.0.1", network.port),
     ):
-        result = run_in_process("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
+        result = run_in_process("upload", "-e", f"SB|{LONG_PROGRAM}", "--port", port).gives(0, "")
         checksum = result.out.partition("checksum ")[2][:8]
         assert f"program {checksum}" in run_in_process("doctor", "--port", port).out
         command = Command("upload", "-e", FOREVER, "--port", port)

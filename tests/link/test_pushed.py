@@ -12,7 +12,7 @@ from tiniscript.link.transports import READ_S
 from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, PushedTransport
 
 
-class Waits:
+class Bell:
     """The bell of one thread, which counts how many times it would have waited.
 
     `then` delivers the frames that arrive meanwhile.
@@ -33,8 +33,8 @@ class Waits:
             self.port.add_received(self.then.pop())
 
 
-def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Waits]:
-    port, bell = PushedTransport(), Waits()
+def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Bell]:
+    port, bell = PushedTransport(), Bell()
     monkeypatch.setattr(port, "_bell", bell)
     bell.port = port
     return port, bell

@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.owners import KIT, Keys, Owned
-from tests.support.queued_requests import OWN, STOPS
-from tests.support.remote_readings import RELEASED, remote_readings
+from tests.support.owners import KIT, Keys, OwnedRobot
+from tests.support.queued_requests import OWN_STOP, STOPS
+from tests.support.remote_readings import RELEASED_READINGS, remote_readings
 from tests.support.session_frames import greet as described
 from tests.support.unsent_requests import image, open_session
 from tiniscript.base.kit import YES_NO, Device, Kit
@@ -181,7 +181,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
         assert remote.robot.remote() == remote_readings(remote.held)
         remote.loses = lambda: True
         remote.talk(HOLD_MS)
-        assert remote.robot.remote() == RELEASED
+        assert remote.robot.remote() == RELEASED_READINGS
         remote.loses = lambda: False
         remote.holds(NOTHING_PRESSED)
         remote.talk(250)
@@ -205,7 +205,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
         remote.holds(NOTHING_PRESSED)
         remote.talk(HOLD_MS)
         for _ in range(10):
-            assert remote.robot.remote() == RELEASED
+            assert remote.robot.remote() == RELEASED_READINGS
             remote.talk(20)
     assert read_count > 0.9 * look_count, (read_count, look_count)
     assert remote.session.is_open
@@ -232,7 +232,7 @@ def test_whoever_falls_silent_holds_nothing() -> None:
     robot.talk(session, HOLD_MS - 50)
     assert robot.remote() == remote_readings(KEY_UP)
     robot.talk(session, 100)
-    assert robot.remote() == RELEASED
+    assert robot.remote() == RELEASED_READINGS
 
 
 def test_two_who_press_on_one_line() -> None:
@@ -295,7 +295,7 @@ def test_requests_that_never_rest_leave_keys_their_turn() -> None:
 def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: int) -> None:
     """They come at any moment, also while the robot is shown a key, which it forgets in silence."""
     rng = random.Random(seed)
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     robot, session = table.robot, table.session(keys, nonce=4)
     requests: list[PendingRequest[Any]] = []
@@ -378,7 +378,7 @@ def test_a_stop_by_somebody_else_voids_what_is_held(stop_kind: str) -> None:
     robot.talk(session, 1000)  # it hears of the stop
     check_nothing_held_at_start(session, robot)
     robot.talk(session, HOLD_MS)
-    assert robot.remote() == RELEASED
+    assert robot.remote() == RELEASED_READINGS
     session.press(*KEY_UP)
     robot.talk(session, 60)
     assert robot.remote() == remote_readings(KEY_UP)
@@ -391,13 +391,13 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     """
     rng = random.Random(seed)
     session, robot = open_session()
-    stop_kind = rng.choice((*STOPS, OWN))
+    stop_kind = rng.choice((*STOPS, OWN_STOP))
     assert robot.until(session, session.upload(image(DRIVE_PROGRAM), saves=False)) == OK
     for _ in range(rng.randint(1, 3)):
         for speaker in range(rng.randint(1, 2)):
             session.press(rng.randint(1, 63), rng.randint(-100, 100), speaker=speaker)
         robot.talk(session, rng.choice((0, 1, 20, 60, 200)))
-    if stop_kind == OWN:
+    if stop_kind == OWN_STOP:
         session.stop(robot.now_ms)
     else:
         session.receive(STOPS[stop_kind](robot, session), robot.now_ms)
@@ -408,7 +408,7 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     for _ in range(70):
         robot.talk(session, 10)
         has_begun = has_begun or bool(robot.codes())
-        assert not has_begun or robot.remote() == RELEASED, stop_kind
+        assert not has_begun or robot.remote() == RELEASED_READINGS, stop_kind
     assert has_begun, stop_kind
 
 
@@ -427,7 +427,7 @@ def check_nothing_held_at_start(session: Session, robot: HostFirmware) -> None:
     for _ in range(500):
         session.receive(robot.step(session.poll(robot.now_ms)), robot.now_ms)
         if robot.codes():
-            assert robot.remote() == RELEASED
+            assert robot.remote() == RELEASED_READINGS
             return
     raise AssertionError((request.outcome, run))
 
@@ -473,13 +473,13 @@ def test_a_robot_says_that_it_has_one_where_its_kit_leaves_room(count: int) -> N
 def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
     defines: tuple[str, ...],
 ) -> None:
-    table, keys = Owned(defines=defines), Keys()
+    table, keys = OwnedRobot(defines=defines), Keys()
     table.claim_session(keys)
     stranger = Session(9, 9600, KIT.fingerprint)
     assert table.robot.until(stranger, stranger.hello()) == OK
     refused_request = stranger.press(*KEY_UP)
     assert table.robot.until(stranger, refused_request) == STATUSES["NOT_OWNER"]
-    assert table.robot.remote() == RELEASED
+    assert table.robot.remote() == RELEASED_READINGS
     owner = table.session(keys, nonce=4)
     assert table.robot.until(owner, owner.hello()) == OK
     assert table.robot.until(owner, owner.press(*KEY_UP)) == OK
@@ -536,7 +536,7 @@ def test_a_word_of_an_earlier_epoch_is_stale() -> None:
     late_word = wire.keys(KEY_UP)
     wire.robot.wait(10, bytes(4))
     assert wire.answer(late_word) == "STALE"
-    assert wire.robot.remote() == RELEASED
+    assert wire.robot.remote() == RELEASED_READINGS
     assert wire.answer(wire.keys(KEY_UP, wire.epoch + 1)) == "OK"
     assert wire.robot.is_latched
 
@@ -548,13 +548,13 @@ def test_a_word_that_comes_twice_counts_once() -> None:
     assert wire.answer(word) == "OK"
     assert wire.answer(wire.keys(NOTHING_PRESSED)) == "OK"
     assert wire.answer(word) == "STALE"
-    assert wire.robot.remote() == RELEASED
+    assert wire.robot.remote() == RELEASED_READINGS
     last_word = wire.keys(KEY_A)
     assert wire.answer(last_word) == "OK"
     wire.robot.wait(HOLD_MS - 100)
     assert wire.answer(last_word) == "OK"
     wire.robot.wait(100)
-    assert wire.robot.remote() == RELEASED
+    assert wire.robot.remote() == RELEASED_READINGS
 
 
 @pytest.mark.parametrize("split", range(1, 14))
@@ -577,7 +577,7 @@ def test_a_thousand_words_in_a_burst() -> None:
     assert wire.answer(wire.keys(KEY_A)) == "OK"
     assert wire.robot.remote() == remote_readings(KEY_A)
     wire.robot.wait(HOLD_MS)
-    assert wire.robot.remote() == RELEASED
+    assert wire.robot.remote() == RELEASED_READINGS
 
 
 def test_keys_between_the_pieces_of_a_program() -> None:

@@ -24,9 +24,9 @@ from tests.support.campaign import each_seed, make_options
 from tests.support.images import TINIBOT, image_of
 from tests.support.queued_requests import (
     ACTING_REQUESTS,
-    LONG,
-    NOTHING,
-    OTHERS,
+    LONG_PROGRAM,
+    NO_LOSSES,
+    OTHER_REQUESTS,
     STOPS,
     Losses,
     Wire,
@@ -47,10 +47,15 @@ from tiniscript.link.session import Session
 
 QUIET_MS = 8000
 LATER_MS = 600  # extra or missing wait of a session with losses
-PROGRAMS = ("SI|SHOW(1);F(0.2, 50);SHOW(2)", LONG, "SI|X = 0;W(0.1);SHOW(1 / X)", "SI|F(60, 50)")
+PROGRAMS = (
+    "SI|SHOW(1);F(0.2, 50);SHOW(2)",
+    LONG_PROGRAM,
+    "SI|X = 0;W(0.1);SHOW(1 / X)",
+    "SI|F(60, 50)",
+)
 
 
-class Said(NamedTuple):
+class UseResult(NamedTuple):
     what: list[str]
     took_ms: list[int]
 
@@ -64,11 +69,11 @@ def first_use(rng: random.Random) -> Wire:
         wire.turns(300)
     for _ in range(rng.randint(1, 4)):
         for _ in range(rng.randint(0, 3)):
-            rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHERS)(wire.session)
-        wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
+            rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHER_REQUESTS)(wire.session)
+        wire.loses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
         wire.turns(rng.choice((1, 3, 8, 30, 300)))
         end_first_use(rng, wire)
-    wire.loses = NOTHING
+    wire.loses = NO_LOSSES
     wire.turns(wire.late_ms)
     wire.robot.step(b"".join(wire.under_way))
     wire.under_way.clear()
@@ -117,7 +122,7 @@ def restart(rng: random.Random, wire: Wire) -> None:
     wire.robot = new_robot
 
 
-def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
+def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> UseResult:
     """Make some requests one after the other; return the results."""
     results: list[str] = []
     took_ms: list[int] = []
@@ -150,7 +155,8 @@ def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Sai
         results += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
     robot.talk(session, 1500)
     results += [str(event) for event in session.events()]
-    return Said([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1", row) for row in results],
+    return UseResult([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1",
+        row) for row in results],
                 took_ms)  # fmt: skip
 
 

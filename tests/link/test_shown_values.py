@@ -15,7 +15,7 @@ from tiniscript.link.payloads import DoneEvent
 from tiniscript.link.session import PLACE_QUESTION, Session
 
 PROGRAM = unpack(pack("SI", 0, FORWARD)).checksum
-OTHER = 0xABCDEF01
+OTHER_CHECKSUM = 0xABCDEF01
 EPOCH = 10
 
 
@@ -79,13 +79,13 @@ def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> N
     order."""
     session = greet(features=PLACES)
     assert events_after(session, value(1, 3, 2)) == [], "it waits"
-    reply = answer_to_ping(session, 3, OTHER, 20)
+    reply = answer_to_ping(session, 3, OTHER_CHECKSUM, 20)
     assert events_after(session, value(2, 3, 7)) == []
     assert events_after(session, reply) == [
-        make_shown_event(3, OTHER, 2),
-        make_shown_event(3, OTHER, 7),
+        make_shown_event(3, OTHER_CHECKSUM, 2),
+        make_shown_event(3, OTHER_CHECKSUM, 7),
     ]
-    assert events_after(session, value(3, 3, 2)) == [make_shown_event(3, OTHER, 2)]
+    assert events_after(session, value(3, 3, 2)) == [make_shown_event(3, OTHER_CHECKSUM, 2)]
     assert session.poll(30) == b""
     assert events_after(session, value(4, 4, 2)) == []
     assert events_after(session, answer_to_ping(session, 4, PROGRAM, 40)) == [
@@ -96,7 +96,7 @@ def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> N
 def test_a_program_that_has_ended_meanwhile_has_no_name() -> None:
     session = greet(features=PLACES)
     assert events_after(session, value(1, 3)) == []
-    assert events_after(session, answer_to_ping(session, 3, OTHER, 20, STATE_IDLE)) == [
+    assert events_after(session, answer_to_ping(session, 3, OTHER_CHECKSUM, 20, STATE_IDLE)) == [
         make_shown_event()
     ]
     assert events_after(session, value(2, 3)) == [make_shown_event()], "it is not asked again"
@@ -118,10 +118,13 @@ def test_nothing_but_values_waits_for_the_answer() -> None:
 def test_a_value_that_comes_late_never_gets_the_next_program_s_name() -> None:
     session = new_session(run=5)
     session.live(FORWARD[:-1] + b"\3")
-    next_one = answer(session.poll(20), {**receipt(6), "program": OTHER})
+    next_one = answer(session.poll(20), {**receipt(6), "program": OTHER_CHECKSUM})
     assert events_after(session, value(1, 5), next_one) == [make_shown_event(5, PROGRAM, 2)]
     assert events_after(session, value(2, 5)) == [], "no robot does that: nothing is guessed"
-    assert events_after(session, value(3, 6)) == [make_shown_event(), make_shown_event(6, OTHER, 2)]
+    assert events_after(session, value(3, 6)) == [
+        make_shown_event(),
+        make_shown_event(6, OTHER_CHECKSUM, 2),
+    ]
 
 
 def test_runs_of_two_epochs_with_one_number_are_two() -> None:
@@ -156,5 +159,6 @@ def test_only_who_wants_places_is_told_of_them() -> None:
     session = greet(features=PLACES)
     events_after(session, value(1, 3))
     assert [
-        event.name for event in events_after(session, answer_to_ping(session, 3, OTHER, 20))
+        event.name
+        for event in events_after(session, answer_to_ping(session, 3, OTHER_CHECKSUM, 20))
     ] == ["SHOW"]

@@ -35,7 +35,7 @@ def program(code_bytes: int) -> Image:
     return unpack(pack("SI", 0, moves))
 
 
-class Line(NamedTuple):
+class SlowLine(NamedTuple):
     """`rate` in bytes per second, `late_ms` each way; `lost` is the share of bytes that are."""
 
     rate: int
@@ -47,7 +47,9 @@ class Talk:
     """A computer and a robot with a line between them. The port reports `baud`, whatever the
     line."""
 
-    def __init__(self, line: Line, baud: int = 9600, is_large: bool = False, seed: int = 1) -> None:
+    def __init__(
+        self, line: SlowLine, baud: int = 9600, is_large: bool = False, seed: int = 1
+    ) -> None:
         self.line, self.is_large = line, is_large
         self.rng = random.Random(seed)
         self.robot: CppLink = cpp_link(is_large)
@@ -102,14 +104,14 @@ class Talk:
 @pytest.mark.parametrize(
     ("code_bytes", "line"),
     [
-        (377, Line(100)),
-        (387, Line(300, 80)),
-        (387, Line(960, 300)),
-        (387, Line(960, 20, 0.01)),
-        (387, Line(100, 300, 0.005)),
+        (377, SlowLine(100)),
+        (387, SlowLine(300, 80)),
+        (387, SlowLine(960, 300)),
+        (387, SlowLine(960, 20, 0.01)),
+        (387, SlowLine(100, 300, 0.005)),
     ],
 )
-def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: Line) -> None:
+def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: SlowLine) -> None:
     for seed in range(5):
         assert Talk(line, seed=seed).upload(code_bytes) == OK, seed
 
@@ -133,7 +135,7 @@ class LossyWire(Wire):
 @pytest.mark.parametrize("in_a_row", [1, 2, 4])
 def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, seed: int) -> None:
     """Each piece that arrives gives the next one the whole patience."""
-    line, is_large = Line(11_520, 5), seed % 2 == 1
+    line, is_large = SlowLine(11_520, 5), seed % 2 == 1
     talk = Talk(line, 115_200, is_large)
     wire = LossyWire(line.rate * 10, line.late_ms)
     wire.rng = random.Random(seed)
@@ -156,7 +158,7 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
 def test_what_gets_no_further_is_given_up_and_the_next_one_is_done(
     is_large: bool, cut_ms: int
 ) -> None:
-    talk = Talk(Line(1000, 5), 115_200, is_large)
+    talk = Talk(SlowLine(1000, 5), 115_200, is_large)
     talk.wait(talk.session.hello())
     for _ in range(3):
         request = talk.session.upload(program(380), runs=False)
@@ -170,7 +172,7 @@ def test_what_gets_no_further_is_given_up_and_the_next_one_is_done(
 
 def test_whoever_asks_again_after_an_answer_finds_the_line_free() -> None:
     """No heartbeat comes before that, however long the answer took."""
-    talk = Talk(Line(11_520, 1000))
+    talk = Talk(SlowLine(11_520, 1000))
     talk.wait(talk.session.hello())
     for _ in range(5):
         start_ms = talk.now_ms
@@ -184,7 +186,7 @@ def test_a_program_that_would_fit_into_one_large_frame_gets_through_a_line_with_
     code_bytes: int,
 ) -> None:
     for seed in range(20):
-        talk = Talk(Line(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
+        talk = Talk(SlowLine(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
         assert talk.upload(code_bytes) == OK, seed
 
 
@@ -194,7 +196,7 @@ def test_a_long_live_line_gets_through_a_line_with_losses_and_is_done_once(
 ) -> None:
     """It cannot come in pieces, so hardly one of its frames comes whole."""
     for seed in range(60):
-        talk = Talk(Line(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
+        talk = Talk(SlowLine(11_520, 20, 0.01), 115_200, is_large=True, seed=seed)
         assert talk.wait(talk.session.hello()) == OK
         assert talk.wait(talk.session.live(program(code_bytes).code, KIT)) == OK, seed
         for _ in range(200):  # bytes under way arrive
@@ -202,8 +204,8 @@ def test_a_long_live_line_gets_through_a_line_with_losses_and_is_done_once(
         assert sum(line.startswith("START") for line in talk.did) == 1, seed
 
 
-@pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100)])
-def test_a_long_live_line_gets_through_a_slow_line_without_many_copies(line: Line) -> None:
+@pytest.mark.parametrize("line", [SlowLine(1000), SlowLine(1000, 40), SlowLine(500, 100)])
+def test_a_long_live_line_gets_through_a_slow_line_without_many_copies(line: SlowLine) -> None:
     talk = Talk(line, 115_200, is_large=True)
     assert talk.wait(talk.session.hello()) == OK
     talk.sent_bytes = 0
@@ -211,8 +213,10 @@ def test_a_long_live_line_gets_through_a_slow_line_without_many_copies(line: Lin
     assert talk.sent_bytes < 230 * 1.35
 
 
-@pytest.mark.parametrize("line", [Line(1000), Line(1000, 40), Line(500, 100), Line(11_520, 300)])
-def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: Line) -> None:
+@pytest.mark.parametrize(
+    "line", [SlowLine(1000), SlowLine(1000, 40), SlowLine(500, 100), SlowLine(11_520, 300)]
+)
+def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: SlowLine) -> None:
     """An ESP32 at 115200 baud on a slow link, such as a radio or a broker."""
     talk = Talk(line, 115_200, is_large=True)
     assert talk.upload(1800) == OK
@@ -232,7 +236,7 @@ def test_a_line_that_lets_some_bytes_through_ends_an_upload(
     is_large: bool, rate: int, late_ms: int, lost: float, code_bytes: int, seed: int
 ) -> None:
     """The robot may also have been stopped: a damaged frame may be a line with a stop."""
-    talk = Talk(Line(rate, late_ms, lost), 115_200 if is_large else 9600, is_large, seed)
+    talk = Talk(SlowLine(rate, late_ms, lost), 115_200 if is_large else 9600, is_large, seed)
     status = talk.upload(code_bytes)
     was_stopped = any(event.name == "STOPPED" for event in talk.session.events())
     assert status == OK or (status == STALE and was_stopped)
@@ -241,7 +245,7 @@ def test_a_line_that_lets_some_bytes_through_ends_an_upload(
 @pytest.mark.parametrize("is_large", [False, True])
 def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool) -> None:
     for cut_ms, status in ((EXCHANGE_TIMEOUT_MS - 3000, OK), (EXCHANGE_TIMEOUT_MS + 3000, LOST)):
-        talk = Talk(Line(960, 20), is_large=is_large)
+        talk = Talk(SlowLine(960, 20), is_large=is_large)
         request = talk.session.upload(program(380), runs=False)
         while request.done_bytes == 0:
             talk.step()
@@ -256,7 +260,7 @@ def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool)
 
 def test_an_answer_that_comes_after_its_piece_was_sent_again_counts() -> None:
     """A line that becomes slow in the middle: little is sent again, and not forever."""
-    talk = Talk(Line(11_520), 115_200, is_large=True)
+    talk = Talk(SlowLine(11_520), 115_200, is_large=True)
     request = talk.session.upload(program(8000), runs=False)
     while request.done_bytes < 3000:
         talk.step()

@@ -171,7 +171,7 @@ def test_a_sender_that_keeps_the_rule(law: Property, seed: int) -> None:
     law(TextSender(), random.Random(seed))
 
 
-class Late(TextSender):
+class LateZeroSender(TextSender):
     """A sender that sends a 0x00 only if the receiver already treats the bytes as text."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
@@ -180,7 +180,7 @@ class Late(TextSender):
         return super().prepare_frames(frames, now_ms, is_repeated)
 
 
-class WithoutFirst(TextSender):
+class NoFirstZeroSender(TextSender):
     """Sends no zero before the first frame, and none after text."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
@@ -188,30 +188,31 @@ class WithoutFirst(TextSender):
         return super().prepare_frames(frames, now_ms, is_repeated)
 
 
-class WithoutRepeated(TextSender):
+class NoRepeatedZeroSender(TextSender):
     """Sends no zero before a repeated frame."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         return super().prepare_frames(frames, now_ms, False)
 
 
-class Twice(TextSender):
+class TwiceSender(TextSender):
     """Sends one for each reason."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         return b"\0" * is_repeated + super().prepare_frames(frames, now_ms, False)
 
 
-class Hasty(TextSender):
+class HastySender(TextSender):
     """Sends text right after a frame."""
 
     text_ms = 100
 
 
 @pytest.mark.parametrize(("law", "sender"), [
-    (check_all_arrive, Late), (check_all_arrive, WithoutFirst), (check_all_arrive, Hasty),
-    (check_torn_lines_arrive_when_repeated, WithoutRepeated),
-    (check_no_two_zeros_before_frame, Twice),
+    (check_all_arrive, LateZeroSender), (check_all_arrive, NoFirstZeroSender),
+    (check_all_arrive, HastySender),
+    (check_torn_lines_arrive_when_repeated, NoRepeatedZeroSender),
+    (check_no_two_zeros_before_frame, TwiceSender),
 ])  # fmt: skip
 def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSender]) -> None:
     def violates_law(seed: int) -> bool:

@@ -19,8 +19,8 @@ from tiniscript.link.payloads import EmptyReply, ReceiptReply
 from tiniscript.link.requests import OK, Exchange, Reply, Request, send_single
 from tiniscript.link.session import Session
 
-FAULTS = "SHOW(1 / DISTANCE)"  # at once
-FAULTS_SOON = "W(0.6); SHOW(1 / DISTANCE)"
+FAULTING_PROGRAM = "SHOW(1 / DISTANCE)"  # at once
+SOON_FAULTING_PROGRAM = "W(0.6); SHOW(1 / DISTANCE)"
 Happens = Callable[[HostFirmware], HostFirmware]
 Ask = Callable[[Session], PendingRequest[ReceiptReply]]
 
@@ -71,7 +71,7 @@ def test_it_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
 @pytest.mark.parametrize("is_told", [True, False])
 def test_it_is_done_after_a_program_that_faults(is_told: bool, make_request: Ask) -> None:
     session, robot = open_session()
-    assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
+    assert robot.until(session, session.live(image(SOON_FAULTING_PROGRAM).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
     request = make_request(session)
@@ -86,7 +86,7 @@ def test_it_is_done_after_a_program_that_faults(is_told: bool, make_request: Ask
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
 def test_one_after_a_program_that_faults_at_once_is_done(verb: str, make_request: Ask) -> None:
     session, robot = open_session()
-    faulty = image(FAULTS)
+    faulty = image(FAULTING_PROGRAM)
     begun = session.live(faulty.code) if verb == "live" else session.upload(faulty)
     request = make_request(session)
     assert robot.until(session, begun) == OK
@@ -97,7 +97,7 @@ def test_one_after_a_program_that_faults_at_once_is_done(verb: str, make_request
 
 def test_a_stop_after_that_fault_voids_it() -> None:
     session, robot = open_session()
-    assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
+    assert robot.until(session, session.live(image(SOON_FAULTING_PROGRAM).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
     request = live(session)

@@ -26,7 +26,7 @@ from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 LONG_S = 20 * DEAF_S
 ANSWER_MESSAGE = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "fe", "is_echoed": False,
                   "boot": 0, "values": {}}  # fmt: skip
-SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5, 0))}
+SHOW_EVENT = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5, 0))}
 
 
 class Holder:
@@ -108,7 +108,7 @@ def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, se
     line = open_shared_connection(monkeypatch, holder)
     if seed % 2:
         for second_s in range(int(LONG_S)):
-            holder.says(SHOWN, second_s + rng.random())
+            holder.says(SHOW_EVENT, second_s + rng.random())
     assert listen_until_lost(line, holder, LONG_S) >= LONG_S and not line.has_ended
     assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + POLL_INTERVAL_S) / 2
 
@@ -180,7 +180,7 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
             request: PendingRequest[Any] = line.begin(lambda _: message)  # noqa: B023 - at once
             requests.append((number, request, new_name))
         elif action == "event":
-            holder.says({**SHOWN, "ms": k}, 0)
+            holder.says({**SHOW_EVENT, "ms": k}, 0)
             progress_values.append(k)
         elif requests and action == "progress":
             answered, request, _ = rng.choice(requests)
@@ -207,7 +207,7 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
             assert (line.robot.name if line.robot else "") == name
     listen(1.0)
     assert events == progress_values
-    holder.says({**SHOWN, "ms": 99}, 0)
+    holder.says({**SHOW_EVENT, "ms": 99}, 0)
     is_port_lost = seed % 2 == 0
     holder.says({"over": "gone" if is_port_lost else "ended", "why": "the cable"}, 0)
     with suppress(ConnectionLost):

@@ -65,16 +65,16 @@ while sys.stdin.buffer.read(1):
 """
 
 
-class Had(NamedTuple):
+class Usage(NamedTuple):
     files: int
     memory_kb: int
 
 
-def measure_process(pid: int) -> Had:
+def measure_process(pid: int) -> Usage:
     """Return the open files and the memory of a process."""
     status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
     [memory] = [row.split()[1] for row in status.splitlines() if row.startswith("VmRSS")]
-    return Had(len(list(Path(f"/proc/{pid}/fd").iterdir())), int(memory))
+    return Usage(len(list(Path(f"/proc/{pid}/fd").iterdir())), int(memory))
 
 
 @contextmanager
@@ -95,7 +95,7 @@ def visitors(port: int, kind: str, count: int) -> Iterator[None]:
             visitor.communicate()
 
 
-def wait_until_settled(pid: int, files: int) -> Had:
+def wait_until_settled(pid: int, files: int) -> Usage:
     """Wait until a process has no more files than this; return the final numbers, larger if it
     hangs.
     """
@@ -105,7 +105,7 @@ def wait_until_settled(pid: int, files: int) -> Had:
     return child
 
 
-def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
+def attack(kind: str, count: int) -> list[tuple[str, Usage, Usage, Usage]]:
     """Come to a virtual robot and to the command that drives it. Return what each process had.
 
     Measure before they connect, while they are there, and after they have left.
@@ -179,7 +179,7 @@ def page(port: int) -> bytes:
     return data
 
 
-def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
+def attack_studio(count: int) -> list[tuple[str, Usage, Usage, Usage]]:
     """Come to one studio in each way. Return the kind, and what the studio had."""
     children = []
     with studio() as (pid, port):

@@ -349,19 +349,21 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
             assert made_desk.line.posted == posted, end_kind
 
 
-DROPPED: dict[str, Event] = {
+DROPPED_EVENTS: dict[str, Event] = {
     "SHOW": ShownEvent(5, 0, 1, 7, 3),
     "PLACE": PlaceEvent(1, 7, 3),
     "TEXT": TextEvent(b"a line of text"),
 }
 
 
-@pytest.mark.parametrize("name", [*DROPPED, "others"])
+@pytest.mark.parametrize("name", [*DROPPED_EVENTS, "others"])
 def test_who_reads_nothing_has_little_waiting_and_is_let_go_where_nothing_can_be_left_out(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    event = DROPPED.get(name, StoppedEvent(1))
-    most_bytes = 1000 + (server_of.FULL_BYTES if name in DROPPED else server_of.TOO_FULL_BYTES)
+    event = DROPPED_EVENTS.get(name, StoppedEvent(1))
+    most_bytes = 1000 + (
+        server_of.FULL_BYTES if name in DROPPED_EVENTS else server_of.TOO_FULL_BYTES
+    )
     with desk(monkeypatch) as made_desk:
         client = made_desk.join("monitor")
         made_desk.steps(60)
@@ -374,7 +376,7 @@ def test_who_reads_nothing_has_little_waiting_and_is_let_go_where_nothing_can_be
             made_desk.server._on_events([(0, event)] * 1000)
             made_desk.server._attend()
             assert len(served.output) <= most_bytes
-        assert (served in made_desk.server._clients) == (name in DROPPED)
+        assert (served in made_desk.server._clients) == (name in DROPPED_EVENTS)
 
 
 if __name__ == "__main__":

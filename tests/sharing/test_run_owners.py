@@ -107,7 +107,7 @@ def send_start(command: SharedConnection, line: FakeLine, is_detached: bool = Fa
     until(lambda: bool(line.asked), "the request arrives")
 
 
-STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
+START_REQUESTS: list[Callable[[Requester], PendingRequest[Any]]] = [
     lambda requests: requests.start(),
     lambda requests: requests.start(is_detached=True),
     lambda requests: requests.live(image_of("S").code),
@@ -116,7 +116,7 @@ STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
 ]
 
 
-@pytest.mark.parametrize("start_index", range(len(STARTS)))
+@pytest.mark.parametrize("start_index", range(len(START_REQUESTS)))
 def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
     line: FakeLine, start_index: int
 ) -> None:
@@ -125,7 +125,7 @@ def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
         closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
         closing(cast(SharedConnection, join(PORT, "upload"))) as command,
     ):
-        request = command.begin(STARTS[start_index])
+        request = command.begin(START_REQUESTS[start_index])
         assert command.wait(request).status == CANCELLED
         command.begin(lambda requests: requests.status())
         until(lambda: bool(line.asked), "the request arrives")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from time import monotonic
 
 from tests.support.images import image_of
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import MOST_EVENTS, Backlog, Event, PlaceEvent, ShownEvent
@@ -28,7 +28,7 @@ def list_events_until_done(connection: LinkConnection) -> list[Event]:
 
 def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
-    shared_port = Shared()
+    shared_port = SharedLine()
     with shared_port as (pty_robot, _):
         client, other_client = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
         assert client and other_client

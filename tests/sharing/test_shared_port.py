@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, LONG, Command, process
+from tests.support.command import FOREVER, LONG_PROGRAM, Command, process
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decode_frame
@@ -23,7 +23,7 @@ from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import SharedConnection, join
 
-TRIES = 8  # tries of a command whose predecessor has just left
+TRY_COUNT = 8  # tries of a command whose predecessor has just left
 # On a busy computer, sharing a newly opened port takes a while.
 PATIENT_COMMAND_CODE = (
     "import sys; from tiniscript.cli import main; from tiniscript.library import opening; "
@@ -60,7 +60,7 @@ def test_commands_share_a_session_that_is_begun_once(
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
     assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out
     compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG, "-o", compiled_file)
+    process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
     assert on(pty_robot, "upload", compiled_file, "--no-run", "--no-save").code == 0
     assert on(pty_robot, "show", "-o", robot_file).code == 0
     assert robot_file.read_bytes() == compiled_file.read_bytes()
@@ -185,7 +185,7 @@ def test_a_command_imports_no_more_than_it_needs(
     modules = imported_by(pty_robot.port)
     assert sorted((UNWANTED_MODULES | unwanted_modules) & modules) == []
     assert modules >= PORT_MODULES
-    with Shared() as (shared_robot, _):
+    with SharedLine() as (shared_robot, _):
         assert (
             sorted(
                 (UNWANTED_MODULES | PORT_MODULES | unwanted_modules)
@@ -224,7 +224,7 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
     pty_robot.bytes_per_ms = 1  # a long program takes a while
     for options in ((), ("--detach",)):
         pty_robot.heard = b""
-        command = Command("upload", "-e", LONG, *options, "--port", pty_robot.port)
+        command = Command("upload", "-e", LONG_PROGRAM, *options, "--port", pty_robot.port)
         pty_robot.until(lambda: len(pty_robot.heard) > 60, "a part has come")
         command.signal(number)
         command.process.wait()
@@ -392,7 +392,7 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
     commands = [start_command(*words) for words in command_lines]
     for words, command in zip(command_lines, commands, strict=True):
         result = command.wait_for_result()
-        for _ in range(TRIES):
+        for _ in range(TRY_COUNT):
             if "has ended; without --detach" in result.err:
                 result = start_command(*words).wait_for_result()
         assert (result.code, result.err) == (0, "")
@@ -418,7 +418,7 @@ def is_idle_once_released(client: SharedConnection) -> bool:
 
 def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
     """The frame that starts it was under way."""
-    with Shared() as (robot, _), ExitStack() as stack:
+    with SharedLine() as (robot, _), ExitStack() as stack:
         other_client = join(robot.port, "show --port")
         assert other_client is not None
         stack.callback(other_client.close)

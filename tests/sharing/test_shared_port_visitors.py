@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.command import Command, Tsc
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import __version__
 from tiniscript.link.outcomes import ShownEvent
@@ -43,7 +43,7 @@ def is_let_go(peer: socket.socket) -> bool:
 def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
-    with Shared() as (_, registration), ExitStack() as opened_exit_stack:
+    with SharedLine() as (_, registration), ExitStack() as opened_exit_stack:
         silent_peers = [
             opened_exit_stack.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)
         ]
@@ -76,7 +76,7 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
 
 def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
     """`test_requests.py` lists the wrong messages."""
-    with Shared() as (pty_robot, registration):
+    with SharedLine() as (pty_robot, registration):
         for wrong_message in (
             {"do": "fly"},
             {"do": "name", "name": "zz"},
@@ -101,7 +101,7 @@ def _receive_rest(peer: socket.socket) -> bytes:
 
 
 def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
-    shared_port = Shared()
+    shared_port = SharedLine()
     with shared_port as (pty_robot, registration), visitor(registration) as peer:
         peer.sendall(greeting(registration))
         reader = protocol.MessageReader(protocol.LINE_BYTES)
@@ -136,7 +136,7 @@ def test_nothing_is_shared_where_nothing_can_be_written(
 
 
 def test_a_file_that_says_nothing_is_not_a_server(pty_robot: PtyRobot) -> None:
-    with Shared() as (shared, registration):
+    with SharedLine() as (shared, registration):
         path = registry._path(shared.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
             path.write_text(text)
@@ -164,7 +164,7 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(
 
 def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
     for part in ("session", "server"):
-        shared_port = Shared()
+        shared_port = SharedLine()
         with shared_port as (_, registration), visitor(registration) as peer:
             if part == "session":
                 shared_port.line.session._queue.append(cast("Any", None))

@@ -45,7 +45,7 @@ def image(program: Program) -> str:
 
 
 # Reported at the upload of a correct program that the robot cannot run.
-LACKING = ("TS313", "TS315")
+MISSING_PART_CODES = ("TS313", "TS315")
 
 
 def messages_of(text: str, language: str) -> list[Message]:

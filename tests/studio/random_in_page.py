@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 # The blocks of the page, made of forms and read again, without the page around them.
-ROUND = """async ({name, forms}) => {
+ROUND_TRIP_SCRIPT = """async ({name, forms}) => {
   const {Blocks} = await import(new URL(name, location.href).href);
   const place = document.createElement('div');
   place.hidden = true;  // nothing is measured
@@ -59,7 +59,7 @@ def without_places(form: Any) -> Any:
 def round_trip(page: Page, forms: list[Any]) -> list[Any]:
     """Return forms as the page's blocks have them, made of these."""
     (name,) = [name for name in files() if name.startswith("blocks-")]
-    forms_back: list[Any] = page.evaluate(ROUND, {"name": name, "forms": forms})
+    forms_back: list[Any] = page.evaluate(ROUND_TRIP_SCRIPT, {"name": name, "forms": forms})
     return forms_back
 
 

@@ -32,7 +32,7 @@ PAGE_SOURCES = {
     for path in sorted((SOURCES / "src").rglob("*"))
     if path.suffix in (".js", ".html")
 }
-OTHERS = ("block", "blockly", "editor", "tip")  # keys of other tables, which follow below
+SHARED_KEYS = ("block", "blockly", "editor", "tip")  # keys of other tables, which follow below
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +97,7 @@ def test_every_sentence_is_said_somewhere() -> None:
     keys = set(page_texts(SOURCE_LANGUAGE)) - {""}
     assert len(keys) > 600
     for key in keys:
-        if key.partition("/")[0] not in OTHERS:
+        if key.partition("/")[0] not in SHARED_KEYS:
             rest = [key[len(head) :] for head in heads if key.startswith(head)]
             base_key = key.removesuffix("_sure")  # a button that is pressed twice
             assert base_key in names or words & {base_key, *rest}, key

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import LACKING, messages_of
+from tests.studio.programs import MISSING_PART_CODES, messages_of
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
 from tiniscript.diagnostics.fixing import MOST_OFFERS, repair_program
@@ -53,7 +53,9 @@ def test_messages_are_those_of_the_command_and_repairs_help(first_index: int, pa
         language = LANGUAGES[(first_index + k) % len(LANGUAGES)]
         result = checking.check(entry.program.encode(), "tinibot", language)
         messages = [
-            finding.message for finding in result.findings if finding.message.code not in LACKING
+            finding.message
+            for finding in result.findings
+            if finding.message.code not in MISSING_PART_CODES
         ]
         assert messages == messages_of(entry.program, language)
         for repair in buttons(entry.program):
@@ -172,39 +174,45 @@ def test_answers_are_json() -> None:
     assert opened["message"]
 
 
-LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
+LINER_PROGRAM = "// robot: liner\nSI|SHOW(LINE_L)\n"
 CHECK_REQUEST = {"do": "check", "robot": "tinibot", "language": "en"}
 
 
 def test_a_program_names_its_robot_in_the_page_too() -> None:
-    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER.encode()))
+    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER_PROGRAM.encode()))
     assert (checked["robot"], checked["names_robot"], checked["findings"]) == ("liner", True, [])
-    assert bytes.fromhex(checked["image"]) == compile(LINER).image
+    assert bytes.fromhex(checked["image"]) == compile(LINER_PROGRAM).image
     checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), b"// robot: linar\nS"))
     assert (checked["robot"], checked["names_robot"], checked["image"]) == ("tinibot", False, "")
     checked = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "robot": "grabber"}), b"S"))
     assert (checked["robot"], checked["names_robot"]) == ("grabber", False)
     answer = worker.answer(
-        json.dumps({**CHECK_REQUEST, "do": "rename", "robot": "grabber"}), LINER.encode()
+        json.dumps({**CHECK_REQUEST, "do": "rename", "robot": "grabber"}), LINER_PROGRAM.encode()
     )
-    assert json.loads(answer)["text"] == LINER.replace("liner", "grabber")
-    line = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "do": "line"}), LINER.encode()))
+    assert json.loads(answer)["text"] == LINER_PROGRAM.replace("liner", "grabber")
+    line = json.loads(
+        worker.answer(json.dumps({**CHECK_REQUEST, "do": "line"}), LINER_PROGRAM.encode())
+    )
     assert line["text"].startswith("SI|SHOW(LINE_L)")
 
 
 @pytest.mark.parametrize(
     "text",
-    ["SI|SHOW(LINE_L)\n", LINER.replace("liner", "tinibot"), LINER.replace("liner", "linar")],
+    [
+        "SI|SHOW(LINE_L)\n",
+        LINER_PROGRAM.replace("liner", "tinibot"),
+        LINER_PROGRAM.replace("liner", "linar"),
+    ],
 )
 def test_a_robot_that_is_offered_has_a_button(text: str) -> None:
     (repair,) = buttons(text)
-    assert changed_by(text, repair) == LINER
+    assert changed_by(text, repair) == LINER_PROGRAM
 
 
 def test_blocks_keep_the_robot() -> None:
-    form = worker.answer(json.dumps({**CHECK_REQUEST, "do": "blocks"}), LINER.encode())
+    form = worker.answer(json.dumps({**CHECK_REQUEST, "do": "blocks"}), LINER_PROGRAM.encode())
     request = {"do": "text", "form": json.loads(form)}
-    assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER
+    assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER_PROGRAM
 
 
 def test_the_page_knows_every_robot_and_its_words() -> None:

@@ -20,7 +20,7 @@ from tests.support.node import in_node
 from tests.support.platformio import firmware, shared_folder
 
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
-PAGE = 128
+PAGE_BYTES = 128
 IN_SYNC, OK, END_OF_COMMAND = b"\x14", b"\x10", 0x20
 UNO = b"\x1e\x95\x0f"
 
@@ -133,7 +133,7 @@ class FakeBoard:
     def _length(heard_bytes: bytes) -> int:
         if not heard_bytes:
             return 0
-        return {0x55: 4, 0x64: 5 + PAGE, 0x74: 5}.get(heard_bytes[0], 2)
+        return {0x55: 4, 0x64: 5 + PAGE_BYTES, 0x74: 5}.get(heard_bytes[0], 2)
 
     def _answer(self, command: bytes) -> bytes:
         assert command[-1] == END_OF_COMMAND
@@ -142,9 +142,9 @@ class FakeBoard:
         if command[0] == 0x55:
             self._at = 2 * int.from_bytes(command[1:3], "little")
         elif command[0] == 0x64 and 0x50 in self.commands:  # programming mode was entered
-            self.flash[self._at : self._at + PAGE] = command[4:-1]
+            self.flash[self._at : self._at + PAGE_BYTES] = command[4:-1]
         elif command[0] == 0x74:
-            return bytes(self.flash[self._at : self._at + PAGE])
+            return bytes(self.flash[self._at : self._at + PAGE_BYTES])
         return b""
 
 
@@ -199,7 +199,7 @@ def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
         (changed_answer(0x64, by=b"", times=3), "flash_broken_off"),
         (changed_answer(0x64, by=b"\x15\x10", times=3), "flash_broken_off"),
         (changed_answer(0x74, by=None, times=2), "flash_broken_off"),
-        (changed_answer(0x74, by=IN_SYNC + b"\x00" * PAGE + OK, times=2), "flash_differs"),
+        (changed_answer(0x74, by=IN_SYNC + b"\x00" * PAGE_BYTES + OK, times=2), "flash_differs"),
         (changed_answer(0x51, by=b"", times=1), "done"),
     ],
     ids=["silent", "noise", "other chip", "half", "pulled early", "pulled", "hangs", "refuses",

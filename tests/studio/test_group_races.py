@@ -27,7 +27,7 @@ from tiniscript.studio.hosting import Hosting
 Json = dict[str, Any]
 BEAT_S = 0.1
 LATE_S = 1.5  # most delay of a request
-STANDS_S = 0.6  # time for which the robot is watched
+WATCH_S = 0.6  # time for which the robot is watched
 PROGRAM = compile(FOREVER).image.hex()
 PUPILS = ("Ana", "Luz", "Teo")
 
@@ -139,7 +139,7 @@ class Group:
             self.later(stopper.stops, 0.2)
         self.meet()
         until(lambda: not self.robot.moves, "the robot stands", 3)
-        end_s = time.monotonic() + STANDS_S
+        end_s = time.monotonic() + WATCH_S
         while time.monotonic() < end_s:
             assert not self.robot.moves, "it drives on"
             time.sleep(0.01)

@@ -21,7 +21,7 @@ END_MESSAGES: tuple[Json, ...] = (
     {"over": "left", "said": ""},
 )
 # What comes late is of no run.
-AT_REST: tuple[Json, ...] = (
+END_EVENTS: tuple[Json, ...] = (
     {"connected": {"robot": {"name": "TINI"}}},
     {"event": "SHOW", "value": "late", "at": -1},
     {"event": "TEXT", "text": "late"},
@@ -48,7 +48,7 @@ class Robot:
                 replaces = self.rng.random() < 0.3
                 return self._begins("program", "line") if replaces else self._ends()
             if self.rng.random() < 0.3:
-                event = self.rng.choice(AT_REST)
+                event = self.rng.choice(END_EVENTS)
                 self.connections += "connected" in event
                 return event
             return self._begins("program", "line", "button")

@@ -14,11 +14,11 @@ from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.virtual import worlds
 
-COUNT = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
+COUNTING_PROGRAM = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
 STEPS = ["X = 3", "LOOP(2);", "X = X + 1", "SHOW(X)", "LOOP(2);", "X = X + 1", "SHOW(X)",
          "LOOP(2);", "IS = X > 4", "F(0.5, 80)"]  # fmt: skip
-REPEATED = (
-    COUNT,
+REPEATING_PROGRAMS = (
+    COUNTING_PROGRAM,
     "LOOP(2);\n  W(0.3) UNTIL(DISTANCE < 3);\n  F(0.1, 80);\nEND_LOOP",
     "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nLOOP(3);\n  HOP;\n  X = 2;\n  SHOW(X);\nEND_LOOP",
     "WHEN(DISTANCE < 60);\n  BEEP(0.1, 440);\nEND_WHEN;\nLOOP(4);\n  F(0.2, 80);\nEND_LOOP",
@@ -53,9 +53,9 @@ def steps(text: str, simulation: Simulation, max_count: int = 100) -> Iterable[s
 
 
 def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
-    simulation = started_simulation(COUNT, is_held=True)
+    simulation = started_simulation(COUNTING_PROGRAM, is_held=True)
     assert simulation.state()["events"] == [[simulation.robot.now_ms, "START", -1]]
-    assert list(steps(COUNT, simulation)) == STEPS
+    assert list(steps(COUNTING_PROGRAM, simulation)) == STEPS
     assert not simulation.robot.is_running
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
     wanted_texts = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
@@ -63,7 +63,7 @@ def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
 
 
 def test_variables_are_told_where_it_is_held() -> None:
-    simulation = started_simulation(COUNT, is_held=True)
+    simulation = started_simulation(COUNTING_PROGRAM, is_held=True)
     values = []
     while simulation.held_at is not None:
         values.append(simulation.state()["variables"])
@@ -114,7 +114,7 @@ def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
     assert runs[0] == runs[1] == ["2 BEEP 440 100", "100 DONE"]
 
 
-@pytest.mark.parametrize("text", REPEATED)
+@pytest.mark.parametrize("text", REPEATING_PROGRAMS)
 def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
     """A run in which they change at random moments, and in which somebody steps, is held where and
     when one is that has had a breakpoint everywhere from the beginning.

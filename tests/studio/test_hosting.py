@@ -11,7 +11,7 @@ import pytest
 from tests.support.command import FOREVER, Command, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.rows import each_row
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import compile, robots
 from tiniscript.library import opening
@@ -316,7 +316,7 @@ def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
 
 
 def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
-    with Shared() as (robot, _):
+    with SharedLine() as (robot, _):
         page = Page(hosting)
         page.connect(robot.port)
         assert page.until(lambda item: "connected" in item)["held_by"] == "link"

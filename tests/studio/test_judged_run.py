@@ -16,7 +16,7 @@ from tiniscript.studio.simulation import Marks
 from tools.studio.pack import text_on_page
 
 NUMBERS = range(1, len(catalogue.folders()) + 1)
-OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
+TERMINAL_WORDS = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
 
 
 def judge(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
@@ -43,7 +43,7 @@ def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
     steps = page_lessons.steps(number, language)
     assert len(steps) >= 4 and all(step["blocks"] for step in steps)
     assert steps[-1]["hint"]
-    assert not OF_A_TERMINAL.search(json.dumps(steps, ensure_ascii=False))
+    assert not TERMINAL_WORDS.search(json.dumps(steps, ensure_ascii=False))
     printed_text = catalogue.page(catalogue.folder_of(str(number)), catalogue.PUPIL, language)
     assert steps[-1]["hint"] not in printed_text
     assert re.search(r"`tsc lesson check \d+ \w+\.ts`", printed_text)

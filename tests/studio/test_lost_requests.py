@@ -28,7 +28,7 @@ from tiniscript.studio.robot_link import RobotLink
 
 BEAT_MS = 100
 LOOK_MS = 20
-RUN = {"do": "upload", "runs": True}
+RUN_REQUEST = {"do": "upload", "runs": True}
 
 
 class CountedLink:
@@ -127,7 +127,12 @@ class TornPage:
     def press_run(self) -> None:
         if self.is_there:
             self._number += 1
-            request = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
+            request = {
+                **RUN_REQUEST,
+                "id": self._number,
+                "stops": len(self.presses),
+                "seen": self._seen,
+            }
             self._asked.append(request)
 
     def _send(self, action: str, **fields: object) -> None:
@@ -241,7 +246,7 @@ def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
     send_request("beat", 1)
     send_request("connect", 2)  # a press before it is still on its way
     if runs:
-        send_request("beat", 2, {**RUN, "id": 1, "stops": 1, "seen": 0})
+        send_request("beat", 2, {**RUN_REQUEST, "id": 1, "stops": 1, "seen": 0})
         send_request("beat", 2)
     send_request("stop", 1, stops=1)
     send_request("stop", 1, stops=1)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import LACKING, messages_of, programs
+from tests.studio.programs import MISSING_PART_CODES, messages_of, programs
 from tests.studio.programs import image as image_of
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -78,8 +78,11 @@ def test_every_wrong_program_gets_the_words_of_the_command(
     for request, answer in zip(requests, checks(page, requests), strict=True):
         text = request["text"]
         expected = [message._asdict() for message in messages_of(text, request["language"])]
-        findings = [{key: finding[key] for key in Message._fields}
-               for finding in answer["findings"] if finding["code"] not in LACKING]  # fmt: skip
+        findings = [
+            {key: finding[key] for key in Message._fields}
+            for finding in answer["findings"]
+            if finding["code"] not in MISSING_PART_CODES
+        ]
         assert findings == expected, text
 
 

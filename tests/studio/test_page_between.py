@@ -52,7 +52,7 @@ CONFIRMED_STOP = "has (?:now )?confirmed the stop"
 UNCONFIRMED_STOP = "has not confirmed the stop"
 
 
-class Between(NamedTuple):
+class LineFaults(NamedTuple):
     """Faults between the page and `tsc studio`: pieces are late, or lost with their connection; for
     a while none get through, or `tsc studio` is suspended.
     """
@@ -66,13 +66,13 @@ class Between(NamedTuple):
 
 
 NETWORK_FAULTS = (
-    Between("page and studio: late", late_s=0.3),
-    Between("page and studio: loses", lost=0.2),
-    Between("page and studio: stalls", held_s=4.0),
-    Between("page and studio: stalls long", held_s=12.0),
-    Between("page and studio: cut for a while", held_s=4.0, is_cut=True),
-    Between("studio suspended", held_s=4.0, suspends=True),
-    Between("studio suspended long", held_s=12.0, suspends=True),
+    LineFaults("page and studio: late", late_s=0.3),
+    LineFaults("page and studio: loses", lost=0.2),
+    LineFaults("page and studio: stalls", held_s=4.0),
+    LineFaults("page and studio: stalls long", held_s=12.0),
+    LineFaults("page and studio: cut for a while", held_s=4.0, is_cut=True),
+    LineFaults("studio suspended", held_s=4.0, suspends=True),
+    LineFaults("studio suspended long", held_s=12.0, suspends=True),
 )
 LINES = tuple(fault for fault in FAULTS if not fault.pulls and not fault.suspends)
 MESSAGE_PLACE = "#link_said"
@@ -92,20 +92,20 @@ class BadNetwork(Network):
     """A bad network that looks like the server to the browser: it replaces the port in requests."""
 
     def __init__(self, target: int, rng: Random) -> None:
-        self.fault = Between("nothing")
+        self.fault = LineFaults("nothing")
         self.begun_s = 0.0
         self._rng = rng
         super().__init__(target)
         self._own, self._servers = (f":{port}".encode() for port in (self.port, target))
         assert len(self._own) == len(self._servers)
 
-    def begin(self, fault: Between) -> None:
+    def begin(self, fault: LineFaults) -> None:
         self.fault, self.begun_s = fault, CLOCK.now_s
         if fault.is_cut:
             self.cut()
 
     def mend(self) -> None:
-        self.fault = Between("nothing")
+        self.fault = LineFaults("nothing")
 
     @property
     def is_held(self) -> bool:
@@ -156,7 +156,7 @@ class Scene:
         write(self.page, FOREVER)
         self.page.click("#side_real")
 
-    def try_action(self, action: str, fault: Fault | Between) -> TriedAction:
+    def try_action(self, action: str, fault: Fault | LineFaults) -> TriedAction:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
@@ -185,7 +185,7 @@ class Scene:
         return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
                            tuple(errors), tuple(texts))  # fmt: skip
 
-    def _prepare(self, action: str, fault: Fault | Between) -> None:
+    def _prepare(self, action: str, fault: Fault | LineFaults) -> None:
         if isinstance(fault, Fault):
             self._leave()
             self.line.clear_away()
@@ -198,7 +198,7 @@ class Scene:
         if action == "stop":
             assert self._run() == "", self._link_text()
 
-    def _begin(self, fault: Fault | Between) -> None:
+    def _begin(self, fault: Fault | LineFaults) -> None:
         if isinstance(fault, Fault):
             self.line.begin(fault)
         else:
@@ -206,8 +206,8 @@ class Scene:
             if fault.suspends:
                 self.studio.signal(signal.SIGSTOP)
 
-    def _mend(self, fault: Fault | Between) -> None:
-        if isinstance(fault, Between):
+    def _mend(self, fault: Fault | LineFaults) -> None:
+        if isinstance(fault, LineFaults):
             left_s = self.network.begun_s + fault.held_s - CLOCK.now_s
             self.page.wait_for_timeout(1000 * max(0.0, left_s))
             self.studio.signal(signal.SIGCONT)
@@ -316,7 +316,7 @@ class ClassScene(Scene):
     def _place(self, action: str) -> tuple[Page, str]:
         return (self.teacher, "#stops") if action == "stop all" else (self.page, MESSAGE_PLACE)
 
-    def _prepare(self, action: str, fault: Fault | Between) -> None:
+    def _prepare(self, action: str, fault: Fault | LineFaults) -> None:
         if action == "ask":
             self._leave()
             self.page.locator(ASK_BUTTON).wait_for()
@@ -325,7 +325,7 @@ class ClassScene(Scene):
         if action in ("stop", "stop all"):
             assert self._run() == "", self._link_text()
 
-    def _mend(self, fault: Fault | Between) -> None:
+    def _mend(self, fault: Fault | LineFaults) -> None:
         super()._mend(fault)
         self.line.begin(Fault("nothing"))
         self.page.wait_for_timeout(1000 * LATCH_S)  # no page drives after a teacher's stop
@@ -390,7 +390,7 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
 ) -> None:
     rng = Random(sampling.seed(request.config))
     with scene(browser, rng) as opened_scene:
-        faults: list[Fault | Between] = [*NETWORK_FAULTS[:5], *LINES[:6]]
+        faults: list[Fault | LineFaults] = [*NETWORK_FAULTS[:5], *LINES[:6]]
         tried_action = opened_scene.try_action(rng.choice(ACTIONS), rng.choice(faults))
         assert not list_faults(tried_action, 3.0), tried_action
 
@@ -424,7 +424,7 @@ if __name__ == "__main__":
                         )
         for seed in range(options.seed, options.seed + options.count * (not options.taught)):
             with scene(browser, Random(seed)) as opened_scene:
-                faults: list[Fault | Between] = [*NETWORK_FAULTS * (not options.line),
+                faults: list[Fault | LineFaults] = [*NETWORK_FAULTS * (not options.line),
                                                  *LINES * (not options.network)]  # fmt: skip
                 for fault in faults:
                     for action in ACTIONS:

@@ -498,7 +498,7 @@ def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -
 
 # Opens one group after the other and measures how many pixels its lowest block is below the pane,
 # and its widest one beyond the side.
-LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map((row) => {
+LOWEST_SCRIPT = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map((row) => {
   const { x, y, width, height } = row.getBoundingClientRect();
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
   const press = () => ['pointerdown', 'pointerup'].forEach((type) =>
@@ -527,7 +527,7 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
                 wait_for_blocks(page)
                 rows = page.locator(".blocklyToolbox")
                 assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
-                groups = page.evaluate(LOWEST)
+                groups = page.evaluate(LOWEST_SCRIPT)
                 assert len(groups) > 3
                 for words, count, below, _, height in groups:
                     assert count and below <= 1 and height >= 40, (screen, name, level, words)
@@ -544,7 +544,7 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
         for name in robots.names():
             page.select_option("#robot", name)
             wait_for_blocks(page)
-            for words, _, below, overhang, _ in page.evaluate(LOWEST):
+            for words, _, below, overhang, _ in page.evaluate(LOWEST_SCRIPT):
                 assert below <= 1 and overhang <= 1, (language, name, words)
 
 

@@ -25,14 +25,14 @@ from tiniscript import robots
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
-WITH_BLUETOOTH = "--enable-features=WebBluetooth"  # Chromium for Linux has it off
+BLUETOOTH_OPTION = "--enable-features=WebBluetooth"  # Chromium for Linux has it off
 ADDRESS = "09:09:09:09:09:09"
 NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
-MOST = 20  # bytes that every module accepts
+MAX_WRITE_BYTES = 20  # bytes that every module accepts
 READ_MS = 30
 SILENT_MS = 300  # a robot stops after a silence of 500
-READ_INSTEAD = f"""
+READ_SCRIPT = f"""
 BluetoothRemoteGATTCharacteristic.prototype.startNotifications = async function () {{
   globalThis.isDeaf = false;
   const read = () => {{
@@ -133,15 +133,15 @@ class Radio:
         if passes_ms:
             self._back += self.robot.wait(passes_ms, self._there)
         self._there = b""
-        heard_bytes, self._back = self._back[:MOST], self._back[MOST:]
+        heard_bytes, self._back = self._back[:MAX_WRITE_BYTES], self._back[MAX_WRITE_BYTES:]
         return heard_bytes
 
 
 @pytest.fixture(scope="module")
 def radio_page(playwright: Playwright) -> Iterator[tuple[Browser, Page]]:
-    with studio.serve_page() as server, studio.browser(playwright, WITH_BLUETOOTH) as browser:
+    with studio.serve_page() as server, studio.browser(playwright, BLUETOOTH_OPTION) as browser:
         context = browser.new_context(locale="en-US", service_workers="block")
-        context.add_init_script(READ_INSTEAD)
+        context.add_init_script(READ_SCRIPT)
         page = context.new_page()
         enter(page, server.address)
         page.click("#side_real")
@@ -161,7 +161,7 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
         wait_for_message(page, "Done.")
         assert page.locator("#link_shown").inner_text() == "2.5"
         assert radio.actions.count("MOTORS 80 80") >= 1
-        assert max(radio.writes) == MOST
+        assert max(radio.writes) == MAX_WRITE_BYTES
         write(page, FOREVER)
         page.click("#link_upload")
         wait_for_message(page, "The robot has the program")

@@ -15,7 +15,7 @@ import pytest
 from tests.support import studio
 from tests.support.class_pages import join_class, open_teacher_page, wait_for_status
 from tests.support.command import FOREVER
-from tests.support.page_screens import LOOK, SCREENS
+from tests.support.page_screens import LOOK_SCRIPT, SCREENS
 from tests.support.pty_robot import PtyRobot
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -45,7 +45,7 @@ KIT = robots.load("tinibot").kit
 WALL_FITS_SCRIPT = (
     "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
 )
-HOSTILE = "<img src=x onerror=1>"
+HOSTILE_NAME = "<img src=x onerror=1>"
 # The page waits for an answer however slow this computer is.
 NO_TIMEOUT_SCRIPT = """() => { window.limit = AbortSignal.timeout;
   AbortSignal.timeout = () => new AbortController().signal; }"""
@@ -283,7 +283,7 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     page = pages.open(locale="es-AR")
     page.click("#side_real")
     page.locator("#class_pupil input").nth(0).fill("000000")
-    page.locator("#class_pupil input").nth(1).fill(HOSTILE)
+    page.locator("#class_pupil input").nth(1).fill(HOSTILE_NAME)
     page.click("[data-text=class_join]")
     wait_for_status(page, "Ese no es el código de esta clase.")
     page.locator("#class_pupil input").nth(0).fill(shared_class.room.code)
@@ -292,8 +292,8 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     page.reload()  # a tab keeps its place
     wait_until_checked(page)
     page.click("#side_real")
-    wait_for_status(page, f"Estás en la clase, {HOSTILE}"[:40])
-    row = tile(teacher, HOSTILE)
+    wait_for_status(page, f"Estás en la clase, {HOSTILE_NAME}"[:40])
+    row = tile(teacher, HOSTILE_NAME)
     row.wait_for()
     assert (
         teacher.locator("#class img[src=x]").count()
@@ -363,7 +363,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Cl
         teacher.locator("#wall li").nth(29).wait_for()
         assert not teacher.locator("#wall .empty:visible").count()  # the picture arrives later
         teacher.wait_for_function(WALL_FITS_SCRIPT)  # a wall fits its tiles once it knows its size
-        assert teacher.evaluate(LOOK) == []
+        assert teacher.evaluate(LOOK_SCRIPT) == []
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
     speak(teacher, "en")
@@ -546,7 +546,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
             for language in ("en", "es"):
                 speak(page, language)
                 wait_until_checked(page)
-                assert page.evaluate(LOOK) == []
+                assert page.evaluate(LOOK_SCRIPT) == []
             if page is teacher:  # the code is whole, and the tiles have two fifths of a low screen
                 assert page.locator("#class_come strong").last.bounding_box()["height"] < 40  # type: ignore[index]
                 wall = page.locator("#wall").bounding_box()["height"]  # type: ignore[index]

@@ -12,7 +12,7 @@ import pytest
 from tests.studio import screens
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.page_screens import LOOK, SCREENS
+from tests.support.page_screens import LOOK_SCRIPT, SCREENS
 from tests.support.sampling import sample_of
 from tests.support.studio import Pages, axe, enter, image, speak, wait_until_checked, write
 from tiniscript import check, compile
@@ -28,7 +28,7 @@ LOW_SIZES = ((683, 384), (640, 512), (320, 256), (1024, 500))
 LEAST_SIZES = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
                "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
 # The same where the page is scrolled: it is at most too long, and STOP lies over it.
-SCROLLED_LOOK_SCRIPT = LOOK.replace(
+SCROLLED_LOOK_SCRIPT = LOOK_SCRIPT.replace(
     ".map((e) => [e.id || e.tagName, e.getBoundingClientRect()])",
     ".filter((e) => e.id !== 'stop').map((e) => [e.id || e.tagName, e.getBoundingClientRect()])"
     ".map(([id, box]) => [id, new DOMRect(box.x, box.y + scrollY, box.width, box.height)])",
@@ -93,7 +93,7 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):
-                look_script = LOOK if size in SCREENS else SCROLLED_LOOK_SCRIPT
+                look_script = LOOK_SCRIPT if size in SCREENS else SCROLLED_LOOK_SCRIPT
                 problems = page.evaluate(
                     f"(end) => {{ scrollTo(0, end); return ({look_script})(); }}", end
                 )

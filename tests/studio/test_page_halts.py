@@ -252,7 +252,7 @@ def test_a_robot_that_cannot_halt_says_so_and_runs(
 
 
 HALTING_TITLE = title_of(robots.load("tinibot"), True)
-BROUGHT_FIRMWARES = [
+OFFERED_FIRMWARES = [
     ("tinibot", "nano"), ("tinibot", "uno"), (HALTING_TITLE, "uno"),
     ("liner", "nano"),
 ]  # fmt: skip
@@ -269,7 +269,7 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     other_page = pages.blank(is_alone=True)
     rows = [
         {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
-        for title, board in BROUGHT_FIRMWARES
+        for title, board in OFFERED_FIRMWARES
     ]
     questions: list[str] = []
     other_page.route("**/firmware.json", lambda route: route.fulfill(json=rows))

@@ -23,17 +23,19 @@ if TYPE_CHECKING:
 sampled = pytest.mark.sampled(of="held files and ports", keep=2)
 
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
-FILE = "tinibot-uno-digest.hex"
+FIRMWARE_FILE = "tinibot-uno-digest.hex"
 STUCK_PORT_MESSAGE = "The port no longer accepts data."
 
 
 @pytest.fixture(scope="module")
 def server(browser: Browser) -> Iterator[serving.Server]:
-    rows = [{"title": "tinibot", "board": board, "file": FILE} for board in ("uno", "esp32dev")]
+    rows = [
+        {"title": "tinibot", "board": board, "file": FIRMWARE_FILE} for board in ("uno", "esp32dev")
+    ]
     page = {
         **serving.files(),
         serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
-        FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
+        FIRMWARE_FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
     }
     with studio.serve_page(page) as server:
         yield server
@@ -46,7 +48,7 @@ def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
     opened_pages.close()
 
 
-class Held:
+class HeldRequests:
     """Requests that stay unanswered until they are released; later ones are then answered at
     once."""
 
@@ -91,7 +93,7 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
-    held_robot = Held(page, f"**/{FILE}")
+    held_robot = HeldRequests(page, f"**/{FIRMWARE_FILE}")
     for count, action in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
         wait_for(page, partial(held_robot.has, count), "it is fetched")
@@ -114,7 +116,7 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
     page.select_option("#flash_board", "esp32dev")
-    held_robot = Held(page, "**/esp32-*.js")
+    held_robot = HeldRequests(page, "**/esp32-*.js")
     for _ in range(2):
         page.click("#flash_write")
         wait_for(page, lambda: held_robot.routes, "it is fetched")
@@ -202,7 +204,7 @@ new MutationObserver(() => {
 WAITS_SCRIPT = """window.told
   .map((said) => /waiting(?= for the compiler)|did not load/.exec(said ?? '')?.[0])
   .filter(Boolean).filter((each, k, all) => each !== all[k - 1])"""
-TRIES = 10
+TRY_COUNT = 10
 
 
 def check_dance_goes_on(page: Page) -> None:
@@ -224,7 +226,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
     assert {*COMPILER_FILES, "main.js", "texts.en.json"} <= {*names}
     for name in names:
         page = visits.blank(is_alone=True)
-        held_robot = Held(page, f"**/{name}")
+        held_robot = HeldRequests(page, f"**/{name}")
         page.goto(visits.address, wait_until="commit")
         begin_button, word = page.locator(f"{BEGIN_BUTTON}:visible"), page.locator(HANGING_MESSAGE)
         run_page = page.locator("html:is([data-phase=running], [data-phase=ended])")
@@ -256,7 +258,7 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     """The first retry fails, the next succeeds."""
     page = visits.blank(is_alone=True)
     page.add_init_script(RECORDING_SCRIPT)
-    Held(page, f"**/{name}")
+    HeldRequests(page, f"**/{name}")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     for _ in range(2):
@@ -266,7 +268,7 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     assert page.evaluate(WAITS_SCRIPT)[:4] == ["waiting", "did not load"] * 2
     page.context.unroute_all()
     outcome = page.locator("html[data-phase=running], #doing:has-text('did not load')")
-    for _ in range(TRIES):
+    for _ in range(TRY_COUNT):
         outcome.first.wait_for(state="attached")
         if not page.locator("#doing", has_text="did not load").count():
             break
@@ -279,7 +281,7 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
 
 def test_whoever_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
-    held_robot = Held(page, "**/pyodide.asm.mjs")
+    held_robot = HeldRequests(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="Press STOP to cancel.").wait_for()
@@ -311,7 +313,7 @@ def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) 
         page = pages.blank(is_alone=True)
         page.clock.install()
         enter(page, server.entrance())
-        held_robot = Held(page, "**/robots")
+        held_robot = HeldRequests(page, "**/robots")
         page.keyboard.press("Escape")
         wait_for(page, lambda: held_robot.routes, "it is asked")
         page.clock.fast_forward(3100)

@@ -25,7 +25,7 @@ from tests.support.page_link import (
     wait_for_message,
 )
 from tests.support.page_robot import running, wait_for_nothing_running, wait_for_running
-from tests.support.page_screens import LOOK, SCREENS
+from tests.support.page_screens import LOOK_SCRIPT, SCREENS
 from tests.support.pty_robot import PtyRobot
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -194,7 +194,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
             speak(page, language)
             wait_until_checked(page)
             turn(page, "robot")
-            assert page.evaluate(LOOK) == [], (width, language, is_connected)
+            assert page.evaluate(LOOK_SCRIPT) == [], (width, language, is_connected)
         if is_connected:
             page.click("#link_leave")
             page.locator("#link_connect").wait_for()
@@ -433,7 +433,7 @@ def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) ->
 # -- the line and the block that the robot runs now
 
 
-DRIVE = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
+DRIVE_PROGRAM = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
 
 
 def wait_for_no_mark(page: Page) -> None:
@@ -444,11 +444,11 @@ def wait_for_no_mark(page: Page) -> None:
 @pytest.mark.usefixtures("no_page_timeouts")
 @sampled
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
-    write(page, DRIVE)
+    write(page, DRIVE_PROGRAM)
     page.click("#view_blocks")
     wait_for_blocks(page)
     page.click("#link_upload")
-    for part in DRIVE.split(";\n"):
+    for part in DRIVE_PROGRAM.split(";\n"):
         wait_for_running(page, part)
         assert page.locator("#blocks .blocklyDraggable.running").count() == 1
     page.click("#view_text")

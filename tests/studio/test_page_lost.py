@@ -130,7 +130,7 @@ def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
 # -- reports of a stop
 
 
-class Mute:
+class EventFilter:
     """A filter that keeps a stop's event from a page until it is released."""
 
     def __init__(self, page: Page, *kinds: str) -> None:
@@ -163,7 +163,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
     connect(page, robot)
     start_drive(page, robot)
     page.evaluate(LISTENING_SCRIPT)
-    mute = Mute(page, "STOPPED")
+    mute = EventFilter(page, "STOPPED")
 
     def stop() -> None:
         if stop_action == "button":
@@ -193,7 +193,7 @@ def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
         start_drive(page, robot)
-        mute = Mute(page, "STOPPED")
+        mute = EventFilter(page, "STOPPED")
         page.evaluate(LISTENING_SCRIPT)
         page.dblclick("#stop")
         wait_for(page, partial(mute.keeps, True), "it has stopped")
@@ -276,7 +276,7 @@ def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
-    Mute(page, "LOST")
+    EventFilter(page, "LOST")
     robot.switch_off()
     page.evaluate(LISTENING_SCRIPT)
     page.click("#link_identify")
@@ -302,7 +302,7 @@ def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
 ) -> None:
     connect(page, robot)
     start_drive(page, robot)
-    Mute(page, "STOPPED", "LOST")
+    EventFilter(page, "STOPPED", "LOST")
     page.evaluate(LISTENING_SCRIPT)
     page.click("#stop")
     page.click("#link_leave")

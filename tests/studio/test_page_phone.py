@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 sampled = pytest.mark.sampled(of="looks of a phone", keep=2)
 
-NINE = """SI|LOOP(3)
+NINE_BLOCKS = """SI|LOOP(3)
   F(1, 80)
   BEEP(0.1, 440)
   R(0.5, 60)
@@ -39,7 +39,7 @@ F(-2, 80)
 B(1, 80)
 L(1, 80)"""
 # The number of blocks fully visible above the compiler's message.
-SEEN = """() => {
+SEEN_SCRIPT = """() => {
   const sheet = document.querySelector('#messages').getBoundingClientRect();
   const { top, bottom } = document.querySelector('#blocks').getBoundingClientRect();
   const low = sheet.height ? sheet.top : bottom;
@@ -69,11 +69,11 @@ def shown_half(page: Page) -> str:
 
 @sampled
 def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
-    write(phone, NINE)
+    write(phone, NINE_BLOCKS)
     phone.click("#view_blocks")
     wait_for_blocks(phone)
     assert phone.locator("#messages li").is_visible()
-    assert phone.evaluate(SEEN) >= 6
+    assert phone.evaluate(SEEN_SCRIPT) >= 6
     assert axe(phone) == []
 
 
@@ -203,7 +203,7 @@ def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None
 
 
 # The height of letters in a box of blocks, and the width and height of its touch targets.
-TOUCHED = """all => all.map((e) => {
+TOUCHED_SCRIPT = """all => all.map((e) => {
   const isNumber = e.matches('.blocklyNumberField'); // which is all of its block
   const shape = e.querySelector(':scope > .blocklyFieldRect') ?? e;
   const own = isNumber ? e.closest('.blocklyBlock') : shape;
@@ -211,7 +211,7 @@ TOUCHED = """all => all.map((e) => {
   return [e.textContent, Math.min(width, height)];
 })"""
 LETTERS = """all => all.map((e) => parseFloat(getComputedStyle(e).fontSize) * e.getScreenCTM().a)"""
-LONG = """SI|IF(LIGHT_L > LIGHT_R AND DISTANCE < 20 OR TIME > 3);
+LONG_PROGRAM = """SI|IF(LIGHT_L > LIGHT_R AND DISTANCE < 20 OR TIME > 3);
   L(0.5, 60);
 ELSE;
   M(30, 60);
@@ -228,14 +228,14 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     """
     page = pages.open(viewport={"width": 390, "height": 844})
     speak(page, language)
-    write(page, LONG)
+    write(page, LONG_PROGRAM)
     page.click("#view_blocks")
     wait_for_blocks(page)
     canvas = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"
     letters = page.locator(f"{canvas} .blocklyText").evaluate_all(LETTERS)
     assert letters and min(letters) >= 11.99
     fields = ".blocklyDropdownField, .blocklyNumberField, .blocklyImageField"
-    for name, least in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED):
+    for name, least in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED_SCRIPT):
         assert least >= 23, name
     rows = page.locator(f"{canvas} .compare > .blocklyPath:not(.blocklyPathSelected)")
     width = page.evaluate("document.querySelector('#blocks').getBoundingClientRect().right")
@@ -278,7 +278,7 @@ def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: st
 
 
 # Touch targets below STOP; those scrolled out at the top are not below anything.
-UNDER_STOP = """() => {
+UNDER_STOP_SCRIPT = """() => {
   const stop = document.querySelector('#stop').getBoundingClientRect();
   const top = document.querySelector('body > header').getBoundingClientRect().bottom;
   return [...document.querySelectorAll('button, select')].filter((each) => {
@@ -321,9 +321,9 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
         return float(box["width"])
 
     assert width() < 130
-    assert page.evaluate(UNDER_STOP) == []
+    assert page.evaluate(UNDER_STOP_SCRIPT) == []
     page.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
-    assert page.evaluate(UNDER_STOP) == []
+    assert page.evaluate(UNDER_STOP_SCRIPT) == []
     page.evaluate("document.querySelector('#link_connected').hidden = false")
     assert width() > 360
     page.evaluate("document.querySelector('#link_connected').hidden = true")

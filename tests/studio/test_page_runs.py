@@ -26,7 +26,7 @@ KEYS = (
     "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_A);\nSHOW(RANDOM(1, 99));\nEND_IF;\n"
     "W(0.05);\nEND_LOOP"
 )
-LOOKS = "SI|LOOP(2);\nW(0.2);\nSHOW(DISTANCE);\nEND_LOOP;\nSHOW(5)"
+SHOW_PROGRAM = "SI|LOOP(2);\nW(0.2);\nSHOW(DISTANCE);\nEND_LOOP;\nSHOW(5)"
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def wait_for_status(page: Page, text: str) -> None:
     page.locator("#doing", has_text=text).wait_for()
 
 
-def real_recording(*rows: tuple[int, str], text: str = LOOKS) -> str:
+def real_recording(*rows: tuple[int, str], text: str = SHOW_PROGRAM) -> str:
     header = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
     return encode(header, [Row(*row) for row in rows], rows[-1][0])
 

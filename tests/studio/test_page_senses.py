@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
 sampled = pytest.mark.sampled(of="details of the senses", keep=2)
 
-SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
-MEASURED = 40  # values
+SENSED_READINGS = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
+MEASURED_COUNT = 40  # values
 FOREVER_SHOW = "LOOP(FOREVER);SHOW(7);W(0.1);END_LOOP"
 
 
@@ -126,7 +126,7 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     count_before = len(robot.actions)
     runs = seen_runs(page)
     watch_senses(page)
-    for values in SENSED:
+    for values in SENSED_READINGS:
         senses(page, robot, *values)
     assert not [line for line in robot.actions[count_before:] if line.startswith(("BEEP", "SET"))]
     assert not robot.moves
@@ -299,7 +299,7 @@ def test_the_readings_take_a_third_of_the_line_at_most(
         known_ports.remember(robot.port, "TINI")
         connect(page, robot)
         watch_senses(page)
-        robot.until(lambda: len(robot.values) > MEASURED, "values have come")
+        robot.until(lambda: len(robot.values) > MEASURED_COUNT, "values have come")
         (first_ms, _), *later_values = robot.values
         passed_ms = later_values[-1][0] - first_ms
         assert 3 * sum(size for _, size in later_values) <= passed_ms

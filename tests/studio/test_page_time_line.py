@@ -18,7 +18,7 @@ pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 sampled = pytest.mark.sampled(of="looks back at a run", keep=2)
 
 # The number of points of the line that have the color of a WHEN.
-MARKED = """() => {
+MARKED_SCRIPT = """() => {
   const paper = () => document.createElement('canvas').getContext('2d', {willReadFrequently: true});
   const pen = paper(), colored = paper();
   Object.assign(pen.canvas, {width: time_marks.width, height: time_marks.height});
@@ -33,7 +33,7 @@ MARKED = """() => {
   }
   return count;
 }"""
-COUNT = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
+COUNTING_PROGRAM = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
 
 
 def start_run(page: Page, text: str) -> None:
@@ -51,7 +51,7 @@ def seconds(page: Page) -> float:
 
 @sampled
 def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
-    start_run(page, COUNT)
+    start_run(page, COUNTING_PROGRAM)
     wait_for_phase(page, "ended")
     page.focus("#time_at")
     end_s, pose = seconds(page), page.locator("#where").text_content()
@@ -111,7 +111,7 @@ def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
 
 @sampled
 def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
-    start_run(page, COUNT)
+    start_run(page, COUNTING_PROGRAM)
     wait_for_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
@@ -137,7 +137,7 @@ def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page)
 
 
 # Texts for users of text only: a word of the language, or a line number.
-CODE = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
+CODE_PATTERN = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
 @sampled
@@ -196,7 +196,7 @@ def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> Non
     )
     wait_for_phase(page, "ended")
     speak(page, language)
-    assert re.search(CODE, status_text(page))
+    assert re.search(CODE_PATTERN, status_text(page))
     page.click("#view_blocks")
     wait_for_blocks(page)
     page.focus("#time_at")
@@ -205,7 +205,7 @@ def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> Non
     page.focus("#time_at")
     status_texts = set()
     for _ in range(12):
-        wait_for(page, lambda: not re.search(CODE, status_text(page)), "no code")
+        wait_for(page, lambda: not re.search(CODE_PATTERN, status_text(page)), "no code")
         status_texts.add(status_text(page))
         page.keyboard.press("ArrowRight")
     was = str(page_texts(language)["why_value"]).format(name="[^.]+", value="[0-9]")
@@ -215,7 +215,7 @@ def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> Non
     )
     page.click("#why")
     page.click("#view_text")
-    wait_for(page, lambda: re.search(CODE, status_text(page)), "code")
+    wait_for(page, lambda: re.search(CODE_PATTERN, status_text(page)), "code")
     speak(page, "en")
 
 
@@ -227,4 +227,4 @@ def test_a_when_that_begins_is_a_mark(page: Page) -> None:
         page.locator("#trace", has_text="SHOW 2").wait_for(state="attached")
         page.click("#stop")
         wait_for_phase(page, "ended")
-        assert (page.evaluate(MARKED) > 0) is is_marked
+        assert (page.evaluate(MARKED_SCRIPT) > 0) is is_marked

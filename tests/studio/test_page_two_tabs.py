@@ -39,7 +39,7 @@ FULL_STORAGE_SCRIPT = """(full) => {
     put.call(this, place, whole);
   };
 }"""
-REFUSED = """for (const name of ['localStorage', 'sessionStorage']) {
+NO_STORAGE_SCRIPT = """for (const name of ['localStorage', 'sessionStorage']) {
   Object.defineProperty(window, name, { get() { throw new DOMException('no', 'SecurityError'); } });
 }"""
 PASTE_SCRIPT = """(count) => {
@@ -145,7 +145,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     drag(page, [(60, 30), (100, 60)])
     page.locator("#doing", has_text="This browser has no room for this world").wait_for()
     assert "F(2, 20)" in page.evaluate("sessionStorage['tiniscript.work']")  # this tab has it
-    page.context.add_init_script(REFUSED)
+    page.context.add_init_script(NO_STORAGE_SCRIPT)
     page.reload()
     wait_until_checked(page)
     page.click("#view_text")

@@ -82,7 +82,7 @@ def _type_text(page: Page, dice: random.Random) -> None:
     page.click("#view_blocks")
 
 
-ACTS: tuple[Callable[[Page, random.Random], None], ...] = (
+ACTIONS: tuple[Callable[[Page, random.Random], None], ...] = (
     _move_block,
     _move_block,
     _add_block,
@@ -98,7 +98,7 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
     page.select_option("#robot", "tinibot32")
     start(page, dice.choice(PROGRAMS), "usual")
     past_states = [state_of(page)]
-    for act in (_move_block, *dice.choices(ACTS, k=5)):
+    for act in (_move_block, *dice.choices(ACTIONS, k=5)):
         act(page, dice)
         if (state := state_of(page)) != past_states[-1]:
             past_states.append(state)

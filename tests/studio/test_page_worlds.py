@@ -39,7 +39,7 @@ pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
 sampled = pytest.mark.sampled(of="details of worlds", keep=2)
 
 
-KEPT = "() => localStorage.getItem('tiniscript.world')"
+STORED_WORLD_SCRIPT = "() => localStorage.getItem('tiniscript.world')"
 
 
 def number(page: Page, key: str) -> float:
@@ -272,9 +272,9 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     assert len(world.lines) == 1 and abs(world.lines[0].points[-1].x - 160) < 1
     page.tap("#world_done")
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
-    kept_state = page.evaluate(KEPT)
+    kept_state = page.evaluate(STORED_WORLD_SCRIPT)
     draw(page, [(60, 110), (60, 100)])  # outside of the drawing, too
-    page.wait_for_function(f"before => ({KEPT})() !== before", arg=kept_state)
+    page.wait_for_function(f"before => ({STORED_WORLD_SCRIPT})() !== before", arg=kept_state)
     page.reload()
     wait_until_checked(page)
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
@@ -318,7 +318,7 @@ def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     assert read_start(page) == (40, 40)
 
 
-OWN = b"""[floor]
+OWN_WORLD = b"""[floor]
 width_cm = 90
 height_cm = 70
 [start]
@@ -338,9 +338,9 @@ es = "aula"
 
 @sampled
 def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
-    open_world_file(floor, OWN)
+    open_world_file(floor, OWN_WORLD)
     wait_for_status(floor, "Opened: own.toml")
-    wanted_world = read(OWN.decode(), "own")
+    wanted_world = read(OWN_WORLD.decode(), "own")
     world = save_world(floor)
     assert (world.start, world.width_cm, world.labels) == (
         wanted_world.start,
@@ -353,7 +353,7 @@ def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
     for data, message in (
         (b"\xff", "UTF-8"),
         (b"[floor]\nwidth_cm = 1\n", "own.toml was not opened. "),
-        (OWN.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
+        (OWN_WORLD.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
         (b"#" * 3_000_000, "has more than"),
     ):
         open_world_file(floor, data)

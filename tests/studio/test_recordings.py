@@ -26,24 +26,24 @@ from tiniscript.studio.recordings import (
 )
 from tiniscript.studio.robot_link import RobotLink
 
-LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
+SHOW_PROGRAM = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
 TINIBOT = robots.load("tinibot")
 
 
-def first_line(text: str = LOOKS, robot_kind: str = recordings.REAL, **fields: Any) -> str:
+def first_line(text: str = SHOW_PROGRAM, robot_kind: str = recordings.REAL, **fields: Any) -> str:
     if robot_kind == recordings.VIRTUAL:
         fields = {"world": "obstacles", **fields}
     return header_line(robot_kind, text, TINIBOT, compile(text).checksum, **fields)
 
 
-def file(*events: tuple[int, str], text: str = LOOKS, **fields: Any) -> bytes:
+def file(*events: tuple[int, str], text: str = SHOW_PROGRAM, **fields: Any) -> bytes:
     rows = [Row(*event) for event in events]
     end_ms = rows[-1].ms if rows else 0
     return encode(first_line(text, **fields), rows, end_ms).encode()
 
 
-def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
+def parting(*events: tuple[int, str], text: str = SHOW_PROGRAM) -> Divergence:
     was_started_by_button = text.startswith("SB|")
     played_run = play(
         prepare(decode(file(*events, text=text, was_started_by_button=was_started_by_button)))
@@ -52,7 +52,7 @@ def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
     return played_run.divergence
 
 
-def recording_of(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
+def recording_of(*events: tuple[int, str], text: str = SHOW_PROGRAM) -> tuple[str, int, int]:
     return parting(*events, text=text)[:3]
 
 
@@ -62,7 +62,7 @@ def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
 
 
 def test_what_is_pressed_is_known_where_the_program_shows_it() -> None:
-    assert parting(*LINES, text=LOOKS.replace("DISTANCE", "PAD_Y")) == Divergence("same", 5)
+    assert parting(*LINES, text=SHOW_PROGRAM.replace("DISTANCE", "PAD_Y")) == Divergence("same", 5)
 
 
 @pytest.mark.parametrize("value", ["17.5", "38.7"])
@@ -170,7 +170,11 @@ def test_a_program_that_means_something_else_now_is_not_played() -> None:
     for text in ("SHOW(1)", "SHOW("):
         with pytest.raises(BadRecording, match="other_program"):
             prepare(
-                decode(file(*LINES).replace(json.dumps(LOOKS).encode(), json.dumps(text).encode()))
+                decode(
+                    file(*LINES).replace(
+                        json.dumps(SHOW_PROGRAM).encode(), json.dumps(text).encode()
+                    )
+                )
             )
 
 

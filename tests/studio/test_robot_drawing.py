@@ -15,7 +15,7 @@ from tiniscript.studio.description import description
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 
-TREAD, LIT, WAVE = "#b9c2cb", "#fff3a8", "#7a2fb8"
+TREAD_COLOUR, LIT_COLOUR, WAVE_COLOUR = "#b9c2cb", "#fff3a8", "#7a2fb8"
 
 
 def state_after(text: str, robot: str, ms: int) -> dict[str, Any]:
@@ -58,7 +58,9 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
 
     def treads(drawing: Drawing, is_left: bool) -> list[float]:
         """Return the positions of a wheel's treads, from the back to the front."""
-        rows = [shape for shape in shapes(drawing, "stroke", TREAD) if (shape[1] > 0) == is_left]
+        rows = [
+            shape for shape in shapes(drawing, "stroke", TREAD_COLOUR) if (shape[1] > 0) == is_left
+        ]
         return sorted(row[0] for row in rows)
 
     for is_left in (True, False):
@@ -82,9 +84,9 @@ def test_what_is_on_is_seen() -> None:
         ("tinibot", None, STANDING_STILL),
     )
     lit, dark, waiting, driving, loud, silent_drawing = drawings_of(*of_rows)
-    assert shapes(lit, "fill", LIT) and not shapes(dark, "fill", LIT)
+    assert shapes(lit, "fill", LIT_COLOUR) and not shapes(dark, "fill", LIT_COLOUR)
     assert shapes(waiting, "fill", "#ffd84d") and not shapes(driving, "fill", "#ffd84d")
-    assert shapes(loud, "stroke", WAVE) and not shapes(silent_drawing, "stroke", WAVE)
+    assert shapes(loud, "stroke", WAVE_COLOUR) and not shapes(silent_drawing, "stroke", WAVE_COLOUR)
 
 
 def test_the_jaws_are_as_open_as_they_are() -> None:

@@ -10,8 +10,8 @@ from tests.support.node import in_node
 
 SCRIPT = Path(__file__).parent / "runs_kept_in_node.mjs"
 MOST_RUNS, MOST_CHARACTERS = 10, 2_000_000
-LARGE = (9_900, 188, 0)  # nearly as much as there is room for
-TOO_LARGE = (9_900, 188, 50_000)
+LARGE_RUN = (9_900, 188, 0)  # nearly as much as there is room for
+TOO_LARGE_RUN = (9_900, 188, 50_000)
 ROW_CHARACTERS = 12  # of a row, beside its text
 
 
@@ -22,7 +22,7 @@ def run(rng: random.Random, kind: int) -> Kept:
     """Return a small run, a middling one, a large one, or one of which nothing is known."""
     small_run = rng.randint(1, 20), rng.randint(1, 60), 0
     middling = rng.randint(500, 3000), rng.randint(1, 80), rng.choice((0, 600_000))
-    return (small_run, middling, rng.choice((LARGE, TOO_LARGE)), (0, 0, 0))[kind]
+    return (small_run, middling, rng.choice((LARGE_RUN, TOO_LARGE_RUN)), (0, 0, 0))[kind]
 
 
 def stories() -> list[list[Kept]]:

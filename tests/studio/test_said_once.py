@@ -26,10 +26,10 @@ from tiniscript.studio.checking import profile_of
 from tools.builds.page_texts import page_texts
 
 SCRIPT = Path(__file__).with_name("said_in_node.mjs")
-CODE = re.compile("`([^`]+)`")
+CODE_PATTERN = re.compile("`([^`]+)`")
 WORD = re.compile(r"[^\W\d_]+|\d+")
-NEAR = 2  # words next to a block
-STEM = 4  # letters that the forms of a word share
+NEARBY_WORD_COUNT = 2  # words next to a block
+STEM_LETTERS = 4  # letters that the forms of a word share
 REPEATED_WORD = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
 
 __all__ = ["page_data"]
@@ -45,7 +45,7 @@ def words(text: str) -> list[str]:
 
 
 def stem(word: str) -> str:
-    return word[:STEM]
+    return word[:STEM_LETTERS]
 
 
 def list_repetitions(parts: Parts) -> list[str]:
@@ -59,12 +59,12 @@ def list_repetitions(parts: Parts) -> list[str]:
     for k, (is_block, label) in enumerate(parts):
         if not is_block:
             continue
-        label_stems = {stem(word) for word in words(label) if len(word) >= STEM}
+        label_stems = {stem(word) for word in words(label) if len(word) >= STEM_LETTERS}
         text_before, text_after = (
             parts[k + step][1] if 0 <= k + step < len(parts) else "" for step in (-1, 1)
         )
-        nearby_words = words(re.split(r"[.?!:;]", text_before)[-1])[-NEAR:]
-        nearby_words += words(re.split(r"[.?!:;]", text_after)[0])[:NEAR]
+        nearby_words = words(re.split(r"[.?!:;]", text_before)[-1])[-NEARBY_WORD_COUNT:]
+        nearby_words += words(re.split(r"[.?!:;]", text_after)[0])[:NEARBY_WORD_COUNT]
         repeated_words += [word for word in nearby_words if stem(word) in label_stems]
     return repeated_words
 
@@ -104,7 +104,7 @@ def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> l
 
 
 def blocks_of_code(text: str) -> dict[str, dict[str, Any]]:
-    return block_speech.blocks_of(CODE.findall(text), profile_of("tinibot").kit)
+    return block_speech.blocks_of(CODE_PATTERN.findall(text), profile_of("tinibot").kit)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

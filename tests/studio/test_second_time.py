@@ -37,7 +37,7 @@ from tiniscript.studio.robot_link import BadRequest, RobotLink
 Json = dict[str, Any]
 LOOK_MS = 20
 BEAT_MS = 100
-RUN = {"do": "upload", "runs": True}
+RUN_REQUEST = {"do": "upload", "runs": True}
 
 
 class Room:
@@ -186,7 +186,9 @@ class ComingPage:
 
     def _wants_run(self) -> None:
         self._number += 1
-        self._asked.append({**RUN, "id": self._number, "stops": self.stops, "seen": self._seen})
+        self._asked.append(
+            {**RUN_REQUEST, "id": self._number, "stops": self.stops, "seen": self._seen}
+        )
 
     def stop(self) -> None:
         self.stops += 1
@@ -325,7 +327,7 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
         starts_drive, is_stopped = rng.random() < 0.6, rng.random() < 0.2
         if is_heard and starts_drive:
             number += 1
-            attending.on_beat([{**RUN, "id": number, "stops": 0, "seen": 0}], 0)
+            attending.on_beat([{**RUN_REQUEST, "id": number, "stops": 0, "seen": 0}], 0)
             attending.attend(cast(RobotLink, link), 0)
         if is_stopped:
             attending.stop()
@@ -397,10 +399,10 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
 
 # -- many requests on one connection
 
-BEAT = b'{"do": "beat"}'
-PAGE = {"index.html": serving.File(b"<!doctype html>", serving.TYPES[".html"]),
+BEAT_REQUEST = b'{"do": "beat"}'
+PAGE_FILES = {"index.html": serving.File(b"<!doctype html>", serving.TYPES[".html"]),
         "main.js": serving.File(b"0", serving.TYPES[".js"], '"tag"')}  # fmt: skip
-STRANGE = "a letter from a page of the class before"
+STRANGE_ERROR = "a letter from a page of the class before"
 # Bytes of padding in a head; the last one is too large.
 PADDINGS = (0, 3000, 9000, 12_000, serving.HEAD_BYTES)
 
@@ -413,7 +415,7 @@ def answer_beat(request: Json) -> Json:
 
 @pytest.fixture
 def server() -> Iterator[serving.Server]:
-    with serves(serving.Server(PAGE, 0, answer_beat)) as server:
+    with serves(serving.Server(PAGE_FILES, 0, answer_beat)) as server:
         yield server
 
 
@@ -433,7 +435,7 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
             connection.request("GET", request, None, given_fields)
         else:
             body = request.encode()
-            shown_token = "" if request == STRANGE else token
+            shown_token = "" if request == STRANGE_ERROR else token
             connection.request(
                 "POST",
                 serving.ROBOTS_PATH,
@@ -459,7 +461,9 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
     for _ in range(40):
         is_odd = rng.random() < 0.06
         request = rng.choice(
-            ("/nothing", "{}", STRANGE) if is_odd else ("/", "/main.js", BEAT.decode())
+            ("/nothing", "{}", STRANGE_ERROR)
+            if is_odd
+            else ("/", "/main.js", BEAT_REQUEST.decode())
         )
         padding = rng.choice(PADDINGS if is_odd else PADDINGS[:-1])
         new_connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)

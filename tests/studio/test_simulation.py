@@ -124,7 +124,7 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     assert simulation.state()["events"] == []
 
 
-PUSHED = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
+BUTTON_PROGRAM = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
 
 
 @pytest.mark.parametrize("seed", range(16))
@@ -132,8 +132,8 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
     """Each stop counts, whatever stopped the robot before."""
     rng = random.Random(seed)
     fresh_simulation, simulation = (
-        started_simulation(PUSHED),
-        started_simulation(PUSHED, is_held=rng.random() < 0.3),
+        started_simulation(BUTTON_PROGRAM),
+        started_simulation(BUTTON_PROGRAM, is_held=rng.random() < 0.3),
     )
     parts = simulation.marks.part_offsets
     acts: list[Callable[[], object]] = [

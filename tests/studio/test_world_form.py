@@ -102,7 +102,7 @@ def open_world(data: bytes, name: str = "own.toml", language: str = "en") -> dic
 
 
 GOOD_WORLD = b"[floor]\nwidth_cm = 100\nheight_cm = 80\n[start]\nx_cm = 30\ny_cm = 30\n"
-HOSTILE = {
+HOSTILE_VALUES = {
     "nothing": (b"", "floor"),
     "no TOML": (b"SI|F(2, 80)", "Line 1"),
     "no UTF-8": (b"\xff\xfe[floor]", "UTF-8"),
@@ -116,9 +116,9 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("name", HOSTILE_VALUES)
 def test_a_file_that_is_not_a_world_says_why(name: str) -> None:
-    data, message = HOSTILE[name]
+    data, message = HOSTILE_VALUES[name]
     for language in ("en", "es"):
         answer = open_world(data, language=language)
         assert set(answer) == {"refused"} and answer["refused"]

@@ -25,7 +25,7 @@ CHARACTERISTICS = {
 }  # fmt: skip
 ADDRESS = "AA:BB:CC:DD:EE:01"
 NAME, ADDRESS_PORT = "ble://Tini 1", f"ble://{ADDRESS}"  # ports of the robot
-DRIVE = "SI|F(0.2, 80)"
+DRIVE_PROGRAM = "SI|F(0.2, 80)"
 DRIVE_ACTIONS = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 

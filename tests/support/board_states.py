@@ -9,11 +9,14 @@ from tests.support.edited_robots import TEXTS
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
 
-STEADY = 29.8  # ms after its release a button is surely up
-PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is certainly up again
-FORWARD, BACKWARD, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
-MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
-TURN = 250.0
+STEADY_MS = 29.8  # ms after its release a button is surely up
+PRESS_MS, START_MS = (
+    100.0,
+    200.0,
+)  # ms: when the button goes down, and when it is certainly up again
+FORWARD_MS, BACKWARD_MS, OFF_MS = 50.0, 150.0, 350.0  # ms after the start of MOVES
+MOVES_PROGRAM = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
+TURN_MS = 250.0
 
 
 def robot_with(motors: str) -> Robot:
@@ -76,7 +79,7 @@ def robot_with_driver(name: str) -> Robot:
 
 def start_board(robot: Robot, text: str, extra_toml: str = "") -> Board:
     board = Board(robot, text, extra_toml)
-    board.press(PRESS, START - STEADY)
+    board.press(PRESS_MS, START_MS - STEADY_MS)
     return board
 
 

@@ -23,7 +23,7 @@ PROGRAM = "SI|F(5,80)"
 OBSTACLE = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
 FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
 # more than one frame, and of many short moves
-LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 54)) + "END_LOOP"
+LONG_PROGRAM = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 54)) + "END_LOOP"
 TSC = [sys.executable, "-m", "tiniscript"]
 
 

@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager
 
 HALF_A_REQUEST = b"POST /robots HTTP/1.1\r\nHost: "
 CONNECTIONS_PER_PROCESS = 100  # connections of a process: not more than wait for a listener at once
-CODE = """
+CONNECTING_CODE = """
 import contextlib, socket, sys
 host, port, source, count, says = sys.argv[1:]
 says = [bytes.fromhex(each) for each in says.split(",")]
@@ -54,7 +54,18 @@ def _open_connections(
     port: int, count: int, says: Sequence[bytes], host: str, source: str
 ) -> Iterator[None]:
     packets = ",".join(data.hex() for data in says)
-    words = [sys.executable, "-I", "-S", "-c", CODE, host, str(port), source, str(count), packets]
+    words = [
+        sys.executable,
+        "-I",
+        "-S",
+        "-c",
+        CONNECTING_CODE,
+        host,
+        str(port),
+        source,
+        str(count),
+        packets,
+    ]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout and process.stdout.readline() == b"here\n"

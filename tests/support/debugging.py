@@ -22,7 +22,7 @@ class Halt(NamedTuple):
     task: int
 
 
-class Debugged:
+class DebuggedRobot:
     """A robot that holds a program, and its computer."""
 
     def __init__(
@@ -90,9 +90,9 @@ class Debugged:
         return list(iter_unpack("<BHI", reply.tasks))
 
 
-def debug(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
+def debug(text: str, *places: int, robot: HostFirmware | None = None) -> DebuggedRobot:
     """Return a robot with a started program that has these breakpoints."""
-    session = Debugged(text, robot)
+    session = DebuggedRobot(text, robot)
     assert session.places(*places) == OK
     session.start()
     return session

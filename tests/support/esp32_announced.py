@@ -17,7 +17,7 @@ LOOK_S = 0.1
 PORT = 8473  # port that the firmware announces; robots on this computer use free ports
 
 
-class Announced:
+class AnnouncedNames:
     """Repeats what a robot announces until `close`."""
 
     def __init__(self, robot: Esp32PtyRobot) -> None:
@@ -29,7 +29,7 @@ class Announced:
         self._thread = threading.Thread(target=self._follow, daemon=True)
         self._thread.start()
 
-    def __enter__(self) -> Announced:
+    def __enter__(self) -> AnnouncedNames:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -22,7 +22,7 @@ class Client(Protocol):
     def receive(self, data: bytes, now_ms: int) -> None: ...
 
 
-class Bytes:
+class RawClient:
     """A client without a session: the bytes to send, and the received ones."""
 
     def __init__(self, line: bytes = b"") -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tests.support.simulated_ends import Nobody
+from tests.support.simulated_ends import UnpoweredEnd
 
 ROM = (
     b"ets Jul 29 2019 12:21:46\r\n\r\n"
@@ -108,7 +108,7 @@ RECORDINGS: Mapping[str, Recording] = {
 }  # fmt: skip
 
 
-class Board(Nobody):
+class Board(UnpoweredEnd):
     """A board that starts when its port is opened, and takes `boot_ms` for that.
 
     `starts` is its output then, repeated every `again_ms`.

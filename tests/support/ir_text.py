@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tiniscript.base.fixed_point import as_text
 from tiniscript.semantics.ir import Body, Expression, If, Loop, Move, Program, While, values_of
 
-SHOWN = ("direction", "unit", "sensor", "actuator", "variable", "procedure", "reads")
+SHOWN_FIELDS = ("direction", "unit", "sensor", "actuator", "variable", "procedure", "reads")
 
 
 def expression_text(expression: Expression) -> str:
@@ -47,7 +47,7 @@ def _body_lines(body: Body, indent: str) -> Iterator[str]:
                 words.append("FOREVER")
             elif name in values:
                 words.append(expression_text(value))
-            elif name in SHOWN:
+            elif name in SHOWN_FIELDS:
                 words.append(str(value))
         yield indent + " ".join(words)
         if isinstance(statement, Move) and statement.until is not None:

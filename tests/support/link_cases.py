@@ -49,7 +49,7 @@ from tiniscript.link.statuses import name_of
 STEP_MS = 10
 KIT = 0x231B
 SHOWN_BYTES = 24  # bytes shown of a longer packet
-OF_PACKETS = re.compile("[>=]|wait |held ")
+PACKET_ROW = re.compile("[>=]|wait |held ")
 KINDS = ("link", "packets", "computer packets", "robot packets")
 
 
@@ -83,7 +83,7 @@ def _read(path: Path) -> list[LinkCase]:
             fence = "" if fence else row[3:].strip() or "text"
             if fence in KINDS:
                 cases.append(LinkCase(path, number, fence, title, []))
-        elif fence in KINDS[1:] and not OF_PACKETS.match(row):
+        elif fence in KINDS[1:] and not PACKET_ROW.match(row):
             if not cases[-1].rows:
                 cases.pop()  # the case of the heading above, which has no code
             cases.append(LinkCase(path, number, fence, row, []))
@@ -106,7 +106,7 @@ def accept(case: LinkCase, rows: list[str]) -> None:
     """Write the results into the case if they differ; git shows the changes."""
     written_case = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
     old_lines = case.path.read_text(encoding="utf-8").splitlines()
-    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
+    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{PACKET_ROW.pattern})").match
     end = next(k for k in range(written_case.line, len(old_lines)) if is_over(old_lines[k]))
     old_lines[written_case.line : end] = shorten(rows, names_of(case.path))
     case.path.write_text("\n".join(old_lines) + "\n", encoding="utf-8")
@@ -374,7 +374,7 @@ class CppSide:
         return self.cpp.step(now_ms, data, is_late)
 
 
-class Written:
+class WrittenSide:
     """Either half, as the rows of a case say it."""
 
     def __init__(self, rows: list[str]) -> None:

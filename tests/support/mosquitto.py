@@ -18,7 +18,7 @@ from tiniscript.link import wifi
 from tiniscript.link.transports.broker import Access, Broker, BrokerPort
 
 PROGRAM = shutil.which("mosquitto") or next(iter(Path("/usr/sbin").glob("mosquitto")), None)
-LOCAL = bytes((127, 0, 0, 1))
+LOCAL_ADDRESS = bytes((127, 0, 0, 1))
 STEP_S = 0.0005  # one millisecond of the chip; the broker runs in real time
 
 
@@ -77,7 +77,9 @@ class Mosquitto:
     def settings(
         self, group: str = "aula", user: str = "", password: str = ""
     ) -> wifi.BrokerSettings:
-        return wifi.BrokerSettings(LOCAL, self.port, group, user.encode(), password.encode())
+        return wifi.BrokerSettings(
+            LOCAL_ADDRESS, self.port, group, user.encode(), password.encode()
+        )
 
     def connect_client(self, access: Access | None = None) -> Broker:
         """Return a connection of its own, until `part`."""

@@ -14,7 +14,7 @@ import pytest
 
 PAGES = "tests/studio/test_page"
 # The slowest tests apart from pages: builds, emulated chips, processes and real clocks.
-LONG = (
+LONG_FILES = (
     "tests/flash/test_platformio.py",
     "tests/lessons/test_other_shapes.py",
     "tests/project/test_mutation.py",
@@ -57,7 +57,7 @@ def spread_names(names: Sequence[str], count: int) -> list[int]:
     half = (count + 1) // 2
     parts: list[list[int]] = [[] for _ in range(count)]
     pages = [name for name in files if name.startswith(PAGES)]
-    other_names = [name for name in LONG if name in files]
+    other_names = [name for name in LONG_FILES if name in files]
     for part_names, target_parts in ((pages, parts[:half]), (other_names, parts[half:])):
         for k, name in enumerate(part_names):
             target_parts[k % len(target_parts)] += files.pop(name)

@@ -19,11 +19,12 @@ from tiniscript.base.limits import TASKS
 from tiniscript.bytecode.image import HEADER_BYTES, pack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, UNO_OPS, Op
 
-_NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,
+_EDGE_NUMBERS = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340,
+    46_341,
          65_535, 65_536, 1_465_431, 1_465_432, 2_147_483, 2_147_484, 10**6, 10**7, 5 * 10**7,
          10**8, 10**9, 2**30, 2**31 - 1001, 2**31 - 1000, 2**31 - 501, 2**31 - 500, 2**31 - 499,
          2**31 - 2, 2**31 - 1)  # fmt: skip
-EDGES = sorted({*_NEAR, *(-value for value in _NEAR), -(2**31)})
+EDGES = sorted({*_EDGE_NUMBERS, *(-value for value in _EDGE_NUMBERS), -(2**31)})
 
 
 def any_number(rng: random.Random) -> int:

@@ -28,7 +28,7 @@ import pytest
 from tests.support.casefile import ROOT
 
 MARK = "sampled"
-LONG = "long"
+LONG_MARK = "long"
 Row = TypeVar("Row")
 
 
@@ -69,11 +69,13 @@ def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytes
     """Return the long tests that this run leaves out, of files that the user did not name."""
     named_paths = _list_named_files(config)
     long_tests = [
-        item for item in items if item.get_closest_marker(LONG) and item.path not in named_paths
+        item
+        for item in items
+        if item.get_closest_marker(LONG_MARK) and item.path not in named_paths
     ]
     if not config.getoption("--tenth"):
         return set(long_tests)
-    rng = random.Random(f"{seed(config)} {LONG}")
+    rng = random.Random(f"{seed(config)} {LONG_MARK}")
     return set(rng.sample(long_tests, len(long_tests) * 9 // 10))
 
 

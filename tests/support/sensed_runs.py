@@ -10,7 +10,7 @@ from struct import pack
 from typing import NamedTuple
 
 from tests.machines.host_firmware import TICKS
-from tests.support.debugging import Debugged
+from tests.support.debugging import DebuggedRobot
 from tests.support.robot_on_host import KIT
 from tests.support.shown_in_loops import TimedAction, largest_difference_ms
 from tiniscript.link.outcomes import Event
@@ -36,7 +36,7 @@ def sensed_run(
     text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30
 ) -> SensedRun:
     """Run a program while its sensors' readings change, with or without reporting them."""
-    robot = Debugged(text)
+    robot = DebuggedRobot(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
     rng, readings = random.Random(seed), [[0] for _ in KIT.sensors]
     first_row = len(robot.robot.did)

@@ -31,7 +31,7 @@ def state(name: str) -> int:
     return [state_name for state_name, _ in STATES].index(name)
 
 
-class Nobody:
+class UnpoweredEnd:
     """An end without a device: a board without power."""
 
     def __init__(self, baud: int = 9600) -> None:
@@ -52,12 +52,12 @@ class Nobody:
         pass
 
 
-class Echo(Nobody):
+class Echo(UnpoweredEnd):
     def answer(self, data: bytes) -> bytes:
         return data
 
 
-class Sketch(Nobody):
+class Sketch(UnpoweredEnd):
     """Another sketch, which prints a line in each 200 ms."""
 
     line = b"Distance: 34 cm\r\n"
@@ -66,14 +66,14 @@ class Sketch(Nobody):
         return self.line if self.now_ms % 200 == 0 else b""
 
 
-class Babble(Nobody):
+class BabblingEnd(UnpoweredEnd):
     """Bytes that are meaningless at any speed."""
 
     def answer(self, data: bytes) -> bytes:
         return bytes((0x81, 0xFF, 0x9D, 0x80, 0xC3)) if self.now_ms % 20 == 0 else b""
 
 
-class Board(Nobody):
+class Board(UnpoweredEnd):
     """A board with a bootloader: it answers for `open_ms` after a restart, or always.
 
     The device on it is silent. A bootloader has its own speed.
@@ -99,7 +99,7 @@ class Board(Nobody):
         self._since_ms = 0
 
 
-class Firmware(Nobody):
+class Firmware(UnpoweredEnd):
     """The robot's half of the link, as far as the doctor asks; `values` are fields of its replies.
 
     `restarts_ms`: it restarts so often, with the cause `resets`. It does not answer requests whose

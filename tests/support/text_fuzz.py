@@ -13,8 +13,8 @@ from tests.support.text_robot import robot_with_program
 from tiniscript.base.words import WORDS
 
 TURNS = 25
-SAVING = b"// Still saving. Send it again."
-MISTAKE = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped|It had a fault)")
+SAVING_MESSAGE = b"// Still saving. Send it again."
+MISTAKE_PATTERN = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped|It had a fault)")
 LINE = b"SI|M(13,17);W(9)\n"
 LINES = ("SI|F(1,50)\n", "F(9,50)\r", "SB|R(1,30)\r\n", "S\n", "STOP", "s", "HELP\n", "PING|\n",
          "SI|LOOP(FOREVER);\n", "END_LOOP\n", "LOOP(2)\n", "  STOP\n", "IF(DISTANCE<10)\n",
@@ -24,7 +24,7 @@ LINES = ("SI|F(1,50)\n", "F(9,50)\r", "SB|R(1,30)\r\n", "S\n", "STOP", "s", "HEL
          )  # fmt: skip
 TOKENS = (*WORDS, "X", "DISTANCE", *"0123456789();,|=<>+-*/%~_. \t\r\n", "//", "é", "\ufeff")
 FRAMES = ("SI|F(1,80)", "SB|L(1,40)", "SI|LOOP(FOREVER);SHOW(1);END_LOOP", "SI|X=0;X=1/X")
-LONG = "SI|" + "F(0.1,80);B(0.1,60);" * 12
+LONG_PROGRAM = "SI|" + "F(0.1,80);B(0.1,60);" * 12
 
 
 class Fuzz:
@@ -108,7 +108,7 @@ class Fuzz:
             session.hello, session.ping, session.status, session.clear, session.start,
             session.fetch, lambda: session.live(image.code), lambda: session.name(b"A"),
             lambda: session.upload(image, saves=rng.random() < 0.5),
-            lambda: session.upload(image_of(LONG)),
+            lambda: session.upload(image_of(LONG_PROGRAM)),
         )  # fmt: skip
         rng.choice(line_makers)()
         for _ in range(rng.choice((2, 10, 60, 300))):
@@ -152,8 +152,8 @@ class Fuzz:
             is_taken = any(line.startswith(b"// OK") for line in lines)
             if is_taken and self.moving():
                 return
-            if SAVING not in lines:
-                is_open = is_taken or any(MISTAKE.match(line) for line in lines)
+            if SAVING_MESSAGE not in lines:
+                is_open = is_taken or any(MISTAKE_PATTERN.match(line) for line in lines)
                 assert is_open and not was_open, answers
                 was_open = True
                 self.wait(1050)  # `moving` has stopped it

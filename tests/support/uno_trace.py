@@ -22,7 +22,7 @@ FIRST_READING_MS = 85  # extra tolerance for the first reading of the run
 LAST_MESSAGE_MS = 200  # time at the end in which SHOW and DONE may be on the wire
 
 
-class Setting(NamedTuple):
+class MotorSetting(NamedTuple):
     """The powers of the motors from a time on, in percent."""
 
     ms: float
@@ -34,7 +34,7 @@ def program(text: str) -> Case:
     return Case(Path(__file__), 0, text, {"tiniscript": text, "senses": "DISTANCE = 60"})
 
 
-def motor_settings(uno: Uno, start_cycle: int) -> list[Setting]:
+def motor_settings(uno: Uno, start_cycle: int) -> list[MotorSetting]:
     """Return the settings of the motor pins since a cycle."""
     changes = [
         change
@@ -45,7 +45,7 @@ def motor_settings(uno: Uno, start_cycle: int) -> list[Setting]:
     settings = []
     for cycle in sorted({change.cycle for change in changes}):
         powers = (power(uno, side, cycle) for side in ("left", "right"))
-        settings.append(Setting((cycle - start_cycle) / CYCLES_PER_MS, *powers))
+        settings.append(MotorSetting((cycle - start_cycle) / CYCLES_PER_MS, *powers))
     return lasting(settings)
 
 
@@ -58,26 +58,26 @@ def power(uno: Uno, side: str, cycle: int) -> int:
     return round(-level / 2.55 if is_backward else level / 2.55)
 
 
-def parsed_trace(trace: str) -> tuple[list[Setting], list[float]]:
+def parsed_trace(trace: str) -> tuple[list[MotorSetting], list[float]]:
     """Return the motors and the times of readings that a trace has; its end turns them off."""
     rows = [line.split() for line in trace.splitlines()]
     settings = [
-        Setting(float(row[0]), int(row[2]), int(row[3])) for row in rows if row[1] == "MOTORS"
+        MotorSetting(float(row[0]), int(row[2]), int(row[3])) for row in rows if row[1] == "MOTORS"
     ]
     end_ms = float(rows[-1][0])
     if rows[-1][1] == "DONE":
-        settings.append(Setting(end_ms, 0, 0))
+        settings.append(MotorSetting(end_ms, 0, 0))
     return lasting(settings), [float(row[0]) for row in rows if row[1] == "READ"]
 
 
-def lasting(settings: list[Setting]) -> list[Setting]:
+def lasting(settings: list[MotorSetting]) -> list[MotorSetting]:
     """Return the settings that are different from the one before, and last; the last one does."""
     settings = [
-        setting for earlier_setting, setting in pairwise([Setting(-1.0, 101, 0), *settings])
+        setting for earlier_setting, setting in pairwise([MotorSetting(-1.0, 101, 0), *settings])
         if earlier_setting[1:] != setting[1:]
     ]  # fmt: skip
     end_times_ms = [setting.ms for setting in settings[1:]] + [float("inf")]
-    lasting_settings = [Setting(-1.0, 0, 0)]
+    lasting_settings = [MotorSetting(-1.0, 0, 0)]
     for setting, end_ms in zip(settings, end_times_ms[: len(settings)], strict=True):
         if end_ms - setting.ms >= SHORT_MS and setting[1:] != lasting_settings[-1][1:]:
             lasting_settings.append(setting)

@@ -25,7 +25,7 @@ ENVIRONMENT = "uno_tinibot2"  # environment in vm_arduino/platformio.ini
 FULL_PWM = 255  # PWM value of 100 %
 
 
-class Driven(Wired):
+class DrivenUno(Wired):
     """An Uno on an endless floor, whose motors have `motors` percent of their speed."""
 
     def __init__(

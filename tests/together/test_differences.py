@@ -15,7 +15,7 @@ from tiniscript.together.layout import Unparsed, parse_tree, text_of
 from tiniscript.together.operations import apply_change
 
 BASE = "SI|F(1, 80)\nR(0.5, 60)\nB(2, 40)  // back\n\n// again\nW(1)\nS\n"
-SEVEN = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
+SEVEN_MOVES = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
 LOOP = "LOOP(2)\nB(1,1)\nEND_LOOP\n"
 # An action of a person: texts before and after, the operations (or `*`), and the number of
 # unchanged instructions.
@@ -34,7 +34,7 @@ CASES = [
     ("an empty line", BASE, BASE.replace("R(", "\nR("), "replace", 6),
     ("laid out anew", BASE,
      "si | f(1,80);r( .5, 60 );b(2,40) // back\n\n\n//again\n   w(1)\ns", "", 6),
-    ("cut and paste", SEVEN, "F(1,1)\nF(5,5)\nF(6,6)\nF(7,7)\nF(2,2)\nF(3,3)\nF(4,4)\n",
+    ("cut and paste", SEVEN_MOVES, "F(1,1)\nF(5,5)\nF(6,6)\nF(7,7)\nF(2,2)\nF(3,3)\nF(4,4)\n",
      "move 3", 7),
     ("a block moved", f"F(1,1)\n{LOOP}F(2,2)\nF(3,3)\n", f"F(1,1)\nF(2,2)\nF(3,3)\n{LOOP}",
      "move 1", 5),

@@ -50,14 +50,14 @@ NEEDED_FIELDS = {
     "insert": ("at", "nodes"), "delete": ("ids",), "move": ("ids", "at"), "wrap": ("ids", "node"),
     "unwrap": ("id",), "replace": ("id", "text"), "no": (),
 }  # fmt: skip
-FIELDS = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
+FIELD_NAMES = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
 
 
 def an_operation(rng: Random) -> Any:
     operation: Any = {"do": rng.choice(list(NEEDED_FIELDS))}
     for field in NEEDED_FIELDS[operation["do"]]:
         operation[field] = rng.choice(LIKELY_VALUES[field])
-    for field in FIELDS:
+    for field in FIELD_NAMES:
         if rng.random() < 0.07:
             operation[field] = rng.choice(VALUES)
     return operation
