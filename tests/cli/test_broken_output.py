@@ -131,7 +131,7 @@ def test_many_robots_are_stopped() -> None:
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
             assert any(line.startswith("MOTORS") for line in pupil.actions)
-            assert bytes(STOP_ZEROS) in pupil.heard
+            assert bytes(STOP_ZEROS) in pupil.received
 
 
 @pytest.mark.parametrize(("verb", "is_detached", "is_stopped"), [
@@ -266,7 +266,7 @@ def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
         command.signal(signal.SIGINT)
         assert command.process.wait(HANG_LIMIT_S) == 2
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
-        assert all(bytes(STOP_ZEROS) in pupil.heard for pupil in room.pupils)
+        assert all(bytes(STOP_ZEROS) in pupil.received for pupil in room.pupils)
         result = command.wait_for_result()
         assert result.out and "Traceback" not in result.err
 

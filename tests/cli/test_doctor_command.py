@@ -92,8 +92,8 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     """Its power fails when the motors start; this chip only reports a power-on."""
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
-    heard_count = len(pty_robot.heard)
-    pty_robot.until(lambda: len(pty_robot.heard) > heard_count + 200, "it is watched")
+    heard_count = len(pty_robot.received)
+    pty_robot.until(lambda: len(pty_robot.received) > heard_count + 200, "it is watched")
     pty_robot.switch_off_and_on()
     result = command.wait_for_result().gives(3)
     (finding,) = (finding for finding in json.loads(result.out)["findings"] if finding["is_wrong"])
@@ -208,10 +208,10 @@ def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
 
 def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, cable: PtyEnd) -> None:
     result = tsc("doctor", "--port", cable.port)
-    assert (result.code, cable.heard) == (3, b"")
+    assert (result.code, cable.received) == (3, b"")
     assert "tsc doctor --yes" in result.out
     tsc("doctor", "--port", cable.port, "--yes").gives(0)
-    assert cable.heard
+    assert cable.received
 
 
 @pytest.mark.parametrize(
@@ -225,7 +225,7 @@ def test_the_question_before_a_cable_is_opened(
     monkeypatch.setattr("sys.stdin", keys)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     result = tsc("doctor", "--port", cable.port)
-    assert (result.code, bool(cable.heard)) == (code, code == 0)
+    assert (result.code, bool(cable.received)) == (code, code == 0)
     assert f"open {cable.port}. That restarts a board" in result.err
 
 

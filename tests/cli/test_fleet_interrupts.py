@@ -41,13 +41,13 @@ class Room:
         self.fleet = fleet
         self.stages = {pupil.port: stage for pupil, stage in zip(fleet.pupils, stages, strict=True)}
         self.waiting_ports: set[str] = set()
-        self.pressed = threading.Event()
-        self.starts: list[int] = []  # when Ctrl-C was pressed, by robot
+        self.has_pressed = threading.Event()
+        self.start_times: list[int] = []  # when Ctrl-C was pressed, by robot
 
-    def at(self, stage: int, port: str) -> None:
-        if self.stages[port] == stage and not self.pressed.is_set():
+    def reach(self, stage: int, port: str) -> None:
+        if self.stages[port] == stage and not self.has_pressed.is_set():
             self.waiting_ports.add(port)
-            assert self.pressed.wait(HANG_LIMIT_S), "nobody presses Ctrl-C"
+            assert self.has_pressed.wait(HANG_LIMIT_S), "nobody presses Ctrl-C"
 
     def may_press(self) -> bool:
         return all(
@@ -74,9 +74,9 @@ def step_calls(
 
     def interrupt_step(target: Any, *words: Any, **keyword_arguments: Any) -> Any:
         port = target if isinstance(target, str) else target.port
-        room.at(early_stage, port)
+        room.reach(early_stage, port)
         outcome = step(target, *words, **keyword_arguments)
-        room.at(late_stage, port)
+        room.reach(late_stage, port)
         return outcome
 
     monkeypatch.setattr(owner, name, interrupt_step)
@@ -108,19 +108,19 @@ def test_after_ctrl_c_nothing_starts(
     interrupt = Fleet.interrupt_robots
 
     def press(_: Fleet) -> None:
-        if not room.pressed.is_set() and room.may_press():
+        if not room.has_pressed.is_set() and room.may_press():
             raise KeyboardInterrupt
 
     def interrupt_and_note(interrupted_fleet: Fleet) -> None:
         interrupt(interrupted_fleet)
-        room.starts = room.starts or room.count_states()
-        room.pressed.set()
+        room.start_times = room.start_times or room.count_states()
+        room.has_pressed.set()
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
     monkeypatch.setattr(Fleet, "interrupt_robots", interrupt_and_note)
     result = run_in_process("upload", "-e", ENDLESS_PROGRAM, "--all").gives(2)
-    assert room.pressed.is_set()
-    assert room.count_states() == room.starts, (room.stages, result)
+    assert room.has_pressed.is_set()
+    assert room.count_states() == room.start_times, (room.stages, result)
     assert not any(pupil.moves for pupil in fleet.pupils)
 
 
@@ -139,7 +139,7 @@ class WatchedFleet:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, presses_s: list[float]) -> None:
         self.now_s = 0.0
         self.presses_s = [*presses_s]
-        self.stopped: list[float] = []  # when each robot got its stop
+        self.stop_times_s: list[float] = []  # when each robot got its stop
         monkeypatch.setattr(fleet_of, "monotonic", lambda: self.now_s)
         monkeypatch.setattr(streams, "drop_unread_output", lambda: None)
         options = Namespace(verb="upload", detach=True, json=False)
@@ -147,7 +147,7 @@ class WatchedFleet:
         for port in "12":
             member = Member(Target(port, "", True, True), deque())
             member.connection = cast(Any, SimpleNamespace(
-                interrupt=lambda: self.stopped.append(self.now_s),
+                interrupt=lambda: self.stop_times_s.append(self.now_s),
                 connection=SimpleNamespace(robot=None),
             ))  # fmt: skip
             self.fleet.members.append(member)
@@ -189,9 +189,9 @@ def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_no
                 room.fleet.print_until_done(
                     cast(FleetTable, table) if interruption == "a table" else None
                 )
-        assert [stop_s for stop_s in room.stopped if stop_s <= times[0] + 2 * POLL_INTERVAL_S], (
-            "each is told"
-        )
-        assert len(room.stopped) == len(room.fleet.members)
+        assert [
+            stop_s for stop_s in room.stop_times_s if stop_s <= times[0] + 2 * POLL_INTERVAL_S
+        ], "each is told"
+        assert len(room.stop_times_s) == len(room.fleet.members)
         end_s = times[1] if presses > 1 else times[0] + timeout_s
         assert end_s <= room.now_s <= end_s + 3 * POLL_INTERVAL_S

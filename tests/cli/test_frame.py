@@ -25,9 +25,9 @@ class Terminal:
     """A terminal that reads what a frame writes."""
 
     def __init__(self, columns: int = COLUMNS) -> None:
-        self.written = io.StringIO()
+        self.output = io.StringIO()
         self.console = Console(
-            file=self.written, force_terminal=True, width=columns, height=LINES,
+            file=self.output, force_terminal=True, width=columns, height=LINES,
             color_system="standard", legacy_windows=False,
         )  # fmt: skip
         self.frame = Frame(self.console)
@@ -36,10 +36,10 @@ class Terminal:
 
     def draw(self, lines: list[Text], above: str = "") -> str:
         """Draw it; return the output."""
-        self.written.seek(0)
-        self.written.truncate()
+        self.output.seek(0)
+        self.output.truncate()
         self.frame.draw(lines, above)
-        output = self.written.getvalue()
+        output = self.output.getvalue()
         self.stream.feed(output.replace("\n", "\r\n"))  # line ends as a terminal writes them
         return output
 

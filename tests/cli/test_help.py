@@ -274,10 +274,10 @@ def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
     assert keys.isascii()  # less spoils other letters there
     terminal = on_terminal(f"help upload --lang {language}")
     terminal.until(f"{keys}$")
-    assert b"tsc upload" in terminal.written and b"--seed" not in terminal.written
+    assert b"tsc upload" in terminal.output_bytes and b"--seed" not in terminal.output_bytes
     terminal.type("G")
     terminal.until("-h, --help")
-    assert b"--seed N" in terminal.written
+    assert b"--seed N" in terminal.output_bytes
     terminal.type("q")
     assert terminal.end() == 0
 
@@ -347,7 +347,7 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     terminal.until("begun")
     terminal.type("\x03")
     assert terminal.end() == 0
-    partition_after = terminal.written.decode().partition("begun\r\n")[2]
+    partition_after = terminal.output_bytes.decode().partition("begun\r\n")[2]
     assert partition_after.replace("^C", "") == output
 
 

@@ -160,7 +160,7 @@ def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
 def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     """Each named port must have a robot."""
     assert run_in_process("upload", "-e", "F(2 80)", "--all").code == 1
-    assert not any(pupil.heard for pupil in class_.pupils)
+    assert not any(pupil.received for pupil in class_.pupils)
     assert (
         run_in_process("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
     )
@@ -196,7 +196,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     with weak._lock:
         weak.robot.supply(True)
     run_in_process("upload", "-e", "SB|S", "--port", weak.port)
-    heard_count_by_port = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
+    heard_count_by_port = {pupil.port: len(pupil.received) for pupil in class_.pupils}
     robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))
     alone = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
     wrong_findings = [finding for finding in alone["findings"] if finding["is_wrong"]]
@@ -208,7 +208,7 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     for pupil in class_.pupils:
         assert robots_by_port[pupil.port]["is_done"] == (pupil is not weak)
         assert robots_by_port[pupil.port]["round_trips"] == 3
-        assert pings(pupil.heard[heard_count_by_port[pupil.port] :]) == 3 + 20 * (pupil is weak)
+        assert pings(pupil.received[heard_count_by_port[pupil.port] :]) == 3 + 20 * (pupil is weak)
 
 
 def pings(heard_bytes: bytes) -> int:

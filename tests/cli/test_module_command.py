@@ -191,7 +191,7 @@ def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
     end.is_on = is_on
     with PtyEnd(end) as pty_end:
         command = Command("doctor", "--module", "--port", pty_end.port, "--baud", "115200")
-        until(lambda: (b"AT+BAUD4" if is_on else b"AT") in pty_end.heard, "it is asked")
+        until(lambda: (b"AT+BAUD4" if is_on else b"AT") in pty_end.received, "it is asked")
         if is_pulled:
             pty_end.pull()
         else:

@@ -60,7 +60,7 @@ def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     terminal.until(r"(?s)── SHOW 1 .*Done\.|Done\..*── SHOW 1 ")
     terminal.interrupt()
     assert terminal.end() == 0
-    output = terminal.written.decode()
+    output = terminal.output_bytes.decode()
     assert "SHOW -2.5" in output and "SHOW TRUE" in output
     assert any("⠀" < letter <= "⣿" for letter in output)
     assert output.endswith("\n")

@@ -135,7 +135,7 @@ class Table:
     """A terminal, the connection to a robot, and a clock."""
 
     def __init__(self, features: int = REMOTE) -> None:
-        self.now_s, self.typed, self.is_entered = 0.0, "", False
+        self.now_s, self.typed_keys, self.is_entered = 0.0, "", False
         self.device_info = SimpleNamespace(values=SimpleNamespace(features=features))
         self.words: list[tuple[float, RemoteState]] = []
         self.status: int | None = None  # of the answers
@@ -147,7 +147,7 @@ class Table:
         self.is_entered = False
 
     def read_keys(self) -> str:
-        typed_keys, self.typed = self.typed, ""
+        typed_keys, self.typed_keys = self.typed_keys, ""
         return typed_keys
 
     def begin_request(
@@ -179,8 +179,8 @@ def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
     rng, table, held_keys = random.Random(seed), Table(), HeldKeys()
     with remote_at(table, monkeypatch) as remote:
         for _ in range(1500):
-            table.typed = rng.choice(KEYS)[0] if rng.random() < 0.05 else ""
-            held_keys.press_typed(table.typed, table.now_s)
+            table.typed_keys = rng.choice(KEYS)[0] if rng.random() < 0.05 else ""
+            held_keys.press_typed(table.typed_keys, table.now_s)
             table.status = rng.choice((OK, CANCELLED, LOST, None))
             remote.poll()
             held = held_keys.keys_at(table.now_s)
@@ -201,7 +201,7 @@ def test_a_robot_that_accepts_no_keys_is_an_error(
 ) -> None:
     table = Table()
     with remote_at(table, monkeypatch) as remote, pytest.raises(KeysRefused):
-        table.status, table.typed = STATUSES[name], "a"
+        table.status, table.typed_keys = STATUSES[name], "a"
         remote.poll()
         remote.poll()
     assert not table.is_entered
@@ -216,7 +216,7 @@ def test_q_interrupts_as_ctrl_c_does_and_is_told_from_it(monkeypatch: pytest.Mon
     with remote_at(table, monkeypatch) as remote:
         remote.poll()
         assert not remote.has_quit
-        table.typed = "aq"
+        table.typed_keys = "aq"
         with pytest.raises(KeyboardInterrupt):
             remote.poll()
         assert remote.has_quit and not table.words

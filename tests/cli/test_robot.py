@@ -38,7 +38,7 @@ def test_a_port_that_another_program_uses_is_said(
     monkeypatch.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
     with serial.Serial(pty_robot.port, exclusive=True):
         on(pty_robot, "stop").gives(3, "another program holds", "did not get through")
-    assert pty_robot.heard == b""
+    assert pty_robot.received == b""
 
 
 def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
@@ -135,7 +135,7 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty
     rows = json.loads(tsc("doctor", "--ports", "--json").out)
     row = next(row for row in rows if row["port"] == pty_robot.port)
     assert (row["remembered"], row["is_last_used"]) == ("TINI", True)
-    assert pty_robot.heard == b""
+    assert pty_robot.received == b""
     assert "robot tinibot" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
     pty_robot.switch_off()
     assert "nothing responds" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out

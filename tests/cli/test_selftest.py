@@ -197,7 +197,7 @@ def test_only_the_port_of_the_self_test_is_opened(
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
         result = run_in_process("doctor", "--selftest", "--json").gives(3)
-        assert end.heard == b""
+        assert end.received == b""
     assert json.loads(result.out)["found"][0]["cause"] == "not_opened"
 
 

@@ -144,10 +144,10 @@ def test_a_stop_gets_through_beside_a_suspended_tsc(
     pty_robot: PtyRobot, verb: str, code: str
 ) -> None:
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    pty_robot.heard = b""
+    pty_robot.received = b""
     holder = Command(*verb.split(), "--port", pty_robot.port, code=code)
     until(lambda: registry.find_registration(pty_robot.port) is not None, "it shares its port")
-    pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
+    pty_robot.until(lambda: b"\x04" in pty_robot.received, "it talks to the robot")
     suspend(holder)
     assert pty_robot.moves
     for _ in range(2):
@@ -175,10 +175,10 @@ def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRo
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     holder = Command(pty_robot.port, code=LOCK_SCRIPT)
     holder.until("locked")
-    heard_bytes = pty_robot.heard
+    heard_bytes = pty_robot.received
     with mock.patch.object(opening, "STOP_BUSY_TIMEOUT_S", 0.2):
         on(pty_robot, "stop").gives(3, f"(process {holder.process.pid})", "lift it")
-    assert pty_robot.heard == heard_bytes and pty_robot.moves
+    assert pty_robot.received == heard_bytes and pty_robot.moves
     suspend(holder)
     on(pty_robot, "start").gives(3, "another program is using")
     on(pty_robot, "stop").gives(0, "", out="has confirmed the stop")

@@ -114,7 +114,7 @@ def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
 
 def test_mistakes_keep_the_program_off_the_robot(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", "F(2 80)").gives(1, "TS017")
-    assert pty_robot.heard == b""
+    assert pty_robot.received == b""
 
 
 def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: Path) -> None:
@@ -132,7 +132,7 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
         words = ("upload", "-e", LONG_PROGRAM, "--no-run", "--no-save", "--port", pty_robot.port)
         terminal = Terminal(*words, size=(200, 5), types=False)
         assert terminal.end() == 0
-    assert b"sending [" in terminal.written
+    assert b"sending [" in terminal.output_bytes
     assert terminal.lines()[0].startswith("-e -> tinibot")
     assert "sending" not in "".join(terminal.lines())
 

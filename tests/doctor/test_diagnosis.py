@@ -82,16 +82,16 @@ class Case:
         self.end: OtherEnd = Firmware()
         self.failure: PortError | None = None
         self.says_yes = False
-        self.last: str | None = None
-        self.opened: list[str] = []
+        self.last_port: str | None = None
+        self.opened_names: list[str] = []
         self.wire: SimulatedWire | None = None
-        self.asked: list[str] = []
-        self.other: OtherVersion | None = None
-        self.shared: OtherCommand | None = None
-        self.watched = OtherCommand(Reply(LOST))
+        self.asked_names: list[str] = []
+        self.other_version: OtherVersion | None = None
+        self.shared_connection: OtherCommand | None = None
+        self.watched_connection = OtherCommand(Reply(LOST))
         self.watch_ms = 0
-        self.virtual: tuple[str, ...] = ()
-        self.expected = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
+        self.virtual_ports: tuple[str, ...] = ()
+        self.expectations = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -112,7 +112,7 @@ class Case:
 
     def diagnosis(self, port: str | None = CABLE) -> Diagnosis:
         def open_wire(name: str, baud: int) -> Wire:
-            self.opened.append(name)
+            self.opened_names.append(name)
             if self.failure is not None:
                 raise self.failure
             if name == CABLE and name not in self.system.owners:
@@ -121,21 +121,27 @@ class Case:
             return self.wire
 
         def join(name: str) -> LinkConnection | None:
-            if self.other is not None:
-                raise self.other
-            return cast(LinkConnection, self.shared) if self.shared is not None else None
+            if self.other_version is not None:
+                raise self.other_version
+            return (
+                cast(LinkConnection, self.shared_connection)
+                if self.shared_connection is not None
+                else None
+            )
 
         def may_open(name: str) -> bool:
-            self.asked.append(name)
+            self.asked_names.append(name)
             return self.says_yes
 
         def share(name: str) -> AbstractContextManager[LinkConnection]:
-            return nullcontext(cast(LinkConnection, self.watched))
+            return nullcontext(cast(LinkConnection, self.watched_connection))
 
         doors = DoctorServices(
             self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share
         )
-        question = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
+        question = Question(
+            port, self.last_port, 9600, self.expectations, 7, self.watch_ms, self.virtual_ports
+        )
         return diagnose(doors, question)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
@@ -178,7 +184,7 @@ def _brltty(case: Case) -> None:
 
 def _other_tsc(case: Case) -> None:
     held_registration = Registration(CABLE, 1, "t", "a", "link", 9600, 5)
-    case.with_port(CABLE).other = OtherVersion(held_registration, "0.1")
+    case.with_port(CABLE).other_version = OtherVersion(held_registration, "0.1")
 
 
 def _plug(vendor: str, product: str, driver: str = "") -> Make:
@@ -246,25 +252,25 @@ def test_each_cause_of_computer_and_port(
 def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case: Case) -> None:
     diagnosis = case.diagnosis(RADIO)
     assert (diagnosis.findings[0].cause, diagnosis.is_opened) == ("fine", True)
-    assert (case.opened.pop(), case.asked) == (RADIO, [])
+    assert (case.opened_names.pop(), case.asked_names) == (RADIO, [])
     case.with_port(CABLE)
     assert case.cause() == ("not_opened", True)
-    assert (case.opened, case.asked) == ([], [CABLE])
+    assert (case.opened_names, case.asked_names) == ([], [CABLE])
     case.says_yes = True
     assert case.cause() == ("fine", True)
-    assert case.opened == [CABLE]
+    assert case.opened_names == [CABLE]
     assert case.wire is not None and case.wire.is_gone  # the port is closed
 
 
 def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
     """`tsc doctor --ports` lists them, so the doctor does not claim that there are no ports."""
-    case.virtual = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
+    case.virtual_ports = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
     (finding,) = case.diagnosis(None).findings
-    assert (finding.cause, finding.values) == ("no_port", {"ports": ", ".join(case.virtual)})
+    assert (finding.cause, finding.values) == ("no_port", {"ports": ", ".join(case.virtual_ports)})
     case.with_port("/dev/ttyS0")
     (finding,) = case.diagnosis(None).findings
     assert finding.cause == "charging_cable"
-    assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
+    assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual_ports)}"}
     for language in ("en", "es"):
         _, sentence, hint = sentences_of(finding, language)
         assert finding.values["ports"] in sentence
@@ -273,8 +279,8 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
 
 def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> None:
     case.says_yes = True
-    case.virtual = ("socket://127.0.0.1:7007",)
-    assert case.diagnosis(None).port == case.virtual[0]
+    case.virtual_ports = ("socket://127.0.0.1:7007",)
+    assert case.diagnosis(None).port == case.virtual_ports[0]
     case.with_port(CABLE)
     assert case.diagnosis(None).port == CABLE
 
@@ -286,7 +292,7 @@ def test_a_port_that_is_not_ours_is_not_opened(case: Case, set_case: Make) -> No
     set_case(case)
     case.says_yes = True
     assert not case.diagnosis().is_opened
-    assert case.opened == []
+    assert case.opened_names == []
 
 
 def test_the_last_port_and_the_only_port(case: Case) -> None:
@@ -294,7 +300,7 @@ def test_the_last_port_and_the_only_port(case: Case) -> None:
     assert case.diagnosis(None).port == CABLE  # the other one is no robot's
     case.with_port("/dev/ttyACM0")
     assert case.diagnosis(None).port is None
-    case.last = RADIO
+    case.last_port = RADIO
     assert case.diagnosis(None).port == RADIO
 
 
@@ -335,16 +341,16 @@ def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) 
     ],
 )
 def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) -> None:
-    case.shared = OtherCommand(*replies)
+    case.shared_connection = OtherCommand(*replies)
     diagnosis = case.diagnosis()
     assert [finding.cause for finding in diagnosis.findings] == [cause]
-    assert diagnosis.is_opened and case.shared.is_closed
-    assert case.opened == []
+    assert diagnosis.is_opened and case.shared_connection.is_closed
+    assert case.opened_names == []
 
 
 def test_what_another_tsc_has_heard_of_a_board_that_is_not_ours(case: Case) -> None:
-    case.shared = OtherCommand(Reply(LOST))
-    case.shared.early_bytes = FIRMATA
+    case.shared_connection = OtherCommand(Reply(LOST))
+    case.shared_connection.early_bytes = FIRMATA
     (finding,) = case.diagnosis().findings
     assert (finding.cause, finding.values["said"]) == ("firmata", "StandardFirmata.ino 2.5")
 
@@ -360,13 +366,13 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
         *[Reply(OK, 0, PONG)] * answered_count,
     ]
     lost_replies: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
-    case.shared = OtherCommand(*known_replies, *lost_replies)
+    case.shared_connection = OtherCommand(*known_replies, *lost_replies)
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = OtherCommand(
+    case.shared_connection = OtherCommand(
         *known_replies, *lost_replies[1:], *[Reply(OK, 0, PONG)] * 3, *lost_replies
     )
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
-    assert case.shared.replies == [], "one that is heard again has all of them again"
+    assert case.shared_connection.replies == [], "one that is heard again has all of them again"
 
 
 def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(case: Case) -> None:
@@ -386,7 +392,7 @@ def test_a_robot_that_may_be_another_one_is_asked_nothing_more(case: Case, cause
         places.append(port)
         return cause
 
-    case.expected = case.expected._replace(doubt_of=doubts)
+    case.expectations = case.expectations._replace(doubt_of=doubts)
     (finding,) = case.diagnosis(RADIO).findings
     assert (finding.cause, finding.values) == (cause, {"id": "12347f3a"})
     assert places == [RADIO] and finding.is_wrong
@@ -401,15 +407,17 @@ def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
 ) -> None:
     """The robot's unproven statement about its owner is false."""
     case.end = Firmware(features=features)
-    case.expected = case.expected._replace(has_key=lambda robot: has_key)
+    case.expectations = case.expectations._replace(has_key=lambda robot: has_key)
     assert case.diagnosis(RADIO).findings[0].cause == cause
 
 
 def test_the_ownership_of_a_robot_is_shown_by_its_answer_to_a_key(case: Case) -> None:
-    case.expected = case.expected._replace(has_key=lambda robot: True)
-    case.shared = OtherCommand(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
+    case.expectations = case.expectations._replace(has_key=lambda robot: True)
+    case.shared_connection = OtherCommand(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
     assert "of_another_owner" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = OtherCommand(Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST))
+    case.shared_connection = OtherCommand(
+        Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST)
+    )
     assert "of_another_owner" not in [finding.cause for finding in case.diagnosis().findings]
 
 

@@ -62,7 +62,7 @@ def findings_on(
     expected = Expectations(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
     findings = diagnose_line(wire, PortFacts(baud, is_radio, 4711), expected)
     if is_radio:
-        assert {speed for speed, _ in wire.sent} == {baud}
+        assert {speed for speed, _ in wire.sent_pieces} == {baud}
         assert wire.restarts == 0
     return findings
 
@@ -179,7 +179,7 @@ def test_a_kit_that_nobody_knows() -> None:
 )
 def test_a_robot_that_refuses_hello(refuses: tuple[str, int], cause: str, is_sure: bool) -> None:
     end = Firmware()
-    end.refuses = (STATUSES[refuses[0]], refuses[1])
+    end.hello_refusal = (STATUSES[refuses[0]], refuses[1])
     assert only_cause(end) == (cause, is_sure)
 
 
@@ -399,7 +399,7 @@ def test_a_board_that_is_not_ours_by_radio(
 ) -> None:
     """The board was not restarted, so its start message is not received."""
     end = kind(9600)
-    end.now_ms = end._since_ms = 10_000
+    end.now_ms = end._elapsed_ms = 10_000
     (finding,) = findings_on(end, is_radio=True)
     unheard = {
         boards.EchoSketch: "echo", boards.AtBoard: "echo", boards.Esp32Board: "crossed",
@@ -413,14 +413,14 @@ def test_a_robot_that_sends_and_hears_nothing() -> None:
     """Its frames and lines are never those of a foreign board."""
 
     class OneWay(UnpoweredEnd):
-        sent = b"// OK\r\n"
+        sent_bytes = b"// OK\r\n"
 
         def answer(self, data: bytes) -> bytes:
-            return self.sent if self.now_ms % 300 == 0 else b""
+            return self.sent_bytes if self.now_ms % 300 == 0 else b""
 
     end = OneWay()
-    for data in (end.sent, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
-        end.sent = data
+    for data in (end.sent_bytes, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
+        end.sent_bytes = data
         for is_radio in (False, True):
             assert only_cause(end, is_radio=is_radio) == ("one_way", False)
 

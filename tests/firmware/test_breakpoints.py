@@ -72,7 +72,7 @@ def test_a_step_is_a_statement() -> None:
         halt = it.halt()
         if halt is None:
             break
-        lines.append(halt.at)
+        lines.append(halt.place)
     assert lines == [2, 5, 7, 10]
     assert it.robot.did[-1].endswith("FINISHED")
 
@@ -378,7 +378,7 @@ def test_a_check_that_is_repeated_halts_once() -> None:
     it.start()
     halts = []
     while (halt := it.halt()) is not None:
-        halts.append(halt.at)
+        halts.append(halt.place)
         it.go()
     assert halts == [check, check], "once for each move"
 

@@ -175,7 +175,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
         states.append([(int(ms) - begun_ms, what) for ms, what in rows])
         robot.did.clear()
     scene.talk(1200)  # a text answer waits after a frame that did not report the stop
-    texts = [client.heard for _, client, *_ in guests if isinstance(client, RawClient)]
+    texts = [client.received for _, client, *_ in guests if isinstance(client, RawClient)]
     return [*states, [sorted(re.findall(rb"// [^\r\n]*\r\n", data)) for data in texts]]
 
 

@@ -124,7 +124,7 @@ def test_nobody_is_told_what_another_one_has_typed(make: Make, typed_bytes: byte
     end.leave()
     talk(robot, [], 1)
     talk(robot, [(make(robot), other := RawClient(b"\0"))], 4000)
-    assert other.heard == b""
+    assert other.received == b""
 
 
 STOPS = (bytes(4), b"S\n", b"stop\r", b"\0S\n", b"\0stop\0", b"\x03\n", b"SSS", b"stop stop",
@@ -187,9 +187,9 @@ def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, reques
         talk(robot, [(end := Network(robot), other)], 60)
         end.leave()
         talk(robot, [], 3)
-        answers = [decode_frame(data) for data in other.heard.split(b"\0") if data]
+        answers = [decode_frame(data) for data in other.received.split(b"\0") if data]
         assert [answer and answer.seq for answer in answers] == [PING_SEQ], moment_ms
-        rests += len(first.heard) < len(other.heard)
+        rests += len(first.received) < len(other.received)
     assert rests or most == 1000
 
 
@@ -223,11 +223,11 @@ def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
         for seq in (number, PING_SEQ):
             end.send(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq, 0)))
             talk(robot, [(end, who)], 30)
-        assert who.heard == b"", "nobody would hear it"
+        assert who.received == b"", "nobody would hear it"
         if number == 1:  # the one before has left without
             end.subscribe(True)
             talk(robot, [(end, who)], 100)
-            answers = [decode_frame(data) for data in who.heard.split(b"\0") if data]
+            answers = [decode_frame(data) for data in who.received.split(b"\0") if data]
             assert [answer and answer.seq for answer in answers] == [number, PING_SEQ]
 
 

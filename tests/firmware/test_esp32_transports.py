@@ -284,11 +284,11 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     ends: Ends = [(end, once)]
     robot.radio("k", b"\1")
     talk(robot, ends, 100)
-    assert not once.heard
+    assert not once.received
     for is_congested in (b"\0", b"\1") * 20:
         robot.radio("k", is_congested)
         talk(robot, ends, 3)
-    frame = decode_frame(once.heard.strip(b"\0"))
+    frame = decode_frame(once.received.strip(b"\0"))
     assert frame and len(end.lengths) == 2, "whole, and never asked for again"
     robot.radio("k", b"\1")
     talk(robot, [(end, session(1, robot))], 40)
@@ -337,14 +337,14 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
     end = SerialPort(robot)
     talk(robot, [(end, typed_bytes)], 400)
     assert actions_of(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert b"// OK" in typed_bytes.heard
+    assert b"// OK" in typed_bytes.received
     talk(robot, [], AUTHORITY_MS)
     ends: Ends = [(None, driver), (end, typed_bytes)]
     assert upload_text(robot, ends, driver) == "OK"
-    typed_bytes.to_send, typed_bytes.heard = b"F(0.2, 20)\n", b""
+    typed_bytes.to_send, typed_bytes.received = b"F(0.2, 20)\n", b""
     talk(robot, ends, 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
-    assert b"Not possible here" in typed_bytes.heard
+    assert b"Not possible here" in typed_bytes.received
     typed_bytes.to_send = b"S\n"
     talk(robot, ends, 50)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
@@ -357,7 +357,7 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
     robot = boot()
     end, typed_bytes = make(robot), RawClient(b"SHOW(1)\n")
     talk(robot, [(end, typed_bytes)], 100)
-    assert b"// OK" in typed_bytes.heard
+    assert b"// OK" in typed_bytes.received
     end.leave()
     talk(robot, [], AUTHORITY_MS)
     ends: Ends = [(make(robot), RawClient(b"SI|F(60, 50)"))]
@@ -383,7 +383,7 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
         "MOTORS 44 44",
         "MOTORS 0 0",
     ]
-    assert b"// OK" in first.heard and b"Send it again" in second.heard
+    assert b"// OK" in first.received and b"Send it again" in second.received
 
 
 @pytest.mark.parametrize(
@@ -396,7 +396,7 @@ def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes)
     talk(robot, ends, 1500)
     first.to_send = b"SI|LOOP(2)\n"
     talk(robot, ends, 1500)
-    assert b"END_LOOP" in first.heard
+    assert b"END_LOOP" in first.received
     second.to_send = stop
     talk(robot, ends, 1500)
     first.to_send = b"F(0.1, 44)\nEND_LOOP\n"
@@ -519,7 +519,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     end, who = make(robot), RawClient()
     send(robot, end, text, who)
     talk(robot, [(end, who)], 2500)
-    assert who.heard == b"// OK\r\n// DONE\r\n"
+    assert who.received == b"// OK\r\n// DONE\r\n"
     assert actions_of(robot) == actions_of(by_cable) and len(actions_of(robot)) > 30
     assert overrun(robot) == 0
 
@@ -540,7 +540,7 @@ def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> Non
     else:
         robot.radio("Z", b"\0")
     talk(robot, [(end, who)], 9000)
-    assert b"lost" not in who.heard and who.heard.rstrip().endswith(b"// DONE")
+    assert b"lost" not in who.received and who.received.rstrip().endswith(b"// DONE")
     assert overrun(robot) == 0
 
 

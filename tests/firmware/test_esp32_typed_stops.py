@@ -204,7 +204,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
         talk(robot, [(end, who)], 1500)
         assert motor_actions(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (
             bytes_before[-20:],
-            who.heard,
+            who.received,
         )
         talk(robot, ends, 1500)
         ends = start_drive(robot, driver)
@@ -222,7 +222,7 @@ def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
     assert motor_actions(robot)[-1] == "MOTORS 0 0"
     talk(robot, [(end, who)], 2000)
     assert motor_actions(robot)[-3:] == ["MOTORS 39 39", "MOTORS 80 80", "MOTORS 0 0"]
-    assert who.heard.endswith(b"// OK\r\n// DONE\r\n")
+    assert who.received.endswith(b"// OK\r\n// DONE\r\n")
 
 
 @pytest.mark.parametrize("make", RADIOS)

@@ -60,7 +60,7 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     thief = remote(robot, Keys(80), 4)
     assert wait_for_outcome(robot, [(None, thief)], thief.claim(0)) == "UNREADABLE"
     talk(robot, [(LowEnergy(robot), typed_bytes)], 1500)
-    assert b"//" in typed_bytes.heard
+    assert b"//" in typed_bytes.received
     robot.step(flags=1)
     robot.wait(100)
     robot.step(flags=2)

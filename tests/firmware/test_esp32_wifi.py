@@ -228,12 +228,12 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     first, second = RawClient(asks), RawClient(asks)
     ends: Ends = [(None, first), (LowEnergy(rebooted_robot), second)]
     talk(rebooted_robot, ends, 60)
-    frames = [decode_frame(client.heard.strip(b"\0")) for client in (first, second)]
+    frames = [decode_frame(client.received.strip(b"\0")) for client in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
     first.to_send = second.to_send = encode_frame(Frame(17, 2, epoch, b"\0"))
-    first.heard = second.heard = b""
+    first.received = second.received = b""
     talk(rebooted_robot, ends, 60)
-    assert len(first.heard) == 20 and first.heard != second.heard
+    assert len(first.received) == 20 and first.received != second.received
 
 
 # -- over TCP -----------------------------------------------------------------------------------
@@ -271,7 +271,7 @@ def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
         client.name(b"x"), client.undo(), client.clear(),
     ):  # fmt: skip
         assert wait_for_outcome(robot, ends, acting) == "UNOWNED"
-    assert "Not possible here" in typed_bytes.heard.decode()
+    assert "Not possible here" in typed_bytes.received.decode()
     assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
     cable = session(3, robot)
     assert upload_text(robot, [(None, cable)], cable) == "OK"

@@ -367,10 +367,10 @@ def attack(frames: int, seed: int) -> Counter[str]:
                 robot.wait(20, bytes(8) if chance.random() < 0.5 else b"\0" + _stop(chance) + b"\0")
                 assert robot.is_latched, f"frame {count} of seed {seed}: a stop is not obeyed"
                 counts["stops"] += 1
-            thief.old += thief.sent[-3:]
+            thief.old_frames += thief.sent_frames[-3:]
             session = table.session(_keys, nonce=chance.getrandbits(32))
             recorded_frames, replies = upload_and_capture(table, session, SHORT)
-            thief.sent = [frame for frame in recorded_frames if _is_sealed(frame)]
+            thief.sent_frames = [frame for frame in recorded_frames if _is_sealed(frame)]
             thief.replies = [data for data in replies if _is_sealed(data)]
             table.pass_time(session, 300)
             robot.did.clear()

@@ -31,12 +31,12 @@ class Chatterbox:
 
     def __init__(self) -> None:
         self.pieces = PIECE_COUNT
-        self.rest = b""
+        self.unread = b""
         self.is_over = threading.Event()
 
     @property
     def in_waiting(self) -> int:
-        return len(self.rest)
+        return len(self.unread)
 
     def read(self, count: int) -> bytes:
         if count == 1:
@@ -45,9 +45,9 @@ class Chatterbox:
                 self.is_over.set()
                 self.is_over.wait(0.01)
                 return b""
-            self.rest = CHATTER[1:]
+            self.unread = CHATTER[1:]
             return CHATTER[:1]
-        data, self.rest = self.rest, b""
+        data, self.unread = self.unread, b""
         return data
 
     def write(self, data: bytes) -> int:
@@ -82,14 +82,14 @@ class Socket(Chatterbox):
 
     def __init__(self) -> None:
         super().__init__()
-        self.rest = CHATTER
+        self.unread = CHATTER
 
     @property
     def in_waiting(self) -> int:
         return 1
 
     def read(self, count: int) -> bytes:
-        data, self.rest = self.rest[:count], self.rest[count:]
+        data, self.unread = self.unread[:count], self.unread[count:]
         if not data:
             raise OSError("socket disconnected")
         return data

@@ -58,8 +58,8 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
         assert result.out.splitlines()[-2:] == ["Done.", "Saved. The button starts it."]
         assert (ble.robot.actions, ble.connections) == (DRIVE_ACTIONS * count, 2 * count - 1)
         assert run_in_process("set", "trim", "--show").code == 0  # the port is remembered
-    assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
-    assert max(len(data) for _, data in ble.written) == 20
+    assert {kind for kind, _ in ble.writes} == {"command"}  # an HM-10 answers no write
+    assert max(len(data) for _, data in ble.writes) == 20
     run_in_process("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(
         0, ""
     )
@@ -82,9 +82,9 @@ def test_a_long_program_arrives_whole(
     assert run_in_process("upload", compiled_file, "--no-run", "--port", ADDRESS_PORT).code == 0
     assert run_in_process("show", "-o", robot_file, "--port", ADDRESS_PORT).code == 0
     assert robot_file.read_bytes() == compiled_file.read_bytes()
-    longest = max(len(data) for _, data in ble.written)
+    longest = max(len(data) for _, data in ble.writes)
     assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
-    assert max(map(len, ble.sent)) <= mtu - 3
+    assert max(map(len, ble.sent_packets)) <= mtu - 3
 
 
 def test_where_a_module_answers_each_write_it_is_waited_for(
@@ -94,7 +94,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
     assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
-    assert {kind for kind, _ in ble.written} == {"request"}
+    assert {kind for kind, _ in ble.writes} == {"request"}
     assert pty_robot.actions == DRIVE_ACTIONS
 
 
@@ -160,11 +160,13 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
 # -- which robot --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("delay_ms", [0, 4])
-def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, delay_ms: int) -> None:
+@pytest.mark.parametrize("late_rounds", [0, 4])
+def test_of_two_with_one_name_none_is_taken(
+    ble: BleRobot, bluez: FakeBluez, late_rounds: int
+) -> None:
     """Also where one says its name later."""
     twin = Peripheral("TINI 1", OTHER_ADDRESS)
-    twin.late = delay_ms
+    twin.late_rounds = late_rounds
     bluez.add(twin)
     run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", NAME).gives(
         3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER_ADDRESS}"

@@ -36,7 +36,7 @@ def wait_for_dead_man_stop(ble: BleRobot) -> None:
 
 @pytest.mark.parametrize("stage", ["connect", "services", "notify"])
 def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
-    ble.fails_at = stage
+    ble.failing_stage = stage
     for language in ("en", "es"):
         result = run_in_process(
             "upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT, "--lang", language
@@ -44,7 +44,7 @@ def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
         assert result.err.startswith("tsc: ")
         assert ADDRESS_PORT.upper() in result.err.upper()
     assert ble.robot.actions == []
-    ble.fails_at = ""
+    ble.failing_stage = ""
     assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
     assert ble.robot.actions == DRIVE_ACTIONS
 

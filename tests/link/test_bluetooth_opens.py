@@ -27,15 +27,15 @@ class Device:
     """A device as the radio sees it, with its connections."""
 
     def __init__(self) -> None:
-        self.fails_at = ""
+        self.failing_stage = ""
         self.failure: BaseException | None = None
-        self.lacks = ""
+        self.missing_uuid = ""
         self.clients: list[Client] = []
-        self.notified = 0
+        self.notify_count = 0
 
     async def reach(self, stage: str) -> None:
         await asyncio.sleep(0)
-        if self.fails_at == stage:
+        if self.failing_stage == stage:
             if self.failure is None:
                 await asyncio.Event().wait()  # it never ends
             else:
@@ -65,7 +65,7 @@ class Client:
 
     @property
     def services(self) -> list[Any]:
-        lacks = self.device.lacks
+        lacks = self.device.missing_uuid
 
         def characteristic(uuid: str) -> Any:
             is_writes = uuid == UART.write_uuid
@@ -79,7 +79,7 @@ class Client:
 
     async def start_notify(self, *_: object) -> None:
         await self.device.reach("notify")
-        self.device.notified += 1
+        self.device.notify_count += 1
 
 
 FAILURES: dict[str, tuple[BaseException | None, str]] = {
@@ -110,15 +110,15 @@ def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort
 
 def check_next_client_works(loop: event_loop.EventLoop, device: Device) -> None:
     """The next one gets the device, and leaves it."""
-    device.fails_at = device.lacks = ""
-    notified_before = device.notified
+    device.failing_stage = device.missing_uuid = ""
+    notified_before = device.notify_count
     for _ in range(2):
         port = connects(loop, device)
         assert len(device.clients) == 1
         port.close()
         assert device.clients == []
         port.close()  # no effect
-    assert device.notified == notified_before + 2
+    assert device.notify_count == notified_before + 2
 
 
 @pytest.mark.parametrize("failure", FAILURES)
@@ -128,7 +128,7 @@ def test_what_fails_leaves_the_device(
 ) -> None:
     device = Device()
     for _ in range(2):
-        device.fails_at = stage
+        device.failing_stage = stage
         device.failure, reason = FAILURES[failure]
         with monkeypatch.context() as short, pytest.raises(PortError) as exception_info:
             if device.failure is None:
@@ -142,7 +142,7 @@ def test_what_fails_leaves_the_device(
 @pytest.mark.parametrize("lacks", ["service", "writes", "notifies", "write"])
 def test_a_device_that_is_not_a_robot_is_left(loop: event_loop.EventLoop, lacks: str) -> None:
     device = Device()
-    device.lacks = lacks
+    device.missing_uuid = lacks
     with pytest.raises(PortError) as exception_info:
         connects(loop, device)
     assert exception_info.value.reason == errors.NO_ROBOT
@@ -156,7 +156,7 @@ def test_ctrl_c_leaves_the_device(
 ) -> None:
     """It may come during any check of a waiting caller."""
     device = Device()
-    device.fails_at = stage
+    device.failing_stage = stage
 
     bell = interrupted_bell(lambda: sleep(event_loop.POLL_INTERVAL_S))
     with monkeypatch.context() as pressed:

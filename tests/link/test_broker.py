@@ -54,7 +54,7 @@ class SlowNetwork(Network):
     of the retained messages; `is_cut` drops those.
     """
 
-    most = 200
+    max_bytes = 200
 
     def __init__(self, target: int, late_s: float, gap_s: float, is_cut: bool) -> None:
         self.late_s, self.gap_s, self.is_cut = late_s, gap_s, is_cut

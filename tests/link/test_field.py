@@ -57,7 +57,7 @@ class Robot:
     def __init__(self, cpp: CppLink) -> None:
         self.cpp = cpp
         self.now_ms = 5000
-        self.sent = b""
+        self.sent_bytes = b""
         self.did: list[str] = []
         cpp.begin(kit=KIT)
         self.wait(20)
@@ -73,12 +73,12 @@ class Robot:
     def _step(self, passed_ms: int, data: bytes = b"") -> None:
         self.now_ms += passed_ms
         step = self.cpp.step(self.now_ms, data)
-        self.sent += step.sent
+        self.sent_bytes += step.sent
         self.did += step.did
 
     @property
     def answers(self) -> list[bytes]:
-        return re.findall(rb"// [^\r]*\r\n", self.sent)
+        return re.findall(rb"// [^\r]*\r\n", self.sent_bytes)
 
     @property
     def programs(self) -> set[str]:
@@ -146,10 +146,10 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     def ask(request: PendingRequest[Any]) -> None:
         end_ms = robot.now_ms + 3000
         while request.outcome is None and robot.now_ms < end_ms:
-            sent_before = len(robot.sent)
+            sent_before = len(robot.sent_bytes)
             robot.type(session.poll(robot.now_ms))
             robot.wait(20)
-            session.receive(robot.sent[sent_before:], robot.now_ms)
+            session.receive(robot.sent_bytes[sent_before:], robot.now_ms)
         assert request.outcome and request.outcome.status == OK, f"seed {seed}: {request.outcome}"
 
     heard_count = 0

@@ -28,10 +28,10 @@ HAIL_COUNT = 8  # a task that takes a while to cancel
 class Port(PushedTransport):
     def __init__(self) -> None:
         super().__init__()
-        self.written = b""
+        self.written_bytes = b""
 
     def write(self, data: bytes) -> None:
-        self.written += data
+        self.written_bytes += data
 
     def close(self) -> None:
         self.end("closed")
@@ -68,9 +68,9 @@ def test_a_line_goes_on_and_still_stops() -> None:
             line.end_run(1)
 
         interrupt_often(work)
-        port.written = b""
+        port.written_bytes = b""
         line.stop()
-        until(lambda: bytes(STOP_BYTES) in port.written, "the stop is sent")
+        until(lambda: bytes(STOP_BYTES) in port.written_bytes, "the stop is sent")
 
 
 @pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")

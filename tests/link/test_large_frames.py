@@ -218,7 +218,7 @@ def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert taking.received == SENT_BYTES
     is_small = largest <= SMALL_FRAME
-    assert robot.longest == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
+    assert robot.longest_bytes == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
     assert robot.most_waiting == max(1, min(window, LARGE_WINDOW))
     assert not is_small or {length for *_, length in robot.data[:-1]} == {54}
 
@@ -226,7 +226,7 @@ def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window
 def test_a_slow_line_has_little_before_a_stop() -> None:
     robot = AnsweringRobot(InOrderReceiver(), baud=9600)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert robot.most_waiting * robot.longest <= 9600 // 10 * 0.25
+    assert robot.most_waiting * robot.longest_bytes <= 9600 // 10 * 0.25
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ def test_a_stop_ends_the_pieces() -> None:
     robot = AnsweringRobot(InOrderReceiver())
     request = robot.session.upload(IMAGE)
     robot.session.receive(b"", 0)
-    robot.takes = lambda *_: None
+    robot.take_data = lambda *_: None
     for _ in range(40):
         if robot.data:
             break

@@ -63,7 +63,7 @@ def one_undo(cpp: CppLink, seed: int) -> str:
     if images[0] == images[1]:
         return "the same"
     world.to_robot.faults = world.to_computer.faults = rng.choice((0.001, 0.01, 0.03))
-    world.drops = rng.choice((0, 0.0002, 0.002))
+    world.drop_rate = rng.choice((0, 0.0002, 0.002))
     confirmed = 0
     for _ in range(4):
         old_undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")

@@ -26,11 +26,11 @@ LIVE = BY_NAME["LIVE"].number
 class LiveWorld(World):
     """`sent` counts the times that a line goes out, the repeated ones too."""
 
-    sent = 0
+    sent_count = 0
 
     def overhear(self, data: bytes) -> None:
         frame = decode_frame(data.strip(b"\0"))
-        self.sent += frame is not None and frame.number == LIVE and not frame.is_reply
+        self.sent_count += frame is not None and frame.number == LIVE and not frame.is_reply
 
 
 def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
@@ -42,7 +42,7 @@ def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
     for first_number in range(0, count, LINES):
         world = LiveWorld(cpp, rng, rng.choice((0.001, 0.005, 0.01)), rng.choice((0, 0.0005)))
         for number in range(first_number, min(first_number + LINES, count)):
-            world.sent = 0
+            world.sent_count = 0
             request = world.session.live(line_of(number))
             world.run(request)
             assert request.outcome, f"seed {seed}, line {number} has no end"
@@ -57,7 +57,7 @@ def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
             start_count = sum(row.startswith("START") for row in world.did)
             assert start_count == len(times), f"seed {seed}, line {number}: {start_count} starts"
             counts[OUTCOMES.get(status) or name_of(status)] += 1
-            counts["sent again"] += world.sent > 1
+            counts["sent again"] += world.sent_count > 1
             if status != 0:
                 world.reconnect()
     return counts

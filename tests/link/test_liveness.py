@@ -49,7 +49,7 @@ class BadLine:
 
     def __init__(self, rng: random.Random) -> None:
         self.rng = rng
-        self.lost = 0
+        self.lost_in_a_row = 0
         kind = rng.choice(("losses", "losses", "bursts", "late"))
         self.is_bursty = kind == "bursts"
         self.likely = rng.choice((0.2, 0.5, 0.8)) if kind == "losses" else 0
@@ -65,8 +65,10 @@ class BadLine:
             return data if now_ms % (self.dead_ms + LINE_ALIVE_MS) < LINE_ALIVE_MS else b""
         before_ms, is_lost = self.packets[is_answer]
         if now_ms > before_ms + 2:  # another packet
-            is_lost = self.lost < CONSECUTIVE_LOSSES and self.rng.random() < self.likely
-            self.lost = self.lost + 1 if is_lost else 0 if is_answer else self.lost
+            is_lost = self.lost_in_a_row < CONSECUTIVE_LOSSES and self.rng.random() < self.likely
+            self.lost_in_a_row = (
+                self.lost_in_a_row + 1 if is_lost else 0 if is_answer else self.lost_in_a_row
+            )
         self.packets[is_answer] = now_ms, is_lost
         return b"" if is_lost else data
 

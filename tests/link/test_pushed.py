@@ -20,7 +20,7 @@ class Bell:
 
     def __init__(self) -> None:
         self.count = 0
-        self.then: list[bytes] = []
+        self.late_pieces: list[bytes] = []
         self.port: PushedTransport | None = None
 
     def ring(self) -> None:
@@ -29,8 +29,8 @@ class Bell:
     def wait(self, timeout_s: float) -> None:
         assert timeout_s == READ_S
         self.count += 1
-        if self.then and self.port is not None:
-            self.port.add_received(self.then.pop())
+        if self.late_pieces and self.port is not None:
+            self.port.add_received(self.late_pieces.pop())
 
 
 def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Bell]:
@@ -62,7 +62,7 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
         else:
             size = rng.choice((1, 20, 4096))
             late_bytes = rng.randbytes(5) if action == "while it waits" else b""
-            bell.then = [late_bytes] if late_bytes else []
+            bell.late_pieces = [late_bytes] if late_bytes else []
             has_to_wait = not (unread or is_cancelled or failure)
             if has_to_wait:
                 unread += late_bytes

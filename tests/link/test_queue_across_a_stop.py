@@ -47,7 +47,7 @@ def check(seed: int) -> str:
         rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHER_REQUESTS)(session)
         for _ in range(rng.randint(2, 5))
     ]
-    wire.loses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0, 1)))
+    wire.losses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0, 1)))
     wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
     if stop_kind == "the button" and not is_driving(robot):  # it would start the stored program
         stop_kind = "zeros"
@@ -65,10 +65,10 @@ def check(seed: int) -> str:
         sent_bytes = STOPS[stop_kind](robot, session)
     robot.codes()
     robot.did.clear()
-    wire.loses = rng.choice((NO_LOSSES, Losses(0, 0.3)))
+    wire.losses = rng.choice((NO_LOSSES, Losses(0, 0.3)))
     wire.turn(b"" if rng.random() < 0.5 else sent_bytes)  # the event, if the session heard it
     wire.turns(rng.choice((1, 5, 200)))
-    wire.loses = NO_LOSSES
+    wire.losses = NO_LOSSES
     wire.turns(wire.late_ms)
     robot.step(b"".join(wire.under_way))
     robot.talk(session, 6000)

@@ -56,33 +56,33 @@ class Hand:
 
     def __init__(self, session: Session, robot: HostFirmware) -> None:
         self.session, self.robot = session, robot
-        self.held = NOTHING_PRESSED
-        self.loses: Callable[[], bool] = lambda: False  # whether the line loses a packet
+        self.held_state = NOTHING_PRESSED
+        self.is_lossy: Callable[[], bool] = lambda: False  # whether the line loses a packet
         self.words: list[tuple[int, RemoteState]] = []  # sent, each with its number
         self.outcomes: list[int] = []
         self._requests = [session.press()]
-        self._said_ms = 0
+        self._sent_ms = 0
 
     def holds(self, held_state: RemoteState) -> None:
-        self.held = held_state
+        self.held_state = held_state
         self._say()
 
     def _say(self) -> None:
-        self._said_ms = self.robot.now_ms
-        self._requests.append(self.session.press(*self.held))
+        self._sent_ms = self.robot.now_ms
+        self._requests.append(self.session.press(*self.held_state))
 
     def talk(self, milliseconds: int) -> None:
         robot, session = self.robot, self.session
         for _ in range(milliseconds):
-            if self.held != NOTHING_PRESSED and robot.now_ms - self._said_ms >= 100:
+            if self.held_state != NOTHING_PRESSED and robot.now_ms - self._sent_ms >= 100:
                 self._say()
             data = session.poll(robot.now_ms)
             for packet in data.split(b"\0"):
                 frame = decode_frame(packet)
                 if frame is not None and frame.number == KEYS.number:
                     self._note(frame)
-            sent_bytes = robot.step(b"" if data and self.loses() else data)
-            if sent_bytes and not self.loses():
+            sent_bytes = robot.step(b"" if data and self.is_lossy() else data)
+            if sent_bytes and not self.is_lossy():
                 session.receive(sent_bytes, robot.now_ms)
         statuses = [
             request.outcome.status for request in self._requests if request.outcome is not None
@@ -95,7 +95,7 @@ class Hand:
     def _note(self, frame: Frame) -> None:
         keys, x, y = frame.payload
         word = RemoteState(keys, x - (x & 0x80) * 2, y - (y & 0x80) * 2)
-        assert word == self.held, "a word that is older than what is held"
+        assert word == self.held_state, "a word that is older than what is held"
         self.words.append((frame.seq, word))
 
 
@@ -142,7 +142,7 @@ def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
         remote.holds(held_state)
         remote.talk(5)
         assert remote.words[-1][1] == held_state
-    remote.loses = lambda: True
+    remote.is_lossy = lambda: True
     count = len(remote.words)
     remote.holds(KEY_UP)
     remote.talk(1)
@@ -175,14 +175,14 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
     rng = random.Random(seed)
     remote = hand()
     for _ in range(100):
-        remote.loses = lambda: False
+        remote.is_lossy = lambda: False
         remote.holds(rng.choice([KEY_UP, remote_state_of(["A", "LEFT"]), RemoteState(0, 50, -50)]))
         remote.talk(rng.randint(60, 400))
-        assert remote.robot.remote() == remote_readings(remote.held)
-        remote.loses = lambda: True
+        assert remote.robot.remote() == remote_readings(remote.held_state)
+        remote.is_lossy = lambda: True
         remote.talk(HOLD_MS)
         assert remote.robot.remote() == RELEASED_READINGS
-        remote.loses = lambda: False
+        remote.is_lossy = lambda: False
         remote.holds(NOTHING_PRESSED)
         remote.talk(250)
 
@@ -195,13 +195,13 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     remote = hand()
     read_count = look_count = 0
     for _ in range(40):
-        remote.loses = lambda: rng.random() < 0.3
+        remote.is_lossy = lambda: rng.random() < 0.3
         remote.holds(rng.choice([KEY_UP, KEY_A, remote_state_of(["DOWN", "B"], 10, 20)]))
         remote.talk(300)
         for _ in range(20):
             remote.talk(50)
             look_count += 1
-            read_count += remote.robot.remote() == remote_readings(remote.held)
+            read_count += remote.robot.remote() == remote_readings(remote.held_state)
         remote.holds(NOTHING_PRESSED)
         remote.talk(HOLD_MS)
         for _ in range(10):
@@ -216,13 +216,13 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
     """`Hand` checks each state: it is that at the time of sending."""
     rng = random.Random(seed)
     remote = hand()
-    remote.loses = lambda: rng.random() < 0.3
+    remote.is_lossy = lambda: rng.random() < 0.3
     for _ in range(300):
         remote.holds(RemoteState(rng.randrange(64), rng.randint(-100, 100), rng.randint(-100, 100)))
         remote.talk(rng.randint(1, 60))
-    remote.loses = lambda: False
+    remote.is_lossy = lambda: False
     remote.talk(250)
-    assert remote.robot.remote() == remote_readings(remote.held)
+    assert remote.robot.remote() == remote_readings(remote.held_state)
 
 
 def test_whoever_falls_silent_holds_nothing() -> None:
@@ -263,7 +263,7 @@ def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: st
         assert remote.robot.now_ms < 30_000
     assert request.outcome.status == OK
     remote.talk(250)
-    assert remote.robot.remote() == remote_readings(remote.held)
+    assert remote.robot.remote() == remote_readings(remote.held_state)
 
 
 def test_keys_that_never_rest_leave_others_their_turn() -> None:
@@ -350,7 +350,7 @@ def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
     remote.holds(KEY_UP)
     remote.talk(300)
     remote.session.stop(remote.robot.now_ms)
-    remote.held = NOTHING_PRESSED
+    remote.held_state = NOTHING_PRESSED
     remote.talk(300)
     assert remote.robot.is_latched
     action_count = len(remote.robot.did)
@@ -436,10 +436,10 @@ def test_a_lost_link_and_one_that_is_found_again() -> None:
     remote = hand()
     remote.holds(KEY_UP)
     remote.talk(60)
-    remote.loses = lambda: True
+    remote.is_lossy = lambda: True
     remote.talk(6000)
     assert LOST in remote.outcomes and "LOST" in [event.name for event in remote.session.events()]
-    remote.loses = lambda: False
+    remote.is_lossy = lambda: False
     remote.talk(3000)
     assert remote.robot.remote() == remote_readings(KEY_UP), "who goes on pressing is heard again"
 

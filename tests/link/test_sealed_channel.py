@@ -49,9 +49,9 @@ class SealedWorld(World):
 
     def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drops: float) -> None:
         self.keys = Keys()
-        self.says = 0.0
+        self.forgery_rate = 0.0
         self.frames: list[bytes] = []
-        self.asked: Frame | None = None  # the last request
+        self.last_request: Frame | None = None  # the last request
         self.greeting = b""  # the robot's answer to HELLO
         super().__init__(cpp, rng, 0, 0)
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
@@ -67,7 +67,7 @@ class SealedWorld(World):
 
     def reconnect(self) -> None:
         """The stranger comes when a program is on the robot."""
-        self.says = self.rng.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
+        self.forgery_rate = self.rng.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
         self.session = Session(self.rng.getrandbits(32), 9600, KIT, keys=self.keys)
 
     def overhear(self, data: bytes) -> None:
@@ -75,12 +75,12 @@ class SealedWorld(World):
         del self.frames[:-KEPT_FRAMES]
         for frame in filter(None, map(decode_frame, filter(None, data.split(b"\0")))):
             if not frame.is_reply:
-                self.asked = frame
+                self.last_request = frame
             elif frame.number == BY_NAME["HELLO"].number and frame.payload[0] == 0:
                 self.greeting = frame.payload
 
     def disturb(self) -> None:
-        if self.says == 0 or self.rng.random() >= self.says or not self.frames:
+        if self.forgery_rate == 0 or self.rng.random() >= self.forgery_rate or not self.frames:
             return
         data = self.forge_frame()
         (self.to_computer if self.rng.random() < 0.4 else self.to_robot).send(
@@ -91,8 +91,8 @@ class SealedWorld(World):
         rng = self.rng
         forgery = rng.randrange(7)
         old_frame = rng.choice(self.frames)
-        if forgery == 6 and self.asked is not None:
-            return self.answer_unsealed(self.asked)
+        if forgery == 6 and self.last_request is not None:
+            return self.answer_unsealed(self.last_request)
         if forgery == 0:
             return damage_frame(old_frame, rng)
         frame = decode_frame(old_frame.rstrip(b"\0"))

@@ -56,7 +56,7 @@ PROGRAMS = (
 
 
 class UseResult(NamedTuple):
-    what: list[str]
+    rows: list[str]
     took_ms: list[int]
 
 
@@ -70,10 +70,10 @@ def first_use(rng: random.Random) -> Wire:
     for _ in range(rng.randint(1, 4)):
         for _ in range(rng.randint(0, 3)):
             rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHER_REQUESTS)(wire.session)
-        wire.loses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
+        wire.losses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
         wire.turns(rng.choice((1, 3, 8, 30, 300)))
         end_first_use(rng, wire)
-    wire.loses = NO_LOSSES
+    wire.losses = NO_LOSSES
     wire.turns(wire.late_ms)
     wire.robot.step(b"".join(wire.under_way))
     wire.under_way.clear()
@@ -186,7 +186,7 @@ def check(seed: int) -> str:
     assert other_use.robot.until(session, session.hello()) == OK
     actual = second_use(random.Random(seed), used_wire.session, used_wire.robot)
     wanted_use = second_use(random.Random(seed), session, other_use.robot)
-    assert actual.what == wanted_use.what, f"seed {seed}\n{actual.what}\nnot\n{wanted_use.what}"
+    assert actual.rows == wanted_use.rows, f"seed {seed}\n{actual.rows}\nnot\n{wanted_use.rows}"
     delays_ms = [a - b for a, b in zip(actual.took_ms, wanted_use.took_ms, strict=True)]
     assert all(abs(delay_ms) < LATER_MS for delay_ms in delays_ms), f"seed {seed} {delays_ms}"
     return "it runs" if "DoneEvent" in str(wanted_use) else "it stands"

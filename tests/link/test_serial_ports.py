@@ -18,7 +18,7 @@ tty = pytest.importorskip("tty", reason=NO_PTY)
 
 
 class Line(NamedTuple):
-    ours: FileIO  # the other end
+    our_end: FileIO  # the other end
     port: Port
 
 
@@ -41,15 +41,15 @@ def ready(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("ready")
 def test_what_another_program_has_read_ends_nothing(line: Line) -> None:
-    line.ours.write(b"ab")
+    line.our_end.write(b"ab")
     assert [line.port.read(1) for _ in range(4)] == [b"a", b"b", b"", b""]
-    line.ours.write(b"c")
+    line.our_end.write(b"c")
     assert line.port.read(1) == b"c"
 
 
 def test_a_port_that_is_gone_says_so(line: Line) -> None:
-    line.ours.write(b"a")
+    line.our_end.write(b"a")
     assert line.port.read(1) == b"a"
-    line.ours.close()
+    line.our_end.close()
     with pytest.raises(OSError):
         line.port.read(1)

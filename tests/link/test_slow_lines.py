@@ -40,7 +40,7 @@ class SlowLine(NamedTuple):
 
     rate: int
     late_ms: float = 0.0
-    lost: float = 0.0
+    loss_rate: float = 0.0
 
 
 class Talk:
@@ -64,9 +64,9 @@ class Talk:
     def without_lost(self, data: bytes) -> bytes:
         if self.is_cut:
             return b""
-        if not self.line.lost:
+        if not self.line.loss_rate:
             return data
-        return bytes(byte for byte in data if self.rng.random() >= self.line.lost)
+        return bytes(byte for byte in data if self.rng.random() >= self.line.loss_rate)
 
     def step(self) -> None:
         data = self.session.poll(self.now_ms)
@@ -119,13 +119,13 @@ def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: SlowLine)
 class LossyWire(Wire):
     """Everything sent at once is lost together, at most a given number of times in a row."""
 
-    in_a_row = losses = lost = 0
+    max_in_a_row = losses = lost_in_a_row = 0
     rng = random.Random()
 
     def send(self, data: bytes, now_ms: int) -> None:
-        is_lost = bool(data) and self.lost < self.in_a_row and self.rng.random() < 0.7
+        is_lost = bool(data) and self.lost_in_a_row < self.max_in_a_row and self.rng.random() < 0.7
         if data:
-            self.lost = self.lost + 1 if is_lost else 0
+            self.lost_in_a_row = self.lost_in_a_row + 1 if is_lost else 0
             self.losses += is_lost
         super().send(b"" if is_lost else data, now_ms)
 
@@ -141,7 +141,7 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
     wire.rng = random.Random(seed)
     talk.to_robot = wire
     talk.wait(talk.session.hello())
-    wire.in_a_row = in_a_row
+    wire.max_in_a_row = in_a_row
     most_losses = 0
     for code_bytes in (7000, 7000) if is_large else [380] * 6:
         losses_before = wire.losses

@@ -41,7 +41,7 @@ class Holder:
         self._answer_s = answer_s
         self.is_gone = False  # the process has ended
         self._limit_s = 0.0
-        self._coming: list[tuple[float, bytes]] = []
+        self._arrivals: list[tuple[float, bytes]] = []
         self._reader = MessageReader(protocol.LINE_BYTES)
 
     def clock(self) -> float:
@@ -51,7 +51,7 @@ class Holder:
         arrival_s = self.now_s + after_s
         if arrival_s < self.dies_s:
             insort(
-                self._coming,
+                self._arrivals,
                 (arrival_s, protocol.encode_message(message)),
                 key=lambda item: item[0],
             )
@@ -69,10 +69,10 @@ class Holder:
 
     def recv(self, count: int) -> bytes:
         end_s = self.now_s + self._limit_s
-        if not self._coming or self._coming[0][0] > end_s:
+        if not self._arrivals or self._arrivals[0][0] > end_s:
             self.now_s = end_s
             raise TimeoutError
-        arrival_s, data = self._coming.pop(0)
+        arrival_s, data = self._arrivals.pop(0)
         self.now_s = max(self.now_s, arrival_s)
         return data
 

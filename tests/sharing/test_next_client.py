@@ -57,7 +57,7 @@ class SteppedLine:
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()
-        self.posted: list[tuple[str, str]] = []  # the events of this process alone
+        self.posted_events: list[tuple[str, str]] = []  # the events of this process alone
         self.session.tells_starts = True
 
     @property
@@ -70,7 +70,7 @@ class SteppedLine:
     def post_event(self, event: Event) -> None:
         """Post an event of this process alone: a command has come or left."""
         assert isinstance(event, (JoinedEvent, LeftEvent))
-        self.posted.append((event.name, event.verb.decode()))
+        self.posted_events.append((event.name, event.verb.decode()))
 
     def begin(
         self, make_request: Callable[[Requester], PendingRequest[Any]]
@@ -105,7 +105,7 @@ class Client:
         self.socket = socket.create_connection((protocol.HOST, port))
         self.socket.setblocking(False)
         self.reader = protocol.MessageReader(protocol.LINE_BYTES)
-        self.heard: list[Json] = []
+        self.messages: list[Json] = []
         self.beats, self.has_detached = True, False
         self._number = 0
         self.says({"tsc": __version__, "token": server.registration.token, "verb": verb})
@@ -120,10 +120,10 @@ class Client:
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):
-            self.heard += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
+            self.messages += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
 
     def count_answers(self) -> int:
-        return sum("status" in message for message in self.heard)
+        return sum("status" in message for message in self.messages)
 
 
 class Desk:
@@ -268,7 +268,7 @@ def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[
     client = desk.join("run")
     desk.steps(60)
     robot.did.clear()
-    client.heard.clear()
+    client.messages.clear()
     send_request(rng, client, "upload")
     desk.steps(rng.choice((400, 1500, 3000)))
     for _ in range(2):
@@ -276,7 +276,7 @@ def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[
         desk.steps(rng.choice((400, 1500)))
     client.says({"do": "stop"})
     desk.steps(400)
-    heard = [message for message in client.heard if "beat" not in message]
+    heard = [message for message in client.messages if "beat" not in message]
     begins = next((k for k, message in enumerate(heard) if "status" in message), 0)
     messages = [
         ROBOT_FIELD.sub(r'"\1"', protocol.encode_message(message).decode())
@@ -346,7 +346,7 @@ def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
                 owner = "" if owner is client else owner
             made_desk.steps(1600 if end_kind == "is silent" else 300)
             assert made_desk.line.session.is_running == (owner != ""), end_kind
-            assert made_desk.line.posted == posted, end_kind
+            assert made_desk.line.posted_events == posted, end_kind
 
 
 DROPPED_EVENTS: dict[str, Event] = {

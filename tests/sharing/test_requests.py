@@ -28,10 +28,10 @@ class MethodCall(NamedTuple):
     """A method of a client, with its arguments."""
 
     method: str
-    given: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()
 
     def message(self) -> dict[str, Any]:
-        request: ClientRequest[Any] = getattr(ClientRequests(), self.method)(*self.given)
+        request: ClientRequest[Any] = getattr(ClientRequests(), self.method)(*self.arguments)
         return message_of(json.dumps(request.message).encode())
 
 
@@ -62,7 +62,7 @@ def test_it_is_asked_of_the_session_as_of_the_client(request_case: MethodCall) -
     ((name, passed_arguments, keyword_arguments),) = session.method_calls
     assert (name, passed_arguments, keyword_arguments) == (
         request_case.method,
-        request_case.given,
+        request_case.arguments,
         {},
     )
     assert request.limit_ms == 700

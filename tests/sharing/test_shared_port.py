@@ -33,7 +33,7 @@ PATIENT_COMMAND_CODE = (
 
 def hellos(pty_robot: PtyRobot) -> int:
     """Return the number of sessions begun, which is that of openings of the port."""
-    frames = map(decode_frame, pty_robot.heard.split(b"\0"))
+    frames = map(decode_frame, pty_robot.received.split(b"\0"))
     return sum(frame is not None and frame.number == 1 for frame in frames)
 
 
@@ -223,9 +223,9 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
         request.addfinalizer(lambda: signal.signal(number, signal_before))
     pty_robot.bytes_per_ms = 1  # a long program takes a while
     for options in ((), ("--detach",)):
-        pty_robot.heard = b""
+        pty_robot.received = b""
         command = Command("upload", "-e", LONG_PROGRAM, *options, "--port", pty_robot.port)
-        pty_robot.until(lambda: len(pty_robot.heard) > 60, "a part has come")
+        pty_robot.until(lambda: len(pty_robot.received) > 60, "a part has come")
         command.signal(number)
         command.process.wait()
         on(pty_robot, "live", "SHOW(7)").gives(0, "", out="SHOW 7")
@@ -427,8 +427,8 @@ def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_ref
         for _ in range(5):
             client = join(robot.port, "upload")
             assert client is not None
-            robot.heard = b""
+            robot.received = b""
             client.begin(lambda session: session.upload(image, True, kit=kit.fingerprint))
-            robot.until(lambda: len(robot.heard) > 10, "a part of it has come")
+            robot.until(lambda: len(robot.received) > 10, "a part of it has come")
             client.close()
             robot.until(lambda: is_idle_once_released(other_client) and not robot.moves, "it ends")

@@ -105,7 +105,7 @@ def main() -> int:
             compare(page, min(100, options.count - start), options.seed + start)
             for start in range(0, options.count, 100)
         )
-        assert not pages.wrong, pages.wrong[:3]
+        assert not pages.errors, pages.errors[:3]
         pages.close()
     seconds = time.monotonic() - start_s
     print(

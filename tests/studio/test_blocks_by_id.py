@@ -47,14 +47,14 @@ class Ana:
         self.program = program
         self.numbers = count(1)
         self.text = ""
-        self.takes(page_together.begin({"news": {"page": "a", **self.news(-1, "")}}, b""))
+        self.take_answer(page_together.begin({"news": {"page": "a", **self.news(-1, "")}}, b""))
         self.show()
 
     def news(self, seen_number: int, epoch: str) -> Json:
         answer: Json = json.loads(json.dumps(self.program.news("a", seen_number, epoch)))
         return answer
 
-    def takes(self, answer: Json) -> None:
+    def take_answer(self, answer: Json) -> None:
         for start, end, text in reversed(answer["changes"]):
             self.text = self.text[:start] + text + self.text[end:]
         self.answer = answer
@@ -90,7 +90,7 @@ class Ana:
         }
         answer = page_together.step(fields, self.text.encode())
         if is_heard:
-            self.takes(json.loads(json.dumps(answer)))
+            self.take_answer(json.loads(json.dumps(answer)))
         return answer
 
     def writes(self) -> Json:

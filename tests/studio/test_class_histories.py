@@ -47,8 +47,8 @@ class History:
         self.room = Room(ROBOTS)
         self.room.teaches("class_places", places=MOST_PUPILS)
         self.pages: dict[str, Page] = {}
-        self.gone: dict[str, Page] = {}  # pages whose work is kept, by name
-        self.brought: set[str] = set()
+        self.gone_pages: dict[str, Page] = {}  # pages whose work is kept, by name
+        self.brought_texts: set[str] = set()
         self.texts = 0
         self.failed_s: dict[str, float] = {}  # time of each robot's last failed search, by port
         self.order: list[str] = []  # last seen order of waiting pupils
@@ -59,7 +59,7 @@ class History:
     def answer(self, who: Page, action: str, **fields: Any) -> Json | None:
         """Send a request as a page; None if it was removed."""
         try:
-            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": action, **fields})
+            answer = self.room.classroom.answer(who.token, "192.0.2.9", {"do": action, **fields})
         except BadRequest:
             self.leaves(who)
             return None
@@ -69,7 +69,7 @@ class History:
     def leaves(self, page: Page) -> None:
         self.pages.pop(page.name, None)
         if page.text:
-            self.gone[page.name] = page
+            self.gone_pages[page.name] = page
 
     # -- events
 
@@ -83,12 +83,12 @@ class History:
         name = self.rng.choice(NAMES)
         if name in self.pages:
             return
-        page_before = self.gone.get(name)
-        request = {"do": "join", "code": self.room.made.code, "name": name}
+        page_before = self.gone_pages.get(name)
+        request = {"do": "join", "code": self.room.classroom.code, "name": name}
         if page_before is not None:
             request["before"] = page_before.token
-        answer = self.room.made.answer("", "192.0.2.9", request)
-        page = self.gone.pop(name) if page_before is not None else Page(name, answer["token"])
+        answer = self.room.classroom.answer("", "192.0.2.9", request)
+        page = self.gone_pages.pop(name) if page_before is not None else Page(name, answer["token"])
         assert answer == {"token": page.token, "name": name}
         page.heard_s = self.room.now_s
         self.pages[name] = page
@@ -119,11 +119,13 @@ class History:
                 assert (
                     self.version(page) > version_before
                 )  # otherwise the teacher sees the previous program
-                self.brought.discard(page.text)
+                self.brought_texts.discard(page.text)
                 for name in [
-                    name for name, page_gone in self.gone.items() if page_gone.text == page.text
+                    name
+                    for name, page_gone in self.gone_pages.items()
+                    if page_gone.text == page.text
                 ]:
-                    del self.gone[name]
+                    del self.gone_pages[name]
 
     def version(self, page: Page) -> int:
         rows = self.state()["pupils"]
@@ -141,7 +143,7 @@ class History:
             return
         answer = self.answer(page, "connect", page="x", port="y")
         if answer == {}:
-            page.robot = self.room.hosting.robots[self.room.hosting.asked[-1]["page"]]
+            page.robot = self.room.hosting.robots[self.room.hosting.requests[-1]["page"]]
 
     def ends(self) -> None:
         """A connection ends by itself: the robot has met its page, or none."""
@@ -159,10 +161,10 @@ class History:
 
     def rows(self) -> list[Json]:
         """The pupils as they are, without a look at the turns."""
-        return self.room.made._state()["pupils"]  # type: ignore[no-any-return]
+        return self.room.classroom._state()["pupils"]  # type: ignore[no-any-return]
 
     def raw_robots(self) -> list[Json]:
-        return self.room.made._state()["robots"]  # type: ignore[no-any-return]
+        return self.room.classroom._state()["robots"]  # type: ignore[no-any-return]
 
     def passes(self) -> None:
         for _ in range(self.rng.choice((1, 3, 8, 30))):
@@ -209,7 +211,7 @@ class History:
         self.texts += 1
         text = f"S({self.texts})"
         self.room.teaches("class_bring", name="Old", text=text, robot="", lessons=[LESSONS[0]])
-        self.brought.add(text)
+        self.brought_texts.add(text)
 
     # -- invariants
 
@@ -222,10 +224,12 @@ class History:
     def all_is_there(self) -> None:
         """Return each page's newest program, and those of pupils who left, as many times as they
         were made."""
-        texts = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
+        texts = {
+            page.text for page in (*self.pages.values(), *self.gone_pages.values()) if page.text
+        }
         texts_there = {pupil["text"] for pupil in self.room.teaches("class_work")["pupils"]}
         present_names = {row["name"] for row in self.rows()}
-        assert texts | self.brought <= texts_there, (texts | self.brought) - texts_there
+        assert texts | self.brought_texts <= texts_there, (texts | self.brought_texts) - texts_there
         for page in self.pages.values():
             if page.name in present_names and page.text:
                 number = self.room.number(page.name)
@@ -259,9 +263,9 @@ class History:
         """Check that a class resumes after a crash with the same pupils, work, robots and
         settings.
         """
-        kept_state = json.loads(json.dumps(self.room.made.state_to_keep()))
+        kept_state = json.loads(json.dumps(self.room.classroom.state_to_keep()))
         room_after = Room(0)
-        assert room_after.made.resume(kept_state) == len(state["pupils"])
+        assert room_after.classroom.resume(kept_state) == len(state["pupils"])
         resumed_class = room_after.teaches("class")
         for name in ("code", "turn_s", "places"):
             assert resumed_class[name] == state[name], name
@@ -306,7 +310,7 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
             page.robot for page in old_pages if page.robot and history.has_turn(page)
         ]
         room = history.room
-        code, settings = room.made.code, {}
+        code, settings = room.classroom.code, {}
         old_settings = room.teaches("class")
         anew = room.teaches("class_anew")
         assert anew["code"] != code and all(
@@ -328,8 +332,8 @@ def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
             with pytest.raises(BadRequest):
                 room.checks_in(page.token)
             with pytest.raises(BadRequest):
-                room.made.answer(page.token, "192.0.2.9", {"do": "connect"})
-        answer = room.made.answer("", "192.0.2.9", {
+                room.classroom.answer(page.token, "192.0.2.9", {"do": "connect"})
+        answer = room.classroom.answer("", "192.0.2.9", {
             "do": "join", "code": anew["code"], "name": "Ana",
             "before": old_pages[0].token if old_pages else "",
         })  # fmt: skip

@@ -37,7 +37,7 @@ def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     room.checks_in(luz, True)
     assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
-    assert room.made.answer(ana, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
+    assert room.classroom.answer(ana, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
 
 
 def test_a_turn_lasts_until_its_time() -> None:
@@ -133,7 +133,7 @@ def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
     assert room.checks_in(teo)["place"] == 0
     assert room.checks_in(luz)["place"] == 1  # she is back
     room.now_s += 21
-    room.made.tend()
+    room.classroom.tend()
     assert room.teaches("class")["pupils"][1]["place"] == 0
 
 
@@ -145,7 +145,7 @@ def test_a_robot_that_is_silent_rests_while_another_is_free() -> None:
     robot.name, robot.has_ended = "", True
     room.checks_in(luz, True)
     room.connects(luz)
-    assert room.hosting.asked[-1]["port"] == "port1"
+    assert room.hosting.requests[-1]["port"] == "port1"
     assert room.checks_in(ana, True)["place"] == 1
     room.now_s += 11
     assert room.checks_in(ana)["place"] == 0
@@ -154,9 +154,9 @@ def test_a_robot_that_is_silent_rests_while_another_is_free() -> None:
 def test_a_port_that_is_being_left_is_given_to_nobody() -> None:
     room = Room()
     ana = room.joins("Ana")
-    room.hosting.held.add("port0")
+    room.hosting.held_ports.add("port0")
     assert room.checks_in(ana, True)["place"] == 1
-    room.hosting.held.clear()
+    room.hosting.held_ports.clear()
     assert room.checks_in(ana)["place"] == 0
 
 
@@ -168,19 +168,19 @@ def test_another_turn_is_reached_by_no_name() -> None:
     ana, eve = room.joins("Ana"), room.joins("Eve")
     room.checks_in(ana, True)
     room.connects(ana)
-    last_page = room.hosting.asked[-1]["page"]
-    assert room.made.answer(
+    last_page = room.hosting.requests[-1]["page"]
+    assert room.classroom.answer(
         eve, PUPIL_ADDRESS, {"do": "connect", "page": last_page, "port": "port0"}
     ) == {"failure": "turn_none"}
     for action in ("beat", "leave", "stop", "stop_all"):
-        room.made.answer(
+        room.classroom.answer(
             eve,
             PUPIL_ADDRESS,
             {"do": action, "page": last_page, "asked": [{"do": "upload", "id": 1}]},
         )
-    assert last_page not in [request["page"] for request in room.hosting.asked[1:]]
-    assert {request["do"] for request in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
-    assert room.hosting.asked[-1]["asked"] == []
+    assert last_page not in [request["page"] for request in room.hosting.requests[1:]]
+    assert {request["do"] for request in room.hosting.requests[1:]} == {"beat", "leave", "stop"}
+    assert room.hosting.requests[-1]["asked"] == []
 
 
 @pytest.mark.parametrize(
@@ -192,8 +192,8 @@ def test_what_only_the_teacher_may_ask(action: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
-        room.made.answer(eve, PUPIL_ADDRESS, {"do": action, "erases": True, "pupil": 1})
-    assert room.hosting.asked == [] and not room.made.has_ended
+        room.classroom.answer(eve, PUPIL_ADDRESS, {"do": action, "erases": True, "pupil": 1})
+    assert room.hosting.requests == [] and not room.classroom.has_ended
 
 
 @pytest.mark.parametrize(
@@ -208,35 +208,35 @@ def test_a_robot_stays_the_teachers(message: object) -> None:
     room.checks_in(eve, True)
     room.connects(eve)
     with pytest.raises(BadRequest):
-        room.made.answer(
+        room.classroom.answer(
             eve, PUPIL_ADDRESS, {"do": "beat", "asked": [{"do": "hello", "id": 1}, message]}
         )
-    assert [request["do"] for request in room.hosting.asked] == ["connect"]
+    assert [request["do"] for request in room.hosting.requests] == ["connect"]
 
 
 def test_codes_are_not_guessed() -> None:
     room = Room()
-    code, refused_count = room.made.code, 0
+    code, refused_count = room.classroom.code, 0
     for k in range(5000):
         guess = {"do": "join", "code": f"{k:06}", "name": "Eve"}
-        refused_count += room.made.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
+        refused_count += room.classroom.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
         room.now_s += 0.01
     assert refused_count <= 20 + 50 / 3 + 1
     # From that address, even the right code is refused; from others it is accepted.
     join_request = {"do": "join", "code": code, "name": "Eve"}
-    assert room.made.answer("", PUPIL_ADDRESS, join_request) == {"failure": "class_slow"}
-    assert "token" in room.made.answer("", "192.0.2.10", join_request)
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_request) == {"failure": "class_slow"}
+    assert "token" in room.classroom.answer("", "192.0.2.10", join_request)
     room.now_s += 4
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_request)
+    assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_request)
 
 
 def test_a_code_may_be_written_small_and_apart() -> None:
     room = Room()
-    code = room.made.code.lower()
+    code = room.classroom.code.lower()
     given_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
-    assert room.made.answer("", PUPIL_ADDRESS, given_fields)["name"] == "Ana"
-    assert room.made.most_bytes("") == 1000
-    assert room.made.most_bytes("0" * 32) == 0
+    assert room.classroom.answer("", PUPIL_ADDRESS, given_fields)["name"] == "Ana"
+    assert room.classroom.most_bytes("") == 1000
+    assert room.classroom.most_bytes("0" * 32) == 0
 
 
 @pytest.mark.parametrize(
@@ -280,8 +280,8 @@ def test_whoever_comes_back_to_a_computer_is_not_a_second_one() -> None:
 def test_nobody_joins_without_a_name(name: object) -> None:
     room = Room()
     try:
-        answer = room.made.answer(
-            "", PUPIL_ADDRESS, {"do": "join", "code": room.made.code, "name": name}
+        answer = room.classroom.answer(
+            "", PUPIL_ADDRESS, {"do": "join", "code": room.classroom.code, "name": name}
         )
     except BadRequest:
         answer = {"failure": "class_nameless"}
@@ -297,13 +297,13 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room.now_s += 1
     for k in range(1, class_keeping.MOST_PUPILS):
         room.joins(f"p{k}", f"198.51.100.{k}")
-    join_message = {"do": "join", "code": room.made.code, "name": "more"}
+    join_message = {"do": "join", "code": room.classroom.code, "name": "more"}
     room.now_s += 30
-    assert room.made.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.now_s += 31
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_message)
+    assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_message)
     assert len(room.teaches("class")["pupils"]) == class_keeping.MOST_PUPILS
-    assert room.made.most_bytes(token) > 0  # it is her turn
+    assert room.classroom.most_bytes(token) > 0  # it is her turn
 
 
 def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
@@ -312,7 +312,7 @@ def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
     with pytest.raises(BadRequest):
         for _ in range(200):
             room.checks_in(eve)
-    assert room.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"}) == {"news": []}
+    assert room.classroom.answer(eve, PUPIL_ADDRESS, {"do": "stop"}) == {"news": []}
     room.now_s += 1
     for _ in range(40):
         room.checks_in(eve)
@@ -420,10 +420,10 @@ def test_work_is_brought_once_and_only_while_there_is_room() -> None:
     assert len(room.teaches("class")["kept"]) == class_keeping.MOST_WORKS
     with pytest.raises(BadRequest):
         room.teaches("class_bring", **{**work, "name": "more"})
-    join_message = {"do": "join", "code": room.made.code, "name": "more"}
-    assert room.made.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
+    join_message = {"do": "join", "code": room.classroom.code, "name": "more"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.teaches("class_forget", key=key_of(room))
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_message)
+    assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_message)
 
 
 def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
@@ -470,7 +470,7 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
 def test_a_class_goes_on_with_its_turns_unless_others_are_given(turn_s: int | None) -> None:
     room = Room()
     room.teaches("class_turn", seconds=300)
-    state = json.loads(json.dumps(room.made.state_to_keep()))
+    state = json.loads(json.dumps(room.classroom.state_to_keep()))
     resumed_room = classroom.Classroom(FakeHosting(), [], turn_s)  # type: ignore[arg-type]
     resumed_room.resume(state)
     assert resumed_room.teach({"do": "class"})["turn_s"] == (turn_s or 300)
@@ -481,15 +481,15 @@ def test_a_crash_between_giving_and_having_loses_no_work(class_file: Path) -> No
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana = room.joins("Ana")
-    states = [room.made.state_to_keep()]
+    states = [room.classroom.state_to_keep()]
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
-    states.append(room.made.state_to_keep())
+    states.append(room.classroom.state_to_keep())
     given_work = room.checks_in(ana)["given"]
     room.checks_in(ana, took=take_change(given_work))
-    states.append(room.made.state_to_keep())
+    states.append(room.classroom.state_to_keep())
     for k, state in enumerate(states):
         room_after = Room(0)
-        room_after.made.resume(json.loads(json.dumps(state)))
+        room_after.classroom.resume(json.loads(json.dumps(state)))
         assert "F(1, 50)" in texts_of(room_after)
         assert ("given" in room_after.checks_in(ana)) is (k == 1)
         if k == 1:  # under the same key: a page that has it does not take it again
@@ -546,8 +546,8 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
     for k in range(200):
         room.checks_in(last_pupil, text="SHOW(29)")
         room.now_s += classroom.PLACE_S + 1
-        request = {"do": "join", "code": room.made.code, "name": f"eve {k}"}
-        answer = room.made.answer("", "192.0.2.66", request)
+        request = {"do": "join", "code": room.classroom.code, "name": f"eve {k}"}
+        answer = room.classroom.answer("", "192.0.2.66", request)
         if "token" in answer:
             room.checks_in(answer["token"], text=f"S {k}")
         failures += [answer["failure"]] if "failure" in answer else []
@@ -568,8 +568,8 @@ def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None
     room.checks_in(ana, text="F(1, 50)")
 
     def return_to_class(name: str = "ana", token: object = ana) -> Json:
-        request = {"do": "join", "code": room.made.code, "name": name, "before": token}
-        return room.made.answer("", PUPIL_ADDRESS, request)
+        request = {"do": "join", "code": room.classroom.code, "name": name, "before": token}
+        return room.classroom.answer("", PUPIL_ADDRESS, request)
 
     second_join = return_to_class()  # a second tab of the same pupil
     assert second_join["name"] == "ana (2)"
@@ -587,7 +587,7 @@ def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None
     assert return_to_class() == {"token": ana, "name": "Ana"}
     assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
     join_message = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
-    assert room.made.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_wrong"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_wrong"}
 
 
 def test_who_was_removed_finds_the_work_again() -> None:
@@ -624,7 +624,7 @@ def keeper(class_file: Path) -> Iterator[Keeper]:
 
 
 def resume_class(room: Room, keeper: Keeper) -> int:
-    return command._resume_class(command._Class(room.made, keeper))
+    return command._resume_class(command._Class(room.classroom, keeper))
 
 
 def test_a_crash_ends_no_class(class_file: Path, keeper: Keeper) -> None:
@@ -634,25 +634,25 @@ def test_a_crash_ends_no_class(class_file: Path, keeper: Keeper) -> None:
     room.checks_in(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
     room.checks_in(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
-    keeper.keep(room.made.state_to_keep())
+    keeper.keep(room.classroom.state_to_keep())
     assert class_file.stat().st_mode & 0o077 == 0  # the file contains tokens
     when_s = class_file.stat().st_mtime_ns
-    keeper.keep(room.made.state_to_keep())
+    keeper.keep(room.classroom.state_to_keep())
     assert class_file.stat().st_mtime_ns == when_s
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
     state = room_after.teaches("class")
-    assert (state["code"], state["goes_on"]) == (room.made.code, True)
+    assert (state["code"], state["goes_on"]) == (room.classroom.code, True)
     assert [robot["port"] for robot in state["robots"]] == ["port0"]
     assert room_after.checks_in(ana)["name"] == "Ana"
     assert sorted(texts_of(room_after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
     with pytest.raises(BadRequest):
         room_after.checks_in(luz)
-    request = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
-    assert room_after.made.answer("", PUPIL_ADDRESS, request) == {"token": luz, "name": "Luz"}
+    request = {"do": "join", "code": room.classroom.code, "name": "Luz", "before": luz}
+    assert room_after.classroom.answer("", PUPIL_ADDRESS, request) == {"token": luz, "name": "Luz"}
     assert not room_after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
-    keeper.keep(room.made.state_to_keep())
+    keeper.keep(room.classroom.state_to_keep())
     assert not class_file.exists() and resume_class(Room(), keeper) == 0
 
 
@@ -660,7 +660,7 @@ def test_a_damaged_class_goes_on_with_what_is_whole(class_file: Path, keeper: Ke
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)", robot="tinibot")
-    keeper.keep(room.made.state_to_keep())
+    keeper.keep(room.classroom.state_to_keep())
     class_data = json.loads(class_file.read_text())
     row = class_data["pupils"][0]
     bad_pupils = [
@@ -680,7 +680,10 @@ def test_a_damaged_class_goes_on_with_what_is_whole(class_file: Path, keeper: Ke
     class_file.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
-    assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
+    assert (
+        room_after.checks_in(token)["name"] == "Ana"
+        and room_after.classroom.code != room.classroom.code
+    )
     assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
     many_pupils = [{**row, "token": f"{k:032x}"} for k in range(99)]
     class_file.write_text(json.dumps({**class_data, "pupils": many_pupils, "kept": many_pupils}))
@@ -713,9 +716,9 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
     with monkeypatch.context() as patched:
         patched.setattr(class_keeping, "replace", fail_full_disk)
         for _ in range(3):
-            keeper.keep(room.made.state_to_keep())
+            keeper.keep(room.classroom.state_to_keep())
     assert not class_file.exists()
-    keeper.keep(room.made.state_to_keep())  # unchanged state
+    keeper.keep(room.classroom.state_to_keep())  # unchanged state
     assert "F(1, 50)" in class_file.read_text()
 
 
@@ -724,32 +727,39 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(class_file: Path, keeper: 
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)")
-    keeper.keep(room.made.state_to_keep())
+    keeper.keep(room.classroom.state_to_keep())
     class_data = json.loads(class_file.read_text())
     for age_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
         class_file.write_text(json.dumps({**class_data, "kept_s": class_data["kept_s"] - age_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 1
         assert (
-            room_after.checks_in(token)["name"] == "Ana" and room_after.made.code == room.made.code
+            room_after.checks_in(token)["name"] == "Ana"
+            and room_after.classroom.code == room.classroom.code
         )
     for kept_s in (class_data["kept_s"] - 3700, 5, -5, None, "x", 1e400):
         class_file.write_text(json.dumps({**class_data, "kept_s": kept_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 0
         assert texts_of(room_after) == ["F(1, 50)"]
-        assert room_after.made.code != room.made.code and room_after.teaches("class")["goes_on"]
-        keeper.keep(room_after.made.state_to_keep())
+        assert (
+            room_after.classroom.code != room.classroom.code
+            and room_after.teaches("class")["goes_on"]
+        )
+        keeper.keep(room_after.classroom.state_to_keep())
         assert "F(1, 50)" in class_file.read_text()  # nor does the next crash lose it
         with pytest.raises(BadRequest):
             room_after.checks_in(token)
-        request = {"do": "join", "code": room_after.made.code, "name": "Ana", "before": token}
-        assert room_after.made.answer("", PUPIL_ADDRESS, request) == {"token": token, "name": "Ana"}
+        request = {"do": "join", "code": room_after.classroom.code, "name": "Ana", "before": token}
+        assert room_after.classroom.answer("", PUPIL_ADDRESS, request) == {
+            "token": token,
+            "name": "Ana",
+        }
         assert texts_of(room_after) == ["F(1, 50)"]
 
 
 def test_one_class_of_a_user_has_the_file(class_file: Path, keeper: Keeper) -> None:
-    keeper.keep(Room().made.state_to_keep())
+    keeper.keep(Room().classroom.state_to_keep())
     with pytest.raises(class_keeping.ClassTaken):
         Keeper()
     assert class_file.exists()
@@ -773,7 +783,7 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
         patched.setattr(os, "open", fail_full_disk)
         early_keeper, late_keeper = Keeper(), Keeper()
     with closing(early_keeper), closing(late_keeper):
-        early_keeper.keep(room.made.state_to_keep())
+        early_keeper.keep(room.classroom.state_to_keep())
         assert class_file.exists()
         late_keeper.keep(None)
         assert class_file.exists()
@@ -796,16 +806,16 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     number = room.number("Ana")
     assert room.teaches("class_text", pupil=number)["text"] == "F(1, 50)"
     room.teaches("class_stop", pupil=number)
-    assert robot.stopped == 1 and not robot.has_ended
+    assert robot.stop_count == 1 and not robot.has_ended
     room.teaches("class_next", pupil=number)
     assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
     room.teaches("class_remove", pupil=number)
-    assert room.made.most_bytes(ana) == 0
+    assert room.classroom.most_bytes(ana) == 0
     with pytest.raises(BadRequest):
         room.checks_in(ana)
     room.teaches("stop_all")
-    assert room.hosting.asked[-1] == {"do": "stop_all"}
+    assert room.hosting.requests[-1] == {"do": "stop_all"}
 
 
 def test_robots_come_and_go() -> None:
@@ -825,11 +835,11 @@ def test_robots_come_and_go() -> None:
 
 def test_a_new_code_and_another_turn() -> None:
     room = Room()
-    old_code = room.made.code
-    assert room.teaches("class_code")["code"] == room.made.code != old_code
-    assert room.made.answer("", PUPIL_ADDRESS, {"do": "join", "code": old_code, "name": "Eve"}) == {
-        "failure": "class_wrong"
-    }
+    old_code = room.classroom.code
+    assert room.teaches("class_code")["code"] == room.classroom.code != old_code
+    assert room.classroom.answer(
+        "", PUPIL_ADDRESS, {"do": "join", "code": old_code, "name": "Eve"}
+    ) == {"failure": "class_wrong"}
     assert room.teaches("class_turn", seconds=300)["turn_s"] == 300
     for seconds in (9, 3601, "300", True, None):
         with pytest.raises(BadRequest):
@@ -845,15 +855,15 @@ def test_the_end_reaches_every_page(erases: bool, end_reason: str) -> None:
     room.checks_in(luz, True)
     room.teaches("class_over", erases=erases)
     assert robot.leave_reason == "turn_over"
-    room.made.tend()
-    assert not room.made.has_ended
+    room.classroom.tend()
+    assert not room.classroom.has_ended
     assert room.checks_in(ana) == {"over": end_reason}
-    assert not room.made.has_ended
+    assert not room.classroom.has_ended
     assert room.checks_in(luz, True) == {"over": end_reason}
-    assert room.made.has_ended
+    assert room.classroom.has_ended
     assert [robot["pupil"] for robot in room.teaches("class")["robots"]] == [""]
-    late_request = {"do": "join", "code": room.made.code, "name": "Teo"}
-    assert room.made.answer("", PUPIL_ADDRESS, late_request) == {"failure": "class_over"}
+    late_request = {"do": "join", "code": room.classroom.code, "name": "Teo"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, late_request) == {"failure": "class_over"}
 
 
 def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
@@ -874,7 +884,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
 
     def ask() -> None:
         for action in ("stop", "beat", "here"):
-            room.made.answer(ana, PUPIL_ADDRESS, {"do": action})
+            room.classroom.answer(ana, PUPIL_ADDRESS, {"do": action})
             answered.append(action)
 
     def list_slowly() -> list[Json]:
@@ -895,8 +905,8 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
     room = Room()
 
     def enters(name: str, address: str = PUPIL_ADDRESS) -> Json:
-        request = {"do": "join", "code": room.made.code, "name": name}
-        return room.made.answer("", address, request)
+        request = {"do": "join", "code": room.classroom.code, "name": name}
+        return room.classroom.answer("", address, request)
 
     tokens = [room.joins(f"p{k}") for k in range(classroom.PLACES_PER_ADDRESS)]
     assert enters("more") == {"failure": "class_crowded"}
@@ -927,7 +937,7 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
     for _ in range(60):
         token, text = rng.choice(tokens), rng.choice(("", "F(1)", "F(2)"))
         is_up = rng.random() < 0.7
-        room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
+        room.classroom.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
         for pupil_token, old_view, new_view in zip(tokens, views, pupils, strict=True):
             is_other = pupil_token == token and works[pupil_token] != text
@@ -944,14 +954,14 @@ def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) 
 
 
 def ask_for_run(room: Room, pupil: int, is_asked: bool = False) -> Any:
-    return room.made.teach({"do": "class_run", "pupil": pupil, "asks": is_asked})["run"]
+    return room.classroom.teach({"do": "class_run", "pupil": pupil, "asks": is_asked})["run"]
 
 
 def give_run_part(
     room: Room, token: str, run_number: int, start: int, part: str, is_last: bool
 ) -> None:
     request = {"do": "run", "asked": run_number, "from": start, "part": part, "is_last": is_last}
-    room.made.answer(token, PUPIL_ADDRESS, request)
+    room.classroom.answer(token, PUPIL_ADDRESS, request)
 
 
 def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
@@ -976,7 +986,7 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
     give_run_part(room, ana, room.checks_in(ana)["run"], 0, "newer", True)
     assert ask_for_run(room, 1) == "newer", "what is asked anew begins anew"
     assert ask_for_run(room, 9, True) == "", "who has gone has none"
-    assert "class_run" not in json.dumps(room.made.state_to_keep())
+    assert "class_run" not in json.dumps(room.classroom.state_to_keep())
 
 
 @pytest.mark.parametrize(
@@ -993,10 +1003,10 @@ def test_parts_that_do_not_fit_are_refused(wrong_fields: Json) -> None:
     run_number = room.checks_in(ana)["run"]
     valid_part = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**valid_part, **wrong_fields})
-    room.made.answer(ana, PUPIL_ADDRESS, valid_part)
+        room.classroom.answer(ana, PUPIL_ADDRESS, {**valid_part, **wrong_fields})
+    room.classroom.answer(ana, PUPIL_ADDRESS, valid_part)
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**valid_part, "from": 1})
+        room.classroom.answer(ana, PUPIL_ADDRESS, {**valid_part, "from": 1})
     assert ask_for_run(room, 1) == "x"
 
 

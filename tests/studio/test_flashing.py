@@ -113,7 +113,7 @@ class FakeBoard:
         self.flash = bytearray(b"\xff" * 0x8000)
         self.commands: list[int] = []
         self._bends = bends or (lambda command, answer: answer)
-        self._at = 0
+        self._address = 0
 
     def run(self, file: int) -> None:
         heard_bytes = b""
@@ -140,11 +140,11 @@ class FakeBoard:
         if command[0] == 0x75:
             return UNO
         if command[0] == 0x55:
-            self._at = 2 * int.from_bytes(command[1:3], "little")
+            self._address = 2 * int.from_bytes(command[1:3], "little")
         elif command[0] == 0x64 and 0x50 in self.commands:  # programming mode was entered
-            self.flash[self._at : self._at + PAGE_BYTES] = command[4:-1]
+            self.flash[self._address : self._address + PAGE_BYTES] = command[4:-1]
         elif command[0] == 0x74:
-            return bytes(self.flash[self._at : self._at + PAGE_BYTES])
+            return bytes(self.flash[self._address : self._address + PAGE_BYTES])
         return b""
 
 

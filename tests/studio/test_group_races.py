@@ -42,8 +42,8 @@ class Mate:
         text = FOREVER + "\n"
         assert "group" in self.ask("group_join", name="Red", text=text)
         self.presses = self.ids = self.connection = self.newest_number = self.saw_stops = 0
-        self.asked: list[Json] = []
-        self.is_there = False
+        self.requests: list[Json] = []
+        self.is_connected = False
         self.thread = Thread(target=self._beats, daemon=True)
         self.thread.start()
 
@@ -58,13 +58,13 @@ class Mate:
         while not self.group.is_over:
             time.sleep(BEAT_S)
             self.saw_stops = self.ask("here").get("stops", 0)
-            if not self.is_there:
+            if not self.is_connected:
                 continue
-            requests, self.asked = self.asked, []
+            requests, self.requests = self.requests, []
             for news in self.drive("beat", asked=requests)["news"]:
                 self.newest_number = max(self.newest_number, news["number"])
                 if news.get("over"):
-                    self.is_there = False
+                    self.is_connected = False
 
     def connects(self, saw_stops: int) -> None:
         self.connection += 1
@@ -72,16 +72,16 @@ class Mate:
         port = self.group.robot.port
         answer = self.drive("connect", port=port, robot="tinibot", language="en",
                             saw_stops=saw_stops)  # fmt: skip
-        self.is_there = "failure" not in answer
+        self.is_connected = "failure" not in answer
 
     def runs(self, stops: int, number: int) -> None:
         """Ask for a run, which was pressed after this many presses of STOP and this much news."""
         self.ids += 1
-        self.asked.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
+        self.requests.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
                            "runs": True, "stops": stops, "seen": number})  # fmt: skip
 
     def stops(self) -> None:
-        if self.is_there:
+        if self.is_connected:
             self.drive("stop")
         self.ask("stop", page="group", group_stops=self.presses)
 
@@ -95,7 +95,7 @@ class Group:
         self.hosting = Hosting()
         self.room = Classroom(self.hosting, [robot.port])
         self.is_over = False
-        self.late: list[Thread] = []
+        self.late_threads: list[Thread] = []
         self.mates = [Mate(self, name) for name in PUPILS]
 
     def begins(self) -> None:
@@ -109,15 +109,15 @@ class Group:
             time.sleep(delay_s)
             act()
 
-        self.late.append(Thread(target=act_late, daemon=True))
-        self.late[-1].start()
+        self.late_threads.append(Thread(target=act_late, daemon=True))
+        self.late_threads[-1].start()
 
     def drives(self, mate: Mate) -> None:
         """Let a pupil drive, whoever is driving."""
         end_s = time.monotonic() + HANG_LIMIT_S
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"
-            if not mate.is_there:
+            if not mate.is_connected:
                 mate.connects(mate.saw_stops)
             time.sleep(0.3)
             mate.runs(mate.presses, mate.newest_number)
@@ -153,9 +153,9 @@ class Group:
         mate.runs(stops, number)
 
     def meet(self) -> None:
-        for thread in self.late:
+        for thread in self.late_threads:
             thread.join(HANG_LIMIT_S)
-        self.late.clear()
+        self.late_threads.clear()
 
     def ends(self) -> None:
         self.is_over = True

@@ -36,9 +36,9 @@ class Robot:
         self.program = self.line = ""
         self.driver = DRIVERS[0]
         self.place: int | None = None
-        self.values = self.runs = self.connections = 0
-        self.meant: list[str] = []  # the values of all runs of programs
-        self.nth: dict[str, int] = {}  # index of each value in its run
+        self.values = self.run_count = self.connections = 0
+        self.all_values: list[str] = []  # the values of all runs of programs
+        self.index_by_value: dict[str, int] = {}  # index of each value in its run
         self.count = 0  # number of values in a run
 
     def tells(self) -> Json:
@@ -60,21 +60,21 @@ class Robot:
         self.values += 1
         value = str(self.values)
         if self.program:
-            self.meant.append(value)
+            self.all_values.append(value)
             self.count += 1
-            self.nth[value] = self.count
+            self.index_by_value[value] = self.count
         if action == "text":
             return {"event": "TEXT", "text": value}
         return {"event": "SHOW", "value": value, "at": 7, "program": program}
 
     def _begins(self, *kinds: str) -> Json:
         """Begin a run of one of these kinds, in the place of what runs."""
-        self.runs += 1
+        self.run_count += 1
         self.program = self.line = ""
         self.count, self.place = 0, None
         self.driver = self.rng.choice(DRIVERS)
         kind = self.rng.choice(kinds)
-        program = f"{self.runs:08x}"
+        program = f"{self.run_count:08x}"
         if kind == "line":
             self.line = program
             return {"event": "STARTED", "program": program, "is_program": False}
@@ -95,20 +95,20 @@ class Page:
 
     def __init__(self, runs: GroupRuns, name: str) -> None:
         self.runs, self.name = runs, name
-        self.ran: list[Any] = ["", 0]
-        self.heard: list[Json] = []
+        self.run_key_and_count: list[Any] = ["", 0]
+        self.items: list[Json] = []
 
     def looks(self) -> list[Json]:
-        known_count = self.ran[1] if self.ran[0] == self.runs.key else 0
-        number, items = self.runs.news_after(self.ran, self.name)
+        known_count = self.run_key_and_count[1] if self.run_key_and_count[0] == self.runs.key else 0
+        number, items = self.runs.news_after(self.run_key_and_count, self.name)
         items = [item for item in json.loads(json.dumps(items)) if item["number"] > known_count]
-        self.ran = [self.runs.key, max(known_count, number)]
-        self.heard += items
+        self.run_key_and_count = [self.runs.key, max(known_count, number)]
+        self.items += items
         return list(items)
 
     @property
     def values(self) -> list[str]:
-        return [str(item.get("value", item.get("text"))) for item in self.heard if "nth" in item]
+        return [str(item.get("value", item.get("text"))) for item in self.items if "nth" in item]
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -125,9 +125,9 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
         for _ in range(rng.randint(1, max_count)):
-            count_before = len(robot.meant)
+            count_before = len(robot.all_values)
             news = robot.tells()
-            values_by_driver[robot.driver] += robot.meant[count_before:]
+            values_by_driver[robot.driver] += robot.all_values[count_before:]
             runs.add_news(robot.driver, [news])
             assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
         items = page.looks()
@@ -139,18 +139,18 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
         connections += [item["robot"] for item in items if item["event"] == "ROBOT"]
         for driver in drivers:
             driver.looks()
-    numbers = [item["number"] for item in page.heard]
+    numbers = [item["number"] for item in page.items]
     assert numbers == sorted(set(numbers))
     assert begin_and_end_by_turns(page)
-    assert is_part(page.values, robot.meant)
+    assert is_part(page.values, robot.all_values)
     assert count_missed_values(page) + len(page.values) == count_values(page)
     for driver in drivers:
         assert not set(driver.values) & set(values_by_driver[driver.name])
-    for row in page.heard:
+    for row in page.items:
         value = str(row.get("value", row.get("text")))
-        assert "nth" not in row or row["nth"] == robot.nth[value]
+        assert "nth" not in row or row["nth"] == robot.index_by_value[value]
     if max_count == 1:
-        assert page.values == robot.meant
+        assert page.values == robot.all_values
         assert len(connections) == robot.connections
 
 
@@ -160,7 +160,7 @@ def waiting(runs: GroupRuns) -> int:
 
 def is_running(page: Page) -> bool:
     """Return whether a program runs as far as the page knows."""
-    names = [item["event"] for item in page.heard]
+    names = [item["event"] for item in page.items]
     end_names = {"OVER", *(end.get("event", "OVER") for end in END_MESSAGES)}
     return next(
         (name == "STARTED" for name in reversed(names) if name in {"STARTED", *end_names}), False
@@ -168,13 +168,13 @@ def is_running(page: Page) -> bool:
 
 
 def last_place(page: Page) -> int:
-    return next(int(item["at"]) for item in reversed(page.heard) if item["event"] == "PLACE")
+    return next(int(item["at"]) for item in reversed(page.items) if item["event"] == "PLACE")
 
 
 def begin_and_end_by_turns(page: Page) -> bool:
     """No value and no place is outside a run."""
     is_running = False
-    for item in page.heard:
+    for item in page.items:
         if item["event"] == "STARTED":
             is_running = True
         elif item["event"] in ("SHOW", "TEXT", "PLACE"):
@@ -194,7 +194,7 @@ def is_part(texts: list[str], all_of_them: list[str]) -> bool:
 def count_missed_values(page: Page) -> int:
     """Return the page's count of missed values, as in `panel.js`."""
     count = number = 0
-    for item in page.heard:
+    for item in page.items:
         if item["event"] == "STARTED":
             number = 0
         if "nth" in item:
@@ -206,7 +206,7 @@ def count_missed_values(page: Page) -> int:
 def count_values(page: Page) -> int:
     """Return the number of values in its runs up to the newest one heard."""
     numbers: list[int] = []
-    for item in page.heard:
+    for item in page.items:
         if item["event"] == "STARTED":
             numbers.append(0)
         if "nth" in item:

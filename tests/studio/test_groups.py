@@ -34,7 +34,7 @@ class School(Room):
     def __init__(self, folder: Path, robots: int = 1) -> None:
         super().__init__(robots)
         self.folder = folder
-        self.made = self.anew(robots)
+        self.classroom = self.anew(robots)
         self.teaches("class_places", places=MOST_PUPILS)
 
     def anew(self, robots: int = 1) -> Classroom:
@@ -42,10 +42,10 @@ class School(Room):
         return Classroom(self.hosting, ports, 60, lambda: self.now_s, self.folder)  # type: ignore[arg-type]
 
     def crashes(self) -> None:
-        kept_state = json.loads(json.dumps(self.made.state_to_keep()))
-        self.made = self.anew()
-        self.made.resume(kept_state)
-        self.made.tidy()
+        kept_state = json.loads(json.dumps(self.classroom.state_to_keep()))
+        self.classroom = self.anew()
+        self.classroom.resume(kept_state)
+        self.classroom.tidy()
 
 
 class Member:
@@ -54,7 +54,7 @@ class Member:
     def __init__(self, school: School, name: str, group: str = "Red", text: str = TEXT) -> None:
         self.school, self.name = school, name
         self.token = school.joins(name)
-        self.saw = 0
+        self.seen_count = 0
         answer = self.joins(group, text)
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
@@ -63,7 +63,7 @@ class Member:
         return self.asks("group_join", name=group, text=text, before=old_token)
 
     def asks(self, action: str, **fields: Any) -> Json:
-        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": action, **fields})
+        return self.school.classroom.answer(self.token, PUPIL_ADDRESS, {"do": action, **fields})
 
     def request(self, **fields: Any) -> Json:
         page = self.page
@@ -72,7 +72,7 @@ class Member:
             "page": page.name,
             "since": seen_number,
             "epoch": page.epoch,
-            "saw": self.saw,
+            "saw": self.seen_count,
             **fields,
         }
 
@@ -86,7 +86,7 @@ class Member:
         )
         assert "left" not in answer
         self.page.receive(answer)
-        self.saw = answer["saw"]
+        self.seen_count = answer["saw"]
         return answer
 
     def types(self, old_text: str, new_text: str) -> None:
@@ -110,7 +110,7 @@ class Teacher(Member):
         self.page = Page.of(answer["page"], answer)
 
     def asks(self, action: str, **fields: Any) -> Json:
-        return self.school.made.teach({"do": action, **fields})
+        return self.school.classroom.teach({"do": action, **fields})
 
 
 @pytest.fixture
@@ -149,11 +149,11 @@ def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
     late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
+    assert school.classroom.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     school.now_s += groups.ABSENCE_S + 1
     for member in members[1:]:
         member.sends()
-    assert school.made.answer(late_token, PUPIL_ADDRESS, request)["group"] == "Red"
+    assert school.classroom.answer(late_token, PUPIL_ADDRESS, request)["group"] == "Red"
     assert members[0].asks("group", **members[0].request()) == {"left": True}
 
 
@@ -162,7 +162,7 @@ def test_anything_but_a_program_begins_no_group(school: School) -> None:
 
     def begin_group(name: str, text: str) -> Json:
         request = {"do": "group_join", "name": name, "text": text}
-        return school.made.answer(token, PUPIL_ADDRESS, request)
+        return school.classroom.answer(token, PUPIL_ADDRESS, request)
 
     assert begin_group("Red", "LOOP(3)\n") == {"failure": "group_mistakes"}
     assert begin_group("Red", "S\n" * 10_000) == {"failure": "group_long"}
@@ -172,7 +172,7 @@ def test_anything_but_a_program_begins_no_group(school: School) -> None:
     for k in range(groups.MOST_FOUNDED):
         assert begin_group(f"Group {k}", TEXT)["group"] == f"Group {k}"
         change = {"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1"]}]}
-        school.made.answer(token, PUPIL_ADDRESS,
+        school.classroom.answer(token, PUPIL_ADDRESS,
                            {"do": "group", "page": "m1", "since": 0, "epoch": "",
                             "changes": [change]})  # fmt: skip
     assert begin_group("One more", TEXT) == {"failure": "group_many"}
@@ -243,13 +243,13 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     answers: list[Json] = []
     waiting = start_thread(lambda: answers.append(luz.asks("group", **luz.request(waits=True))))
     until(lambda: members_hold(school, luz) > 0, "the page waits")
-    group = school.made._groups.group_of(luz.token)
+    group = school.classroom._groups.group_of(luz.token)
     assert group is not None and robot.witness is not None
     begins = {"event": "STARTED", "program": "a", "is_program": True}
     with (
         group.condition,
-        school.made._lock,
-        school.made._groups._lock,
+        school.classroom._lock,
+        school.classroom._groups._lock,
     ):  # one of them is busy with these
         telling = start_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
         telling.join(HANG_LIMIT_S)
@@ -302,7 +302,7 @@ def has_held(school: School, member: Member, count: int) -> bool:
 
 
 def members_hold(school: School, member: Member) -> int:
-    group = school.made._groups.group_of(member.token)
+    group = school.classroom._groups.group_of(member.token)
     assert group is not None
     return group.member_by_token[member.token].hold_count
 
@@ -378,7 +378,7 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
         for field in rng.sample(fields, rng.randint(0, 3)):
             request[field] = rng.choice(values)
         with suppress(BadRequest):
-            school.made.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
+            school.classroom.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
         if k % 50 == 0:
             old_power, new_power = ("80", "95") if "80" in ana.text else ("95", "80")
             ana.types(old_power, new_power)
@@ -414,9 +414,9 @@ def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School
     ana = Member(school, "Ana")
     ana.types("80", "95")
     ana.sends()
-    kept_state = json.loads(json.dumps(school.made.state_to_keep()))
-    school.made = school.anew()
-    school.made.resume(kept_state, is_same_lesson=False)
+    kept_state = json.loads(json.dumps(school.classroom.state_to_keep()))
+    school.classroom = school.anew()
+    school.classroom.resume(kept_state, is_same_lesson=False)
     assert [group["pupils"] for group in school.teaches("class")["groups"]] == [[]]
     assert "F(1, 95)" in Member(school, "Luz", text="S\n").text
 
@@ -427,9 +427,9 @@ def test_with_the_class_its_groups_are_over(school: School, end: str) -> None:
     ana.types("80", "95")
     ana.sends()
     (school.folder / "0.journal").write_text("of a class that has gone")
-    school.made.tidy()
+    school.classroom.tidy()
     assert len(list(school.folder.iterdir())) == 1
-    groups_there = school.made._groups
+    groups_there = school.classroom._groups
     school.teaches(end, erases=True)
     assert not list(school.folder.iterdir())
     assert groups_there.answer(ana.token, ana.request()) == {"left": True}
@@ -442,8 +442,8 @@ def test_the_teacher_sees_a_group_as_one_and_reads_its_program(school: School) -
     ana.types("80", "95")
     ana.sends()
     assert "F(1, 95);" in school.teaches("class_text", group=group_seen["key"])["text"]
-    [group] = school.made._groups.all()
-    assert school.made._groups.history(group)[-1]["who"] == "Ana"
+    [group] = school.classroom._groups.all()
+    assert school.classroom._groups.history(group)[-1]["who"] == "Ana"
     school.teaches("class_remove", pupil=school.number("Ana"))
     [group_seen] = school.teaches("class")["groups"]
     assert group_seen["pupils"] == [school.number("Luz")]
@@ -479,7 +479,7 @@ def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
         Member(school, f"P{k}")
     late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
+    assert school.classroom.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     assert teacher.sends()["others"][0]["name"] == ana.name
 
 
@@ -515,7 +515,7 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
                 for school, members in zip(schools, members_by_school, strict=True)]  # fmt: skip
         assert checks[0] == checks[1]
         requests_by_school = [
-            [request["do"] for request in school.hosting.asked] for school in schools
+            [request["do"] for request in school.hosting.requests] for school in schools
         ]
         assert requests_by_school[0] == requests_by_school[1]
         assert schools[0].teaches("class")["robots"] == schools[1].teaches("class")["robots"]
@@ -549,12 +549,12 @@ def test_whoever_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: Sc
         ana.asks("group_visit", group=group["key"], name="Teacher")
     for wrong_group in (None, 5, "", "x" * 32):
         request = {"do": "group_visit", "group": wrong_group, "name": "Teacher"}
-        assert school.made.teach(request) == {"failure": "group_gone"}
+        assert school.classroom.teach(request) == {"failure": "group_gone"}
     with pytest.raises(BadRequest):
-        school.made.teach({"do": "group_visit", "group": group["key"], "name": None})
+        school.classroom.teach({"do": "group_visit", "group": group["key"], "name": None})
     school.teaches("class_over")
     request = {"do": "group_visit", "group": group["key"], "name": "Teacher"}
-    assert school.made.teach(request) == {"failure": "class_over"}
+    assert school.classroom.teach(request) == {"failure": "class_over"}
 
 
 # -- one robot for the group ----------------------------------------------------------------------
@@ -589,7 +589,7 @@ def test_whoever_joins_a_group_brings_the_earlier_place(school: School) -> None:
     for token in (luz, eva, ana.token):
         school.checks_in(token, True)
     assert school.checks_in(ana.token)["place"] == 3
-    school.made.answer(luz, PUPIL_ADDRESS, {"do": "group_join", "name": "Red", "text": ""})
+    school.classroom.answer(luz, PUPIL_ADDRESS, {"do": "group_join", "name": "Red", "text": ""})
     assert school.checks_in(ana.token)["place"] == school.checks_in(luz)["place"] == 1
     assert school.checks_in(teo)["waiting"] == 2
 
@@ -616,7 +616,7 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         elif action == "next":
             school.now_s += rng.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
-        classroom = school.made
+        classroom = school.classroom
         for pupil in classroom._pupil_by_token.values():
             mates = classroom._mates(pupil)
             turns = [turn for turn in map(classroom._turn, mates) if turn is not None]
@@ -634,18 +634,20 @@ def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
     assert school.checks_in(luz.token)["driver"] == "Ana"
     luz.asks("stop", group_stops=1)
     luz.asks("stop", group_stops=1)  # sent again, as the answer was lost
-    assert robot.stopped == 1
+    assert robot.stop_count == 1
     luz.asks("stop", group_stops=2)
     luz.asks("stop")  # whatever it counts
-    assert robot.stopped == 3
-    school.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"})
-    assert robot.stopped == 3
-    assert school.made.answer(eve, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
+    assert robot.stop_count == 3
+    school.classroom.answer(eve, PUPIL_ADDRESS, {"do": "stop"})
+    assert robot.stop_count == 3
+    assert school.classroom.answer(eve, PUPIL_ADDRESS, {"do": "connect"}) == {
+        "failure": "turn_none"
+    }
     other_robot = school.connects(luz.token)
     assert (robot.leave_reason, other_robot.has_ended) == ("group_other", False)
     assert school.checks_in(ana.token)["driver"] == "Luz"
     ana.asks("stop")
-    assert (other_robot.stopped, robot.stopped) == (1, 3)
+    assert (other_robot.stop_count, robot.stop_count) == (1, 3)
 
 
 @pytest.mark.parametrize("seed", range(100))
@@ -661,10 +663,12 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
     presses = dict.fromkeys(members, 0)
     for _ in range(20):
         member = rng.choice(members)
-        turn = school.made._turn_of(school.made._mates(school.made._pupil_by_token[member.token]))
+        turn = school.classroom._turn_of(
+            school.classroom._mates(school.classroom._pupil_by_token[member.token])
+        )
         assert turn is not None and turn.pupil is not None
         robot = school.hosting.robots[turn.pupil.hosting_page]
-        stops_before = robot.stopped
+        stops_before = robot.stop_count
         deed = rng.choice(("stop", "stop", "connect", "beat", "reload"))
         if deed == "connect":
             if turn.pupil.token != member.token:
@@ -674,7 +678,9 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
                     "saw_stops": turn.stop_number - 1,
                 }  # the button was pressed before a STOP
                 refusal = {"failure": "stopped_elsewhere"}
-                assert school.made.answer(member.token, PUPIL_ADDRESS, early_request) == refusal
+                assert (
+                    school.classroom.answer(member.token, PUPIL_ADDRESS, early_request) == refusal
+                )
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
                 assert robot.leave_reason == "group_other"  # leaving stops its run
@@ -687,13 +693,13 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
             presses[member] += 1
             member.asks("stop", group_stops=presses[member], stops=presses[member])
             is_own = turn.pupil.token == member.token
-            last_request = school.hosting.asked[-1]
+            last_request = school.hosting.requests[-1]
             assert (last_request["do"], last_request["page"]) == ("stop", page_of(school, member))
-            assert is_own or robot.stopped == stops_before + 1
+            assert is_own or robot.stop_count == stops_before + 1
 
 
 def page_of(school: School, member: Member) -> str:
-    return school.made._pupil_by_token[member.token].hosting_page
+    return school.classroom._pupil_by_token[member.token].hosting_page
 
 
 def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
@@ -753,4 +759,4 @@ def test_the_teacher_sees_what_was_done_and_by_whom_whoever_has_gone(school: Sch
     [group] = school.teaches("class")["groups"]
     lines = school.teaches("class_text", group=group["key"])
     assert lines["history"] == ["Luz: − 5", "Luz: + BEEP(1, 440)", "Ana: → F(1, 95)"]
-    assert [school.made._pupil_number(ana.token)] == group["pupils"]
+    assert [school.classroom._pupil_number(ana.token)] == group["pupils"]

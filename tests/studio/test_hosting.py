@@ -32,7 +32,7 @@ class Page:
         self.hosting = hosting
         self.name = name
         self.news: list[dict[str, Any]] = []
-        self._seen = self.count = 0
+        self._seen_number = self.count = 0
 
     def connect(self, port: str, **fields: object) -> dict[str, Any]:
         request = {"do": "connect", "page": self.name, "port": port, "robot": "tinibot",
@@ -40,9 +40,14 @@ class Page:
         return self.hosting.answer(request)
 
     def beat(self, *requests: dict[str, Any], action: str = "beat") -> None:
-        request = {"do": action, "page": self.name, "seen": self._seen, "asked": list(requests)}
+        request = {
+            "do": action,
+            "page": self.name,
+            "seen": self._seen_number,
+            "asked": list(requests),
+        }
         for item in self.hosting.answer(request)["news"]:
-            self._seen = max(self._seen, item["number"])
+            self._seen_number = max(self._seen_number, item["number"])
             self.news.append(item)
 
     def until(
@@ -145,7 +150,7 @@ def always_attended(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def check_stopped(robot: PtyRobot) -> None:
-    robot.until(lambda: bytes(STOP_BYTES) in robot.heard and not robot.moves, "it is stopped")
+    robot.until(lambda: bytes(STOP_BYTES) in robot.received and not robot.moves, "it is stopped")
     assert "MOTORS 80 80" in robot.actions
 
 

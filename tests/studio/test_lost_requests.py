@@ -37,14 +37,14 @@ class CountedLink:
     has_run = False
 
     def __init__(self, note_action: Callable[[str, int], None]) -> None:
-        self._does = note_action
+        self._note_action = note_action
         self._news: list[Json] = []
 
     def stop(self) -> None:
-        self._does("stop", 0)
+        self._note_action("stop", 0)
 
     def ask(self, request: Json) -> None:
-        self._does("run", request["stops"])
+        self._note_action("run", request["stops"])
         self._news.append({"id": request["id"], "ok": True})
 
     def news(self, timeout_s: float = 0) -> list[Json]:
@@ -107,66 +107,70 @@ class TornPage:
     def __init__(self, hosting: Hosting, rng: Random, ask: Callable[[Json], Json]) -> None:
         self.hosting, self.rng, self.ask = hosting, rng, ask
         self.presses: list[int] = []  # times of the presses
-        self.heard: list[int] = []  # presses sent with a beat that the robot has heard
-        self._connection = self._seen = self._stops = self._number = 0
+        self.heard_presses: list[int] = []  # presses sent with a beat that the robot has heard
+        self._connection = self._seen_number = self._stops = self._number = 0
         self._asked: list[Json] = []
-        self._under_way: list[tuple[int, Json]] = []
-        self.is_there = False
+        self._answers_under_way: list[tuple[int, Json]] = []
+        self.is_connected = False
 
     def connect(self) -> None:
         self._connection += 1
-        self._seen = self._stops = self._number = 0
-        self._asked, self.is_there = [], False
+        self._seen_number = self._stops = self._number = 0
+        self._asked, self.is_connected = [], False
 
     def press_stop(self) -> None:
         self.presses.append(World.now_ms)
-        if self.is_there:
+        if self.is_connected:
             self._stops = len(self.presses)
             self._send("stop")
 
     def press_run(self) -> None:
-        if self.is_there:
+        if self.is_connected:
             self._number += 1
             request = {
                 **RUN_REQUEST,
                 "id": self._number,
                 "stops": len(self.presses),
-                "seen": self._seen,
+                "seen": self._seen_number,
             }
             self._asked.append(request)
 
     def _send(self, action: str, **fields: object) -> None:
         request = {"do": action, "page": "me", "connection": self._connection, "port": "p",
-                   "robot": "tinibot", "language": "en", "seen": self._seen,
+                   "robot": "tinibot", "language": "en", "seen": self._seen_number,
                    "stops": self._stops, **fields}  # fmt: skip
         times = self.rng.choice((0, 1, 1, 1, 2))
-        self._under_way += [(World.now_ms + self.rng.choice((1, 10, 700, 2500)), request)
+        self._answers_under_way += [(World.now_ms + self.rng.choice((1, 10, 700, 2500)), request)
                             for _ in range(times)]  # fmt: skip
 
     def beat(self) -> None:
-        if self.is_there:
+        if self.is_connected:
             self._send("beat", asked=list(self._asked[:8]))
         else:
             self._send("connect")
 
     def arrive(self) -> None:
-        due = [request for arrival_ms, request in self._under_way if arrival_ms <= World.now_ms]
-        self._under_way = [pair for pair in self._under_way if pair[0] > World.now_ms]
+        due = [
+            request for arrival_ms, request in self._answers_under_way if arrival_ms <= World.now_ms
+        ]
+        self._answers_under_way = [
+            pair for pair in self._answers_under_way if pair[0] > World.now_ms
+        ]
         for request in due:
             answer = self.ask(request)
             is_own = request["connection"] == self._connection
             robot = cast(SteppedRobot, self.hosting.robot_of("me"))
             if is_own and robot and request["do"] == "beat" and request["stops"]:
-                self.heard.append(request["stops"])
+                self.heard_presses.append(request["stops"])
             if not is_own or self.rng.random() < 0.4:
                 continue  # the answer is lost
             if request["do"] == "connect":
-                self.is_there = answer == {}
+                self.is_connected = answer == {}
             for item in answer.get("news", ()):
                 if "over" in item:
-                    self.is_there = False
-                elif item["number"] > self._seen:
-                    self._seen = item["number"]
+                    self.is_connected = False
+                elif item["number"] > self._seen_number:
+                    self._seen_number = item["number"]
                     self._asked = [
                         request for request in self._asked if request["id"] != item.get("id")
                     ]
@@ -184,7 +188,7 @@ def check_stops_kept(page: TornPage) -> None:
         else:
             assert stops >= newest, "it was asked for before"
             accepted_count = max(accepted_count, stops)
-    for number in page.heard:
+    for number in page.heard_presses:
         stop_times_ms = [time_ms for action, _, time_ms in World.actions
                  if action == "stop" and time_ms >= page.presses[number - 1]]  # fmt: skip
         assert stop_times_ms or accepted_count >= number, (
@@ -207,7 +211,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
         if robot is not None:
             robot.step()
             if robot.has_ended:
-                page.is_there = False
+                page.is_connected = False
         check_stops_kept(page)
         if World.now_ms % BEAT_MS == 0:
             page.beat()
@@ -216,7 +220,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
             page.press_stop()
         elif draw_number < 0.03:
             page.press_run()
-        elif draw_number < 0.032 or (not page.is_there and draw_number < 0.05):
+        elif draw_number < 0.032 or (not page.is_connected and draw_number < 0.05):
             page.connect()
     kinds = {action for action, _, _ in World.actions}
     assert kinds == {"stop", "run"}  # both kinds of requests were lost
@@ -327,11 +331,11 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     asker.asks("beat", stops=1)
     until(lambda: has_news(1) and not robot.moves, "it stands")
     start_drive(1)
-    began = len(robot.heard)
+    began = len(robot.received)
     asker.asks("stop", stops=1)  # late, or a repeated beat
     for _ in range(10):
         asker.asks("beat", stops=1)
-    assert robot.moves and b"\0" * 4 not in robot.heard[began:]
+    assert robot.moves and b"\0" * 4 not in robot.received[began:]
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     other_requests: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]

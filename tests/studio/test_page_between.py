@@ -59,20 +59,20 @@ class LineFaults(NamedTuple):
 
     name: str
     late_s: float = 0.0
-    lost: float = 0.0
+    loss_rate: float = 0.0
     held_s: float = 0.0
     is_cut: bool = False
-    suspends: bool = False
+    is_suspended: bool = False
 
 
 NETWORK_FAULTS = (
     LineFaults("page and studio: late", late_s=0.3),
-    LineFaults("page and studio: loses", lost=0.2),
+    LineFaults("page and studio: loses", loss_rate=0.2),
     LineFaults("page and studio: stalls", held_s=4.0),
     LineFaults("page and studio: stalls long", held_s=12.0),
     LineFaults("page and studio: cut for a while", held_s=4.0, is_cut=True),
-    LineFaults("studio suspended", held_s=4.0, suspends=True),
-    LineFaults("studio suspended long", held_s=12.0, suspends=True),
+    LineFaults("studio suspended", held_s=4.0, is_suspended=True),
+    LineFaults("studio suspended long", held_s=12.0, is_suspended=True),
 )
 LINES = tuple(fault for fault in FAULTS if not fault.pulls and not fault.suspends)
 MESSAGE_PLACE = "#link_said"
@@ -93,14 +93,14 @@ class BadNetwork(Network):
 
     def __init__(self, target: int, rng: Random) -> None:
         self.fault = LineFaults("nothing")
-        self.begun_s = 0.0
+        self.fault_start_s = 0.0
         self._rng = rng
         super().__init__(target)
-        self._own, self._servers = (f":{port}".encode() for port in (self.port, target))
-        assert len(self._own) == len(self._servers)
+        self._own_port, self._server_port = (f":{port}".encode() for port in (self.port, target))
+        assert len(self._own_port) == len(self._server_port)
 
     def begin(self, fault: LineFaults) -> None:
-        self.fault, self.begun_s = fault, CLOCK.now_s
+        self.fault, self.fault_start_s = fault, CLOCK.now_s
         if fault.is_cut:
             self.cut()
 
@@ -110,7 +110,7 @@ class BadNetwork(Network):
     @property
     def is_held(self) -> bool:
         fault = self.fault
-        return not fault.suspends and CLOCK.now_s < self.begun_s + fault.held_s
+        return not fault.is_suspended and CLOCK.now_s < self.fault_start_s + fault.held_s
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:
         if self.fault.is_cut and self.is_held:
@@ -118,9 +118,9 @@ class BadNetwork(Network):
         while self.is_held:
             time.sleep(0.02)
         time.sleep(self.fault.late_s)
-        if self._rng.random() < self.fault.lost:
+        if self._rng.random() < self.fault.loss_rate:
             return None
-        return data if is_back else data.replace(self._own, self._servers)
+        return data if is_back else data.replace(self._own_port, self._server_port)
 
 
 class TriedAction(NamedTuple):
@@ -128,7 +128,7 @@ class TriedAction(NamedTuple):
     fault: str
     silence_s: float
     took_s: float
-    wrong: tuple[str, ...]
+    errors: tuple[str, ...]
     messages: tuple[str, ...]
 
 
@@ -203,12 +203,12 @@ class Scene:
             self.line.begin(fault)
         else:
             self.network.begin(fault)
-            if fault.suspends:
+            if fault.is_suspended:
                 self.studio.signal(signal.SIGSTOP)
 
     def _mend(self, fault: Fault | LineFaults) -> None:
         if isinstance(fault, LineFaults):
-            left_s = self.network.begun_s + fault.held_s - CLOCK.now_s
+            left_s = self.network.fault_start_s + fault.held_s - CLOCK.now_s
             self.page.wait_for_timeout(1000 * max(0.0, left_s))
             self.studio.signal(signal.SIGCONT)
             self.network.mend()
@@ -368,7 +368,7 @@ def scene(browser: Browser, rng: Random) -> Iterator[Scene]:
 def list_faults(tried_action: TriedAction, room_s: float = TOLERANCE_S) -> list[str]:
     is_silent = tried_action.silence_s > LONGEST_SILENCE_S + room_s
     return [
-        *tried_action.wrong,
+        *tried_action.errors,
         *([f"silent for {tried_action.silence_s:.1f} s"] if is_silent else []),
     ]
 

@@ -112,7 +112,7 @@ def shared_pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
 @pytest.fixture
 def pages(shared_pages: Pages) -> Iterator[Pages]:
     yield shared_pages
-    errors, shared_pages.wrong[:] = shared_pages.wrong[:], []
+    errors, shared_pages.errors[:] = shared_pages.errors[:], []
     assert not errors
 
 
@@ -226,7 +226,7 @@ def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
         ana.unroute_all(behavior="wait")
         ana.click("#link_leave")
         ana.locator("[data-text=class_ask]").wait_for()
-    errors, shared_pages.wrong[:] = shared_pages.wrong[:], []
+    errors, shared_pages.errors[:] = shared_pages.errors[:], []
     assert all("ERR_FAILED" in error or "500" in error for error in errors)
 
 
@@ -307,8 +307,8 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
     row.locator(".out").click()  # nor is the work kept then
     row.wait_for(state="detached")
     page.close()
-    assert [error for error in pages.wrong if "403" not in error] == []
-    pages.wrong.clear()
+    assert [error for error in pages.errors if "403" not in error] == []
+    pages.errors.clear()
 
 
 @sampled
@@ -677,9 +677,9 @@ def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
     assert tile(teacher, "Noa").count() == 1
     page.close()
     remove_all_but_ana(shared_class)
-    errors = [error for error in pages.wrong if "403" not in error]
+    errors = [error for error in pages.errors if "403" not in error]
     assert errors == []
-    pages.wrong.clear()
+    pages.errors.clear()
 
 
 @sampled
@@ -714,7 +714,7 @@ def test_the_end(browser: Browser, erases: bool) -> None:
         pages = Pages(browser, class_.server.address)
         ends(pages, class_, erases)
         pages.close()
-        assert not pages.wrong
+        assert not pages.errors
 
 
 def ends(pages: Pages, class_: Class, erases: bool) -> None:

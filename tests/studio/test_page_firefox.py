@@ -67,7 +67,7 @@ def page(firefox_page: tuple[Pages, Page]) -> Iterator[Page]:
     pages, current_page = firefox_page
     studio.begin_anew(current_page)
     yield current_page
-    errors, pages.wrong[:] = pages.wrong[:], []
+    errors, pages.errors[:] = pages.errors[:], []
     assert not errors
 
 

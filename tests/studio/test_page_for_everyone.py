@@ -217,7 +217,7 @@ TRY_REQUEST_SCRIPT = """async (address) => {
 
 def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     """The page does not reach another address, and no text becomes code."""
-    errors = only_page[0].wrong
+    errors = only_page[0].errors
     with socket.create_server(("127.0.0.1", 0)) as other_server:
         address = f"http://127.0.0.1:{other_server.getsockname()[1]}/"
         tried: dict[str, Any] = page.evaluate(TRY_REQUEST_SCRIPT, address)

@@ -191,7 +191,7 @@ def hasty(browser: Browser) -> Iterator[serving.Server]:
 def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
     opened_pages = Pages(browser, hasty.address)
     yield opened_pages
-    opened_pages.wrong.clear()  # a browser complains of each file that it has not got
+    opened_pages.errors.clear()  # a browser complains of each file that it has not got
     opened_pages.close()
 
 

@@ -305,7 +305,7 @@ def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
     page.locator("#lesson_said", has_text="did not load").wait_for()
     assert page.locator("#lesson_next").is_disabled()
     page.unroute("**/lessons.zip")
-    pages.wrong.clear()
+    pages.errors.clear()
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
     right_answers, _ = catalogue.answers(FOLDERS[1])

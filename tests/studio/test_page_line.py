@@ -35,7 +35,7 @@ class Page:
         self.news: list[dict[str, Any]] = []
         self.file = ""
         self._count = 0
-        self._back = b""
+        self._to_page = b""
 
     def advance(self, milliseconds: int, *requests: dict[str, Any], is_away: bool = False) -> None:
         """Advance time. A hidden page sends no requests."""
@@ -43,11 +43,11 @@ class Page:
             now_ms = self.robot.now_ms + 1
             sent_bytes = b""
             if not is_away:
-                answer = self.page.advance(self._back, now_ms, list(requests) if ms == 0 else [])
-                sent_bytes, self._back = bytes.fromhex(answer["send"]), b""
+                answer = self.page.advance(self._to_page, now_ms, list(requests) if ms == 0 else [])
+                sent_bytes, self._to_page = bytes.fromhex(answer["send"]), b""
                 self.news += answer["news"]
                 self.file = answer.get("keys", self.file)
-            self._back += self.robot.step(now_ms, sent_bytes)
+            self._to_page += self.robot.step(now_ms, sent_bytes)
 
     def ask(self, action: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
         self._count += 1

@@ -129,7 +129,7 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
     robot.until(lambda: not robot.moves, "it stands")
     wait_for_message(page, "tsc studio has stopped responding")
     page.context.set_offline(False)
-    errors = first[0].wrong
+    errors = first[0].errors
     assert errors and all("ERR_INTERNET_DISCONNECTED" in error for error in errors)
     errors.clear()
 
@@ -278,8 +278,8 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     enter(second, server.address)
     second.click("#side_real")
     wait_for_message(second, "tsc studio was restarted")
-    assert [error for error in pages.wrong if "403" not in error] == []
-    pages.wrong.clear()
+    assert [error for error in pages.errors if "403" not in error] == []
+    pages.errors.clear()
 
 
 @sampled

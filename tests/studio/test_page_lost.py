@@ -66,7 +66,7 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     current_page.evaluate("delete document.visibilityState")
     if current_page.locator("#link_leave").is_visible():
         current_page.click("#link_leave")
-    pages.wrong.clear()  # a browser complains of each lost request
+    pages.errors.clear()  # a browser complains of each lost request
 
 
 def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobot) -> None:
@@ -134,13 +134,13 @@ class EventFilter:
     """A filter that keeps a stop's event from a page until it is released."""
 
     def __init__(self, page: Page, *kinds: str) -> None:
-        self.withheld: list[dict[str, Any]] = []
+        self.withheld_stops: list[dict[str, Any]] = []
         self.is_open = False
         self._kinds = kinds
         page.route("**/robots", self._handle)
 
     def keeps(self, is_any: bool) -> bool:
-        return bool(self.withheld) == is_any
+        return bool(self.withheld_stops) == is_any
 
     def _handle(self, route: Route) -> None:
         response = route.fetch()
@@ -148,10 +148,10 @@ class EventFilter:
         news = answer.get("news", [])
         stops = [item for item in news if item.get("event") in self._kinds]
         answer["news"] = [item for item in news if item not in stops]
-        self.withheld += [{k: stop[k] for k in stop if k != "number"} for stop in stops]
+        self.withheld_stops += [{k: stop[k] for k in stop if k != "number"} for stop in stops]
         if self.is_open:
-            answer["news"] += self.withheld
-            self.withheld = []
+            answer["news"] += self.withheld_stops
+            self.withheld_stops = []
         route.fulfill(response=response, json=answer)
 
 
@@ -172,7 +172,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
             page.evaluate(VISIBILITY_SCRIPT, "hidden")
 
     stop()
-    wait_for(page, lambda: mute.withheld, "it has stopped")
+    wait_for(page, lambda: mute.withheld_stops, "it has stopped")
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
     wait_for_message(page, HIDDEN_MESSAGE if stop_action == "hidden" else CONFIRMED_MESSAGE)

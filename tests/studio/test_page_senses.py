@@ -76,7 +76,7 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     current_page.click("#side_real")
     current_page.locator("#link_leave").dispatch_event("click")
     current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
-    errors, pages.wrong[:] = pages.wrong[:], []
+    errors, pages.errors[:] = pages.errors[:], []
     assert not errors
 
 

@@ -136,8 +136,8 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
     page.locator("#doing", has_text="The compiler did not load. Press Run to try again").wait_for()
     page.click("#side_lessons")
     page.locator("#lesson_said", has_text="The compiler did not load. Press").wait_for()
-    wait_for(page, lambda: pages.wrong, "what the compiler lacks")
-    pages.wrong.clear()
+    wait_for(page, lambda: pages.errors, "what the compiler lacks")
+    pages.errors.clear()
 
 
 @sampled

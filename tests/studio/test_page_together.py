@@ -62,7 +62,7 @@ def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
     opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
-    assert {"ERR_INTERNET_DISCONNECTED" in error for error in opened_pages.wrong} <= {True}
+    assert {"ERR_INTERNET_DISCONNECTED" in error for error in opened_pages.errors} <= {True}
 
 
 @pytest.fixture(scope="module")

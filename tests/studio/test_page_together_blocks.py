@@ -56,7 +56,7 @@ def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
     opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
-    assert not opened_pages.wrong
+    assert not opened_pages.errors
 
 
 @pytest.fixture(scope="module")
@@ -339,7 +339,7 @@ def main() -> None:
             if len(sys.argv) > 2:
                 page.screenshot(path=f"{sys.argv[2]}/{name}.png")
         opened_pages.close()
-        assert not opened_pages.wrong
+        assert not opened_pages.errors
 
 
 if __name__ == "__main__":

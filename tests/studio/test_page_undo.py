@@ -39,7 +39,7 @@ def page(only_page: tuple[Pages, Page]) -> Any:
     current_page.set_viewport_size({"width": 1366, "height": 768})
     speak(current_page, "en")
     yield current_page
-    errors, pages.wrong[:] = pages.wrong[:], []
+    errors, pages.errors[:] = pages.errors[:], []
     assert not errors
 
 

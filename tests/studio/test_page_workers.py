@@ -55,7 +55,7 @@ class Stranger(ThreadingHTTPServer):
     def __init__(self, port: int, scripts: dict[str, bytes]) -> None:
         super().__init__((serving.HOST, port), _Handler)
         self.scripts = scripts
-        self.taken: list[bytes] = []
+        self.loot: list[bytes] = []
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -70,7 +70,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(script or b"<!doctype html><title>x</title>")
 
     def do_POST(self) -> None:
-        self.server.taken.append(self.rfile.read(int(self.headers["Content-Length"])))
+        self.server.loot.append(self.rfile.read(int(self.headers["Content-Length"])))
         self.send_response(204)
         self.end_headers()
 
@@ -147,7 +147,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
         enter(page, server.entrance())  # no stored answers are shown later
         check_own_worker(page, server)
         assert page.evaluate(CONTROLLER_SCRIPT) == f"{server.address}{serving.WORKER_FILE}"
-    assert loot.taken == []
+    assert loot.loot == []
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
@@ -174,7 +174,7 @@ def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: S
         locator = page.locator("#note").filter(has_text="Delete this address’s data in the browser")
         locator.wait_for()
         assert page.evaluate(TOKEN_SCRIPT) is None and server.is_unused(entrance)
-    assert loot.taken == []
+    assert loot.loot == []
 
 
 def test_a_browser_that_asks_for_a_strangers_worker_is_told_that_it_goes() -> None:

@@ -33,7 +33,7 @@ class Robot:
         self.run = 0  # the last one that has begun
         self.runs_own: bool | None = None  # the current run is the page's; None: no run
         self.is_program = False
-        self.pending: PendingRequest[Any] | None = None
+        self.pending_request: PendingRequest[Any] | None = None
 
     def enable_place_events(self) -> None:
         """The robot sends none."""
@@ -44,9 +44,9 @@ class Robot:
         session = SimpleNamespace(
             start=lambda: PendingRequest[Any](), live=lambda *_: PendingRequest[Any]()
         )
-        self.pending = make_request(cast(Requester, session))
-        self.pending.starts = True
-        return self.pending
+        self.pending_request = make_request(cast(Requester, session))
+        self.pending_request.starts = True
+        return self.pending_request
 
     def event(self, timeout_s: float) -> tuple[int, Event] | None:
         return (0, self.events.pop(0)) if self.events else None
@@ -68,10 +68,10 @@ class Robot:
         if look_at_end is not None:
             self.ends("DONE")
             look_at_end()
-        if is_own and self.pending is not None:
+        if is_own and self.pending_request is not None:
             fields = {**dict.fromkeys(ReceiptReply._fields, 0), "run": self.run}
-            self.pending.outcome = Reply(OK, 0, ReceiptReply(**fields))
-            self.pending = None
+            self.pending_request.outcome = Reply(OK, 0, ReceiptReply(**fields))
+            self.pending_request = None
         self.events.append(StartedEvent(self.run, PROGRAM))
 
     def restarts(self) -> None:
@@ -90,20 +90,20 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
     own_programs, own_runs = set[tuple[int, int]](), 0
     for number in range(120):
         match rng.choice((*ACTIONS, "ask", "answer")):
-            case "ask" if robot.pending is None:
+            case "ask" if robot.pending_request is None:
                 robot.is_program = rng.random() < 0.5
                 fields = {"do": "start"} if robot.is_program else {"do": "live", "image": LINE}
                 link.ask({"id": number, "robot": "tinibot", **fields})
                 link.news()
-            case "answer" if robot.pending is not None:
+            case "answer" if robot.pending_request is not None:
                 if rng.random() < 0.3:
                     robot.ends(rng.choice(("STOPPED", "DONE")))  # that of the run before
                 on_end = rng.choice((lambda: None, link.news))
                 robot.begins(is_own=True, look_at_end=on_end if rng.random() < 0.3 else None)
                 if robot.is_program:
                     own_programs.add((robot.boot, robot.run))
-            case "refuse" if robot.pending is not None:
-                robot.pending.outcome, robot.pending = Reply(CANCELLED), None
+            case "refuse" if robot.pending_request is not None:
+                robot.pending_request.outcome, robot.pending_request = Reply(CANCELLED), None
             case "other":
                 robot.begins(is_own=False)
             case "end":
@@ -122,6 +122,6 @@ def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
                 news["is_program"] for news in link.news() if news.get("event") == "STARTED"
             ]
             assert is_program_values == [run in own_programs for run in boot_and_runs]
-            assert link.has_run == (robot.pending is not None or robot.runs_own is True)
+            assert link.has_run == (robot.pending_request is not None or robot.runs_own is True)
             own_runs += robot.runs_own is True
     assert own_runs

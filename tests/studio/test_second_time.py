@@ -46,7 +46,7 @@ class Room:
     now_ms = 0
     actions: ClassVar[list[tuple[str, int]]] = []  # actions with their times
     robots: ClassVar[list[ThreadlessRobot]] = []
-    not_waited_for: ClassVar[list[tuple[ThreadlessRobot, ThreadlessRobot]]] = []
+    unwaited_pairs: ClassVar[list[tuple[ThreadlessRobot, ThreadlessRobot]]] = []
 
     @classmethod
     def clock(cls) -> float:
@@ -92,7 +92,7 @@ class ThreadlessRobot:
         self.has_ended = self.is_parting = False
         self._meets_ms = Room.now_ms + 300 * (connection % 4)
         self._closed_ms = 0
-        Room.not_waited_for += [
+        Room.unwaited_pairs += [
             (self, robot)
             for robot in Room.robots
             if robot.port == port and robot.is_open and robot not in robots_before
@@ -165,29 +165,29 @@ class ComingPage:
         self.ports = [name]
         self.end = ""  # why its connection has ended, which it has not heard yet
         self.stops = 0  # that its tab has counted
-        self._connection = self._seen = self._number = 0
-        self._is_there = self._sleeps = False
+        self._connection = self._seen_number = self._number = 0
+        self._is_connected = self._is_asleep = False
         self._asked: list[Json] = []
 
     def _ask(self, action: str, **fields: object) -> Json:
         return self.hosting.answer({
             "do": action, "page": self.name, "tab": self.tab, "connection": self._connection,
-            "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen,
+            "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen_number,
             "stops": self.stops, **fields,
         })  # fmt: skip
 
     def _connect(self) -> None:
         self._connection += 1
         self.end, self.port = "", self.rng.choice(self.ports)
-        self._seen = self._number = 0
+        self._seen_number = self._number = 0
         self._asked = []
         for _ in range(self.rng.choice((1, 2))):  # the answer was lost
-            self._is_there = self._ask("connect") == {}
+            self._is_connected = self._ask("connect") == {}
 
     def _wants_run(self) -> None:
         self._number += 1
         self._asked.append(
-            {**RUN_REQUEST, "id": self._number, "stops": self.stops, "seen": self._seen}
+            {**RUN_REQUEST, "id": self._number, "stops": self.stops, "seen": self._seen_number}
         )
 
     def stop(self) -> None:
@@ -200,23 +200,23 @@ class ComingPage:
 
     @property
     def is_beating(self) -> bool:
-        return self._is_there and not self._sleeps
+        return self._is_connected and not self._is_asleep
 
     def turn(self) -> None:
         draw_number = self.rng.random()
-        if not self._is_there:
+        if not self._is_connected:
             if draw_number < 0.1:
                 self._connect()
                 self._wants_run()  # requested at once, because a run may be under way
         elif draw_number < 0.01:
             self._ask("leave")
-            self._is_there, self.end = False, ""
+            self._is_connected, self.end = False, ""
         elif draw_number < 0.02:  # loaded again, under another name of its own or the same one
-            self._is_there, self._connection = False, self._connection + 3
+            self._is_connected, self._connection = False, self._connection + 3
             if self.rng.random() < 0.5:
                 self.tab, self.stops = f"{self.tab}+", 0
         elif draw_number < 0.04:
-            self._sleeps, self.end = not self._sleeps, ""
+            self._is_asleep, self.end = not self._is_asleep, ""
         elif draw_number < 0.3:
             self._wants_run()
         if self.is_beating:
@@ -225,10 +225,10 @@ class ComingPage:
     def _beat(self) -> None:
         for item in self._ask("beat", asked=self._asked[:8]).get("news", ()):
             if "over" in item:
-                self._is_there = False
+                self._is_connected = False
                 assert item["over"] == (self.end or item["over"])
-            elif item["number"] > self._seen:
-                self._seen = item["number"]
+            elif item["number"] > self._seen_number:
+                self._seen_number = item["number"]
                 self._asked = [
                     request for request in self._asked if request["id"] != item.get("id")
                 ]
@@ -303,7 +303,7 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
                 page.stop()
                 driven.step()
                 assert not driven.link.has_run
-        assert not Room.not_waited_for
+        assert not Room.unwaited_pairs
     assert stopped_ms and len(Room.robots) > 20
     assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
     for page in pages:
@@ -352,8 +352,8 @@ def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
 class HeldClient:
     """Another command drives the robot through it until all its clients have left."""
 
-    all_left: ClassVar[Event] = Event()
-    was_held: ClassVar[bool | None] = None
+    has_emptied: ClassVar[Event] = Event()
+    is_held: ClassVar[bool | None] = None
     holds_for_others = True
 
     def __init__(self, *_: object, **__: object) -> None:
@@ -367,8 +367,8 @@ class HeldClient:
         return SimpleNamespace(name="TINI")
 
     def hold_for_others(self, goes_on: Callable[[], bool]) -> None:
-        assert HeldClient.all_left.wait(HANG_LIMIT_S)
-        HeldClient.was_held = goes_on()
+        assert HeldClient.has_emptied.wait(HANG_LIMIT_S)
+        HeldClient.is_held = goes_on()
 
     def close(self, has_run: bool) -> None:
         """Do nothing, because no run of the page is affected."""
@@ -391,9 +391,9 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
     until(lambda: robot.name != "", "it is met")
     for lets_go in lets_go_values:
         robot.leave(is_letting_go=bool(lets_go))
-    HeldClient.all_left.set()
+    HeldClient.has_emptied.set()
     robot.join(HANG_LIMIT_S)
-    assert HeldClient.was_held == (not any(lets_go_values))
+    assert HeldClient.is_held == (not any(lets_go_values))
     assert robot.has_ended and not robot.is_parting
 
 

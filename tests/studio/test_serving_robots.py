@@ -24,10 +24,10 @@ class Recorder:
     """Robots played by a test: they record their requests."""
 
     def __init__(self) -> None:
-        self.asked: list[dict[str, Any]] = []
+        self.requests: list[dict[str, Any]] = []
 
     def answer(self, request: dict[str, Any]) -> dict[str, Any]:
-        self.asked.append(request)
+        self.requests.append(request)
         if request.get("do") != "ports":
             raise BadRequest
         return {"ports": []}
@@ -56,7 +56,7 @@ def test_its_own_page_is_answered(
     name = f"localhost:{server.server_port}"
     headers = {"Host": name, "Origin": f"http://{name}"}
     assert post(server_host, server.entrances.token, PORTS, headers=headers)[0] == 200
-    assert len(robots.asked) == 2
+    assert len(robots.requests) == 2
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_nobody_else_is(
     server: serving.Server, server_host: str, robots: Recorder, headers: dict[str, str | None]
 ) -> None:
     assert post(server_host, server.entrances.token, PORTS, headers=headers)[0] == 403
-    assert robots.asked == []
+    assert robots.requests == []
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_a_wrong_length_and_two_tokens_are_refused(
     ) as client:
         client.sendall(head.encode() + b'{"do"')
         assert client.recv(100).startswith(f"HTTP/1.1 {status}".encode())
-    assert robots.asked == []
+    assert robots.requests == []
 
 
 def test_other_addresses_take_nothing(
@@ -123,7 +123,7 @@ def test_other_addresses_take_nothing(
 ) -> None:
     for path in ("/", "/robots/"):
         assert post(server_host, server.entrances.token, PORTS, path)[0] == 404
-    assert robots.asked == []
+    assert robots.requests == []
 
 
 def test_the_token_is_another_one_each_time_and_in_no_file(

@@ -43,7 +43,7 @@ class Meeting:
         self._beat_ms = 0
         self._look_ms = 0
         # Answers under way, with their arrival times.
-        self._under_way: list[tuple[int, dict[str, Any]]] = []
+        self._answers_under_way: list[tuple[int, dict[str, Any]]] = []
         self.is_cut = False
 
     def advance(self, milliseconds: int, step_ms: int = 1) -> None:
@@ -52,9 +52,9 @@ class Meeting:
             heard_bytes = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
             self._sent = self.line.advance(b"" if self.is_cut else heard_bytes, now_ms)
             arrived_answers = [
-                answer for arrival_ms, answer in self._under_way if arrival_ms <= now_ms
+                answer for arrival_ms, answer in self._answers_under_way if arrival_ms <= now_ms
             ]
-            self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
+            self._answers_under_way = [pair for pair in self._answers_under_way if pair[0] > now_ms]
             if arrived_answers or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
                 self.news += self.attending.on_beat(arrived_answers, self.newest_number)
@@ -72,7 +72,7 @@ class Meeting:
         self._number += 1
         request = {"do": "upload", "id": self._number, "image": self.rng.choice(PROGRAMS),
                    "robot": "tinibot", "runs": True, "seen": self.newest_number}  # fmt: skip
-        self._under_way.append((self.robot.now_ms + delay_ms, request))
+        self._answers_under_way.append((self.robot.now_ms + delay_ms, request))
         return self._number
 
     def answer(self, number: int) -> dict[str, Any]:

@@ -19,7 +19,7 @@ class ProgramRuns(NamedTuple):
     """A program, and its runs: every how many asks it is not ready, lateness, begin and end."""
 
     text: str
-    how: Sequence[tuple[int, int, int, int]]
+    runs: Sequence[tuple[int, int, int, int]]
     readings: Mapping[str, Sequence[int]] = {}
 
 

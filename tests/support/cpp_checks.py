@@ -254,12 +254,12 @@ def check_task_programs(machine: Process, first_seed: int, count: int) -> None:
 class SlowRobot(TracedRobot):
     """A robot that is not ready each `not_ready`th time that it is asked."""
 
-    asked = 0
+    ask_count = 0
     not_ready = 0
 
     def is_ready(self) -> bool:
-        self.asked += 1
-        return not self.not_ready or self.asked % self.not_ready != 0
+        self.ask_count += 1
+        return not self.not_ready or self.ask_count % self.not_ready != 0
 
     def read(self, sensor: int) -> int | None:
         return super().read(sensor) if self.is_ready() else None

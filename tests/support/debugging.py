@@ -18,7 +18,7 @@ from tiniscript.link.session import Session
 
 
 class Halt(NamedTuple):
-    at: int
+    place: int
     task: int
 
 

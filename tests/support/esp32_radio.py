@@ -27,14 +27,14 @@ class RawClient:
 
     def __init__(self, line: bytes = b"") -> None:
         self.to_send = line
-        self.heard = b""
+        self.received = b""
 
     def poll(self, now_ms: int) -> bytes:
         data, self.to_send = self.to_send, b""
         return data
 
     def receive(self, data: bytes, now_ms: int) -> None:
-        self.heard += data
+        self.received += data
 
 
 class End(Protocol):
@@ -51,10 +51,10 @@ class LowEnergy:
     """A client of the Nordic UART service. `slow`: it takes one notification in so many looks."""
 
     def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, slow: int = 1) -> None:
-        self.robot, self.mtu, self.slow = robot, mtu, slow
+        self.robot, self.mtu, self.look_interval = robot, mtu, slow
         self.lengths: list[int] = []
-        self._waiting: list[bytes] = []
-        self._looks = 0
+        self._notifications: list[bytes] = []
+        self._look_count = 0
         self._number = robot.radio("c")
         if mtu != LEAST_MTU:
             robot.radio("m", self._number + pack("<H", mtu))
@@ -78,11 +78,11 @@ class LowEnergy:
         for _ in range(count):
             data, answer = _split_first(answer)
             self.lengths.append(len(data))
-            self._waiting.append(data)
-        self._looks += 1
-        if self._looks % self.slow or not self._waiting:
+            self._notifications.append(data)
+        self._look_count += 1
+        if self._look_count % self.look_interval or not self._notifications:
             return b""
-        return self._waiting.pop(0)
+        return self._notifications.pop(0)
 
     def leave(self) -> None:
         self.robot.radio("d", self._number)

@@ -14,15 +14,15 @@ class FakeComputer(System):
     def __init__(self, root: Path, platform: str) -> None:
         super().__init__(root)
         self.platform = platform
-        self.listed: list[ListedPort] = []
+        self.listed_ports: list[ListedPort] = []
         self.outputs: dict[tuple[str, ...], str] = {}
         self.owners: dict[str, tuple[int, bool]] = {}
         self.group_numbers: set[int] = set()
         self.user_name = "somebody"
-        self.asked: list[tuple[str, ...]] = []
+        self.commands: list[tuple[str, ...]] = []
 
     def add_port(self, port: str, description: str = "") -> None:
-        self.listed.append(ListedPort(port, description))
+        self.listed_ports.append(ListedPort(port, description))
         self.owners.setdefault(port, (20, True))
 
     def write(self, path: str, text: str) -> None:
@@ -51,7 +51,7 @@ class FakeComputer(System):
             (folder / "3").symlink_to(opens)
 
     def ports(self) -> list[ListedPort]:
-        return self.listed
+        return self.listed_ports
 
     def owner(self, path: str) -> Owner | None:
         return Owner(*self.owners[path]) if path in self.owners else None
@@ -63,5 +63,5 @@ class FakeComputer(System):
         return self.user_name
 
     def output(self, *words: str) -> str | None:
-        self.asked.append(words)
+        self.commands.append(words)
         return self.outputs.get(words)

@@ -248,7 +248,7 @@ class SessionSide:
 
     def __init__(self) -> None:
         self.session = Session(nonce=0x01020304, kit=KIT)
-        self.pending: list[PendingRequest[Any]] = []
+        self.pending_requests: list[PendingRequest[Any]] = []
         self.now_ms = 0
 
     def ask(self, words: list[str]) -> None:
@@ -274,7 +274,7 @@ class SessionSide:
         }
         values = {name: int(value, 0) for name, value in flags.items() if value.isdecimal()}
         ask = actions.get(words[0]) or partial(getattr(session, words[0]), **values)
-        self.pending.append(ask())
+        self.pending_requests.append(ask())
 
     def poll(self, now_ms: int) -> bytes:
         self.now_ms = now_ms
@@ -286,7 +286,7 @@ class SessionSide:
     def outcome_rows(self) -> list[str]:
         rows = [_row("tells " + event.name, event_fields(event)) for event in self.session.events()]
         for request in [
-            pending_request for pending_request in self.pending if pending_request.outcome
+            pending_request for pending_request in self.pending_requests if pending_request.outcome
         ]:
             assert request.outcome
             name = {-1: "LOST", -2: "CANCELLED"}.get(request.outcome.status)
@@ -294,7 +294,7 @@ class SessionSide:
             detail = f" {request.outcome.detail}" if request.outcome.detail else ""
             values = request.outcome.values._asdict() if request.outcome.status == OK else {}
             rows.append(_row(f"outcome {name}{detail}", values))
-            self.pending.remove(request)
+            self.pending_requests.remove(request)
         return rows
 
 

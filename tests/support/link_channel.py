@@ -74,7 +74,7 @@ class Radio:
 
     def __init__(self, rng: random.Random, baud: int, faults: float) -> None:
         self.rng, self.byte_ms, self.faults = rng, 10_000 / baud, faults
-        self.shuffles = 0.0  # probability that a frame is doubled or overtakes the previous one
+        self.shuffle_rate = 0.0  # probability that a frame is doubled or overtakes the previous one
         self.is_split = False  # into pieces of PIECE_BYTES, with a pause before some of them
         self.is_out = False
         self._queue: deque[tuple[float, int]] = deque()
@@ -83,7 +83,7 @@ class Radio:
     def send(self, data: bytes, now_ms: int) -> None:
         if self.is_out:
             return
-        if self.shuffles:
+        if self.shuffle_rate:
             data = self.shuffle(data)
         offset = 0
         while offset < len(data):
@@ -101,7 +101,7 @@ class Radio:
     def shuffle(self, data: bytes) -> bytes:
         frames = re.findall(rb"\0*[^\0]*\0?", data)
         for index in range(len(frames) - 1, -1, -1):
-            if self.rng.random() >= self.shuffles:
+            if self.rng.random() >= self.shuffle_rate:
                 continue
             if self.rng.random() < 0.5:
                 frames.insert(index, frames[index])
@@ -123,7 +123,7 @@ class World:
     is_split = False
 
     def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drops: float) -> None:
-        self.cpp, self.rng, self.drops = cpp, rng, drops
+        self.cpp, self.rng, self.drop_rate = cpp, rng, drops
         baud = rng.choice((9600, 9600, 57600, 115200))
         self.to_robot = Radio(rng, baud, faults)
         self.to_computer = Radio(rng, baud, faults)
@@ -142,7 +142,7 @@ class World:
         """Let time pass until the request is over."""
         end_ms = self.now_ms + most_ms
         while self.now_ms < end_ms and (request is None or request.outcome is None):
-            if self.rng.random() < self.drops:
+            if self.rng.random() < self.drop_rate:
                 self._out_until = self.now_ms + self.rng.randrange(100, 3000)
             self.to_robot.is_out = self.to_computer.is_out = self.now_ms < self._out_until
             self.disturb()
@@ -181,15 +181,15 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     world = world_of(cpp, rng, faults, drops=rng.choice((0, 0.0002, 0.002)))
     old_image = pack("SI", 0, program(rng, cpp.is_large))
     world.to_robot.faults = world.to_computer.faults = 0
-    drops, world.drops = world.drops, 0
+    drops, world.drop_rate = world.drop_rate, 0
     old_upload = world.session.upload(unpack(old_image), runs=False)
     world.run(old_upload)
     assert old_upload.outcome and old_upload.outcome.status == 0 and cpp.fetch_image() == old_image
     world.to_robot.faults = world.to_computer.faults = faults
     world.to_robot.is_split = world.to_computer.is_split = world.is_split
-    world.drops = drops
+    world.drop_rate = drops
     if cpp.is_large:
-        world.to_robot.shuffles = world.to_computer.shuffles = rng.choice((0, 0, 0.02, 0.2))
+        world.to_robot.shuffle_rate = world.to_computer.shuffle_rate = rng.choice((0, 0, 0.02, 0.2))
 
     new_image = pack("SI", 0, program(rng, cpp.is_large))
     world.reconnect()

@@ -16,7 +16,7 @@ RESENT_S = 0.2  # time before TCP resends a packet
 class Network:
     """Passes connections on to a TCP port of this computer; `port` is its own."""
 
-    most = 4096  # bytes of a piece
+    max_bytes = 4096  # bytes of a piece
 
     def __init__(self, target: int) -> None:
         self._target = target
@@ -57,7 +57,7 @@ class Network:
 
     def _pass(self, source: socket.socket, sink: socket.socket, is_back: bool, number: int) -> None:
         with contextlib.suppress(OSError):
-            while data := source.recv(self.most):
+            while data := source.recv(self.max_bytes):
                 going_on = self.pass_on(data, is_back, number)
                 if going_on is None:
                     break
@@ -73,13 +73,13 @@ class BadNetwork(Network):
     def __init__(
         self, target: int, late_s: float = 0.02, every: int = 10, loss_rate: float = 0.0
     ) -> None:
-        self.late_s, self.every, self.lost = late_s, every, loss_rate
+        self.late_s, self.resend_interval, self.loss_rate = late_s, every, loss_rate
         self._rng = random.Random(1)
         super().__init__(target)
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes:
-        time.sleep(self.late_s + RESENT_S * (self._rng.randrange(self.every) == 0))
-        return b"" if self._rng.random() < self.lost else data
+        time.sleep(self.late_s + RESENT_S * (self._rng.randrange(self.resend_interval) == 0))
+        return b"" if self._rng.random() < self.loss_rate else data
 
 
 class CuttingNetwork(Network):
@@ -87,7 +87,7 @@ class CuttingNetwork(Network):
     `bytes_left[0]` bytes of it, the second after `bytes_left[1]`; later ones stay.
     """
 
-    most = 7
+    max_bytes = 7
 
     def __init__(self, target: int, piece_sizes: Sequence[int]) -> None:
         self.bytes_left = list(piece_sizes)

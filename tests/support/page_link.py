@@ -85,7 +85,7 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
         "click"
     )  # seen or not: it may just have left
     current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
-    errors, pages.wrong[:] = pages.wrong[:], []
+    errors, pages.errors[:] = pages.errors[:], []
     assert not errors
 
 

@@ -59,18 +59,18 @@ class Wire:
     def __init__(self, rng: random.Random) -> None:
         self.robot, self.session = switched_on(), computer()
         self.rng = rng
-        self.loses = NO_LOSSES
+        self.losses = NO_LOSSES
         self.late_ms = rng.choice((0, 0, 4, 20))
         self.under_way: deque[bytes] = deque()
 
     def turn(self, sent_bytes: bytes = b"") -> None:
         data = self.session.poll(self.robot.now_ms)
-        if self.rng.random() < self.loses.to_robot:
+        if self.rng.random() < self.losses.to_robot:
             data = b""
         self.under_way.append(data)
         is_late = len(self.under_way) <= self.late_ms
         sent_bytes += self.robot.step(b"" if is_late else self.under_way.popleft())
-        if self.rng.random() >= self.loses.to_session:
+        if self.rng.random() >= self.losses.to_session:
             self.session.receive(sent_bytes, self.robot.now_ms)
 
     def turns(self, count: int) -> None:

@@ -21,9 +21,9 @@ class RandomProgram(NamedTuple):
     text: str
     kit: Kit
     senses: Senses
-    want: str
-    short: Compilation
-    plain: Compilation  # the program without optimization
+    wanted_trace: str
+    short_compilation: Compilation
+    plain_compilation: Compilation  # the program without optimization
 
 
 def random_program(seed: int) -> RandomProgram:

@@ -48,7 +48,7 @@ class Pupil(PtyPort):
             return self._pass_ms(milliseconds, data)
 
     def _pass_ms(self, milliseconds: int, data: bytes) -> bytes:
-        self.heard += data
+        self.received += data
         if self.deaf_after is not None:
             data = data[: self.deaf_after]
             self.deaf_after -= len(data)
@@ -90,7 +90,7 @@ class RobotFleet:
         waiting.until(is_reached, description)
 
     def _run(self) -> None:
-        by_end = {pupil.ours: pupil for pupil in self.pupils}
+        by_end = {pupil.our_end: pupil for pupil in self.pupils}
         lasts = dict.fromkeys(by_end, time.monotonic())
         while not self._is_over:
             ready, _, _ = select.select(list(by_end), [], [], STEP_MS / 2000)

@@ -85,18 +85,18 @@ class Board(UnpoweredEnd):
     ) -> None:  # fmt: skip
         super().__init__(baud)
         self.greeting, self.reply, self.open_ms = greeting, reply, open_ms
-        self._since_ms = 10**9
+        self._elapsed_ms = 10**9
 
     def step(self, data: bytes) -> bytes:
-        self._since_ms += 1
+        self._elapsed_ms += 1
         return super().step(data)
 
     def answer(self, data: bytes) -> bytes:
-        is_open = self.open_ms is None or self._since_ms < self.open_ms
+        is_open = self.open_ms is None or self._elapsed_ms < self.open_ms
         return self.reply if is_open and self.greeting in data else b""
 
     def restart(self) -> None:
-        self._since_ms = 0
+        self._elapsed_ms = 0
 
 
 class Firmware(UnpoweredEnd):
@@ -128,7 +128,7 @@ class Firmware(UnpoweredEnd):
         self.deaf = 0
         self.hears_badly = False
         self.dies_after: int | None = None
-        self.refuses: tuple[int, int] | None = None  # HELLO: a status and its detail
+        self.hello_refusal: tuple[int, int] | None = None  # HELLO: a status and its detail
         self.epoch = 7
         self.trim: dict[str, int | bytes] | None = None  # an older robot has none
         self.requests: list[int] = []
@@ -160,8 +160,8 @@ class Firmware(UnpoweredEnd):
             return b""
         message = BY_NUMBER[frame.number]
         payload = bytes([OK])
-        if message.name == "HELLO" and self.refuses is not None:
-            payload = bytes([self.refuses[0]]) + self.refuses[1].to_bytes(2, "little")
+        if message.name == "HELLO" and self.hello_refusal is not None:
+            payload = bytes([self.hello_refusal[0]]) + self.hello_refusal[1].to_bytes(2, "little")
         elif message.name in ("HELLO", "STATUS", "PING"):
             known_values = {**self.hello, **self.counts}
             payload += encode_payload(

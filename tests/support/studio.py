@@ -176,7 +176,7 @@ class Pages:
         self.patience_s = patience_s
         self.address = address
         self.entrance = entrance or (lambda: address)
-        self.wrong: list[str] = []
+        self.errors: list[str] = []
         self._browser = browser
         self._contexts: list[BrowserContext] = []
         self._to_leave: list[BrowserContext] = []
@@ -250,7 +250,7 @@ class Pages:
         return context
 
     def watch(self, page: Page) -> None:
-        page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.on(
             "console",
             lambda console_message: self._note_message(console_message.type, console_message.text),
@@ -273,11 +273,11 @@ class Pages:
 
     def _note_message(self, kind: str, text: str) -> None:
         if kind in ("error", "warning") and "blocked by Playwright" not in text:
-            self.wrong.append(text)
+            self.errors.append(text)
 
     def _note_request(self, request: Request) -> None:
         if not request.url.startswith((self.address, "data:", "blob:")):
-            self.wrong.append(request.url)
+            self.errors.append(request.url)
 
 
 def enter(page: Page, address: str) -> None:

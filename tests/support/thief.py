@@ -16,8 +16,8 @@ class Thief:
 
     def __init__(self, rng: random.Random, old_frames: list[bytes]) -> None:
         self.rng = rng
-        self.old = old_frames
-        self.sent: list[bytes] = []  # frames under the current seal
+        self.old_frames = old_frames
+        self.sent_frames: list[bytes] = []  # frames under the current seal
         self.replies: list[bytes] = []
 
     def frame(self, epoch: int, seq: int) -> tuple[str, bytes]:
@@ -26,7 +26,7 @@ class Thief:
             ("replayed", "reflected", "other session", "cut", "changed", "unsealed", "moved",
              "forged", "sealed by another key")
         )  # fmt: skip
-        own_frame = rng.choice(self.sent)
+        own_frame = rng.choice(self.sent_frames)
         frame = decode_frame(own_frame)
         assert frame
         if attack == "replayed":
@@ -35,7 +35,7 @@ class Thief:
             reply = decode_frame(rng.choice(self.replies))
             return attack, encoded(reply._replace(is_reply=False)) if reply else own_frame
         if attack == "other session":
-            return attack, rng.choice(self.old)
+            return attack, rng.choice(self.old_frames)
         if attack == "cut":
             return attack, encoded(frame._replace(payload=frame.payload[: -rng.randrange(1, 13)]))
         if attack == "changed":

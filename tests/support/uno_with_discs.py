@@ -36,18 +36,18 @@ class DrivenUno(Wired):
         uno = Uno(firmware, baud=board.baud, resets_on_open=False, tells_sleep=False)
         super().__init__(uno, Session(seed, board.baud, ROBOT.kit.fingerprint))
         self._motors = motors
-        self._driving = Driving(ROBOT.body, (), Pose(0, 0, 0))
+        self._simulation = Driving(ROBOT.body, (), Pose(0, 0, 0))
         self.wheels = Wheels(
             ROBOT.body,
             board.discs,
             discs_of(board.discs).has_two_channels,
             rough,
             seed,
-            self._driving.set_motors,
+            self._simulation.set_motors,
         )
         self._discs = [f"D{board.discs.pins[side]}" for side in ("left", "right")]
         self._levels = [False, False]
-        self._noticed = 0  # events of the board
+        self._noticed_count = 0  # events of the board
         self._pins: dict[str, Event] = {}  # last event of each pin
         for name in self._discs:
             uno.drive(name, False)
@@ -56,13 +56,13 @@ class DrivenUno(Wired):
     @property
     def pose(self) -> Pose:
         self.wheels.go_on(self.now_ms)
-        return self._driving.advance_to(self.now_ms)
+        return self._simulation.advance_to(self.now_ms)
 
     def run(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
             super().run(1)
-            for event in self.uno.events[self._noticed :]:
-                self._noticed += 1
+            for event in self.uno.events[self._noticed_count :]:
+                self._noticed_count += 1
                 if event.kind == "pin":
                     self._pins[event["pin"]] = event
             left, right = self._motors

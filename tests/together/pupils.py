@@ -42,11 +42,11 @@ class Pupil:
         self, page: Page, rng: Random, numbers: Iterator[int], typed_texts: set[str],
         deeds: Counter[str], spread: float = 0.5,
     ) -> None:  # fmt: skip
-        self.page, self.typed, self.deeds = page, typed_texts, deeds
+        self.page, self.typed_texts, self.counts_by_deed = page, typed_texts, deeds
         self.focus = 0.5
         self.stages: list[Stage] = []
         self._rng, self._numbers, self._spread = rng, numbers, spread
-        self._cut: Text = []
+        self._cut_lines: Text = []
 
     def acts(self) -> None:
         """Continue typing, or take another action."""
@@ -58,7 +58,7 @@ class Pupil:
     def drops(self) -> None:
         """Cut text is not pasted, and unfinished text is not finished."""
         self.page.give_up()
-        self.stages, self._cut = [], []
+        self.stages, self._cut_lines = [], []
 
     def finishes(self) -> None:
         while self.stages:
@@ -66,21 +66,21 @@ class Pupil:
         self.page.leave()
         self.page.give_up()
 
-    def _own(self, text: str) -> str:
+    def _note_own(self, text: str) -> str:
         own_text = text if text.startswith("//") else instruction_text(scan(text).tokens[:-1])
-        self.typed.add(own_text)
+        self.typed_texts.add(own_text)
         return text
 
     def _simple(self) -> str:
         k = next(self._numbers)
-        return self._own(self._rng.choice((
+        return self._note_own(self._rng.choice((
             f"F({k}, 50)", f"B({k}, 50)", f"L({k}, 60)", f"R({k}, 60)", f"W({k})", f"X = {k}",
             f"F({k}, 40) UNTIL(DISTANCE < 10)", f"SHOW({k})",
         )))  # fmt: skip
 
     def _make_head(self) -> str:
         k = next(self._numbers)
-        return self._own(self._rng.choice((f"LOOP({k})", f"WHILE(X < {k})", f"IF(X > {k})")))
+        return self._note_own(self._rng.choice((f"LOOP({k})", f"WHILE(X < {k})", f"IF(X > {k})")))
 
     # -- by blocks --------------------------------------------------------------------------------
 
@@ -98,14 +98,14 @@ class Pupil:
                 self, f"_{deed}"
             )
             was_done = apply_edits(page, make_operations(view, ids, self._near(ids) if ids else ""))
-        self.deeds[f"{deed}{'' if was_done else ', not possible'}"] += 1
+        self.counts_by_deed[f"{deed}{'' if was_done else ', not possible'}"] += 1
         return was_done
 
     def _near(self, ids: list[str]) -> str:
         k = round(self._rng.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
         return ids[max(0, min(len(ids) - 1, k))]
 
-    def _at(self, view: Tree, block_id: str) -> Place:
+    def _place_at(self, view: Tree, block_id: str) -> Place:
         if not block_id or self._rng.random() < 0.1:
             return Place(ROOT, START if view[START].text else "")
         if view[block_id].kind == BLOCK and self._rng.random() < 0.4:
@@ -117,7 +117,7 @@ class Pupil:
                     for _ in range(self._rng.choice((1, 1, 1, 2, 3))))  # fmt: skip
         if self._rng.random() < 0.25:
             new_trees = (Subtree(self.page.new_id(), self._make_head(), children=new_trees),)
-        return [Insert(self._at(view, block_id), new_trees)]
+        return [Insert(self._place_at(view, block_id), new_trees)]
 
     def _run(self, view: Tree, block_id: str, max_count: int, has_arms: bool = True) -> list[str]:
         siblings = view[view[block_id].parent].children
@@ -140,7 +140,7 @@ class Pupil:
         to = self._near(ids)
         if not run or any(view.is_in(to, id) for id in run):
             return []
-        return [Move(tuple(run), self._at(view, to))]
+        return [Move(tuple(run), self._place_at(view, to))]
 
     def _wrap(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         run = self._run(view, block_id, 4, has_arms=False)
@@ -155,9 +155,9 @@ class Pupil:
         if node.kind == INSTRUCTION:
             text = self._simple()
         elif node.kind == BLOCK:
-            text = self._own(f"IF(X > {k})" if node.text.startswith("IF") else f"LOOP({k})")
+            text = self._note_own(f"IF(X > {k})" if node.text.startswith("IF") else f"LOOP({k})")
         elif node.kind == NOTE:
-            text = self._own(f"// c{k}")
+            text = self._note_own(f"// c{k}")
         else:
             return []
         return [Replace(block_id, (("text", text),))]
@@ -165,7 +165,7 @@ class Pupil:
     def _note(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         if view[block_id].kind == NOTE:
             return []
-        return [Replace(block_id, (("note", self._own(f"// n{next(self._numbers)}")),))]
+        return [Replace(block_id, (("note", self._note_own(f"// n{next(self._numbers)}")),))]
 
     def _arm(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         ifs = [id for id in ids if view[id].text.startswith("IF")]
@@ -174,12 +174,12 @@ class Pupil:
         block = self._rng.choice(ifs)
         arm = "ELSE" if self._rng.random() < 0.6 else f"ELSEIF(X > {next(self._numbers)})"
         place = Place(block, self._rng.choice(["", *view[block].children]))
-        return [Insert(place, (Subtree(self.page.new_id(), self._own(arm)),))]
+        return [Insert(place, (Subtree(self.page.new_id(), self._note_own(arm)),))]
 
     def _comment(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
-        text, is_apart = self._own(f"// c{next(self._numbers)}"), self._rng.random() < 0.5
+        text, is_apart = self._note_own(f"// c{next(self._numbers)}"), self._rng.random() < 0.5
         new_tree = Subtree(self.page.new_id(), text, apart=is_apart)
-        return [Insert(self._at(view, block_id), (new_tree,))]
+        return [Insert(self._place_at(view, block_id), (new_tree,))]
 
     def _start(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         return [Replace(START, (("text", self._rng.choice(("SI|", "SB|"))),))]
@@ -195,7 +195,7 @@ class Pupil:
                 if has_staying_draft and self._rng.random() < 0.5
                 else self._rng.choice(PLANS)
             )
-            self.deeds[f"types {plan}"] += 1
+            self.counts_by_deed[f"types {plan}"] += 1
             self.stages = getattr(self, f"_plan_{plan}")()
         page.type(*self.stages.pop(0)(page.lines[:], page.caret))
         page.flush()
@@ -228,7 +228,7 @@ class Pupil:
             if k is None or word not in VALUES:
                 return text, caret, False
             start = text[k][:3] if text[k][:3] in ("SI|", "SB|") else ""
-            final = start + self._own(VALUES[word].format(next(self._numbers)))
+            final = start + self._note_own(VALUES[word].format(next(self._numbers)))
             text[k] = start + self._part_of(final[len(start) :])
             return text, k, True
 
@@ -309,14 +309,14 @@ class Pupil:
             size = self._rng.randint(1, 3)
             if k is None or any("|" in row for row in text[k : k + size]):
                 return text, caret, False
-            self._cut = text[k : k + size]
+            self._cut_lines = text[k : k + size]
             del text[k : k + size]
             return text, min(k, len(text) - 1), False
 
         def last_step(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._new_line(text)
-            text[k:k] = self._cut
-            self._cut = []
+            text[k:k] = self._cut_lines
+            self._cut_lines = []
             return text, k, False
 
         if self._rng.random() < 0.5:
@@ -361,7 +361,7 @@ class Pupil:
             heads = [k for k, row in enumerate(text) if row.strip().startswith("IF(")]
             if heads:
                 k = self._rng.choice(heads) + 1 + self._rng.randint(0, 1)
-                text.insert(k, self._own("ELSE"))
+                text.insert(k, self._note_own("ELSE"))
             return text, caret, False
 
         return [only]
@@ -369,7 +369,7 @@ class Pupil:
     def _plan_note(self) -> list[Stage]:
         def only(text: Text, caret: int) -> tuple[Text, int, bool]:
             k = self._code(text)
-            note = self._own(f"// t{next(self._numbers)}")
+            note = self._note_own(f"// t{next(self._numbers)}")
             if k is None or self._rng.random() < 0.5:
                 text.insert(k or 0, note)
             else:

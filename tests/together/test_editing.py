@@ -39,7 +39,7 @@ class Editor:
 
     def begin(self, stored_data: Json | None) -> None:
         """Join the group, with the page's stored data from before a reload."""
-        self.at, self.is_hot = 0, False
+        self.column, self.is_hot = 0, False
         self.keys: list[str] = []  # that are to be pressed
         self.news: list[Json] = []
         self.python: tuple[Any, Any] = (None, None)
@@ -62,34 +62,34 @@ class Editor:
         units = self.text.encode("utf-16-le")
         for start, end, put in reversed(changes):
             data = put.encode("utf-16-le")
-            caret = len(self.text[: self.at].encode("utf-16-le")) // 2
-            is_first = self.at == 0 or self.text[self.at - 1] == "\n"  # of its line
+            caret = len(self.text[: self.column].encode("utf-16-le")) // 2
+            is_first = self.column == 0 or self.text[self.column - 1] == "\n"  # of its line
             if caret > end or (caret == end and (start < end or is_first)):
                 caret += len(data) // 2 - (end - start)
             elif caret > start:
                 caret = start
             units = units[: 2 * start] + data + units[2 * end :]
             self.text = units.decode("utf-16-le")
-            self.at = len(units[: 2 * caret].decode("utf-16-le", "ignore"))
+            self.column = len(units[: 2 * caret].decode("utf-16-le", "ignore"))
 
     @property
     def line(self) -> int:
-        return self.text.count("\n", 0, self.at)
+        return self.text.count("\n", 0, self.column)
 
     def step(self) -> Json:
-        request = {"do": "group_step", "from": self.shown["version"], "caret": self.line,
+        request = {"do": "group_step", "from": self.shown_answer["version"], "caret": self.line,
                    "hot": self.is_hot, "news": self.news}  # fmt: skip
         return self.ask(request)
 
     def take(self, answer: Json) -> None:
-        self.news, self.shown = [], answer
+        self.news, self.shown_answer = [], answer
         self.change(answer["changes"])
 
     def hears(self) -> None:
         """Send pending changes, and receive news."""
-        self.program.submit(list(map(change_of, self.shown["pending"])))
-        name = self.shown["kept"]["name"]
-        news = self.program.news(name, self.shown["since"], self.shown["epoch"])
+        self.program.submit(list(map(change_of, self.shown_answer["pending"])))
+        name = self.shown_answer["kept"]["name"]
+        news = self.program.news(name, self.shown_answer["since"], self.shown_answer["epoch"])
         self.news.append(json.loads(json.dumps(news)))
 
     def types(self, rng: Random) -> bool:
@@ -106,18 +106,21 @@ class Editor:
                 self.keys = list(f"\n/// F({rng.randint(1, 99)}, 50)")
         key, line = self.keys.pop(0) if self.keys else rng.choice(KEYS), self.line
         if key == BACKSPACE:
-            self.text, self.at = (
-                self.text[: max(0, self.at - 1)] + self.text[self.at :],
-                self.at - 1,
+            self.text, self.column = (
+                self.text[: max(0, self.column - 1)] + self.text[self.column :],
+                self.column - 1,
             )
-            self.at = max(0, self.at)
+            self.column = max(0, self.column)
         else:
-            self.text, self.at = self.text[: self.at] + key + self.text[self.at :], self.at + 1
+            self.text, self.column = (
+                self.text[: self.column] + key + self.text[self.column :],
+                self.column + 1,
+            )
         was_hot, self.is_hot = self.is_hot, True
         return self.line != line and was_hot
 
     def goes_to(self, at: int) -> None:
-        line, self.at = self.line, at
+        line, self.column = self.line, at
         self.is_hot = self.is_hot and self.line == line
 
 
@@ -161,7 +164,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
     for editor in editors:
         editor.is_hot = False
         editor.take(editor.step())
-    while any(editor.shown["pending"] or editor.shown["since"] != program.number
+    while any(editor.shown_answer["pending"] or editor.shown_answer["since"] != program.number
               for editor in editors):  # fmt: skip
         for editor in editors:
             editor.hears()

@@ -40,7 +40,7 @@ def history(seed: int, deeds: int, pages: int) -> World:
         drafts = len(pupil.page.drafts)
         if drafts > 2 or (drafts and not pupil.stages and rng.random() < 0.1):
             pupil.drops()
-        world.at(rng.uniform(0.5, 5), act, name)
+        world.schedule(rng.uniform(0.5, 5), act, name)
 
     def make_trouble(name: str) -> None:
         if rng.random() < 0.6:
@@ -49,17 +49,17 @@ def history(seed: int, deeds: int, pages: int) -> World:
         else:
             world.reload(name)
             world.counts["reloads"] += 1
-        world.at(rng.uniform(20, 200), make_trouble, name)
+        world.schedule(rng.uniform(20, 200), make_trouble, name)
 
     def crash() -> None:
         world.crash()
-        world.at(rng.uniform(100, 900), crash)
+        world.schedule(rng.uniform(100, 900), crash)
 
     for name in world.pupils:
-        world.at(rng.uniform(0, 3), act, name)
-        world.at(rng.uniform(20, 200), make_trouble, name)
+        world.schedule(rng.uniform(0, 3), act, name)
+        world.schedule(rng.uniform(20, 200), make_trouble, name)
         world.ask(name, 0)
-    world.at(rng.uniform(30, 300), crash)
+    world.schedule(rng.uniform(30, 300), crash)
     world.run(lambda: change_count >= deeds)
     world.settle()
     world.check()
@@ -90,10 +90,10 @@ def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
         if pupil.page.drafts and not pupil.stages:
             pupil.page.give_up()
         pause_s = rng.gauss(1.5, 0.5) if pupil.stages or is_typing else rng.gauss(3.0, 1.0)
-        world.at(max(0.5, pause_s), act, name)
+        world.schedule(max(0.5, pause_s), act, name)
 
     for name in world.pupils:
-        world.at(rng.uniform(0, 3), act, name)
+        world.schedule(rng.uniform(0, 3), act, name)
         world.ask(name, 0)
     world.run(lambda: world.now_s > lesson_s)
     world.settle()

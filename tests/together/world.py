@@ -74,27 +74,29 @@ class World:
         self.replaced_unseen = 0
         self._queue: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
         self._order = count()
-        self._delay, self._lost, self._asks_s = delay, loss_rate, asks_s
+        self._delay, self._loss_rate, self._asks_s = delay, loss_rate, asks_s
         ids, numbers = count(1), count(200_000)
         self._rows: list[Json] = []  # the journal
-        self.all_taken: list[TakenChange] = []
+        self.taken_changes: list[TakenChange] = []
         self.program = SharedProgram(
             parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e0", self._keep
         )
         self._snapshot = self._send_and_parse(self.program.snapshot())
-        self.first = set(self.program.tree.node_by_id)
+        self.first_ids = set(self.program.tree.node_by_id)
         tree = self.program.tree
-        self.typed = {text for id in self.first for text in (tree[id].text, tree[id].note)}
+        self.typed_texts = {
+            text for id in self.first_ids for text in (tree[id].text, tree[id].note)
+        }
         names = "abcd"[:pages]
         self.pupils = {
             name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.rng, numbers,
-                        self.typed, self.counts, spread)
+                        self.typed_texts, self.counts, spread)
             for name in names
         }  # fmt: skip
         self.off_until_s = dict.fromkeys(names, 0.0)
         self.turn = dict.fromkeys(names, 0)
 
-    def at(self, after_s: float, function: Callable[..., None], *arguments: Any) -> None:
+    def schedule(self, after_s: float, function: Callable[..., None], *arguments: Any) -> None:
         heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), function, arguments))
 
     def run(self, is_over: Callable[[], bool]) -> None:
@@ -117,15 +119,15 @@ class World:
             return
         page = self.pupils[name].page
         if self.now_s < self.off_until_s[name]:
-            self.at(0.5, self.ask, name, turn)
+            self.schedule(0.5, self.ask, name, turn)
             return
-        self.at(RETRY_S, self._ask_again, name, turn)
-        if self.rng.random() >= self._lost:
+        self.schedule(RETRY_S, self._ask_again, name, turn)
+        if self.rng.random() >= self._loss_rate:
             sent_data = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
             seen_number = -1 if page.is_astray else page.number
-            self.at(
+            self.schedule(
                 self._delay(self.rng),
                 self._reach,
                 name,
@@ -143,8 +145,8 @@ class World:
     def _reach(self, name: str, turn: int, sent_data: Json, seen_number: int, epoch: str) -> None:
         self.submit(sent_data["sent"])
         news = self._send_and_parse(self.program.news(name, seen_number, epoch))
-        if self.rng.random() >= self._lost and self.now_s >= self.off_until_s[name]:
-            self.at(self._delay(self.rng), self._arrive, name, turn, news)
+        if self.rng.random() >= self._loss_rate and self.now_s >= self.off_until_s[name]:
+            self.schedule(self._delay(self.rng), self._arrive, name, turn, news)
 
     def submit(self, sent_data: Sequence[Json]) -> None:
         for row in sent_data:
@@ -152,14 +154,14 @@ class World:
             page, _ = page_and_count(change.uid)
             decided, tree_before = program.last_count_by_page.get(page, 0), program.tree
             if program.submit([change]):
-                self.all_taken.append(program.taken_changes[-1])
+                self.taken_changes.append(program.taken_changes[-1])
                 self._count_unseen(tree_before, page, change.seen_number)
             elif program.last_count_by_page.get(page, 0) > decided:
                 self.refusals_by_reason[program.refusals_by_page[page][-1][1]] += 1
 
     def _count_unseen(self, tree_before: Tree, page: str, seen_number: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
-        for operation in self.all_taken[-1].operations:
+        for operation in self.taken_changes[-1].operations:
             if isinstance(operation, Replace) and operation.id in tree_before:
                 by = tree_before[operation.id].mark(operation.fields[0][0])
                 self.replaced_unseen += (
@@ -167,7 +169,7 @@ class World:
                     and page_and_count(by)[0] != page
                     and any(
                         change.uid == by and change.number > seen_number
-                        for change in self.all_taken[-50:]
+                        for change in self.taken_changes[-50:]
                     )
                 )
 
@@ -179,7 +181,7 @@ class World:
         self.counts["astray"] += page.is_astray and page.epoch == self.program.epoch
         if turn == self.turn[name]:
             self.turn[name] += 1
-            self.at(self._asks_s, self.ask, name, self.turn[name])
+            self.schedule(self._asks_s, self.ask, name, self.turn[name])
 
     def reload(self, name: str) -> None:
         """The page is reloaded; it has the data stored in its browser."""
@@ -241,8 +243,8 @@ class World:
         )
         # No two pupils' values were mixed; no node is there twice.
         for node in tree.node_by_id.values():
-            assert node.text in self.typed or node.id in (ROOT, START), node.text
-            assert not node.note or node.note in self.typed, node.note
+            assert node.text in self.typed_texts or node.id in (ROOT, START), node.text
+            assert not node.note or node.note in self.typed_texts, node.note
         ids = tree.subtree_ids()
         assert len(ids) == len(set(ids)) == len(tree.node_by_id)
         numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
@@ -271,8 +273,8 @@ class World:
 
     def check_nothing_is_lost(self) -> None:
         """Every node is still there unless a delete or an unwrap removed it."""
-        alive = set(self.first)
-        for change in self.all_taken:
+        alive = set(self.first_ids)
+        for change in self.taken_changes:
             for operation in change.operations:
                 alive |= _list_added_ids(operation)
                 if isinstance(operation, Delete):
