@@ -49,9 +49,9 @@ def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
 
 
 def start_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
-    breaks = [word for line in lines for word in ("--break", str(line))]
+    break_options = [word for line in lines for word in ("--break", str(line))]
     port_option = ("--port", robot.port)
-    return Terminal("upload", program, "--no-save", *port_option, *breaks, size=(100, 50))
+    return Terminal("upload", program, "--no-save", *port_option, *break_options, size=(100, 50))
 
 
 def halt_output(terminal: Terminal) -> list[str]:
@@ -301,12 +301,14 @@ def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot
 @pytest.mark.parametrize("halts", ["1", "4"])
 def test_lines_that_halt_do_what_they_do_alone(halts: str, pty_robot: PtyRobot) -> None:
     data = "\n".join(LINES).encode()
-    alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
+    lines_alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
     halt_rows = (
         on(pty_robot, "live", "-", "--break", halts, data=data).gives(0, "").out.splitlines()
     )
     is_told = [line for line in halt_rows if not line.startswith(("Halted", "  "))]
-    assert is_told == alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (halts == "1")
+    assert is_told == lines_alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (
+        halts == "1"
+    )
 
 
 def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:

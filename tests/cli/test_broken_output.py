@@ -44,11 +44,13 @@ def after_lines(count: int, *words: str, joins_err: bool = False) -> tuple[int, 
         return process.wait(HANG_LIMIT_S), err_text
 
 
-@pytest.mark.parametrize(("lines", "extra"), [(0, []), (1, ["--json"]), (3, [])])
+@pytest.mark.parametrize(("lines", "extra_options"), [(0, []), (1, ["--json"]), (3, [])])
 def test_upload_into_a_pipe_that_closes_stops_the_robot(
-    pty_robot: PtyRobot, lines: int, extra: list[str]
+    pty_robot: PtyRobot, lines: int, extra_options: list[str]
 ) -> None:
-    code, err = after_lines(lines, "upload", "-e", SHOW_PROGRAM, "--port", pty_robot.port, *extra)
+    code, err = after_lines(
+        lines, "upload", "-e", SHOW_PROGRAM, "--port", pty_robot.port, *extra_options
+    )
     assert code == EXIT_OF_CLOSED_PIPE
     assert err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
@@ -257,11 +259,13 @@ def start_unread_command(*words: str) -> Command:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
-@pytest.mark.parametrize("extra", [[], ["--json"]])
-def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
+@pytest.mark.parametrize("extra_options", [[], ["--json"]])
+def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra_options: list[str]) -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        command = start_unread_command("upload", "-e", TALKING_PROGRAM, *port_options, *extra)
+        command = start_unread_command(
+            "upload", "-e", TALKING_PROGRAM, *port_options, *extra_options
+        )
         assert any(pupil.moves for pupil in room.pupils)
         command.signal(signal.SIGINT)
         assert command.process.wait(HANG_LIMIT_S) == 2
@@ -296,7 +300,7 @@ def test_whoever_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
     """In `(tsc upload prog; echo done) | less`, the next command may wait for the reader."""
     monkeypatch.setattr(streams, "READER_TIMEOUT_S", 0.0)
     end, pipe = os.pipe()
-    shared = os.dup(pipe)
+    shared_pipe = os.dup(pipe)
     if reader == "is slow":
         os.set_blocking(pipe, False)
         with suppress(BlockingIOError):
@@ -309,8 +313,8 @@ def test_whoever_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
             os.close(end)
         for _ in range(2):
             streams.drop_unread_output()
-            assert os.get_blocking(shared) and os.get_blocking(pipe)
+            assert os.get_blocking(shared_pipe) and os.get_blocking(pipe)
         monkeypatch.undo()
-    os.close(shared)
+    os.close(shared_pipe)
     if reader != "has gone":
         os.close(end)

@@ -58,8 +58,10 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
     assert "does not trust its certificate" in set_wifi(*school.place(stranger.file))
     err = set_wifi(*school.place())
     assert "is connected to the broker localhost, in the class 3b" in err
-    later = on(school.robot, "set", "wifi").out
-    assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
+    later_output = on(school.robot, "set", "wifi").out
+    assert "is connected to the broker" in later_output and "tsc class" not in later_output, (
+        "it knows no port"
+    )
     _, *next_command = shlex.split(err.partition("To see the whole class:  ")[2])
     assert (
         "no program; nothing is running; yours"

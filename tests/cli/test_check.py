@@ -114,11 +114,13 @@ def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
 
 
 def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
-    deep = folder
+    deep_folder = folder
     for k in range(30):
-        deep = deep / "d"
-        deep.mkdir()
-        (deep / f"p{k}.ts").write_text(WRONG_PROGRAM if k % 2 else RIGHT_PROGRAM, encoding="utf-8")
+        deep_folder = deep_folder / "d"
+        deep_folder.mkdir()
+        (deep_folder / f"p{k}.ts").write_text(
+            WRONG_PROGRAM if k % 2 else RIGHT_PROGRAM, encoding="utf-8"
+        )
     result = tsc("check", "d").gives(1)
     assert result.out.endswith("programs: 30, free of mistakes: 15\n")
 

@@ -206,17 +206,21 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
 
 def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
     """Options that a class lacks have the fleet's default."""
-    own = Options("class", "en").read(["upload"])
+    class_options = Options("class", "en").read(["upload"])
     room = SimpleNamespace(
-        address=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
+        address=("h", 1), group="c", options=class_options, broker=SimpleNamespace(attend=print)
     )
-    alone = Options("upload", "en").read([])
-    assert own is not None and alone is not None
+    upload_options = Options("upload", "en").read([])
+    assert class_options is not None and upload_options is not None
     for verb in ("class", "stop", "upload"):
         options = vars(Classroom.options_for(cast(Classroom, room), [], verb))
-        lacks = {name: value for name, value in vars(alone).items() if name not in vars(own)}
-        assert len(lacks) > 5
-        assert {name: options.get(name, "none") for name in lacks} == lacks
+        missing_options = {
+            name: value
+            for name, value in vars(upload_options).items()
+            if name not in vars(class_options)
+        }
+        assert len(missing_options) > 5
+        assert {name: options.get(name, "none") for name in missing_options} == missing_options
 
 
 @sampled
@@ -297,11 +301,11 @@ def test_what_became_of_the_robots_is_the_exit_code(
     assert actions.get(verb, classroom.show)(room) == (0 if is_usual else code)
 
 
-@pytest.mark.parametrize("is_there", [True, False])
+@pytest.mark.parametrize("is_present", [True, False])
 @pytest.mark.parametrize("losses", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
 def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
-    losses: tuple[bool | None, ...], is_there: bool,
+    losses: tuple[bool | None, ...], is_present: bool,
 ) -> None:  # fmt: skip
     """All of them are tried, and then each robot is asked whether it has stopped; if none can be
     asked, the output reports whether a message was sent."""
@@ -314,7 +318,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
         return has_gone
 
     def present() -> list[object]:
-        if not is_there:
+        if not is_present:
             raise CommandError(3, "class_empty", group="c", host="h")
         return []
 
@@ -327,14 +331,14 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
 
     monkeypatch.setattr(classroom, "run_together", ask)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
-    if is_there:
+    if is_present:
         assert classroom.stop(cast(Classroom, room)) == 7 and len(calls) == 1
     else:
         with pytest.raises(CommandError):
             classroom.stop(cast(Classroom, room))
     assert losses_left == []
     has_gone = "the stop for all robots" in capsys.readouterr().err
-    assert has_gone == (not is_there and any(losses))
+    assert has_gone == (not is_present and any(losses))
 
 
 def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:

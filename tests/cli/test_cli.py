@@ -296,11 +296,11 @@ def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
     program.write_text("si|loop( 3 )\nf(2,50) // go\nendloop", encoding="utf-8")
     assert tsc("fmt", "--check", program).code == 1
     assert tsc("fmt", program).code == 0
-    laid_out = "SI|LOOP(3);\n  F(2, 50);  // go\nEND_LOOP;\n"
-    assert program.read_text(encoding="utf-8") == laid_out
+    formatted_text = "SI|LOOP(3);\n  F(2, 50);  // go\nEND_LOOP;\n"
+    assert program.read_text(encoding="utf-8") == formatted_text
     assert tsc("fmt", "--check", program).code == 0
     assert tsc("fmt", program).out == ""
-    assert tsc("fmt", "-e", laid_out).out == laid_out
+    assert tsc("fmt", "-e", formatted_text).out == formatted_text
 
 
 def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(

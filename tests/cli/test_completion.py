@@ -131,13 +131,13 @@ def test_brackets_and_quotes_of_powershell_close() -> None:
     code = [re.sub(r"'(?:[^']|'')*'", "''", line) for line in script.splitlines()]
     code = [line for line in code if not line.startswith("#")]
     assert "'" not in "".join(code).replace("''", "")
-    opened = []
+    open_signs = []
     for sign in "".join(code):
         if sign in "([{":
-            opened.append(sign)
+            open_signs.append(sign)
         elif sign in ")]}":
-            assert opened.pop() + sign in ("()", "[]", "{}")
-    assert not opened
+            assert open_signs.pop() + sign in ("()", "[]", "{}")
+    assert not open_signs
 
 
 def test_a_shell_that_is_not_known(tsc: Tsc) -> None:

@@ -382,11 +382,11 @@ def test_platformio_is_installed_after_a_yes(
     assert "tinibot" in person.output.splitlines()[-1] and "0 bytes" in person.output
     assert any((clone.own_folder / "platformio").iterdir())
     shutil.rmtree(clone.core)
-    another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
-    result = clone.run_without_terminal(clone.firmware(*another))
+    second_language, third_language = ("--lang", "pt"), ("--lang", "en" if words else "es")
+    result = clone.run_without_terminal(clone.firmware(*second_language))
     assert result.code == 2 and "50 MB" in result.err and "PyPI" not in result.err
-    clone.run_without_terminal(clone.firmware(*another, "--yes")).gives(0, "50 MB")
-    result = clone.run_without_terminal(clone.firmware(*third))
+    clone.run_without_terminal(clone.firmware(*second_language, "--yes")).gives(0, "50 MB")
+    result = clone.run_without_terminal(clone.firmware(*third_language))
     assert result.code == 0 and "MB" not in result.err
 
 
@@ -515,12 +515,12 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
 def test_files_that_go_away_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("a", "gone", "z"):
         (tmp_path / name).write_bytes(b"12345")
-    real = os.lstat
+    real_lstat = os.lstat
 
     def lstat(path: str) -> os.stat_result:
         if path.endswith("gone"):
             raise FileNotFoundError(path)
-        return real(path)
+        return real_lstat(path)
 
     monkeypatch.setattr(os, "lstat", lstat)
     assert fetching.size_of(tmp_path) == 10

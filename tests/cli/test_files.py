@@ -52,7 +52,7 @@ def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyP
         calls.append((name, appauthor))
         return Path(name)
 
-    monkeypatch.setattr(files, "_linux_folder", lambda variable, usual: None)
+    monkeypatch.setattr(files, "_linux_folder", lambda variable, default: None)
     monkeypatch.setattr(platformdirs, "user_cache_path", path)
     monkeypatch.setattr(platformdirs, "user_config_path", path)
     assert files.cache_folder() == files.settings_folder() == Path("tiniscript")
@@ -227,14 +227,14 @@ def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
     folder = files.cache_folder() / "maps"
     folder.mkdir(parents=True)
     old_path, new_path = folder / ".x.json.00.new", folder / ".y.json.00.new"
-    older = folder / "0badcafe.1234"  # a name in the form of older versions
-    for path in (old_path, new_path, older):
+    older_file = folder / "0badcafe.1234"  # a name in the form of older versions
+    for path in (old_path, new_path, older_file):
         path.write_bytes(b"")
-    for path in (old_path, older):
+    for path in (old_path, older_file):
         os.utime(path, (time() - 7200, time() - 7200))
     assert tsc("compile", "-e", PROGRAM, "-o", tmp_path / "x.bin").code == 0
     names = {path.name for path in folder.iterdir()}
-    assert {old_path.name, older.name} & names == set()
+    assert {old_path.name, older_file.name} & names == set()
     assert new_path.name in names, "another command may be writing it now"
     empty = folder / "00000001.json"
     empty.write_bytes(b"")
@@ -389,8 +389,8 @@ def test_what_is_read_is_a_file_of_no_more_than_so_many_bytes(tmp_path: Path) ->
     if sys.platform != "win32":
         os.mkfifo(tmp_path / "pipe")
         not_files.append(tmp_path / "pipe")
-    for other in not_files:
+    for file in not_files:
         with pytest.raises(OSError):
-            files.read_limited(other, 5)
+            files.read_limited(file, 5)
     with pytest.raises(OSError):
         files.read_limited(path, 4)

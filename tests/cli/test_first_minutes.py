@@ -155,8 +155,8 @@ class Upload(Robot):
 def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     upload = Upload()
     # a command that brings a robot along does not take that of another one
-    other = run_in_process("upload", "--virtual", "-e", "SI|SHOW(1)")
-    assert "SHOW 1" in other.out and upload.port not in other.out
+    virtual_result = run_in_process("upload", "--virtual", "-e", "SI|SHOW(1)")
+    assert "SHOW 1" in virtual_result.out and upload.port not in virtual_result.out
     assert run_in_process("doctor", "--virtual").code == 0
     result = run_in_process("stop", *options)
     assert (result.code, result.out) == (
@@ -274,10 +274,10 @@ def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert result.code == 1
     # The message names the program's first word.
     message = "tinibot has no BUTTON; the robot liner has it.\nTry:  "
-    either = (
+    robot_lists = (
         "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
     )
-    assert f"{message}{either} the program: // robot: liner " in result.err
+    assert f"{message}{robot_lists} the program: // robot: liner " in result.err
     assert "LINE_L = 0" not in result.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
         assert "the robot liner has it" in tsc(*verb, *LINE).err, verb
@@ -503,9 +503,9 @@ def test_board_says_where_the_build_looks(
     result = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
     assert result.out.endswith("To build the firmware:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
-    up = str(Path("../../.."))
+    sources_folder = str(Path("../../.."))
     assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
-        f"To build the firmware:  pio run -d {up} -e nano\n"
+        f"To build the firmware:  pio run -d {sources_folder} -e nano\n"
     )
 
 

@@ -34,11 +34,11 @@ class Terminal:
         self.screen = pyte.HistoryScreen(columns, LINES, history=10_000)
         self.stream = pyte.Stream(self.screen)
 
-    def draw(self, lines: list[Text], above: str = "") -> str:
+    def draw(self, lines: list[Text], text_above: str = "") -> str:
         """Draw it; return the output."""
         self.output.seek(0)
         self.output.truncate()
-        self.frame.draw(lines, above)
+        self.frame.draw(lines, text_above)
         output = self.output.getvalue()
         self.stream.feed(output.replace("\n", "\r\n"))  # line ends as a terminal writes them
         return output
@@ -46,8 +46,8 @@ class Terminal:
     def all_lines(self) -> list[str]:
         """All lines, with those that have scrolled away."""
         rows = [*self.screen.history.top, *(self.screen.buffer[k] for k in range(LINES))]
-        wide = self.screen.columns
-        return ["".join(row[k].data for k in range(wide)).rstrip() for row in rows]
+        column_count = self.screen.columns
+        return ["".join(row[k].data for k in range(column_count)).rstrip() for row in rows]
 
 
 def line(rng: random.Random) -> Text:
@@ -74,9 +74,9 @@ def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> 
             lines = lines[: rng.randrange(len(lines) + 1)]
         if rng.random() < 0.2 and len(lines) < LINES - 4:
             lines.append(line(rng))
-        above = f"said {number}" if rng.random() < 0.3 else ""
-        lines_above += [above] if above else []
-        terminal.draw(lines, above)
+        text_above = f"said {number}" if rng.random() < 0.3 else ""
+        lines_above += [text_above] if text_above else []
+        terminal.draw(lines, text_above)
         expected = [*lines_above, *(text.plain for text in lines)]
         lines_shown = terminal.all_lines()
         assert lines_shown[: len(expected)] == expected
@@ -224,10 +224,10 @@ def test_a_copy_is_another_canvas() -> None:
 
 
 def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -> None:
-    top, below = Canvas(3, 1), Canvas(3, 1)
+    top, lower_canvas = Canvas(3, 1), Canvas(3, 1)
     top.draw_lines([(0, 0), (0, 0)])
-    below.draw_lines([(0, 3), (3, 3)])
-    [line] = merge_layers([(top, "red"), (below, "blue")])
+    lower_canvas.draw_lines([(0, 3), (3, 3)])
+    [line] = merge_layers([(top, "red"), (lower_canvas, "blue")])
     assert line.plain == "⣁⣀ "
     assert [(span.start, span.end, span.style) for span in line.spans] == [
         (0, 1, "red"), (1, 2, "blue"),

@@ -229,9 +229,11 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     tsc: Tsc, tmp_path: Path
 ) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
-    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))]
-    assert takes == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
-    for verb in takes:
+    program_verbs = [
+        verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))
+    ]
+    assert program_verbs == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
+    for verb in program_verbs:
         assert "-e" in {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
         if verb not in ("upload", "class", "lesson"):
             options = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
@@ -242,12 +244,12 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 @pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
 def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
-    common, *sections = page(language, "a test", table).split("\n## ")
+    common_text, *sections = page(language, "a test", table).split("\n## ")
     sections = [section for part in sections for section in part.split("\n### ")]
     (section,) = (
         section for section in sections if section.startswith(f"`tsc {command_words(verb)}`\n")
     )
-    rows = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
+    rows = re.findall(r"^\| `(-.*?)` \|", common_text + "\n" + section, re.M)
     flags = [flag for row in rows for flag in re.findall(FLAG, row)]
     assert sorted(flags) == flags_in_help(verb)
 

@@ -74,10 +74,10 @@ def hostile(count: int) -> dict[str, bytes]:
 def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str) -> None:
     """Inputs are as large as `check` allows, and a tenth of that for the others."""
     program = tmp_path / "any.ts"
-    extra = ["--max-steps", "1000"] if verb == "run" else []
+    extra_options = ["--max-steps", "1000"] if verb == "run" else []
     program.write_bytes(hostile(100_000 if verb == "check" else 10_000)[name])
     # Texts about programs are the same for all verbs, so one verb tests the other language.
-    result = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra)
+    result = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra_options)
     assert result.code in (0, 1), result.err[-2000:]
     if name in ("too large", "ten megabytes", "binary", "nul", "latin-1", "utf-16"):
         assert result.code == 1

@@ -266,7 +266,7 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
     for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
         saved_numbers = restore(kept_memory, tmp_path)
         arrival_pipe, release_pipe = os.pipe(), os.pipe()
-        say = os.pipe()
+        wait_pipe = os.pipe()
 
         def pause_at_line(
             line: int = line, arrival_pipe: Any = arrival_pipe, release_pipe: Any = release_pipe
@@ -278,19 +278,19 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
             )()
             kept_memory.add(SECOND_NUMBER)
 
-        def run_child(say: Any = say) -> None:
-            vars(files)["sleep"] = lambda _: os.write(say[1], b"w")
+        def run_child(wait_pipe: Any = wait_pipe) -> None:
+            vars(files)["sleep"] = lambda _: os.write(wait_pipe[1], b"w")
             kept_memory.add(THIRD_NUMBER)
-            os.write(say[1], b"e")
+            os.write(wait_pipe[1], b"e")
 
         first_child = fork_child(pause_at_line)
         assert os.read(arrival_pipe[0], 1)
         second_child = fork_child(run_child)
-        assert os.read(say[0], 1) in (b"w", b"e")
+        assert os.read(wait_pipe[0], 1) in (b"w", b"e")
         os.write(release_pipe[1], b"1")
         assert (wait_for_child(first_child), wait_for_child(second_child)) == (0, 0), line
         assert sorted(kept_memory.all()) == [*saved_numbers, SECOND_NUMBER, THIRD_NUMBER], line
-        for end in (*arrival_pipe, *release_pipe, *say):
+        for end in (*arrival_pipe, *release_pipe, *wait_pipe):
             os.close(end)
 
 

@@ -200,13 +200,13 @@ def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: 
         assert page.count("<svg") == 1
         assert "**" not in page and "```" not in page and "`" not in page
         assert "size: A4" in page
-        opened: list[str] = []
+        open_tags: list[str] = []
         for is_end, tag, is_whole in re.findall(r"<(/?)(\w+)[^>]*?(/?)>", page):
             if is_end:
-                assert opened and opened.pop() == tag, tag
+                assert open_tags and open_tags.pop() == tag, tag
             elif tag != "meta" and not is_whole:
-                opened.append(tag)
-        assert opened == []
+                open_tags.append(tag)
+        assert open_tags == []
 
 
 def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> None:
@@ -222,7 +222,7 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
     """Broken, empty, huge, binary and wrongly stored files have a row each, and none is lost."""
     pupils = tmp_path / "class"
     pupils.mkdir()
-    odd = {
+    odd_files = {
         "empty.ts": (b"", "not yet"), "blank.ts": (b"  \n\n", "not yet"),
         "binary.ts": (bytes(range(256)) * 10, "mistakes"),
         "huge.ts": (b"F(1,80);" * 200_000, "mistakes"),
@@ -233,9 +233,9 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
         "José Ñañez.ts": (RIGHT_ANSWER.encode(), "done"),
         "red\x1b[31m.ts": (RIGHT_ANSWER.encode(), "done"),
     }  # fmt: skip
-    for name, (data, _) in odd.items():
+    for name, (data, _) in odd_files.items():
         (pupils / name).write_bytes(data)
-    for number in range(30 - len(odd)):
+    for number in range(30 - len(odd_files)):
         (pupils / f"pupil {number}.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     (pupils / "folder.ts").mkdir()
     rows = tmp_path / "marks.csv"
@@ -247,7 +247,7 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
     verdict_by_name = {
         row[0]: row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())
     }
-    for name, (_, verdict) in odd.items():
+    for name, (_, verdict) in odd_files.items():
         assert verdict_by_name[name.replace("\x1b", "?")] == verdicts[verdict], name
 
 

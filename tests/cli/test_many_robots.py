@@ -70,9 +70,11 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOT_COUNT - 3
         showing_ports = [row["port"] for row in events if row["event"] == "SHOW"]
-        noisy = {pupils[number].port for number in NOISY_ROBOTS}  # the damaged event may be theirs
+        noisy_ports = {
+            pupils[number].port for number in NOISY_ROBOTS
+        }  # the damaged event may be theirs
         assert (
-            set(present_rows) - bad_ports - noisy
+            set(present_rows) - bad_ports - noisy_ports
             <= set(showing_ports)
             <= set(present_rows) - bad_ports
         )
@@ -118,8 +120,8 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     *other_pupils, last_robot = class_.pupils
     assert run_in_process("upload", "-e", FOREVER, "--all", "--detach").code == 0
     holder = ports.open_port(last_robot.port, 115_200)
-    with monkeypatch.context() as short, closing(holder):
-        short.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
+    with monkeypatch.context() as patch, closing(holder):
+        patch.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
             result = run_in_process("stop", *options, "--json")
             rows = results(result)
@@ -198,8 +200,8 @@ def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> 
     run_in_process("upload", "-e", "SB|S", "--port", weak.port)
     heard_count_by_port = {pupil.port: len(pupil.received) for pupil in class_.pupils}
     robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))
-    alone = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
-    wrong_findings = [finding for finding in alone["findings"] if finding["is_wrong"]]
+    single_report = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
+    wrong_findings = [finding for finding in single_report["findings"] if finding["is_wrong"]]
     assert [finding["cause"] for finding in wrong_findings] == ["low_supply"]
     findings = robots_by_port[weak.port]["findings"]
     assert isinstance(findings, list)

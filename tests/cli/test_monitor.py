@@ -97,26 +97,26 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     """This holds for any number of losses and unanswered searches; each robot is found once."""
     rng = Random(seed)
     searches: list[Any] = []
-    is_there, losses, wait_count = True, 0, 0
+    is_reachable, losses, wait_count = True, 0, 0
 
     class Over(Exception):
         pass
 
     def event() -> tuple[int, Event] | None:
-        nonlocal is_there, losses, wait_count
+        nonlocal is_reachable, losses, wait_count
         wait_count += 1
         if wait_count > 400:
             raise Over
-        if is_there:
+        if is_reachable:
             if losses < 5 and rng.random() < 0.1:
-                is_there, losses = False, losses + 1
+                is_reachable, losses = False, losses + 1
                 return wait_count, LostEvent()
             return None
         questions = [search for search in searches if search.outcome is None]
         assert len(questions) == 1, "nobody looks for it"
         if rng.random() < 0.3:
-            is_there = rng.random() < 0.3
-            questions[0].outcome = SimpleNamespace(status=OK if is_there else LOST)
+            is_reachable = rng.random() < 0.3
+            questions[0].outcome = SimpleNamespace(status=OK if is_reachable else LOST)
         return None
 
     def search() -> Any:

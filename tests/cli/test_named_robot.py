@@ -35,9 +35,9 @@ def liner(tmp_path: Path) -> Path:
 
 
 def test_all_verbs_are_here() -> None:
-    takes = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
+    robot_verbs = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
              and option.kind is not None and option.kind.name == "program"}  # fmt: skip
-    assert takes == set(OPTIONS_BY_VERB)
+    assert robot_verbs == set(OPTIONS_BY_VERB)
 
 
 @each_row("verb", [verb for verb, words in OPTIONS_BY_VERB.items() if words is not None])

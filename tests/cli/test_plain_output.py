@@ -62,7 +62,7 @@ def assert_plain(*texts: str) -> None:
 
 
 @pytest.fixture(autouse=True)
-def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def in_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
 
@@ -80,13 +80,13 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
             ending for ending in end_arguments if ending not in ("X", "-e", PROGRAM, "F(1, 80)")
         ]
     for language in sample_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
-        for evil in (
+        for unsafe_text in (
             HOSTILE_TEXT,
             f"DISTANCE={HOSTILE_TEXT}",
             f"{HOSTILE_TEXT}.toml",
             f"/{HOSTILE_TEXT}/x",
         ):
-            words = [option, evil] if option else [evil]
+            words = [option, unsafe_text] if option else [unsafe_text]
             result = tsc(*words_of(verb), *words, *end_arguments, "--lang", language)
             assert_plain(result.out, result.err)
 

@@ -59,9 +59,12 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
         recordings.encode_row(show._replace(event="SHOW 100")),
     )
     file.write_text(file.read_text().replace(*old_and_new_row))
-    other = tsc("run", file, "--lang", "es").gives(1)
-    assert "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual" in other.err
-    assert f"hizo {show.event[5:]} a los 1.0 s" in other.err
+    other_result = tsc("run", file, "--lang", "es").gives(1)
+    assert (
+        "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual"
+        in other_result.err
+    )
+    assert f"hizo {show.event[5:]} a los 1.0 s" in other_result.err
 
 
 def test_a_run_is_as_long_as_it_may_be(tsc: Tsc, tmp_path: Path) -> None:

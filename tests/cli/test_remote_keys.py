@@ -183,10 +183,10 @@ def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
             held_keys.press_typed(table.typed_keys, table.now_s)
             table.status = rng.choice((OK, CANCELLED, LOST, None))
             remote.poll()
-            held = held_keys.keys_at(table.now_s)
+            held_state = held_keys.keys_at(table.now_s)
             said_s, said = table.words[-1] if table.words else (0.0, NOTHING_PRESSED)
-            assert said == held
-            assert held == NOTHING_PRESSED or table.now_s - said_s < SEND_INTERVAL_S
+            assert said == held_state
+            assert held_state == NOTHING_PRESSED or table.now_s - said_s < SEND_INTERVAL_S
             table.now_s += POLL_S
         assert table.is_entered
     assert not table.is_entered
@@ -205,10 +205,10 @@ def test_a_robot_that_accepts_no_keys_is_an_error(
         remote.poll()
         remote.poll()
     assert not table.is_entered
-    older = Table(features=0)
-    with pytest.raises(KeysRefused), remote_at(older, monkeypatch):
+    older_table = Table(features=0)
+    with pytest.raises(KeysRefused), remote_at(older_table, monkeypatch):
         pass
-    assert not older.is_entered and not older.words
+    assert not older_table.is_entered and not older_table.words
 
 
 def test_q_interrupts_as_ctrl_c_does_and_is_told_from_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -162,8 +162,8 @@ def test_a_person_without_a_port_is_asked_for_a_port(
 def test_nobody_something_else_and_another_version(
     tsc: Tsc, pty_robot: PtyRobot, hasty: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with monkeypatch.context() as newer:
-        newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
+    with monkeypatch.context() as patch:
+        patch.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
         tsc("doctor", "--identify", "--port", pty_robot.port).gives(
             3, f"uses version {MAJOR} of the link"
         )

@@ -68,7 +68,7 @@ def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "says"),
+    ("arguments", "message"),
     [
         (["--text-level", "uno"], "--text-level works only with --text."),
         (["--text", "--map", "x.json"], "a line of text has no map"),
@@ -76,6 +76,6 @@ def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path)
     ],
 )
 def test_options_that_do_not_go_together(
-    tsc: Tsc, program: Path, arguments: list[str], says: str
+    tsc: Tsc, program: Path, arguments: list[str], message: str
 ) -> None:
-    tsc("compile", program, *arguments).gives(2, says)
+    tsc("compile", program, *arguments).gives(2, message)

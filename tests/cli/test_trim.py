@@ -279,9 +279,9 @@ def pace_of(memory: bytes) -> Pace | None:
 
 
 def test_older_firmware_stores_no_pace() -> None:
-    older = TrimReply(0, 0, 0, b"")
-    assert trim_from_reply(older).pace is None
-    assert "centimetres" not in trim_in_words(trim_from_reply(older), "en")
+    older_reply = TrimReply(0, 0, 0, b"")
+    assert trim_from_reply(older_reply).pace is None
+    assert "centimetres" not in trim_in_words(trim_from_reply(older_reply), "en")
 
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:

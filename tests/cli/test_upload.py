@@ -38,10 +38,10 @@ def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     image = compile_text("SI|S", KIT).image
     checksum = f"{int.from_bytes(image[10:14], 'little'):08x}"
     result = on(pty_robot, "upload", "-e", "SI|S", "--verbose").gives(0, "")
-    receipt, _, last = result.out.splitlines()
+    receipt, _, last_line = result.out.splitlines()
     assert receipt.startswith(f"-e -> tinibot ({pty_robot.port})   {len(image)} bytes")
     assert receipt.endswith(f"checksum {checksum}   saving   SI: running")
-    assert last == "Saved in slot 0."
+    assert last_line == "Saved in slot 0."
     result = on(pty_robot, "upload", "-e", "SI|S", "--json").gives(0, "")
     rows = [json.loads(line) for line in result.out.splitlines()]
     assert (rows[0]["checksum"], rows[0]["code_bytes"]) == (checksum, 1)

@@ -28,8 +28,8 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
     picture = tmp_path / "way.png"
     with robot("--name", "KAT", "--world", "light", "--plot", picture) as running_robot:
         assert running_robot.port.startswith("socket://127.0.0.1:")
-        listed = json.loads(run_in_process("doctor", "--ports", "--json").out)
-        [row] = [row for row in listed if row["port"] == running_robot.port]
+        port_rows = json.loads(run_in_process("doctor", "--ports", "--json").out)
+        [row] = [row for row in port_rows if row["port"] == running_robot.port]
         assert row["is_virtual"]
         assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
         in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
@@ -81,10 +81,10 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
     dropped: list[object] = []
     monkeypatch.setattr(sys, "unraisablehook", dropped.append)
 
-    inside = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
+    interrupt = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
 
     with handle_signals() as ended_end_request:
-        inside()
+        interrupt()
     # A stopped simulator prints no Python traceback.
     assert not dropped and ended_end_request.is_set
     sys.unraisablehook(None)  # type: ignore[arg-type]
@@ -100,9 +100,9 @@ def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
             result = run_in_process("doctor", "--identify", "--port", running_robot.port)
             assert result.code == 3
             assert f"another program is using the port {running_robot.port}" in result.err
-            with visitor(running_robot.port) as third:
-                assert third.recv(1000).startswith(b"Port already in use")
-                assert third.recv(1000) == b""
+            with visitor(running_robot.port) as third_client:
+                assert third_client.recv(1000).startswith(b"Port already in use")
+                assert third_client.recv(1000) == b""
             first.sendall(b"\x05half a frame")
         run_in_process("upload", "--port", running_robot.port, "-e", "SI|F(0.1, 50)").gives(0, "")
 
@@ -221,14 +221,17 @@ def colours(data: bytes) -> dict[str, int]:
 
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
-    still, way_picture = tmp_path / "still.png", tmp_path / "way.png"
-    run_in_process("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
+    still_picture, way_picture = tmp_path / "still.png", tmp_path / "way.png"
+    run_in_process("upload", "--virtual", "-e", "SI|S", "--plot", still_picture).gives(0)
     result = run_in_process("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
                             "--plot", way_picture)  # fmt: skip
     assert result.code == 0
     assert "The time set with --for is over.\nSaved. The button starts it.\n" in result.out
     assert f"and touched nothing. Picture: {way_picture}\n" in result.out
-    colours_before, colours_after = colours(still.read_bytes()), colours(way_picture.read_bytes())
+    colours_before, colours_after = (
+        colours(still_picture.read_bytes()),
+        colours(way_picture.read_bytes()),
+    )
     assert colours_before["way"] < 20 < 4000 < colours_after["way"]
     assert colours_before["robot"] > 200
     assert colours_before["box"] > 10_000

@@ -126,21 +126,21 @@ def test_waits_without_news_are_one_silence(
     now_s = 0.0
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    quiet = progress.RepeatedWaitNotice("waits", is_seen=True)
+    quiet_notice = progress.RepeatedWaitNotice("waits", is_seen=True)
 
     def wait_times(count: int, each_s: float) -> str:
         nonlocal now_s
         for _ in range(count):
-            quiet.begin()
+            quiet_notice.begin()
             end_s = now_s + each_s
             while now_s < end_s:
                 now_s += 0.1
-                quiet.poll()
+                quiet_notice.poll()
         return capsys.readouterr().err
 
     assert wait_times(19, 0.1) == ""
     assert wait_times(100, 0.3) == "waits\n"
-    quiet.restart()
+    quiet_notice.restart()
     assert wait_times(50, 0.3) == ""  # once
     now_s += 1  # a person types
     assert wait_times(1, 1.8) == "" and wait_times(2, 1.8) == "waits\n"

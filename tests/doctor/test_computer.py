@@ -84,9 +84,9 @@ def test_the_users_and_the_holder_of_a_port_are_named(linux: FakeComputer) -> No
     assert diagnosis.port_access(linux, port).is_joined
     linux.owners[port] = (20, True)
     linux.group_numbers = {20}
-    linux.program(5, "minicom", opens="/dev/ttyUSB1")
+    linux.program(5, "minicom", opened_port="/dev/ttyUSB1")
     assert diagnosis.port_access(linux, port) == computer.Access(True, "dialout", False, ())
-    linux.program(6, "ModemManager", opens=port)
+    linux.program(6, "ModemManager", opened_port=port)
     assert diagnosis.port_access(linux, port).using_programs == ("ModemManager",)
 
 

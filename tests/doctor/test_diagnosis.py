@@ -172,7 +172,7 @@ _set_member, _set_stranger = _port_of_dialout("somebody"), _port_of_dialout("")
 def _port_in_use(name: str) -> Make:
     def set_case(case: Case) -> None:
         case.with_port(CABLE)
-        case.system.program(5, name, opens=CABLE)
+        case.system.program(5, name, opened_port=CABLE)
 
     return set_case
 

@@ -265,7 +265,7 @@ def test_notifications_are_as_long_as_was_agreed() -> None:
 def test_slow_notifications_delay_nobody_else() -> None:
     robot = boot()
     driver, slow = session(1, robot), session(2, robot)
-    ends: Ends = [(None, driver), (LowEnergy(robot, slow=100), slow)]
+    ends: Ends = [(None, driver), (LowEnergy(robot, look_interval=100), slow)]
     request = slow.status()
     assert upload_text(robot, ends, driver) == "OK"
     begun_ms = robot.now_ms

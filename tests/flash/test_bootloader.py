@@ -90,13 +90,13 @@ def avrdude(uno: Uno, loader: Bootloader, file: Path) -> str:
 def test_avrdude_writes_the_sketch_and_the_robot_drives(
     board: str, builder: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    common = shared_folder(tmp_path_factory)
+    build_folder = shared_folder(tmp_path_factory)
     if builder == "PlatformIO":
-        elf = firmware(board, tmp_path, common)
+        elf = firmware(board, tmp_path, build_folder)
         sketch = tmp_path / "firmware.hex"
         subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, sketch], check=True)
     else:
-        sketch = arduino_builder.firmware(board, tmp_path, common).hex
+        sketch = arduino_builder.firmware(board, tmp_path, build_folder).hex
     loader = bootloader(board)
     program = tmp_path / "drive.ts"
     program.write_text(DRIVE_PROGRAM, encoding="utf-8")

@@ -50,7 +50,7 @@ def clone(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def own(tmp_path: Path) -> Path:
+def robot_file(tmp_path: Path) -> Path:
     """A profile of one's own: the paper's robot with another name for a sensor."""
     profile = tmp_path / "mine.toml"
     profile.write_text(TEXTS["tinibot"].replace("LIGHT_R", "LIGHT_X"), encoding="utf-8")
@@ -61,28 +61,30 @@ def own(tmp_path: Path) -> Path:
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
+def test_a_robot_of_ones_own_is_built_and_written(clone: Path, robot_file: Path) -> None:
     """It is built once and stays ready until one of its sources changes."""
     skip_unless_available()
     variables, reason = prepare()
     need(reason or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
     with new_board(bootloader("uno")) as uno:
-        result = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
+        result = tsc(clone, "--port", uno.pty, "--robot", str(robot_file), **variables)
         assert result.code == 0, result.err
         assert "PlatformIO is building the firmware of mine for the uno" in result.err
         first_line = result.out.splitlines()[0]
         assert first_line.startswith("The firmware for mine was written to the uno and verified: ")
         info = process("doctor", "--json", "--port", uno.pty)
-        assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
+        assert f'"kit": "{robots.load(str(robot_file)).kit.fingerprint:04x}"' in info.out, info.err
     files = ready.files(ready.firmware_cache())
     assert [(file.title, file.board) for file in files] == [("mine", "uno")]
-    second_build = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could not build now
+    second_build = tsc(
+        clone, "--build", "--robot", str(robot_file)
+    )  # PlatformIO could not build now
     assert (second_build.code, second_build.err) == (0, "")
     assert second_build.out == f"mine on uno: ready, {files[0].flash_bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")
-    broken_result = tsc(clone, "--build", "--robot", str(own), **variables)
+    broken_result = tsc(clone, "--build", "--robot", str(robot_file), **variables)
     assert broken_result.code == 2
     assert "could not be built" in broken_result.err and "error" in broken_result.err
     log = broken_result.err.split()[-1]
@@ -92,12 +94,16 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
 # -- outdated files are not written
 
 
-def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None:
+def test_sources_robot_and_board_make_the_digest(clone: Path, robot_file: Path) -> None:
     sources = building.sources()
     assert sources is not None
     digests = {
         sources.digest(robot)
-        for robot in (robots.load("tinibot"), robots.load("tinibot", "nano"), robots.load(str(own)))
+        for robot in (
+            robots.load("tinibot"),
+            robots.load("tinibot", "nano"),
+            robots.load(str(robot_file)),
+        )
     }
     assert len(digests) == 3
     spanish = robots.load("tinibot").with_language("es")
@@ -307,10 +313,10 @@ def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written
 
 
 @pytest.mark.parametrize(
-    ("chip", "lacks"), [("uno", "sin TASK ni WHEN"), ("nano", "sin control remoto")]
+    ("chip", "missing_text"), [("uno", "sin TASK ni WHEN"), ("nano", "sin control remoto")]
 )
 def test_a_firmware_that_is_too_large_is_built_with_less_and_says_so(
-    chip: str, lacks: str, clone: Path, tmp_path: Path
+    chip: str, missing_text: str, clone: Path, tmp_path: Path
 ) -> None:
     body = f"""
 {BUILD_CODE}
@@ -321,7 +327,7 @@ make(name, ":00000001FF\\n")
 """
     words = ("--chip", chip, "--lang", "es")
     result = build_firmware(clone, fake_platformio(tmp_path, body), *words).gives(0)
-    assert result.err.count(f"queda {lacks}") == 1, result
+    assert result.err.count(f"queda {missing_text}") == 1, result
     assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 

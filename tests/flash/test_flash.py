@@ -225,10 +225,12 @@ def test_the_avrdude_of_another_program_is_found(
     program.parent.mkdir(parents=True)
     program.touch(mode=0o755)
     assert avrdude.find_avrdude() is None  # avrdude does not work without its configuration
-    inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
-    inside.mkdir(exist_ok=True)
-    (inside / "avrdude.conf").touch()
-    assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
+    config_folder = (
+        program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
+    )
+    config_folder.mkdir(exist_ok=True)
+    (config_folder / "avrdude.conf").touch()
+    assert avrdude.find_avrdude() == [str(program), "-C", str(config_folder / "avrdude.conf")]
 
 
 @pytest.mark.parametrize(("outcome", "name"), [
@@ -292,8 +294,8 @@ def test_a_firmware_is_the_same_however_it_is_built(
     """`pio run` builds shipped robots, and `tsc firmware` any robot, in another folder."""
     path = firmware_files.build(robots.load("tinibot"), tmp_path)
     assert path.name.startswith("tinibot-uno-")
-    halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
-    assert halting.name.startswith("tinibot_breakpoints-uno-")
+    halting_firmware = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
+    assert halting_firmware.name.startswith("tinibot_breakpoints-uno-")
     words, other_words = (file.read_text().split() for file in (
         path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
     assert words == other_words
@@ -316,12 +318,12 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
 def test_breakpoints_are_built_where_they_take_the_place_of_the_reader_of_text() -> None:
     """For each robot on each board that lacks one of the two."""
     for robot in firmware_files.shipped_robots():
-        halting = [
-            halting for halting in firmware_files.halting_robots()
-            if (halting.name, halting.board.chip) == (robot.name, robot.board.chip)
+        halting_boards = [
+            halting_robot for halting_robot in firmware_files.halting_robots()
+            if (halting_robot.name, halting_robot.board.chip) == (robot.name, robot.board.chip)
         ]  # fmt: skip
         is_small = robot.board.chip in ("uno", "nano")
-        assert len(halting) == (is_small and not robot.board.discs), robot
+        assert len(halting_boards) == (is_small and not robot.board.discs), robot
 
 
 def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:

@@ -171,8 +171,10 @@ def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
     path = ARDUINO / "boards.txt"
     need("" if path.exists() else f"{DEBIAN_PACKAGES[ARDUINO]} is not installed")
     rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", path.read_text("utf-8"), re.M))
-    flash, least = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[rows["build.mcu"]]
-    section = least << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)
+    flash, min_section = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[
+        rows["build.mcu"]
+    ]
+    section = min_section << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)
     assert BOARDS[board][4] == flash - section == int(rows["upload.maximum_size"])
 
 
@@ -207,8 +209,8 @@ def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
         assert re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
         with change_file(kit_header, ("kBuzzer", "kNothingLikeIt")):
             pio(project, "run", "-e", "uno").gives(1, out="kBuzzer")
-        fits = "is wired to another board. It fits: uno."
-        pio(project, "run", "-e", "mega").gives(1, out=fits)
+        board_message = "is wired to another board. It fits: uno."
+        pio(project, "run", "-e", "mega").gives(1, out=board_message)
         pio(project, "run", "-e", "mega_grabber").gives(0)
     finally:
         kit_header.unlink(missing_ok=True)

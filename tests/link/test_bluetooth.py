@@ -82,8 +82,8 @@ def test_a_long_program_arrives_whole(
     assert run_in_process("upload", compiled_file, "--no-run", "--port", ADDRESS_PORT).code == 0
     assert run_in_process("show", "-o", robot_file, "--port", ADDRESS_PORT).code == 0
     assert robot_file.read_bytes() == compiled_file.read_bytes()
-    longest = max(len(data) for _, data in ble.writes)
-    assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
+    longest_bytes = max(len(data) for _, data in ble.writes)
+    assert longest_bytes == (20 if service == HM10 else min(mtu - 3, LARGEST))
     assert max(map(len, ble.sent_packets)) <= mtu - 3
 
 

@@ -100,17 +100,17 @@ def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: i
     """However often it was not, and whether somebody wanted it meanwhile: robots share a connection
     as long as that lasts.
     """
-    rng, mosquitto, is_there = Random(seed), Mosquitto(tmp_path), True
+    rng, mosquitto, is_running = Random(seed), Mosquitto(tmp_path), True
     connections = [broker.connect("127.0.0.1", mosquitto.port)]
     try:
         for _ in range(12):
             if rng.random() < 0.5:
-                is_there = not is_there
-                mosquitto.start() if is_there else mosquitto.kill()
-            if not is_there:
+                is_running = not is_running
+                mosquitto.start() if is_running else mosquitto.kill()
+            if not is_running:
                 until(lambda: connections[-1].end_reason != "", "the connection ends")
             port = broker.port_of("127.0.0.1", mosquitto.port, "aula", f"{rng.randrange(3):08x}")
-            if is_there:
+            if is_running:
                 broker.open_port(port, 0, 1.0).write(bytes(STOP_BYTES))
                 connections.append(broker.connect("127.0.0.1", mosquitto.port))
                 assert connections[-1].stop("aula")
@@ -210,7 +210,7 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
 
     def serve() -> None:
         nonlocal sent_count
-        peer, _ = listening.accept()
+        peer, _ = server_socket.accept()
         with peer:
             peer.recv(4096)
             peer.sendall(CONNACK + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
@@ -221,10 +221,10 @@ def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -
             except ConnectionError:
                 pass
 
-    with socket.create_server(("127.0.0.1", 0)) as listening:
+    with socket.create_server(("127.0.0.1", 0)) as server_socket:
         serving = Thread(target=serve, daemon=True)
         serving.start()
-        client = Broker("127.0.0.1", listening.getsockname()[1], Access())
+        client = Broker("127.0.0.1", server_socket.getsockname()[1], Access())
         until(lambda: client.end_reason != "", "the connection ends")
         assert client.end_reason == f"the broker sends a message of {size} bytes"
         serving.join(HANG_LIMIT_S)

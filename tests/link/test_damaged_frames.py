@@ -36,11 +36,11 @@ class Line(NamedTuple):
     is_damaged: list[bool]
 
 
-def judge(sent_line: Line, accepted: list[Frame]) -> None:
+def judge(sent_line: Line, accepted_frames: list[Frame]) -> None:
     """Assert that no wrong frame was accepted, and that damage costs at most one more frame."""
     numbers = {frame: number for number, frame in enumerate(sent_line.frames)}
     judgements = []
-    for frame in accepted:
+    for frame in accepted_frames:
         assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
         judgements.append(numbers[frame])
     assert judgements == sorted(set(judgements)), (
@@ -116,7 +116,7 @@ def test_python_finds_the_same_in_them(is_large: bool) -> None:
 if __name__ == "__main__":
     options = make_options(10_000_000, 1_000_000, "large")
     judges = cpp_damage(options.large)
-    damaged, lines = damage_frames(judges, options.count, options.seed)
+    damaged_count, lines = damage_frames(judges, options.count, options.seed)
     for sampled in range(0, lines, SAMPLE_INTERVAL):
         judge_in_python(judges.line(options.seed, sampled), options.large)
-    print(f"{damaged} damaged frames in {lines} lines: nothing wrong")
+    print(f"{damaged_count} damaged frames in {lines} lines: nothing wrong")

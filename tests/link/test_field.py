@@ -91,21 +91,23 @@ def check_never_silent(cpp: CppLink, seed: int) -> str:
     robot = Robot(cpp)
     noise = [rng.choice(NOISE_BEFORE) for _ in range(rng.randint(0, 4))]
     # Before the last silence, because a mistake removes all lines that follow it directly.
-    answered = 0
-    in_frames = False  # only if a line needs its end
+    answer_count = 0
+    is_in_frames = False  # only if a line needs its end
     for data in noise:
         robot.type(data)
         pause_ms = rng.choice(PAUSES_MS)
         robot.wait(pause_ms)
-        in_frames = in_frames or b"\0" in data
+        is_in_frames = is_in_frames or b"\0" in data
         if pause_ms > SILENCE_MS:
-            answered, in_frames = len(robot.answers), False
-    line = rng.choice(LINES).encode() + rng.choice(LINE_ENDS[: -1 if in_frames else None])
+            answer_count, is_in_frames = len(robot.answers), False
+    line = rng.choice(LINES).encode() + rng.choice(LINE_ENDS[: -1 if is_in_frames else None])
     event_count = len(robot.did)
     robot.type(line)
     robot.wait(4200)
     is_done = any(row.startswith("TEXT") for row in robot.did[event_count:])
-    assert is_done or len(robot.answers) > answered, f"seed {seed}: silence for {noise} {line!r}"
+    assert is_done or len(robot.answers) > answer_count, (
+        f"seed {seed}: silence for {noise} {line!r}"
+    )
     return "runs" if is_done else "told"
 
 

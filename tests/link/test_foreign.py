@@ -65,14 +65,14 @@ def test_each_row_has_a_recording() -> None:
 @each_recording
 def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording) -> None:
     """A piece identifies less, but nothing wrong: an ESP32's boot messages precede the sketch's."""
-    also = {recording.name, "esp32", None}
+    possible_names = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
-        also |= {"micropython"}
+        possible_names |= {"micropython"}
     rng = random.Random(recording.shown_text)
     for _ in range(400):
         start, end = sorted(rng.randrange(len(recording.data) + 1) for _ in range(2))
         board = identify_board(recording.data[start:end])
-        assert (board and board.name) in also, recording.data[start:end]
+        assert (board and board.name) in possible_names, recording.data[start:end]
 
 
 @each_recording
@@ -117,13 +117,13 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
 
 @each_recording
 def test_noise_of_a_wrong_speed_is_not_a_board(recording: Recording) -> None:
-    for sent in BAUDS:
+    for sent_baud in BAUDS:
         for heard_baud in BAUDS:
-            noise = at_speed(recording.data, sent, heard_baud)
-            assert (noise == recording.data) == (sent == heard_baud)
-            if sent != heard_baud:
-                assert identify_board(noise) is None, (sent, heard_baud)
-                assert identify_stranger(noise) is None, (sent, heard_baud)
+            noise = at_speed(recording.data, sent_baud, heard_baud)
+            assert (noise == recording.data) == (sent_baud == heard_baud)
+            if sent_baud != heard_baud:
+                assert identify_board(noise) is None, (sent_baud, heard_baud)
+                assert identify_stranger(noise) is None, (sent_baud, heard_baud)
 
 
 @given(st.binary(max_size=300))
@@ -245,16 +245,18 @@ def test_the_page_says_what_its_port_has_heard(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("came", "is_echoed", "reason"),
+    ("heard_bytes", "is_echoed", "reason"),
     [
         (b"", False, "link_silent"), (b"\xff\xfe\x80\x00", False, "link_other"),
         (b"Distance: 34 cm\r\n", False, FOREIGN), (b"Distance: 34 cm\r\n", True, "link_echo"),
         (b"abc,d", False, "link_other"), (b"// OK\r\n", False, "link_other"),
     ],
 )  # fmt: skip
-def test_what_is_said_where_no_robot_answers(came: bytes, is_echoed: bool, reason: str) -> None:
+def test_what_is_said_where_no_robot_answers(
+    heard_bytes: bytes, is_echoed: bool, reason: str
+) -> None:
     line = LinkLine()
-    line.note_heard(came)
+    line.note_heard(heard_bytes)
     line.is_echoed = is_echoed
     assert reason_of(line, Reply(LOST)) == reason
 

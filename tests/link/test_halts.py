@@ -75,8 +75,8 @@ def test_a_run_of_another_goes_on() -> None:
 @pytest.mark.parametrize("after_ms", range(5))
 def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
     session, robot = open_session()
-    long = image("F(1, 80);" * 40)
-    withdrawn_request = session.upload(long)
+    long_image = image("F(1, 80);" * 40)
+    withdrawn_request = session.upload(long_image)
     other_request = live(session)
     robot.talk(session, after_ms)
     session.withdraw(withdrawn_request)
@@ -88,14 +88,14 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
 
 def test_one_that_waits_is_withdrawn() -> None:
     session, robot = open_session()
-    first_request, withdrawn_request, last = (
+    first_request, withdrawn_request, last_request = (
         live(session),
         session.upload(DRIVE_IMAGE),
         live(session),
     )
     session.withdraw(withdrawn_request)
     assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
-    assert robot.until(session, last) == OK and first_request.outcome
+    assert robot.until(session, last_request) == OK and first_request.outcome
     assert not is_moving(robot)
 
 

@@ -40,19 +40,19 @@ class Port(PushedTransport):
 def interrupt_often(work: Callable[[], object], count: int = INTERRUPT_COUNT) -> None:
     """Repeat work while Ctrl-C is pressed again and again. All other exceptions pass."""
     rng = random.Random(1)
-    pressed: list[int] = []  # the interpreter discards exceptions in a callback
+    pressed_numbers: list[int] = []  # the interpreter discards exceptions in a callback
 
     def press(number: int, _: object) -> None:
-        pressed.append(number)
+        pressed_numbers.append(number)
         raise KeyboardInterrupt
 
     old_handler = signal.signal(signal.SIGALRM, press)
     try:
         for _ in range(count):
-            pressed.clear()
+            pressed_numbers.clear()
             with suppress(KeyboardInterrupt):
                 signal.setitimer(signal.ITIMER_REAL, rng.uniform(1e-5, 4e-4))
-                while not pressed:
+                while not pressed_numbers:
                     work()
     finally:
         signal.signal(signal.SIGALRM, old_handler)

@@ -157,7 +157,7 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
     """Frames, noise and silence, while some of them are not taken yet."""
     rng = random.Random(3)
     print("seed 3")
-    waited = 0
+    wait_count = 0
     for _ in range(300):
         stream: list[tuple[int, int]] = []
         now_ms = 0
@@ -174,8 +174,8 @@ def test_both_receivers_find_the_same_where_frames_wait() -> None:
         held_ms = rng.choice((0, 10, 100, 250))
         rows = packets_of(stream, held_ms, is_large=True)
         assert cpp_link(is_large=True).packets(stream, held_ms) == rows
-        waited += held_ms > 0
-    assert waited > 100
+        wait_count += held_ms > 0
+    assert wait_count > 100
 
 
 # -- the computer ---------------------------------------------------------------------------------
@@ -198,10 +198,10 @@ SENT_BYTES = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes afte
 def test_what_is_lost_is_sent_again_and_no_more(
     lost_numbers: tuple[int, ...], unanswered: tuple[int, ...], count: int
 ) -> None:
-    taking = InOrderReceiver(lost_numbers, unanswered)
-    robot = AnsweringRobot(taking)
+    receiver = InOrderReceiver(lost_numbers, unanswered)
+    robot = AnsweringRobot(receiver)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.received == SENT_BYTES and robot.has_commit
+    assert receiver.received == SENT_BYTES and robot.has_commit
     assert len(robot.data) == count
     assert len({seq for seq, *_ in robot.data}) == count, "two frames have one number"
     assert 2 <= robot.most_waiting <= LARGE_WINDOW
@@ -213,10 +213,10 @@ def test_what_is_lost_is_sent_again_and_no_more(
     (255, 255), (251, 2), (100, 200),  # the header states more bytes than there are
 ])  # fmt: skip
 def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window: int) -> None:
-    taking = InOrderReceiver()
-    robot = AnsweringRobot(taking, largest, window)
+    receiver = InOrderReceiver()
+    robot = AnsweringRobot(receiver, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.received == SENT_BYTES
+    assert receiver.received == SENT_BYTES
     is_small = largest <= SMALL_FRAME
     assert robot.longest_bytes == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
     assert robot.most_waiting == max(1, min(window, LARGE_WINDOW))
@@ -292,7 +292,7 @@ def test_the_largest_program_takes_little_more_than_the_wire() -> None:
     assert profile.board.program_bytes == 8192
     robot = Esp32Robot(profile)
     robot.wait(300)
-    took = large_upload.upload(robot, profile.kit.fingerprint, 8192)
+    upload_times = large_upload.upload(robot, profile.kit.fingerprint, 8192)
     robot.close()
-    assert took.times_of_wire <= large_upload.MOST_TIMES
-    assert took.sent_bytes < 8192 * 1.1
+    assert upload_times.times_of_wire <= large_upload.MOST_TIMES
+    assert upload_times.sent_bytes < 8192 * 1.1

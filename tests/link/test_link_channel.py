@@ -31,25 +31,25 @@ class SplitWorld(World):
     is_split = True
 
 
-@pytest.mark.sampled("is_large", "count", "least")
-@pytest.mark.parametrize(("is_large", "count", "least"), [(False, 300, 0.9), (True, 100, 0.85)])
-def test_uploads_over_a_bad_radio(is_large: bool, count: int, least: float) -> None:
+@pytest.mark.sampled("is_large", "count", "min_share")
+@pytest.mark.parametrize(("is_large", "count", "min_share"), [(False, 300, 0.9), (True, 100, 0.85)])
+def test_uploads_over_a_bad_radio(is_large: bool, count: int, min_share: float) -> None:
     """No upload falsely reports success, and none is done twice.
 
     Several large frames are under way; some arrive twice or out of order.
     """
     counts = Counter(run_upload_scenario(cpp_link(is_large), seed) for seed in range(count))
-    assert counts["done"] > count * least, counts
+    assert counts["done"] > count * min_share, counts
 
 
-@pytest.mark.sampled("is_large", "count", "least")
-@pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
-def test_uploads_in_pieces(is_large: bool, count: int, least: float) -> None:
+@pytest.mark.sampled("is_large", "count", "min_share")
+@pytest.mark.parametrize(("is_large", "count", "min_share"), [(False, 150, 0.85), (True, 50, 0.6)])
+def test_uploads_in_pieces(is_large: bool, count: int, min_share: float) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""
     counts = Counter(
         run_upload_scenario(cpp_link(is_large), seed, SplitWorld) for seed in range(count)
     )
-    assert counts["done"] > count * least, counts
+    assert counts["done"] > count * min_share, counts
 
 
 def one_undo(cpp: CppLink, seed: int) -> str:
@@ -64,7 +64,7 @@ def one_undo(cpp: CppLink, seed: int) -> str:
         return "the same"
     world.to_robot.faults = world.to_computer.faults = rng.choice((0.001, 0.01, 0.03))
     world.drop_rate = rng.choice((0, 0.0002, 0.002))
-    confirmed = 0
+    confirmed_count = 0
     for _ in range(4):
         old_undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
         pending_request = world.session.undo()
@@ -76,11 +76,11 @@ def one_undo(cpp: CppLink, seed: int) -> str:
             assert undo_count == 1, (
                 f"seed {seed}: the computer says undone, the robot has done nothing"
             )
-            confirmed += 1
+            confirmed_count += 1
         if undo_count:
             images.reverse()
         assert cpp.fetch_image() == images[1], f"seed {seed}: the robot holds another program"
-    return f"{confirmed} confirmed"
+    return f"{confirmed_count} confirmed"
 
 
 def test_undos_over_a_bad_radio() -> None:

@@ -47,7 +47,7 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
     """Zeros anywhere in a frame, code that is refused, and damage included."""
     rng = random.Random(SEED)
     print(f"seed {SEED}")
-    started = 0
+    start_count = 0
     for number in range(FRAMES):
         epoch = rng.choice((rng.randrange(256), 255))  # the next one is 0
         code = rng.choice((*CODES, CODES[0] + bytes(rng.randrange(4)), rng.randbytes(9)))
@@ -60,8 +60,8 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
             assert steps[0] == steps[1], data.hex()
         if number % 3 == 0 and data != live_data(code):
             continue
-        started += STARTED_ACTION in steps[0].did
-    assert started > FRAMES // 4
+        start_count += STARTED_ACTION in steps[0].did
+    assert start_count > FRAMES // 4
 
 
 @pytest.mark.parametrize("code", CODES)

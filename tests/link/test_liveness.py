@@ -88,10 +88,10 @@ def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
     data = line.takes(polled_when_due(session, robot.now_ms), robot.now_ms)
     line.under_way.append((robot.now_ms + line.late_ms, data))
     due_ms, data = line.under_way[0]
-    is_there = due_ms <= robot.now_ms
-    if is_there:
+    is_due = due_ms <= robot.now_ms
+    if is_due:
         line.under_way.popleft()
-    sent_bytes = robot.wait(10 if line.late_ms else 1, data if is_there else b"")
+    sent_bytes = robot.wait(10 if line.late_ms else 1, data if is_due else b"")
     session.receive(line.takes(sent_bytes, robot.now_ms, True), robot.now_ms)
 
 
@@ -188,8 +188,8 @@ def test_who_polls_when_a_session_wants_it_does_so_seldom_and_misses_nothing(see
                 is_dead = False
         for _ in range(rng.choice((1, 10, 100, 400))):
             data = polled_when_due(session, robot.now_ms)
-            sent = robot.wait(10, b"" if is_dead else data)
-            session.receive(b"" if is_dead else sent, robot.now_ms)
+            sent_bytes = robot.wait(10, b"" if is_dead else data)
+            session.receive(b"" if is_dead else sent_bytes, robot.now_ms)
     line = BadLine(rng)
     line.is_bursty, line.likely, line.late_ms = False, 0, 0
     session.stop(robot.now_ms)
@@ -238,11 +238,11 @@ def test_answers_to_keys_that_come_late_keep_the_line(late_ms: int) -> None:
     """Later than the next word is said."""
     robot, session = switched_on(), computer()
     assert robot.until(session, session.hello()) == OK
-    under_way = deque[bytes](b"" for _ in range(late_ms // 10))
+    answers_under_way = deque[bytes](b"" for _ in range(late_ms // 10))
     for _ in range(3 * DEAF_MS // 10):
         session.press(1)
-        under_way.append(robot.wait(10, session.poll(robot.now_ms)))
-        session.receive(under_way.popleft(), robot.now_ms)
+        answers_under_way.append(robot.wait(10, session.poll(robot.now_ms)))
+        session.receive(answers_under_way.popleft(), robot.now_ms)
     assert session.events() == []
 
 

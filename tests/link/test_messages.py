@@ -63,8 +63,8 @@ def test_no_request_is_or_ends_a_line() -> None:
 
 
 def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> None:
-    every = [bits for bits, *_ in FEATURES]
-    assert sum(every) == functools.reduce(operator.or_, every) < 1 << 16
+    all_bits = [bits for bits, *_ in FEATURES]
+    assert sum(all_bits) == functools.reduce(operator.or_, all_bits) < 1 << 16
     names = [name.lower() for name, _ in TEXT_LEVELS]
     assert names == ["none", *LEVELS] and len(names) == TEXT_LEVEL + 1
 
@@ -125,8 +125,8 @@ def test_sentences_have_no_gaps_left() -> None:
         for status in range(1, 256):
             sentence, advice = statuses.status_text(status, 0x1234, lang)
             assert sentence and advice and "{" not in sentence + advice, (status, lang)
-    too_large = "The program is too large: the robot has room for 430 bytes of code."
-    assert statuses.status_text(71, 430, "en").message == too_large
+    too_large_text = "The program is too large: the robot has room for 430 bytes of code."
+    assert statuses.status_text(71, 430, "en").message == too_large_text
     refused = "The robot's verifier refuses the code at 5: BAD_OPERAND."
     assert statuses.status_text(23, 5, "en").message == refused
     assert "DAMAGED" in statuses.status_text(6, 0, "es").message

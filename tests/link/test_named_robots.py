@@ -45,12 +45,12 @@ LOSS_PROBABILITY = 0.05  # of the pieces
 @pytest.fixture
 def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """No other test lists or announces names meanwhile."""
-    shared = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
+    shared_file = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
     end_s = time.monotonic() + HANG_LIMIT_S
     with ExitStack() as stack:
         while True:
             with suppress(TimeoutError):
-                stack.enter_context(files.lock_file(shared))
+                stack.enter_context(files.lock_file(shared_file))
                 break
             assert time.monotonic() < end_s, "another test does not end"
         yield
@@ -98,8 +98,8 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
     address = DNSAddress(FAR_HOST, _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
     packet.add_answer_at_time(address, 0)
     for k in range(lonely):
-        alone = DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, f"a{k}.{SERVICE}")
-        packet.add_answer_at_time(alone, 0)
+        pointer = DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, f"a{k}.{SERVICE}")
+        packet.add_answer_at_time(pointer, 0)
     is_over = threading.Event()
 
     def send() -> None:
@@ -289,7 +289,10 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
         robot() as running_robot,
         closing(
             BadNetwork(
-                number_of(running_robot.port), LATE_S, every=2000, loss_rate=LOSS_PROBABILITY
+                number_of(running_robot.port),
+                LATE_S,
+                resend_interval=2000,
+                loss_rate=LOSS_PROBABILITY,
             )
         ) as network,
         announce(f"far-{PROCESS_ID}", "127.0.0.1", network.port),

@@ -33,8 +33,8 @@ RUNS = "SI|F(60, 80)"
 
 
 def is_driving(robot: HostFirmware) -> bool:
-    driven = [line.split()[2:] for line in robot.did if " MOTORS " in line]
-    return driven[-1:] not in ([], [["0", "0"]])
+    motor_powers = [line.split()[2:] for line in robot.did if " MOTORS " in line]
+    return motor_powers[-1:] not in ([], [["0", "0"]])
 
 
 def check(seed: int) -> str:

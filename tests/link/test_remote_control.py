@@ -281,14 +281,14 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
 
 def test_requests_that_never_rest_leave_keys_their_turn() -> None:
     remote = hand()
-    waiting = [remote.session.status() for _ in range(3)]
-    for held in (KEY_UP, KEY_A, NOTHING_PRESSED, KEY_LEFT):
-        remote.holds(held)
+    waiting_requests = [remote.session.status() for _ in range(3)]
+    for held_state in (KEY_UP, KEY_A, NOTHING_PRESSED, KEY_LEFT):
+        remote.holds(held_state)
         for _ in range(300):
-            waiting = [request for request in waiting if request.outcome is None]
-            waiting += [remote.session.status() for _ in range(3 - len(waiting))]
+            waiting_requests = [request for request in waiting_requests if request.outcome is None]
+            waiting_requests += [remote.session.status() for _ in range(3 - len(waiting_requests))]
             remote.talk(1)
-        assert remote.robot.remote() == remote_readings(held)
+        assert remote.robot.remote() == remote_readings(held_state)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -452,9 +452,9 @@ def test_an_older_robot_is_told_nothing() -> None:
     request = session.press(*KEY_UP)
     assert session.poll(10) == b""
     assert request.outcome and request.outcome.status == STATUSES["NO_REMOTE"]
-    newer = described(features=REMOTE)
-    newer.press(*KEY_UP)
-    frame = decode_frame(newer.poll(10).strip(b"\0"))
+    newer_robot = described(features=REMOTE)
+    newer_robot.press(*KEY_UP)
+    frame = decode_frame(newer_robot.poll(10).strip(b"\0"))
     assert frame and frame.number == KEYS.number and frame.payload == bytes((1, 0, 0))
 
 
@@ -564,8 +564,8 @@ def test_a_word_in_two_reads_and_at_9600_baud(split: int) -> None:
     wire.robot.wait(30, word[:split])
     wire.robot.wait(30, word[split:])
     assert wire.robot.remote() == remote_readings(remote_state_of(["B"], -100, 100))
-    slow = wire.keys(KEY_LEFT)
-    wire.robot.latched_while(len(slow) + 5, slow, is_spread=True)
+    slow_word = wire.keys(KEY_LEFT)
+    wire.robot.latched_while(len(slow_word) + 5, slow_word, is_spread=True)
     assert wire.robot.remote() == remote_readings(KEY_LEFT)
 
 
@@ -603,7 +603,7 @@ def test_keys_between_the_pieces_of_a_program() -> None:
 
 def test_keys_drop_no_open_block_of_text() -> None:
     """Another request does: it may need the memory."""
-    for sent_bytes, is_there in ((None, True), ("KEYS", True), ("NAME", False)):
+    for sent_bytes, is_kept in ((None, True), ("KEYS", True), ("NAME", False)):
         wire = Wire()
         wire.robot.wait(1500)  # from here on the robot reads text again
         wire.robot.wait(50, b"SI|LOOP(1)\r\nF(0.1, 50)\r\n")
@@ -613,7 +613,7 @@ def test_keys_drop_no_open_block_of_text() -> None:
         wire.robot.wait(1500)
         wire.robot.wait(50, b"END_LOOP\r\n")
         wire.robot.wait(300)
-        assert any("MOTORS 50 50" in line for line in wire.robot.did) == is_there, sent_bytes
+        assert any("MOTORS 50 50" in line for line in wire.robot.did) == is_kept, sent_bytes
 
 
 def test_the_reply_says_where_the_program_is() -> None:

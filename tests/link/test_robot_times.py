@@ -103,17 +103,19 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
     """A terminal or a radio module echoes its input, whole and in pieces."""
     cpp = cpp_link()
     cpp.begin(kit=KIT)
-    under_way = [(0, b"F(2,800)\r\n")]
+    packets_under_way = [(0, b"F(2,800)\r\n")]
     answers = []
     for now_ms in range(0, 60_000, 10):
-        came = b"".join(data for arrival_ms, data in under_way if arrival_ms == now_ms)
-        under_way = [pair for pair in under_way if pair[0] > now_ms]
-        sent_bytes = cpp.step(now_ms, came).sent.replace(b"\0", b"")
+        arrived_bytes = b"".join(
+            data for arrival_ms, data in packets_under_way if arrival_ms == now_ms
+        )
+        packets_under_way = [pair for pair in packets_under_way if pair[0] > now_ms]
+        sent_bytes = cpp.step(now_ms, arrived_bytes).sent.replace(b"\0", b"")
         answers += [now_ms] * sent_bytes.count(b"\n")
         echo = noise + sent_bytes if sent_bytes else b""
         for k in range(-(-len(echo) // piece_bytes)):
             piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
-            under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
+            packets_under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
     assert 1 <= len(answers) <= ANSWERS, answers
 
 

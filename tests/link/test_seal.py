@@ -97,22 +97,25 @@ def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> 
     rng = random.Random(1)
     for _ in range(300):
         frame, counter = random_frame(rng, False), counters(rng)
-        sent = sealed_by_hand(frame, counter)
-        assert whole_frame(seal(sent_counter=counter - 1).seal_frame(frame)) == sent
-        assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
-        assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
+        sealed_bytes = sealed_by_hand(frame, counter)
+        assert whole_frame(seal(sent_counter=counter - 1).seal_frame(frame)) == sealed_bytes
+        assert cpp_link().opens(KEY, ORIGIN, counter - 1, sealed_bytes)
+        assert not cpp_link().opens(KEY, ORIGIN, counter, sealed_bytes)
 
 
 def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> None:
     rng = random.Random(2)
     for _ in range(300):
         frame, counter = random_frame(rng, True), counters(rng)
-        marked, sent = whole_frame(frame._replace(is_sealed=True)), sealed_by_hand(frame, counter)
-        assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
+        marked_frame, sealed_bytes = (
+            whole_frame(frame._replace(is_sealed=True)),
+            sealed_by_hand(frame, counter),
+        )
+        assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked_frame) == sealed_bytes
         robot_seal = seal(heard_counter=counter - 1)
-        assert robot_seal.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
-        assert robot_seal.open_frame(frame_of(sent)) is None  # once
-        assert seal(heard_counter=counter).open_frame(frame_of(sent)) is None
+        assert robot_seal.open_frame(frame_of(sealed_bytes)) == frame._replace(is_sealed=True)
+        assert robot_seal.open_frame(frame_of(sealed_bytes)) is None  # once
+        assert seal(heard_counter=counter).open_frame(frame_of(sealed_bytes)) is None
 
 
 def test_each_bit_and_each_length_counts() -> None:
@@ -136,13 +139,13 @@ def test_each_bit_and_each_length_counts() -> None:
 
 
 def test_another_origin_is_another_key() -> None:
-    sent = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
-    assert cpp_link().opens(KEY, ORIGIN, 0, sent)
+    sealed_bytes = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
+    assert cpp_link().opens(KEY, ORIGIN, 0, sealed_bytes)
     keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, ROLE)}
     for index in range(len(ORIGIN)):
         other_origin = bytearray(ORIGIN)
         other_origin[index] ^= 1
-        assert not cpp_link().opens(KEY, bytes(other_origin), 0, sent)
+        assert not cpp_link().opens(KEY, bytes(other_origin), 0, sealed_bytes)
         nonces = (int.from_bytes(other_origin[offset : offset + 4], "little") for offset in (8, 12))
         keys.add(session_key(KEY, bytes(other_origin[:8]), *nonces, *other_origin[16:]))
     assert len(keys) == len(ORIGIN) + 1
@@ -155,9 +158,9 @@ def test_a_counter_at_its_end_seals_nothing_more() -> None:
     assert full_seal.is_spent
     with pytest.raises(AssertionError):
         full_seal.seal_frame(Frame(2, 1, 1))
-    marked = whole_frame(Frame(2, 1, 1, is_reply=True, is_sealed=True))
-    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
-    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""
+    marked_frame = whole_frame(Frame(2, 1, 1, is_reply=True, is_sealed=True))
+    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked_frame)
+    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked_frame) == b""
     assert not cpp_link().opens(
         KEY, ORIGIN, LAST_COUNTER, sealed_by_hand(Frame(2, 1, 1), LAST_COUNTER)
     )

@@ -47,7 +47,7 @@ class SealedWorld(World):
 
     has_hello = True
 
-    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drops: float) -> None:
+    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drop_rate: float) -> None:
         self.keys = Keys()
         self.forgery_rate = 0.0
         self.frames: list[bytes] = []
@@ -109,8 +109,8 @@ class SealedWorld(World):
         requests = [message for message in MESSAGES if message.number < 32]
         message = rng.choice(requests if self.has_hello else requests[1:])
         max_bytes = sum(field.most_bytes for field in message.request)
-        least = sum(field.least_bytes for field in message.request)
-        payload = rng.randbytes(rng.randint(least, max_bytes))
+        min_bytes = sum(field.least_bytes for field in message.request)
+        payload = rng.randbytes(rng.randint(min_bytes, max_bytes))
         seq, epoch = rng.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
 
@@ -132,9 +132,9 @@ class QuietWorld(SealedWorld):
     def disturb(self) -> None: ...
 
 
-@pytest.mark.sampled("world", "is_large", "least")
+@pytest.mark.sampled("world", "is_large", "min_share")
 @pytest.mark.parametrize(
-    ("world", "is_large", "least"),
+    ("world", "is_large", "min_share"),
     [
         (QuietWorld, False, 0.9),
         (QuietWorld, True, 0.85),
@@ -142,13 +142,15 @@ class QuietWorld(SealedWorld):
         (SealedWorld, True, 0.3),
     ],
 )
-def test_sealed_uploads_over_a_bad_radio(world: type[World], is_large: bool, least: float) -> None:
+def test_sealed_uploads_over_a_bad_radio(
+    world: type[World], is_large: bool, min_share: float
+) -> None:
     """A stranger may end sessions; no forged frame is obeyed or trusted, and many requests still
     succeed."""
     counts = Counter(
         run_upload_scenario(cpp_link(is_large), seed, world) for seed in range(UPLOAD_COUNT)
     )
-    assert counts["done"] > UPLOAD_COUNT * least, counts
+    assert counts["done"] > UPLOAD_COUNT * min_share, counts
 
 
 def test_the_frames_of_a_session_are_sealed() -> None:

@@ -34,12 +34,12 @@ def line(request: pytest.FixtureRequest) -> Iterator[Line]:
 
 
 @pytest.fixture
-def ready(monkeypatch: pytest.MonkeyPatch) -> None:
+def without_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     """Simulate a wait that reports bytes at once, like that of a process suspended afterwards."""
     monkeypatch.setattr(select, "select", lambda readers, *_: (readers[:1], [], []))
 
 
-@pytest.mark.usefixtures("ready")
+@pytest.mark.usefixtures("without_wait")
 def test_what_another_program_has_read_ends_nothing(line: Line) -> None:
     line.our_end.write(b"ab")
     assert [line.port.read(1) for _ in range(4)] == [b"a", b"b", b"", b""]

@@ -70,7 +70,7 @@ def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
     times = [sent_ms for sent_ms, _ in packets]
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first_wait_ms) <= 2
-    gaps = [later - earlier for earlier, later in pairwise(times)]
+    gaps = [later_ms - earlier_ms for earlier_ms, later_ms in pairwise(times)]
     doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
     assert all(abs(gap - wanted_gap) <= 2 for gap, wanted_gap in zip(gaps, doubled, strict=True))
     assert len({data for _, data in packets}) == 1 and packets[0][1][:1] == b"\0"
@@ -96,7 +96,7 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
         times = [sent_ms - start_ms for sent_ms, _ in list_packets(session, start_ms + took_ms)]
         now_ms = start_ms + took_ms
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
-        return [later - earlier for earlier, later in pairwise([0, *times])]
+        return [later_ms - earlier_ms for earlier_ms, later_ms in pairwise([0, *times])]
 
     assert measure_waits(600) == [127, 254]  # and 508, which is not over
     assert measure_waits(500) == []  # it stays, and this one is certain: 500 and 4 * 250
@@ -378,8 +378,8 @@ def test_what_does_not_fit_is_not_sent() -> None:
         (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
     ]
     session = greet()
-    for too_large, status, detail in cases:
-        request = session.upload(too_large)
+    for large_image, status, detail in cases:
+        request = session.upload(large_image)
         assert session.poll(0) == b""
         assert request.outcome
         assert (request.outcome.status, request.outcome.detail) == (status, detail)

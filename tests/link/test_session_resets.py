@@ -78,8 +78,8 @@ def test_a_stop_that_nobody_has_told_is_not_a_reset() -> None:
     session, robot = running()
     robot.push()  # STOPPED is lost
     robot.talk(session, 1500)
-    [ended] = session.events()
-    assert ended == StoppedEvent(0) and session.is_latched
+    [end_event] = session.events()
+    assert end_event == StoppedEvent(0) and session.is_latched
 
 
 def test_a_fault_that_nobody_has_told_is_asked_for() -> None:

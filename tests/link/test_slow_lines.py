@@ -72,9 +72,9 @@ class Talk:
         data = self.session.poll(self.now_ms)
         self.sent_bytes += len(data)
         self.to_robot.send(self.without_lost(data), self.now_ms)
-        came = self.to_robot.receive(self.now_ms)
-        if came or self.now_ms % LOOK_MS == 0:
-            outcome = self.robot.step(self.now_ms, came)
+        arrived_bytes = self.to_robot.receive(self.now_ms)
+        if arrived_bytes or self.now_ms % LOOK_MS == 0:
+            outcome = self.robot.step(self.now_ms, arrived_bytes)
             self.did += outcome.did
             self.to_computer.send(self.without_lost(outcome.sent), self.now_ms)
         self.session.receive(self.to_computer.receive(self.now_ms), self.now_ms)

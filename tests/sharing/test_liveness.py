@@ -183,17 +183,17 @@ def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
             holder.says({**SHOW_EVENT, "ms": k}, 0)
             progress_values.append(k)
         elif requests and action == "progress":
-            answered, request, _ = rng.choice(requests)
-            holder.says({"id": answered, "done_bytes": k}, 0)
+            answered_id, request, _ = rng.choice(requests)
+            holder.says({"id": answered_id, "done_bytes": k}, 0)
             listen(POLL_INTERVAL_S)
             assert request.done_bytes == k and request.outcome is None
         elif requests:
-            answered, request, new_name = requests.pop(rng.randrange(len(requests)))
+            answered_id, request, new_name = requests.pop(rng.randrange(len(requests)))
             state = {"heard": k, "came": f"{k:02x}", "is_echoed": k % 2 == 0, "boot": k // 2}
             status = rng.choice((OK, OK, 72))
             values = {} if new_name or status != OK else HELLO_VALUES
             holder.says(
-                {"id": answered, "status": status, "detail": k, "values": values, **state}, 0
+                {"id": answered_id, "status": status, "detail": k, "values": values, **state}, 0
             )
             listen(POLL_INTERVAL_S)
             assert request.outcome and (request.outcome.status, request.outcome.detail) == (

@@ -157,13 +157,13 @@ class Desk:
 
 @contextmanager
 def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
-    with monkeypatch.context() as patched:
-        patched.setattr(Thread, "start", lambda self: None)
-        patched.setattr(server_of, "PAUSE_S", 0)
-        patched.setattr(server_of, "REST_S", 0)
+    with monkeypatch.context() as patch:
+        patch.setattr(Thread, "start", lambda self: None)
+        patch.setattr(server_of, "PAUSE_S", 0)
+        patch.setattr(server_of, "REST_S", 0)
         made_desk = Desk()
         robot = made_desk.line.robot_itself
-        patched.setattr(server_of, "monotonic", lambda: robot.now_ms / 1000)
+        patch.setattr(server_of, "monotonic", lambda: robot.now_ms / 1000)
         try:
             yield made_desk
         finally:
@@ -277,10 +277,10 @@ def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[
     client.says({"do": "stop"})
     desk.steps(400)
     heard = [message for message in client.messages if "beat" not in message]
-    begins = next((k for k, message in enumerate(heard) if "status" in message), 0)
+    begin_index = next((k for k, message in enumerate(heard) if "status" in message), 0)
     messages = [
         ROBOT_FIELD.sub(r'"\1"', protocol.encode_message(message).decode())
-        for message in heard[begins:]
+        for message in heard[begin_index:]
     ]
     # The mark of its program.
     actions = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]

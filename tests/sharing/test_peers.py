@@ -230,15 +230,15 @@ def test_the_token_is_in_one_private_file() -> None:
         places = [receipt]
         for pid in (virtual.pid, command.pid):
             places += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
-        having = []
+        found_paths = []
         for path in files.cache_folder().rglob("*"):
             if path.is_file():
                 content = path.read_bytes()
-                having += [path] if any(secret in content for secret in secrets) else []
+                found_paths += [path] if any(secret in content for secret in secrets) else []
                 places.append(str(path).encode())
         assert process("stop", "--port", port).code == 0
         places += command.communicate(timeout=HANG_LIMIT_S)
-    assert len(having) == 1 and len(places) > 7
+    assert len(found_paths) == 1 and len(places) > 7
     assert not [data for data in places for secret in secrets if secret in data]
 
 
@@ -263,8 +263,8 @@ def test_a_port_whose_server_has_just_gone_is_free() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         client = socket.create_connection(server.getsockname())
-        accepted, _ = server.accept()
-        accepted.close()
+        accepted_socket, _ = server.accept()
+        accepted_socket.close()
         assert client.recv(1) == b""
         client.close()
     assert not registry.is_taken(number)

@@ -134,27 +134,27 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
 
     registry._make_folder()
     for runs in ("claims", "tidies", "lets go"):
-        for happens in ("is claimed", "is let go", "is claimed and let go", "is tidied"):
-            if runs == "lets go" and happens == "is let go":
+        for event in ("is claimed", "is let go", "is claimed and let go", "is tidied"):
+            if runs == "lets go" and event == "is let go":
                 continue
             owners: list[IO[bytes] | None] = []
 
             def prepare(
-                runs: str = runs, happens: str = happens, owners: list[IO[bytes] | None] = owners
+                runs: str = runs, event: str = event, owners: list[IO[bytes] | None] = owners
             ) -> tuple[Callable[[], object], Callable[[], object]]:
                 owners.clear()
                 leftover()
-                owned_io = lock() if happens == "is let go" or runs == "lets go" else None
+                owned_io = lock() if event == "is let go" or runs == "lets go" else None
                 owners.append(owned_io)
 
                 def interfere() -> None:
-                    if happens == "is let go" and owned_io is not None:
+                    if event == "is let go" and owned_io is not None:
                         owned_io.close()
-                    elif happens == "is tidied":
+                    elif event == "is tidied":
                         registry.tidy()
-                    elif happens != "is let go":
+                    elif event != "is let go":
                         owners.append(lock())
-                        if happens.endswith("let go") and owners[-1] is not None:
+                        if event.endswith("let go") and owners[-1] is not None:
                             owners[-1].close()
 
                 if runs == "claims":
@@ -189,12 +189,12 @@ def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
     registry.write(foreign)
     monkeypatch.setattr(registry, "gethostname", lambda: "school")
     own_registration = registration(foreign.number, "live")
-    acts: dict[str, Callable[[], object]] = {
+    actions: dict[str, Callable[[], object]] = {
         "tidies": registry.tidy,
         "finds": registry.find_all,
         "registers": lambda: registry.write(own_registration),
         "leaves": lambda: registry.remove(own_registration),
     }
-    acts[action_name]()
+    actions[action_name]()
     monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     assert registry.find_registration(PORT) == foreign

@@ -399,10 +399,10 @@ def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
 
 
 def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
-    newer = "import sys, tiniscript.base.version as own; own.__version__ = '9.1'; " + (
+    newer_code = "import sys, tiniscript.base.version as own; own.__version__ = '9.1'; " + (
         "from tiniscript.cli import main; sys.exit(main(sys.argv[1:]))"
     )
-    command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
+    command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer_code)
     command.until("running")
     for language, words in (("en", "another version of tsc, 9.1"), ("es", "otra versión, 9.1")):
         on(pty_robot, "show", "--lang", language).gives(3, words)

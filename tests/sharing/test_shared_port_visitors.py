@@ -136,14 +136,14 @@ def test_nothing_is_shared_where_nothing_can_be_written(
 
 
 def test_a_file_that_says_nothing_is_not_a_server(pty_robot: PtyRobot) -> None:
-    with SharedLine() as (shared, registration):
-        path = registry._path(shared.port)
+    with SharedLine() as (shared_robot, registration):
+        path = registry._path(shared_robot.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
             path.write_text(text)
-            assert registry.find_registration(shared.port) is None, text[:20]
+            assert registry.find_registration(shared_robot.port) is None, text[:20]
             assert registry.find_all() == []
     path.write_text(json.dumps(registration._replace(port=pty_robot.port)._asdict()))
-    assert registry.find_registration(shared.port) is None
+    assert registry.find_registration(shared_robot.port) is None
 
 
 def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(

@@ -130,9 +130,9 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
 
 def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    left_out = ("later", "setup", "alias")
+    omitted_roles = ("later", "setup", "alias")
     text = ";".join(
-        program_with_word(word) for word in WORDS if WORDS[word].role.name not in left_out
+        program_with_word(word) for word in WORDS if WORDS[word].role.name not in omitted_roles
     )
     text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
@@ -272,8 +272,8 @@ def test_a_very_long_program_stays_text() -> None:
     short_program, long_program = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
     assert len(json.loads(answer(asked_text, short_program))["body"]) == MOST_BLOCKS
     assert json.loads(answer(asked_text, long_program)) == {"size": MOST_BLOCKS + 1}
-    deep = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
-    assert json.loads(answer(asked_text, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
+    deep_program = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
+    assert json.loads(answer(asked_text, deep_program.encode())) == {"size": 2 * MOST_BLOCKS + 2}
     assert size_of(read_blocks("/// F(1, 2)", TINIBOT)) == 3
 
 

@@ -74,8 +74,8 @@ class Ana:
         nodes = []
         for data in body:
             nodes.append(data)
-            for own in data["bodies"]:
-                nodes += self.inside(own)
+            for inner_body in data["bodies"]:
+                nodes += self.inside(inner_body)
         return nodes
 
     def step(self, is_heard: bool = True, **extra_fields: Any) -> Json:
@@ -144,20 +144,20 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
         ana.show()
     nodes_before = {id: node.copy() for id, node in program.tree.node_by_id.items()}
     nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
-    touched: set[str] = set()
+    touched_ids: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
-        touched |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+        touched_ids |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     wanted_text = format_blocks(from_data(ana.form)).text
     answer = ana.writes()
     assert ana.text == wanted_text == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
     assert answer["is_shown"]
     ana.sends()
     assert text_of(program.tree) == ana.text
-    ids = {nodes[id] for id in touched if id in nodes}
-    below = {node for id in ids for node in
+    ids = {nodes[id] for id in touched_ids if id in nodes}
+    inner_ids = {node for id in ids for node in
              ([id, *nodes_before[id].children] if id in nodes_before else [id])}  # fmt: skip
     for id, node in nodes_before.items():
-        if id not in below and id not in (ROOT, START):
+        if id not in inner_ids and id not in (ROOT, START):
             new_node = program.tree[id]
             assert (new_node.text, new_node.mark("text")) == (node.text, node.mark("text")), id
     present_ids = {node["id"] for node in ana.inside(ana.form["body"])}

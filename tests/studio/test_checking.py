@@ -70,13 +70,13 @@ def test_messages_are_those_of_the_command_and_repairs_help(first_index: int, pa
 
 
 @pytest.mark.parametrize(
-    ("text", "loose"),
+    ("text", "loose_count"),
     [("SI|S\n/// W(1)\n", 1), ("SI|S\n/// LOOP(2)\n///   W(1)\n/// END_LOOP\n///\n/// = 5 < 6", 3),
      ("SI|S // /// W(1)\n/// not a program", 0), ("F(-2, 80)\n/// W(1)", 1)],
 )  # fmt: skip
-def test_what_hangs_on_nothing_is_counted(text: str, loose: int) -> None:
+def test_what_hangs_on_nothing_is_counted(text: str, loose_count: int) -> None:
     asked_text = '{"do": "check", "robot": "tinibot", "language": "en"}'
-    assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose
+    assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose_count
 
 
 def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
@@ -170,8 +170,8 @@ def test_answers_are_json() -> None:
     asked_text = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
     changes = json.loads(worker.answer(asked_text, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
     assert changes[0]["text"] == "B(1, 80)"
-    opened = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
-    assert opened["message"]
+    opened_program = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
+    assert opened_program["message"]
 
 
 LINER_PROGRAM = "// robot: liner\nSI|SHOW(LINE_L)\n"
@@ -179,13 +179,23 @@ CHECK_REQUEST = {"do": "check", "robot": "tinibot", "language": "en"}
 
 
 def test_a_program_names_its_robot_in_the_page_too() -> None:
-    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER_PROGRAM.encode()))
-    assert (checked["robot"], checked["names_robot"], checked["findings"]) == ("liner", True, [])
-    assert bytes.fromhex(checked["image"]) == compile(LINER_PROGRAM).image
-    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), b"// robot: linar\nS"))
-    assert (checked["robot"], checked["names_robot"], checked["image"]) == ("tinibot", False, "")
-    checked = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "robot": "grabber"}), b"S"))
-    assert (checked["robot"], checked["names_robot"]) == ("grabber", False)
+    check_answer = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER_PROGRAM.encode()))
+    assert (check_answer["robot"], check_answer["names_robot"], check_answer["findings"]) == (
+        "liner",
+        True,
+        [],
+    )
+    assert bytes.fromhex(check_answer["image"]) == compile(LINER_PROGRAM).image
+    check_answer = json.loads(worker.answer(json.dumps(CHECK_REQUEST), b"// robot: linar\nS"))
+    assert (check_answer["robot"], check_answer["names_robot"], check_answer["image"]) == (
+        "tinibot",
+        False,
+        "",
+    )
+    check_answer = json.loads(
+        worker.answer(json.dumps({**CHECK_REQUEST, "robot": "grabber"}), b"S")
+    )
+    assert (check_answer["robot"], check_answer["names_robot"]) == ("grabber", False)
     answer = worker.answer(
         json.dumps({**CHECK_REQUEST, "do": "rename", "robot": "grabber"}), LINER_PROGRAM.encode()
     )

@@ -56,14 +56,14 @@ class History:
     def state(self) -> Json:
         return self.room.teaches("class")
 
-    def answer(self, who: Page, action: str, **fields: Any) -> Json | None:
+    def answer(self, sender: Page, action: str, **fields: Any) -> Json | None:
         """Send a request as a page; None if it was removed."""
         try:
-            answer = self.room.classroom.answer(who.token, "192.0.2.9", {"do": action, **fields})
+            answer = self.room.classroom.answer(sender.token, "192.0.2.9", {"do": action, **fields})
         except BadRequest:
-            self.leaves(who)
+            self.leaves(sender)
             return None
-        who.heard_s = self.room.now_s
+        sender.heard_s = self.room.now_s
         return answer
 
     def leaves(self, page: Page) -> None:
@@ -111,9 +111,9 @@ class History:
         page.lessons = fields.get("lessons", page.lessons)
         given_work = answer.get("given")
         if given_work and self.rng.random() < 0.7:
-            took = {"key": given_work["key"], "text": given_work["text"]}
+            receipt = {"key": given_work["key"], "text": given_work["text"]}
             version_before = self.version(page)
-            if self.answer(page, "here", took=took) is not None:
+            if self.answer(page, "here", took=receipt) is not None:
                 page.text = given_work["text"]
                 page.lessons = sorted({*given_work["lessons"], *page.lessons})
                 assert (
@@ -239,13 +239,13 @@ class History:
     def turns_follow(self, state: Json) -> None:
         now_s = self.room.now_s
         heard_s = {page.name: page.heard_s for page in self.pages.values()}
-        waiting = sorted((row for row in state["pupils"] if row["place"]),
+        queued_pupils = sorted((row for row in state["pupils"] if row["place"]),
                          key=lambda row: row["place"])  # fmt: skip
-        assert [row["place"] for row in waiting] == list(range(1, len(waiting) + 1))
-        for row in waiting:
+        assert [row["place"] for row in queued_pupils] == list(range(1, len(queued_pupils) + 1))
+        for row in queued_pupils:
             assert not row["robot"], "who has a turn waits for another one"
             assert row["silent_s"] <= QUEUE_S + 1, "who is silent keeps others waiting"
-        names = [row["name"] for row in waiting]
+        names = [row["name"] for row in queued_pupils]
         stayed = [name for name in self.order if name in names]
         kept_order = [name for name in names if name in stayed]
         assert kept_order == stayed or self.had_turn, (kept_order, stayed)

@@ -341,8 +341,8 @@ def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
     ):  # fmt: skip
         with pytest.raises(BadRequest):
             room.checks_in(eve, **wrong_fields)
-    own = {"name": "Pip\u202e" * 20, "colour": 3}
-    room.checks_in(eve, own_robot=own)
+    named_robot = {"name": "Pip\u202e" * 20, "colour": 3}
+    room.checks_in(eve, own_robot=named_robot)
     own_robot = room.teaches("class")["pupils"][0]["own_robot"]
     assert (
         own_robot["colour"] == 3
@@ -670,14 +670,16 @@ def test_a_damaged_class_goes_on_with_what_is_whole(class_file: Path, keeper: Ke
         {**row, "address": 5},
         {"name": "Eve"},
     ]
-    damaged = {
+    damaged_class = {
         **class_data,
         "pupils": [*bad_pupils, row],
         "kept": [5, {"name": "Eve"}],
         "robots": [5, ""],
     }
-    odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
-    class_file.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
+    odd_row = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
+    class_file.write_text(
+        json.dumps({**damaged_class, "kept": [{"name": "Eve"}, odd_row], "code": "<b>"})
+    )
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
     assert (
@@ -713,8 +715,8 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
     def fail_full_disk(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    with monkeypatch.context() as patched:
-        patched.setattr(class_keeping, "replace", fail_full_disk)
+    with monkeypatch.context() as patch:
+        patch.setattr(class_keeping, "replace", fail_full_disk)
         for _ in range(3):
             keeper.keep(room.classroom.state_to_keep())
     assert not class_file.exists()
@@ -779,8 +781,8 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
     def fail_full_disk(*_: object) -> int:
         raise OSError(28, "No space left on device")
 
-    with monkeypatch.context() as patched:
-        patched.setattr(os, "open", fail_full_disk)
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "open", fail_full_disk)
         early_keeper, late_keeper = Keeper(), Keeper()
     with closing(early_keeper), closing(late_keeper):
         early_keeper.keep(room.classroom.state_to_keep())
@@ -880,23 +882,23 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
     ana = room.joins("Ana")
     room.checks_in(ana, True)
     room.connects(ana)
-    answered: list[str] = []
+    answered_actions: list[str] = []
 
     def ask() -> None:
         for action in ("stop", "beat", "here"):
             room.classroom.answer(ana, PUPIL_ADDRESS, {"do": action})
-            answered.append(action)
+            answered_actions.append(action)
 
     def list_slowly() -> list[Json]:
         asking = Thread(target=ask, daemon=True)
         asking.start()
         asking.join(HANG_LIMIT_S / 10)
-        answered.append("listed")
+        answered_actions.append("listed")
         return [{"port": "port9", "name": "NINE"}]
 
     monkeypatch.setattr(classroom, "list_ports", list_slowly)
     state = room.teaches("class_robot", port="port9", gives=True)
-    assert answered == ["stop", "beat", "here", "listed"]
+    assert answered_actions == ["stop", "beat", "here", "listed"]
     assert [robot["name"] for robot in state["robots"]] == ["", "NINE"]
 
 

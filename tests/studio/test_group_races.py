@@ -128,8 +128,8 @@ class Group:
         driver, *other_mates = self.rng.sample(self.mates, 3)
         self.drives(driver)
         for mate in self.rng.sample(other_mates, self.rng.randrange(3)):
-            pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
-            self.later(pressed)
+            act_pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
+            self.later(act_pressed)
         if self.rng.random() < 0.5:
             self.later(partial(driver.runs, driver.presses, driver.newest_number))
         time.sleep(self.rng.random() * LATE_S)

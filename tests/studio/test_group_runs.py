@@ -129,7 +129,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
             news = robot.tells()
             values_by_driver[robot.driver] += robot.all_values[count_before:]
             runs.add_news(robot.driver, [news])
-            assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
+            assert len(runs._rows) == 1 or waiting_bytes(runs) <= group_runs.MOST_BYTES
         items = page.looks()
         places = [item["at"] for item in items if item["event"] == "PLACE"]
         assert len(places) <= 1
@@ -154,7 +154,7 @@ def test_each_hears_each_run_in_its_order(seed: int) -> None:
         assert len(connections) == robot.connections
 
 
-def waiting(runs: GroupRuns) -> int:
+def waiting_bytes(runs: GroupRuns) -> int:
     return sum(len(json.dumps(row.news)) for row in runs._rows)
 
 
@@ -231,11 +231,11 @@ def test_whoever_comes_hears_of_what_runs_and_of_nothing_before() -> None:
     assert [item["event"] for item in page.looks()] == ["STARTED"]
 
 
-@pytest.mark.parametrize("known", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
-def test_what_a_page_claims_to_know_breaks_nothing(known: object) -> None:
+@pytest.mark.parametrize("claimed_state", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
+def test_what_a_page_claims_to_know_breaks_nothing(claimed_state: object) -> None:
     runs = GroupRuns(lambda: 0.0)
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
-    assert [item["event"] for item in runs.news_after(known, "teo")[1]] == ["STARTED"]
+    assert [item["event"] for item in runs.news_after(claimed_state, "teo")[1]] == ["STARTED"]
 
 
 def test_news_have_the_time_of_their_run() -> None:

@@ -199,12 +199,14 @@ def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
     ana.sends()
     luz.sends()
     answers: list[Json] = []
-    waiting = start_thread(lambda: answers.append(ana.asks("group", **ana.request(waits=True))))
+    waiting_thread = start_thread(
+        lambda: answers.append(ana.asks("group", **ana.request(waits=True)))
+    )
     until(lambda: members_hold(school, ana) > 0, "the page waits")
     assert school.checks_in(luz.token)["group"] == "Red"  # the class is not held
     luz.types("80", "95")
     luz.sends()
-    waiting.join(HANG_LIMIT_S)
+    waiting_thread.join(HANG_LIMIT_S)
     assert "F(1, 95)" in json.dumps(answers)
 
 
@@ -241,20 +243,22 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     ana.sends()
     luz.sends()
     answers: list[Json] = []
-    waiting = start_thread(lambda: answers.append(luz.asks("group", **luz.request(waits=True))))
+    waiting_thread = start_thread(
+        lambda: answers.append(luz.asks("group", **luz.request(waits=True)))
+    )
     until(lambda: members_hold(school, luz) > 0, "the page waits")
     group = school.classroom._groups.group_of(luz.token)
     assert group is not None and robot.witness is not None
-    begins = {"event": "STARTED", "program": "a", "is_program": True}
+    started_event = {"event": "STARTED", "program": "a", "is_program": True}
     with (
         group.condition,
         school.classroom._lock,
         school.classroom._groups._lock,
     ):  # one of them is busy with these
-        telling = start_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
+        telling = start_thread(lambda: robot.witness([started_event]))  # type: ignore[misc]
         telling.join(HANG_LIMIT_S)
         assert not telling.is_alive()
-    waiting.join(HANG_LIMIT_S)
+    waiting_thread.join(HANG_LIMIT_S)
     assert [run["event"] for run in answers[0]["runs"]] == ["STARTED"]
     assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
 
@@ -270,9 +274,9 @@ def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) 
         return f'"{value}"' in text
 
     def show_value(value: str) -> None:
-        begins = {"event": "STARTED", "program": "a", "is_program": True}
+        started_event = {"event": "STARTED", "program": "a", "is_program": True}
         if robot.witness is not None:
-            robot.witness([begins, {"event": "SHOW", "value": value}])
+            robot.witness([started_event, {"event": "SHOW", "value": value}])
 
     show_value("one")
     assert has_value(luz, "one") and not has_value(eva, "one")
@@ -309,8 +313,8 @@ def members_hold(school: School, member: Member) -> int:
 
 def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
-    burst, per_s = groups.CHANGE_RATE
-    for k in range(round(burst) + 20):
+    burst_count, per_s = groups.CHANGE_RATE
+    for k in range(round(burst_count) + 20):
         ana.types("F(", "B(") if k % 2 == 0 else ana.types("B(1, 8", "F(1, 8")
     answers = [ana.sends() for _ in range(4)]
     assert answers[-1].get("slow") is True
@@ -455,9 +459,11 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
     assert teacher.page.lines == members[0].page.lines
-    [other] = [member for member in members[0].sends()["others"] if member["name"] == "Teacher"]
+    [teacher_row] = [
+        member for member in members[0].sends()["others"] if member["name"] == "Teacher"
+    ]
     marks = {member["mark"] for member in teacher.sends()["others"]}
-    assert marks == set(range(groups.MARK_COUNT)) and other["mark"] not in marks
+    assert marks == set(range(groups.MARK_COUNT)) and teacher_row["mark"] not in marks
     teacher.types("80", "95")
     teacher.sends(at="i.3", writes=True)
     members[1].sends()
@@ -491,12 +497,12 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
     members_by_school = [[Member(school, name, name) for name in NAMES] for school in schools]
     for _ in range(40):
         action, k = rng.choice(("wish", "connect", "join", "leave", "stop")), rng.randrange(5)
-        name, wants = rng.choice(NAMES), rng.random() < 0.8
+        name, wants_turn = rng.choice(NAMES), rng.random() < 0.8
         for school, members in zip(schools, members_by_school, strict=True):
             member = members[k]
             school.now_s += 1
             if action == "wish":
-                school.checks_in(member.token, wants)
+                school.checks_in(member.token, wants_turn)
             elif action == "connect" and school.checks_in(member.token)["place"] == 0:
                 school.connects(member.token)
             elif action == "join":
@@ -603,9 +609,9 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         member = rng.choice(members)
         action = rng.choice(("wish", "wish", "connect", "join", "leave", "next"))
         if action == "wish":
-            wants = rng.random() < 0.8
-            place = school.checks_in(member.token, wants)["place"]
-            assert wants or place < 1, "who wants none waits no more, and no one of the group"
+            wants_turn = rng.random() < 0.8
+            place = school.checks_in(member.token, wants_turn)["place"]
+            assert wants_turn or place < 1, "who wants none waits no more, and no one of the group"
         elif action == "connect" and school.checks_in(member.token)["place"] == 0:
             with suppress(BadRequest):
                 school.connects(member.token)
@@ -620,8 +626,8 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
         for pupil in classroom._pupil_by_token.values():
             mates = classroom._mates(pupil)
             turns = [turn for turn in map(classroom._turn, mates) if turn is not None]
-            waiting = [mate for mate in mates if mate.queue_number is not None]
-            assert len(turns) + len(waiting) <= 1, f"step {step}: {action} {member.name}"
+            waiting_mates = [mate for mate in mates if mate.queue_number is not None]
+            assert len(turns) + len(waiting_mates) <= 1, f"step {step}: {action} {member.name}"
 
 
 def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:

@@ -120,12 +120,12 @@ def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
     when one is that has had a breakpoint everywhere from the beginning.
     """
     parts = range(len(check(text.encode(), "tinibot", "en").places))
-    every = started_simulation(text, parts)
+    held_simulation = started_simulation(text, parts)
     arrivals = []
-    while every.held_at is not None:
-        arrivals.append((every.robot.now_ms, every.held_at))
-        every.go_on()
-        every.advance(LONGEST_PART_MS)
+    while held_simulation.held_at is not None:
+        arrivals.append((held_simulation.robot.now_ms, held_simulation.held_at))
+        held_simulation.go_on()
+        held_simulation.advance(LONGEST_PART_MS)
     pauses = [holds_of_a_run(text, arrivals, Random(seed)) for seed in range(HISTORIES)]
     assert sum(map(bool, pauses)) > HISTORIES / 2
 

@@ -43,12 +43,12 @@ class Hand(AskingPage):
     def answer_to(self, number: int) -> Json:
         items: list[Json] = []
 
-        def looks() -> bool:
+        def has_answer() -> bool:
             self.asks("beat")
             items[:] = [item for item in self.news if item.get("id") == number]
             return bool(items)
 
-        until(looks, f"an answer to {number}")
+        until(has_answer, f"an answer to {number}")
         return items[0]
 
     def uploads(self, text: str) -> Json:

@@ -131,8 +131,8 @@ def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
         fields = {} if action == "start" else {"image": image, "robot": "tinibot"}
         page.news.clear()
         page.ask(action, **fields, **({"runs": True} if action == "upload" else {}))
-        started = page.until(lambda item: item.get("event") == "STARTED")
-        assert started["is_program"] is is_program, action
+        started_event = page.until(lambda item: item.get("event") == "STARTED")
+        assert started_event["is_program"] is is_program, action
         page.until(lambda item: item.get("event") == "DONE")
 
 

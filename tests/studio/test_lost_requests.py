@@ -331,11 +331,11 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
     asker.asks("beat", stops=1)
     until(lambda: has_news(1) and not robot.moves, "it stands")
     start_drive(1)
-    began = len(robot.received)
+    start_count = len(robot.received)
     asker.asks("stop", stops=1)  # late, or a repeated beat
     for _ in range(10):
         asker.asks("beat", stops=1)
-    assert robot.moves and b"\0" * 4 not in robot.received[began:]
+    assert robot.moves and b"\0" * 4 not in robot.received[start_count:]
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     other_requests: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]

@@ -54,5 +54,5 @@ def test_the_table_is_unicodes() -> None:
     """Each row's sign folds to its look-alike, and the look-alike to itself."""
     table = names._table()
     assert len(table) > 2500
-    for sign, looks in table.items():
-        assert names._case_folded(chr(sign)) == names._case_folded(looks), hex(sign)
+    for sign, folded_sign in table.items():
+        assert names._case_folded(chr(sign)) == names._case_folded(folded_sign), hex(sign)

@@ -129,7 +129,7 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: 
     )  # fmt: skip
     let_go = packets.index([10, *NO_KEYS])
     assert [10, A_KEY | 32, 0, 100] in [[10, *held_keys] for _, *held_keys in packets[:let_go]]
-    assert [held for _, *held in packets[let_go + 1 :]] == [[32, 0, 0]]
+    assert [held_keys for _, *held_keys in packets[let_go + 1 :]] == [[32, 0, 0]]
 
 
 def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
@@ -150,14 +150,14 @@ def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
 
 
 def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> None:
-    for reads in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
-        driven = ["offer", "driving", {"reads": reads}]
-        parts = [reading for reading in reads if reading.startswith("KEY")]
-        stick = ["stick"] if any(reading.startswith("PAD") for reading in reads) else []
-        assert play_story(page_data, driven)["shown"] == parts + stick
+    for readings in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
+        offer = ["offer", "driving", {"reads": readings}]
+        parts = [reading for reading in readings if reading.startswith("KEY")]
+        stick = ["stick"] if any(reading.startswith("PAD") for reading in readings) else []
+        assert play_story(page_data, offer)["shown"] == parts + stick
     assert play_story(page_data, DRIVING_OFFER, ["offer", "driving", None])["shown"] == []
-    another = ["offer", "link", {"reads": ALL_READINGS}]  # differs from the visible offer
-    assert play_story(page_data, another)["shown"] == []
+    hidden_offer = ["offer", "link", {"reads": ALL_READINGS}]  # differs from the visible offer
+    assert play_story(page_data, hidden_offer)["shown"] == []
 
 
 def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> None:
@@ -174,9 +174,9 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
     page_data: Path,
 ) -> None:
     """The one before hears that all is let go."""
-    real = ["offer", "link", {"reads": ALL_READINGS}]
+    link_offer = ["offer", "link", {"reads": ALL_READINGS}]
     outcome = play_story(
-        page_data, DRIVING_OFFER, real, ["down", "KEY_UP", 1], ["passes", 10],
+        page_data, DRIVING_OFFER, link_offer, ["down", "KEY_UP", 1], ["passes", 10],
         ["side", "side_real"],
         ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
         ["passes", 500],

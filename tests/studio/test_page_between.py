@@ -378,11 +378,11 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
     for tried_action in tried_actions:
         rows[tried_action.action].append(tried_action)
     print("| page | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
-    for action, mine in rows.items():
-        quiet = max(mine, key=lambda tried_action: tried_action.silence_s)
-        slowest_action = max(mine, key=lambda tried_action: tried_action.took_s)
-        print(f"| {action} | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
-              f" {slowest_action.took_s:.1f} ({slowest_action.fault}) |")  # fmt: skip
+    for action, page_actions in rows.items():
+        quietest = max(page_actions, key=lambda tried_action: tried_action.silence_s)
+        slowest = max(page_actions, key=lambda tried_action: tried_action.took_s)
+        print(f"| {action} | {len(page_actions)} | {quietest.silence_s:.1f} ({quietest.fault}) |"
+              f" {slowest.took_s:.1f} ({slowest.fault}) |")  # fmt: skip
 
 
 def test_a_sample_of_what_is_pressed_keeps_the_laws(

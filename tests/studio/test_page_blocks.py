@@ -177,8 +177,8 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
 @sampled
 def test_an_undo_keeps_the_place(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
-    long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
-    start(page, long)
+    long_program = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
+    start(page, long_program)
     page.locator(".zoom button").nth(1).click()
     page.mouse.move(600, 300)
     page.mouse.wheel(0, 500)
@@ -189,20 +189,20 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     page.mouse.click(place["x"] + 8, place["y"] + 8)
     page.keyboard.type("77")
     page.keyboard.press("Enter")
-    new_lines = long.splitlines()
+    new_lines = long_program.splitlines()
     new_lines[15] = "F(77, 80);"
     wait_for_text(page, "\n".join(new_lines) + "\n")
     for _ in range(2):
         box_before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
         page.keyboard.press("Control+z")
-        wait_for_text(page, long)
+        wait_for_text(page, long_program)
         page.locator(f"{PROGRAM} .blocklyActiveFocus").wait_for(state="attached")
         # Blockly scrolls to the focused block, and the page scrolls back
         page.evaluate(SETTLED_SCRIPT)
         assert box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15)) == pytest.approx(
             box_before, abs=2
         )
-        assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
+        assert page.locator("#editor .cm-activeLine").inner_text() == long_program.splitlines()[15]
         page.keyboard.press("Control+y")
         wait_for_text(page, "\n".join(new_lines) + "\n")
     block_height = box_of(block(page, "forward"))["height"]
@@ -268,10 +268,10 @@ def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
     page.mouse.down()
     marker = page.locator(f"{PROGRAM} .blocklyInsertionMarker")
     moves_and_beeps = ".move, .beep"
-    for above, field_count in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
+    for words_above, field_count in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
         page.mouse.move(700, 330, steps=8)  # away from all others: no block is lost
         assert block(page, "when it starts").locator(moves_and_beeps).count() == 3
-        place = box_of(block(page, above))
+        place = box_of(block(page, words_above))
         page.mouse.move(place["x"] + 10, place["y"] + place["height"] + 8, steps=8)
         assert marker.locator(moves_and_beeps).count() == field_count
     page.mouse.up()
@@ -295,12 +295,12 @@ def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert image(page) == compile("SI|F(2, 80);S").image
     assert page.inner_text("#status") == "1 loose block does not run"
-    loose = block(page, "forward")
-    path = path_of(loose)
+    loose_block = block(page, "forward")
+    path = path_of(loose_block)
     grey = path.evaluate("e => getComputedStyle(e).fill")
     white = "all => all.filter((e) => getComputedStyle(e).fill === 'rgb(255, 255, 255)').length"
     assert page.locator(f"{PROGRAM} > .loose .blocklyText").evaluate_all(white) == 0
-    place = box_of(loose)
+    place = box_of(loose_block)
     page.click("#undo")
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
     assert page.inner_text("#status").startswith("The program is correct")
@@ -308,7 +308,7 @@ def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
     page.click("#redo")
     wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert path.evaluate("e => getComputedStyle(e).fill") == grey
-    assert box_of(loose) == pytest.approx(place, abs=1)
+    assert box_of(loose_block) == pytest.approx(place, abs=1)
     page.click("#view_text")
     page.click("#view_blocks")
     assert page.locator("#blocks .blocklyDraggable", has_text="forward").count() >= 2
@@ -472,7 +472,7 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
 @sampled
 def test_a_move_is_so_long_or_so_far(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
-    for field, choice, says, text in (
+    for field, choice, block_texts, text in (
         ("s", "cm", {"forward", "cm"}, "F(2 CM, 80)"),
         ("forward", "turn right", {"turn right", "°"}, "R(2 DEG, 80)"),
         ("°", "s", {"turn right", "s"}, "R(2, 80)"),
@@ -481,7 +481,7 @@ def test_a_move_is_so_long_or_so_far(page: Page) -> None:
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile(f"^{field}")).click()
         page.locator(".blocklyMenuItem", has_text=re.compile(rf"^{choice}$")).click()
         wait_for_text(page, f"SI|{text}\n")
-        assert texts_on_blocks(page) == {"when it starts", "at", "%", *says}
+        assert texts_on_blocks(page) == {"when it starts", "at", "%", *block_texts}
 
 
 @sampled
@@ -529,8 +529,8 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
                 assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
                 groups = page.evaluate(LOWEST_SCRIPT)
                 assert len(groups) > 3
-                for words, count, below, _, height in groups:
-                    assert count and below <= 1 and height >= 40, (screen, name, level, words)
+                for words, count, hidden_px, _, height in groups:
+                    assert count and hidden_px <= 1 and height >= 40, (screen, name, level, words)
 
 
 @pytest.mark.long
@@ -544,8 +544,8 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
         for name in robots.names():
             page.select_option("#robot", name)
             wait_for_blocks(page)
-            for words, _, below, overhang, _ in page.evaluate(LOWEST_SCRIPT):
-                assert below <= 1 and overhang <= 1, (language, name, words)
+            for words, _, hidden_px, overhang, _ in page.evaluate(LOWEST_SCRIPT):
+                assert hidden_px <= 1 and overhang <= 1, (language, name, words)
 
 
 def test_every_word_that_has_a_block_can_be_dragged_out(
@@ -660,18 +660,20 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
 @sampled
 def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
-    for group, words, own in (
+    for group, words, hat_text in (
         ("Events", "each time", "WHEN(DISTANCE < 20);\nEND_WHEN;\n"),
         ("Events", "at the same time", "TASK;\nEND_TASK;\n"),
         ("My words", "new word", "DEF HOP;\nEND_DEF;\n"),
     ):
         start(page, "SI|LOOP(3);\nEND_LOOP;\n", "usual")
         loop = block(page, "repeat")
-        inside = 20 - round(box_of(loop)["height"])
-        drag(page, group, words, loop, off=(12, inside))
+        y_offset = 20 - round(box_of(loop)["height"])
+        drag(page, group, words, loop, off=(12, y_offset))
         wait_for_other_text(page, "SI|LOOP(3);\nEND_LOOP;\n")
         loops = "LOOP(3);\nEND_LOOP;\n"
-        wait_for_text(page, f"SI|{own}{loops}" if own.startswith("DEF") else f"SI|{loops}{own}")
+        wait_for_text(
+            page, f"SI|{hat_text}{loops}" if hat_text.startswith("DEF") else f"SI|{loops}{hat_text}"
+        )
         hat, program = box_of(block(page, words)), box_of(block(page, "repeat"))
         assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
 
@@ -688,15 +690,15 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
     upper, last_hat = (
         page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
     )
-    box, above = box_of(last_hat), box_of(upper)
+    box, upper_box = box_of(last_hat), box_of(upper)
     page.mouse.move(box["x"] + 12, box["y"] + 16)
     page.mouse.down()
-    page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
+    page.mouse.move(box["right"] + 24, upper_box["y"] - 40, steps=8)
     page.mouse.up()
     moved = moved_text.replace(first_hat + second_hat, second_hat + first_hat)
     wait_for_text(page, moved)
     place = box_of(last_hat)
-    assert place["x"] > above["right"] and place["y"] < above["y"]
+    assert place["x"] > upper_box["right"] and place["y"] < upper_box["y"]
     page.click("#undo")
     wait_for_text(page, moved_text)
     page.click("#redo")
@@ -774,9 +776,9 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
     start(page, "SI|")
     dragged, numbers = BLOCKS_BY_LESSON[number]
     for group, words, target, place in dragged:
-        text_before, to = text_of(page), block(page, target)
-        inside = 40 - round(box_of(to)["height"])
-        drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
+        text_before, target_block = text_of(page), block(page, target)
+        y_offset = 40 - round(box_of(target_block)["height"])
+        drag(page, group, words, target_block, off=(12, y_offset) if place == "in" else (0, 0))
         wait_for_other_text(page, text_before)
     if number == 14:  # every second time the lamp goes out
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()

@@ -275,10 +275,10 @@ def test_an_editor_stands_over_its_own_field(page: Page) -> None:
 @sampled
 def test_a_message_is_at_its_block(page: Page) -> None:
     """It is as near as possible without covering another block, with a line from the block."""
-    wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
+    wide_program = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
     for text, isolated in (
-        (f"SI|{wide}S;\nS;\nF(-2);\n", True), (f"SI|F(-2);\nS;\nS;\n{wide}", True),
-        (f"SI|{wide}F(-2);\n{wide}", False),
+        (f"SI|{wide_program}S;\nS;\nF(-2);\n", True), (f"SI|F(-2);\nS;\nS;\n{wide_program}", True),
+        (f"SI|{wide_program}F(-2);\n{wide_program}", False),
     ):  # fmt: skip
         start(page, text)
         bubble = page.locator("#blocks .blocklyBubble")
@@ -345,11 +345,13 @@ def test_the_keys_are_those_of_a_piano() -> None:
         assert key["hertz"] == round(440 * 2 ** ((key["key"] - 69) / 12))
     hertz = [key["hertz"] for key in keys]
     for step in tones["steps"]:
-        ahead = [
+        next_keys = [
             hertz_there for hertz_there in hertz if (hertz_there - step["hertz"]) * step["way"] > 0
         ]
         nearest = (
-            min(ahead, key=lambda frequency: abs(frequency - step["hertz"])) if ahead else None
+            min(next_keys, key=lambda frequency: abs(frequency - step["hertz"]))
+            if next_keys
+            else None
         )
         outer_keys = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
         assert step["to"] == (nearest if nearest is not None else outer_keys[0]), step

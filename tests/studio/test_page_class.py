@@ -535,12 +535,12 @@ def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
 def test_everything_is_seen_and_axe_finds_nothing(
     ana: Page, teacher: Page, pages: Pages, shared_class: Class, pytestconfig: pytest.Config
 ) -> None:
-    longest = join_class(pages, shared_class, "A" * 24)
-    click_ask(longest)
-    wait_for_link(longest, "Connected: ")
-    longest.click("#class_hand")
+    long_name_page = join_class(pages, shared_class, "A" * 24)
+    click_ask(long_name_page)
+    wait_for_link(long_name_page, "Connected: ")
+    long_name_page.click("#class_hand")
     tile(teacher, "A" * 24).locator(".hand").wait_for()
-    for page in (longest, teacher):
+    for page in (long_name_page, teacher):
         for width, height in sample_of(pytestconfig, "screens of a class", SCREENS, 2):
             page.set_viewport_size({"width": width, "height": height})
             for language in ("en", "es"):
@@ -552,12 +552,12 @@ def test_everything_is_seen_and_axe_finds_nothing(
                 wall = page.locator("#wall").bounding_box()["height"]  # type: ignore[index]
                 assert 5 * wall > 2 * height or height > width
         assert axe(page) == []
-    for opens, window in (
+    for button, window in (
         ("#class_come", "#big_code"),
         ("#wall .see >> nth=0", "#big_pupil"),
         ("#class_settings", "#class_window"),
     ):
-        teacher.click(opens)
+        teacher.click(button)
         teacher.emulate_media(color_scheme="light")
         assert axe(teacher, within=window) == []
         teacher.emulate_media(color_scheme="dark")
@@ -567,10 +567,10 @@ def test_everything_is_seen_and_axe_finds_nothing(
     teacher.emulate_media(color_scheme="light")
     speak(teacher, "en")
     tile(teacher, "A" * 24).locator(".hand").click()
-    longest.locator("#class_hand[aria-pressed=false]").wait_for()
-    longest.evaluate(RAISE_HAND_SCRIPT)
+    long_name_page.locator("#class_hand[aria-pressed=false]").wait_for()
+    long_name_page.evaluate(RAISE_HAND_SCRIPT)
     tile(teacher, "A" * 24).locator(".hand").wait_for()
-    longest.close()
+    long_name_page.close()
     remove_all_but_ana(shared_class)
 
 
@@ -588,14 +588,14 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     texts = {pupil["name"]: pupil["text"] for pupil in json.loads(file.read_text())["pupils"]}
     assert texts["Ana"] == "F(1, 77)"
     write(ana, "F(1, 33)")
-    for name, says in (
+    for name, message in (
         ("bad.json", "bad.json is not a file of saved class work"),
         ("class.json", "Opened. "),
     ):
         (tmp_path / "bad.json").write_text('{"tiniscript_class": 1, "pupils": [{"name": 5}]}')
         teacher.click("#class_settings")
         teacher.set_input_files("#class_window input[type=file]", tmp_path / name)
-        teacher.locator("#class_said").filter(has_text=says).wait_for()
+        teacher.locator("#class_said").filter(has_text=message).wait_for()
     assert image(ana) == compile("F(1, 33)").image
     row = opened_row(teacher, "Ana")
     choice = row.locator("select")
@@ -736,10 +736,10 @@ def ends(pages: Pages, class_: Class, erases: bool) -> None:
     )
     wait_until_checked(ana)
     kept_text = "JSON.stringify(localStorage) + JSON.stringify(sessionStorage)"
-    ended = ana.evaluate(kept_text)
-    assert ("F(1, 33)" in ended) is not erases
+    ended_text = ana.evaluate(kept_text)
+    assert ("F(1, 33)" in ended_text) is not erases
     if erases:
-        assert "tiniscript." not in ended
+        assert "tiniscript." not in ended_text
         write(ana, "F(1, 44)")  # from here on, text is kept in this page only
         ana.click("#my_programs")
         ana.click("#new")

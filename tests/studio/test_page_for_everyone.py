@@ -83,13 +83,15 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
     """At two sizes, others in each commit; the class is in `test_page_class.py`."""
-    usual = {screen: sample_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
+    usual_sizes = {screen: sample_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
     low_sizes = {screen: sample_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
-    axed = {screen: sample_of(pytestconfig, screen, usual[screen]) for screen in usual}
+    axed = {screen: sample_of(pytestconfig, screen, usual_sizes[screen]) for screen in usual_sizes}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
-    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low_sizes[name])):
+    for screen, size in screens.each_screen(
+        page, lambda name: (*usual_sizes[name], *low_sizes[name])
+    ):
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):
@@ -310,7 +312,7 @@ UPDATE_SCRIPT = """async () => {
 def test_the_service_worker_has_every_file() -> None:
     need(studio.missing())
     source = serving.files()["service_worker.js"].data.decode()
-    listed = json.loads(source.partition("FILES = ")[2].partition(";")[0])
+    listed_files = json.loads(source.partition("FILES = ")[2].partition(";")[0])
     names = set(serving.files()) - {
         "index.html",
         "service_worker.js",
@@ -319,5 +321,5 @@ def test_the_service_worker_has_every_file() -> None:
     }
     codes = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
     assert set(codes) == set(languages())
-    later = {name for code in codes if code != SOURCE_LANGUAGE for name in codes[code]}
-    assert set(listed) == {"./", *names} - later and later < names
+    later_files = {name for code in codes if code != SOURCE_LANGUAGE for name in codes[code]}
+    assert set(listed_files) == {"./", *names} - later_files and later_files < names

@@ -104,9 +104,9 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
         next(place for place in program.places if place.line == line) for line in lines
     ]
     wanted_spans = {place[1:3] for place in wanted_places}
-    breaks = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
+    break_offsets = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
     parts = tuple(place.offset for place in program.places)
-    marks = Marks(parts, breaks, len(program.variables), is_held=steps)
+    marks = Marks(parts, break_offsets, len(program.variables), is_held=steps)
     it = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
     halts = []
     while it.robot.is_running:
@@ -345,21 +345,21 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
     """Its places come between the program and its start."""
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     count_before = len(robot.actions)
-    pressed: list[bool] = []
+    presses: list[bool] = []
 
     def press(route: Route) -> None:
         questions = [
             request["do"] for request in (route.request.post_data_json or {}).get("asked", [])
         ]
         response = route.fetch()
-        if end_kind in questions and not pressed:
-            pressed.append(True)
+        if end_kind in questions and not presses:
+            presses.append(True)
             page.evaluate("document.getElementById('stop').click()")
         route.fulfill(response=response)
 
     page.route("**/robots", press)
     page.click("#link_upload")
-    wait_for(page, lambda: pressed, "it is on its way")
+    wait_for(page, lambda: presses, "it is on its way")
     wait_for_message(page, re.compile("Stopped: |stopped"))
     page.wait_for_timeout(1000)
     page.unroute_all(behavior="wait")

@@ -79,8 +79,8 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     for number in sample_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed_names = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
-        least = next(level for level in LEVELS if needed_names <= kinds[level] | {"set"})
-        level = max(level, least, key=LEVELS.index)
+        needed_level = next(level for level in LEVELS if needed_names <= kinds[level] | {"set"})
+        level = max(level, needed_level, key=LEVELS.index)
         assert page.input_value("#level") == level, number
     page.select_option("#level", "few")
     open_lesson(page, 1)

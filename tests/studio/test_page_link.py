@@ -266,9 +266,9 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
     first, second = pages.visit(entrance), pages.visit(entrance)
     studio.wait_for_note(second, "This address has already been used")
     assert first.locator("#note").inner_text() == ""
-    for either, has_robots in ((first, True), (second, False)):
-        either.click("#side_real")
-        assert either.locator("#link_ports").is_visible() is has_robots
+    for opened_page, has_robots in ((first, True), (second, False)):
+        opened_page.click("#side_real")
+        assert opened_page.locator("#link_ports").is_visible() is has_robots
     connect(first, robot)
     start_drive(first, robot)
     start_ms = robot.robot_ms

@@ -235,8 +235,8 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
     letters = page.locator(f"{canvas} .blocklyText").evaluate_all(LETTERS)
     assert letters and min(letters) >= 11.99
     fields = ".blocklyDropdownField, .blocklyNumberField, .blocklyImageField"
-    for name, least in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED_SCRIPT):
-        assert least >= 23, name
+    for name, height in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED_SCRIPT):
+        assert height >= 23, name
     rows = page.locator(f"{canvas} .compare > .blocklyPath:not(.blocklyPathSelected)")
     width = page.evaluate("document.querySelector('#blocks').getBoundingClientRect().right")
     last_right = rows.last.evaluate("e => e.getBoundingClientRect()['right']")

@@ -517,8 +517,8 @@ def test_escape_closes_a_window_and_only_then_stops(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.click("#run")
     wait_for_phase(page, "running")
-    for opens, window in (("#my_programs", "#programs"), ("#runs_open", "#runs")):
-        page.click(opens)
+    for button, window in (("#my_programs", "#programs"), ("#runs_open", "#runs")):
+        page.click(button)
         page.keyboard.press("Escape")
         page.locator(window).wait_for(state="hidden")
         page.evaluate(SETTLED_SCRIPT)

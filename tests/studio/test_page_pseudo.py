@@ -118,8 +118,8 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
             page.set_viewport_size({"width": width, "height": height})
             page.evaluate(SETTLED_SCRIPT)
             cut_texts["wall", width] = page.evaluate(CUT_TEXTS_SCRIPT)
-            for opens, window in WINDOWS:
-                page.click(opens)
+            for button, window in WINDOWS:
+                page.click(button)
                 page.locator(f"{window} [data-text=close]").wait_for()
                 page.evaluate(SETTLED_SCRIPT)
                 cut_texts[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)

@@ -212,8 +212,8 @@ def test_the_robots_button_ends_them_and_then_starts_its_program(
 
 
 def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot) -> None:
-    for begins in (watch_senses, lambda page: start_drive(page, robot)):
-        begins(page)
+    for start in (watch_senses, lambda page: start_drive(page, robot)):
+        start(page)
         page.click("#stop")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
         wait_for_no_reading(page)

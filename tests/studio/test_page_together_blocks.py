@@ -200,8 +200,8 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(page_pair: tuple[Page, P
     assert block(ana, "left").count() == 1
     assert "///" in text_of(ana)
     assert "///" not in text_of(luz)
-    loose = box_of(block(ana, "left"))
-    ana.mouse.move(loose["x"] + 8, loose["y"] + 10)
+    loose_box = box_of(block(ana, "left"))
+    ana.mouse.move(loose_box["x"] + 8, loose_box["y"] + 10)
     ana.mouse.down()
     target = box_of(block(ana, "wait"))
     ana.mouse.move(target["x"] + 60, target["y"] + 90, steps=4)

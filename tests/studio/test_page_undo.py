@@ -53,11 +53,11 @@ def wait_for_state(page: Page, wanted_state: BlocksState) -> None:
     wait_for(page, lambda: state_of(page) == wanted_state, str(wanted_state))
 
 
-def move(page: Page, words: str, to: tuple[float, float]) -> None:
+def move(page: Page, words: str, target: tuple[float, float]) -> None:
     box = box_of(block(page, words))
     page.mouse.move(box["x"] + 8, box["y"] + 20)
     page.mouse.down()
-    page.mouse.move(*to, steps=6)
+    page.mouse.move(*target, steps=6)
     page.mouse.up()
     page.locator("#blocks[data-state=shown]").wait_for()
 
@@ -116,8 +116,8 @@ def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
     drag(page, "Events", "each time", None)
     text = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
     wait_for_text(page, text)
-    for begins in ("dragged", "written"):
-        if begins == "written":
+    for trigger in ("dragged", "written"):
+        if trigger == "written":
             start(page, text)
         state_before = state_of(page)
         move(page, "each time", (520, 560))

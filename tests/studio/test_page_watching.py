@@ -62,7 +62,7 @@ def count(page: Page, color: str) -> int:
 
 
 @pytest.fixture
-def listening(page: Page) -> Page:
+def heard_page(page: Page) -> Page:
     """A page that records its sound, and draws no path."""
     if not page.evaluate("'heard' in window"):
         page.reload()  # earlier sounds are not recorded
@@ -87,8 +87,8 @@ def run(page: Page, program: str) -> None:
 
 
 @sampled
-def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page) -> None:
-    page = listening
+def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(heard_page: Page) -> None:
+    page = heard_page
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
     assert page.evaluate("window.heard") == [440, 880]
     page.get_by_role("button", name="Sound").click()
@@ -165,8 +165,8 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
 
 
 @sampled
-def test_stop_and_pause_silence_it(listening: Page) -> None:
-    page = listening
+def test_stop_and_pause_silence_it(heard_page: Page) -> None:
+    page = heard_page
     write(page, "BEEP(30, 440)")
     for button, phase in (("pause", "paused"), ("stop", "ended")):
         stops_before = page.evaluate("window.stopped")
@@ -180,8 +180,8 @@ def test_stop_and_pause_silence_it(listening: Page) -> None:
 
 
 @sampled
-def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page) -> None:
-    page = listening
+def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(heard_page: Page) -> None:
+    page = heard_page
     noted_text = "[window.heard.length, window.started, window.shaken]"
     page.evaluate(
         "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
@@ -200,8 +200,8 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(listening: Page)
 
 
 @sampled
-def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
-    page = listening
+def test_nothing_shakes_for_who_wants_it_still(heard_page: Page) -> None:
+    page = heard_page
     page.emulate_media(reduced_motion="reduce")
     run(page, CRASH_PROGRAM)
     page.emulate_media(reduced_motion="no-preference")
@@ -210,8 +210,8 @@ def test_nothing_shakes_for_who_wants_it_still(listening: Page) -> None:
 
 
 @sampled
-def test_ways_stay_until_they_are_erased(listening: Page) -> None:
-    page = listening
+def test_ways_stay_until_they_are_erased(heard_page: Page) -> None:
+    page = heard_page
     page.select_option("#world", "obstacles")
     assert count(page, WAY_COLOUR) == 0
     run(page, "R(0.1, 60);F(1.5, 80)")  # oblique: both edges of a level line may have that color
@@ -244,8 +244,8 @@ y_cm = 50
 
 
 @sampled
-def test_flags_points_and_stars_are_seen_and_heard(listening: Page) -> None:
-    page = listening
+def test_flags_points_and_stars_are_seen_and_heard(heard_page: Page) -> None:
+    page = heard_page
     page.set_input_files(
         "#world_file", {"name": "task.toml", "mimeType": "", "buffer": TASK.encode()}
     )
@@ -284,8 +284,8 @@ RIVAL_COLOUR, DARK_COLOUR = "9a4fc0", "3b434c"
 
 
 @sampled
-def test_a_bout_is_seen_and_heard_and_how_it_ends(listening: Page) -> None:
-    page = listening
+def test_a_bout_is_seen_and_heard_and_how_it_ends(heard_page: Page) -> None:
+    page = heard_page
     page.set_input_files(
         "#world_file",
         {"name": "bout.toml", "mimeType": "", "buffer": SLEEPING_RIVAL_WORLD.encode()},

@@ -112,9 +112,9 @@ def leave_worker(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> int:
     """Install the worker of another server; return its port, which is free afterwards."""
-    evil = EVIL_WORKER.replace("VERSION", version())
-    evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
-    with page_server.serves(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
+    worker_code = EVIL_WORKER.replace("VERSION", version())
+    worker_code = worker_code.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
+    with page_server.serves(Stranger(0, {f"/{name}": worker_code.encode()})) as stranger:
         page = context.new_page()
         page.goto(f"http://{serving.HOST}:{stranger.server_port}/")
         page.evaluate(LEAVE_WORKER_SCRIPT, [f"./{name}", options])

@@ -262,9 +262,9 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
     data = encode(first_line(), rows.rows, rows.rows[-1].ms).encode()
     assert len(data) < recordings.MOST_BYTES
     assert decode(data).rows == tuple(rows.rows)
-    short = Rows()
-    assert short.add(Row(recordings.MOST_MS, "SHOW 1"))
-    assert not short.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
+    short_rows = Rows()
+    assert short_rows.add(Row(recordings.MOST_MS, "SHOW 1"))
+    assert not short_rows.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
 
 
 @pytest.mark.parametrize("seed", range(5))

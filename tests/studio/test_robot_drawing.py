@@ -39,19 +39,21 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
         {"robot": robot, "state": {**state, "turned": turned}, "seen": STANDING_STILL}
         for robot, turned in turned_robots
     ]
-    ahead, turned_drawing = json.loads(in_node(DRAW_SCRIPT, input_text=json.dumps(requests))[0])
+    ahead_drawing, turned_drawing = json.loads(
+        in_node(DRAW_SCRIPT, input_text=json.dumps(requests))[0]
+    )
     (cone,), (turned_cone,) = (
-        shapes(drawing, "fill", "#e0452f33") for drawing in (ahead, turned_drawing)
+        shapes(drawing, "fill", "#e0452f33") for drawing in (ahead_drawing, turned_drawing)
     )
     assert [a - b for a, b in zip(turned_cone[-2:], cone[-2:], strict=True)] == pytest.approx(
         [-math.pi / 4] * 2
     )
-    jaws = [shapes(drawing, "stroke", "#37434f") for drawing in (ahead, turned_drawing)]
+    jaws = [shapes(drawing, "stroke", "#37434f") for drawing in (ahead_drawing, turned_drawing)]
     assert len(jaws[0]) == len(jaws[1]) + 2
 
 
 def test_wheels_turn_as_far_as_they_have_rolled() -> None:
-    still, ahead, backward, turning, turned = drawings_of(
+    still_drawing, ahead_drawing, backward, turning, turned = drawings_of(
         *(("tinibot", None, {**STANDING_STILL, "rolled": rolled})
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
     )  # fmt: skip
@@ -64,13 +66,15 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
         return sorted(row[0] for row in rows)
 
     for is_left in (True, False):
-        treads_before = treads(still, is_left)
+        treads_before = treads(still_drawing, is_left)
         assert len(treads_before) == 4
-        assert [tread - 0.5 for tread in treads(ahead, is_left)][1:] == pytest.approx(treads_before)
+        assert [tread - 0.5 for tread in treads(ahead_drawing, is_left)][1:] == pytest.approx(
+            treads_before
+        )
         assert treads(turning, is_left) == pytest.approx(treads_before)
         assert treads(backward, is_left) != treads_before
-    assert treads(turned, True) == treads(ahead, True)
-    assert treads(turned, False) == treads(still, False)
+    assert treads(turned, True) == treads(ahead_drawing, True)
+    assert treads(turned, False) == treads(still_drawing, False)
 
 
 def test_what_is_on_is_seen() -> None:
@@ -95,11 +99,11 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
         return left[-1] - right_jaw[-1]
 
     states = [state_after(f"GRIPPER({angle});W(1)", "grabber", 300) for angle in (0, 90, 180)]
-    closed, half, wide = map(
+    closed, half, wide_gap = map(
         gap, drawings_of(*(("grabber", state, STANDING_STILL) for state in states))
     )
-    assert closed < half < wide
-    assert half - closed == pytest.approx(wide - half)
+    assert closed < half < wide_gap
+    assert half - closed == pytest.approx(wide_gap - half)
 
 
 def test_a_cone_is_as_long_as_what_is_read() -> None:

@@ -52,12 +52,12 @@ def test_the_newest_runs_are_kept_as_far_as_there_is_room_and_the_oldest_goes_fi
                 by_nothing += 1
                 kept_runs.pop()
             kept_runs = trimmed([*kept_runs, (number, 0)])
-            assert at_start == [known for known, _ in reversed(kept_runs)]
+            assert at_start == [run_number for run_number, _ in reversed(kept_runs)]
             rows, characters, file = history[number - 1]
             assert run_size == rows * (characters + ROW_CHARACTERS) + file
             kept_before, kept_runs = kept_runs, trimmed([*kept_runs[:-1], (number, run_size)])
             by_size += len(kept_runs) < len(kept_before)
             by_count += len(kept_runs) == MOST_RUNS < number
-            assert at_end == [known for known, _ in reversed(kept_runs)]
+            assert at_end == [run_number for run_number, _ in reversed(kept_runs)]
             assert size == sum(run_size for _, run_size in kept_runs)
     assert by_count > 40 and by_size > 100 and by_nothing > 40

@@ -298,11 +298,11 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
             for page in pages:
                 page.turn()
             page = rng.choice(pages)
-            driven = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
-            if driven is not None and rng.random() < 0.1:
+            driven_robot = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
+            if driven_robot is not None and rng.random() < 0.1:
                 page.stop()
-                driven.step()
-                assert not driven.link.has_run
+                driven_robot.step()
+                assert not driven_robot.link.has_run
         assert not Room.unwaited_pairs
     assert stopped_ms and len(Room.robots) > 20
     assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
@@ -457,7 +457,7 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
     """The kind and the number of earlier requests there do not matter."""
     rng = Random(seed)
     httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-    longest = request_count = 0
+    most_requests = request_count = 0
     for _ in range(40):
         is_odd = rng.random() < 0.06
         request = rng.choice(
@@ -471,9 +471,9 @@ def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
         new_connection.close()
         assert ask(httpconnection, request, padding) == expected, (request, padding)
         request_count += 1
-        longest = max(longest, request_count)
+        most_requests = max(most_requests, request_count)
         if expected[2]:
             httpconnection.close()
             request_count = 0
     httpconnection.close()
-    assert longest > 4
+    assert most_requests > 4

@@ -126,7 +126,8 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
     with ExitStack() as strangers:
         for _ in range(0, STRANGER_COUNT, 500):
             client_crowd = crowd(
-                served_class.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
+                served_class.server.server_port, count=500, packets=(b"", HALF_A_REQUEST),
+                host=HOST,
                 source=source,
             )  # fmt: skip
             strangers.enter_context(client_crowd)

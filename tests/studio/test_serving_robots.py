@@ -162,7 +162,7 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server, server_h
     active_count_before = active_count()
     with ExitStack() as strangers:
         for _ in range(10):
-            client_crowd = crowd(server.server_port, count=100, says=(b"", HALF_A_REQUEST))
+            client_crowd = crowd(server.server_port, count=100, packets=(b"", HALF_A_REQUEST))
             strangers.enter_context(client_crowd)
             assert ask() == 200
         assert page.sock is kept_socket

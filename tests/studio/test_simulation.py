@@ -136,7 +136,7 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
         started_simulation(BUTTON_PROGRAM, is_held=rng.random() < 0.3),
     )
     parts = simulation.marks.part_offsets
-    acts: list[Callable[[], object]] = [
+    actions: list[Callable[[], object]] = [
         simulation.push,
         simulation.push,
         simulation.go_on,
@@ -146,9 +146,9 @@ def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> N
         simulation.stop,
     ]
     if rng.random() < 0.3:
-        acts += [lambda: simulation.set_breakpoints(rng.sample(parts, rng.randint(0, 2)))]
+        actions += [lambda: simulation.set_breakpoints(rng.sample(parts, rng.randint(0, 2)))]
     for _ in range(rng.randint(2, 9)):
-        act = rng.choice(acts)
+        act = rng.choice(actions)
         act()
         assert act != simulation.stop or not any(simulation.state()["motors"])
     simulation.set_breakpoints(())

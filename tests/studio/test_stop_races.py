@@ -208,9 +208,9 @@ def test_what_is_known_of_a_stop_is_final_once_its_connection_has_ended(seed: in
         attending.latch()
         for _ in range(rng.randrange(20)):
             attending.attend(cast(RobotLink, link))
-    known = attending.last_stop
+    known_stop = attending.last_stop
     HostedRobot._end(cast(HostedRobot, hosted), "port_gone")
-    assert attending.last_stop == (CONFIRMED if known == CONFIRMED else SILENT)
+    assert attending.last_stop == (CONFIRMED if known_stop == CONFIRMED else SILENT)
 
 
 if __name__ == "__main__":

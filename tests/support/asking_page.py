@@ -33,11 +33,11 @@ class AskingPage:
     def beats_until(
         self, is_reached: Callable[[Json], object], description: str, **fields: Any
     ) -> None:
-        def looks() -> bool:
+        def has_arrived() -> bool:
             self.asks("beat", **fields)
             return any(is_reached(item) for item in self.news)
 
-        until(looks, description)
+        until(has_arrived, description)
 
     def run(self, stops: int) -> Json:
         self._number += 1

@@ -96,7 +96,7 @@ def pulses(board: Board, pin: int) -> list[tuple[float, float]]:
     """Return the start of each pulse in ms, and its length in us."""
     edges = board.edges(pin)
     pairs = zip(edges[::2], edges[1::2], strict=False)
-    return [(up / MS, (down - up) * 1e6 / HERTZ) for up, down in pairs]
+    return [(rise / MS, (down - rise) * 1e6 / HERTZ) for rise, down in pairs]
 
 
 STOPS = """

@@ -29,12 +29,12 @@ def each_seed(check: Callable[[int], object], options: Namespace) -> None:
     start_s = time.monotonic()
     for seed in range(options.seed, options.seed + options.count):
         try:
-            came = check(seed)
+            outcome = check(seed)
         except BaseException:
             print(f"seed {seed}", flush=True)
             raise
-        if came is not None:
-            counts[str(came)] += 1
+        if outcome is not None:
+            counts[str(outcome)] += 1
     print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - start_s:.0f} s")
 
 

@@ -77,8 +77,8 @@ class Room:
         )
         return str(answer["token"])
 
-    def checks_in(self, token: str, wants: bool | None = None, **fields: Any) -> Json:
-        request = {"do": "here", **fields} | ({} if wants is None else {"wants": wants})
+    def checks_in(self, token: str, wants_turn: bool | None = None, **fields: Any) -> Json:
+        request = {"do": "here", **fields} | ({} if wants_turn is None else {"wants": wants_turn})
         return self.classroom.answer(token, PUPIL_ADDRESS, request)
 
     def connects(self, token: str) -> FakeRobot:

@@ -74,7 +74,7 @@ def compare_verdicts(
 ) -> list[bytes]:
     """Assert that both machines agree on each code; return the accepted codes."""
     machine_verdicts = machine.verdicts(codes, sensors, actuators, needs)
-    accepted = []
+    accepted_codes = []
     for code, (rule, offset) in zip(codes, machine_verdicts, strict=True):
         verdict_in_python = python_verdict(code, sensors, actuators, needs)
         # The offset of accepted code is its length.
@@ -83,8 +83,8 @@ def compare_verdicts(
             f"{code.hex(' ')} for {sensors}, {actuators}: {verdict_in_python}, not {verdict}"
         )
         if not rule:
-            accepted.append(code)
-    return accepted
+            accepted_codes.append(code)
+    return accepted_codes
 
 
 def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str:

@@ -34,7 +34,7 @@ sys.stdin.read()
 
 @contextmanager
 def crowd(
-    *ports: int, count: int = 1000, says: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
+    *ports: int, count: int = 1000, packets: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
     source: str = "",
 ) -> Iterator[None]:  # fmt: skip
     """Open so many connections to each port, which send one of `says` in turn."""
@@ -43,7 +43,11 @@ def crowd(
             for start_index in range(0, count, CONNECTIONS_PER_PROCESS):
                 stack.enter_context(
                     _open_connections(
-                        port, min(CONNECTIONS_PER_PROCESS, count - start_index), says, host, source
+                        port,
+                        min(CONNECTIONS_PER_PROCESS, count - start_index),
+                        packets,
+                        host,
+                        source,
                     )
                 )
         yield
@@ -51,9 +55,9 @@ def crowd(
 
 @contextmanager
 def _open_connections(
-    port: int, count: int, says: Sequence[bytes], host: str, source: str
+    port: int, count: int, packets_sent: Sequence[bytes], host: str, source: str
 ) -> Iterator[None]:
-    packets = ",".join(data.hex() for data in says)
+    packets = ",".join(data.hex() for data in packets_sent)
     words = [
         sys.executable,
         "-I",

@@ -50,8 +50,8 @@ class End(Protocol):
 class LowEnergy:
     """A client of the Nordic UART service. `slow`: it takes one notification in so many looks."""
 
-    def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, slow: int = 1) -> None:
-        self.robot, self.mtu, self.look_interval = robot, mtu, slow
+    def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, look_interval: int = 1) -> None:
+        self.robot, self.mtu, self.look_interval = robot, mtu, look_interval
         self.lengths: list[int] = []
         self._notifications: list[bytes] = []
         self._look_count = 0

@@ -52,8 +52,8 @@ def join_network(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot
     return robot, owner
 
 
-def wifi_reply_of(robot: Esp32Robot, clients: Ends, who: Session) -> WifiReply:
-    request = who.wifi()
+def wifi_reply_of(robot: Esp32Robot, clients: Ends, client: Session) -> WifiReply:
+    request = client.wifi()
     assert wait_for_outcome(robot, clients, request) == "OK"
     assert request.outcome
     return request.outcome.values

@@ -43,12 +43,12 @@ class FakeComputer(System):
         if tty:
             self.write(f"{part}/{tty}/dev", "188:0\n")
 
-    def program(self, number: int, name: str, opens: str = "") -> None:
+    def program(self, number: int, name: str, opened_port: str = "") -> None:
         self.write(f"/proc/{number}/comm", name + "\n")
-        if opens:
+        if opened_port:
             folder = self.root / f"proc/{number}/fd"
             folder.mkdir()
-            (folder / "3").symlink_to(opens)
+            (folder / "3").symlink_to(opened_port)
 
     def ports(self) -> list[ListedPort]:
         return self.listed_ports

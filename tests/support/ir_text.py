@@ -51,8 +51,8 @@ def _body_lines(body: Body, indent: str) -> Iterator[str]:
                 words.append(str(value))
         yield indent + " ".join(words)
         if isinstance(statement, Move) and statement.until is not None:
-            reads, condition = statement.until
-            yield f"{indent}  until {reads} {expression_text(condition)}"
+            reading, condition = statement.until
+            yield f"{indent}  until {reading} {expression_text(condition)}"
         if isinstance(statement, If):
             for arm in statement.arms:
                 yield f"{indent}  arm {arm.reads} {expression_text(arm.condition)}"

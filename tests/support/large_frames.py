@@ -30,10 +30,10 @@ class AnsweringRobot:
     """
 
     def __init__(
-        self, takes: Callable[[int, int, bytes], tuple[int, int] | None],
+        self, take_data: Callable[[int, int, bytes], tuple[int, int] | None],
         largest: int = LARGE_FRAME, window: int = LARGE_WINDOW, baud: int = BAUD,
     ) -> None:  # fmt: skip
-        self.take_data = takes
+        self.take_data = take_data
         self.session = Session(3, baud, KIT)
         self.largest, self.window = largest, window
         self.waiting_frames: list[Frame] = []  # frames not answered yet

@@ -239,8 +239,8 @@ def frame_text(frame: Frame) -> str:
 def format_value(value: int | bytes) -> str:
     if isinstance(value, int):
         return str(value)
-    short = value[:SHOWN_BYTES].hex() + ("..." if len(value) > SHOWN_BYTES else "")
-    return short or "-"
+    shown_hex = value[:SHOWN_BYTES].hex() + ("..." if len(value) > SHOWN_BYTES else "")
+    return shown_hex or "-"
 
 
 class SessionSide:

@@ -122,8 +122,8 @@ class World:
     STEP_MS = 5
     is_split = False
 
-    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drops: float) -> None:
-        self.cpp, self.rng, self.drop_rate = cpp, rng, drops
+    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drop_rate: float) -> None:
+        self.cpp, self.rng, self.drop_rate = cpp, rng, drop_rate
         baud = rng.choice((9600, 9600, 57600, 115200))
         self.to_robot = Radio(rng, baud, faults)
         self.to_computer = Radio(rng, baud, faults)
@@ -178,16 +178,16 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
     """Upload a program over another one, then send lines and stop; return how the upload went."""
     rng = random.Random(seed)
     faults = rng.choice((0, 0.001, 0.01))
-    world = world_of(cpp, rng, faults, drops=rng.choice((0, 0.0002, 0.002)))
+    world = world_of(cpp, rng, faults, drop_rate=rng.choice((0, 0.0002, 0.002)))
     old_image = pack("SI", 0, program(rng, cpp.is_large))
     world.to_robot.faults = world.to_computer.faults = 0
-    drops, world.drop_rate = world.drop_rate, 0
+    drop_rate, world.drop_rate = world.drop_rate, 0
     old_upload = world.session.upload(unpack(old_image), runs=False)
     world.run(old_upload)
     assert old_upload.outcome and old_upload.outcome.status == 0 and cpp.fetch_image() == old_image
     world.to_robot.faults = world.to_computer.faults = faults
     world.to_robot.is_split = world.to_computer.is_split = world.is_split
-    world.drop_rate = drops
+    world.drop_rate = drop_rate
     if cpp.is_large:
         world.to_robot.shuffle_rate = world.to_computer.shuffle_rate = rng.choice((0, 0, 0.02, 0.2))
 

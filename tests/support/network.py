@@ -71,9 +71,9 @@ class BadNetwork(Network):
     """Each piece is `late_s` on its way, one of `every` much longer; some are lost."""
 
     def __init__(
-        self, target: int, late_s: float = 0.02, every: int = 10, loss_rate: float = 0.0
+        self, target: int, late_s: float = 0.02, resend_interval: int = 10, loss_rate: float = 0.0
     ) -> None:
-        self.late_s, self.resend_interval, self.loss_rate = late_s, every, loss_rate
+        self.late_s, self.resend_interval, self.loss_rate = late_s, resend_interval, loss_rate
         self._rng = random.Random(1)
         super().__init__(target)
 

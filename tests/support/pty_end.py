@@ -69,9 +69,9 @@ class PtyEnd(PtyPort):
         next_s = time.monotonic()
         while not self._is_over:
             next_s = max(next_s + 0.001, time.monotonic() - LARGEST_LAG_S)
-            ready, _, _ = select.select([self.our_end], [], [], 0)
+            ready_ends, _, _ = select.select([self.our_end], [], [], 0)
             if self.simulated is None:
-                reply = self.pass_ms(1, os.read(self.our_end, 4096) if ready else b"")
+                reply = self.pass_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
                 if reply:
                     os.write(self.our_end, reply)
             time.sleep(max(0.0, next_s - time.monotonic()))

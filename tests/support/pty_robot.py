@@ -187,7 +187,7 @@ class PtyRobot(PtyPort):
         last_s = time.monotonic()
         while not self._is_over:
             is_busy = self._to_robot or self._to_computer or self._flags
-            ready, _, _ = select.select(
+            ready_ends, _, _ = select.select(
                 [self.our_end], [], [], (1 if is_busy else STRIDE_MS) / 1000
             )
             passed_ms = int((time.monotonic() - last_s) * 1000)
@@ -197,7 +197,7 @@ class PtyRobot(PtyPort):
                 continue
             last_s += passed_ms / 1000
             sent_bytes = self.pass_ms(min(passed_ms, LARGEST_LAG_MS) - 1)
-            sent_bytes += self.pass_ms(1, os.read(self.our_end, 4096) if ready else b"")
+            sent_bytes += self.pass_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
             if sent_bytes:
                 os.write(self.our_end, sent_bytes)
 

@@ -127,8 +127,8 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
 def deep_code(rng: random.Random) -> bytes:
     """Return one thing in itself or in a row, about as often as a machine remembers."""
     kind = rng.randrange(8)
-    usual = 15, 16, 17
-    often = rng.choice({1: (16, 31, 32, 33), 5: (6, 7, 8), 6: (3, 4, 5)}.get(kind, usual))
+    usual_counts = 15, 16, 17
+    often = rng.choice({1: (16, 31, 32, 33), 5: (6, 7, 8), 6: (3, 4, 5)}.get(kind, usual_counts))
     yes = simple("PUSH_TRUE")
     code = simple("STOP") if rng.random() < 0.9 else b""
     if kind == 0:
@@ -339,8 +339,8 @@ def random_images(seed: int, count: int) -> Iterator[bytes]:
     rng = random.Random(seed)
     for _ in range(count):
         start, code = rng.choice(("SI", "SB", "PING")), rng.randbytes(rng.randrange(9))
-        later = rng.randbytes(rng.choice((0, 0, 1, 7, 240)))
-        yield changed_image(rng, pack(start, rng.choice((0, 1, 0x1234)), code, later))
+        later_bytes = rng.randbytes(rng.choice((0, 0, 1, 7, 240)))
+        yield changed_image(rng, pack(start, rng.choice((0, 1, 0x1234)), code, later_bytes))
 
 
 def images_of_programs(seed: int, count: int) -> Iterator[tuple[bytes, Kit]]:

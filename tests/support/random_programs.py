@@ -33,6 +33,6 @@ def random_program(seed: int) -> RandomProgram:
     readings = programs.senses(rng, oracle_kit)
     wanted_run = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
-    short = compile_text(text, kit)
+    short_compilation = compile_text(text, kit)
     plain_compilation = compile_text(text, kit, optimize=False)
-    return RandomProgram(seed, text, kit, senses, wanted_run, short, plain_compilation)
+    return RandomProgram(seed, text, kit, senses, wanted_run, short_compilation, plain_compilation)

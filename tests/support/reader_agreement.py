@@ -103,12 +103,12 @@ def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
     plain_program = plain_code(compilation.program)
     model = Model(scan(compilation.source.text).tokens, kit, SENSOR_BYTES)
     model.program()
-    fits = (
+    is_accepted = (
         plain_program.short_length <= CODE_BYTES
         and model.most_bytes <= room
         and model.extra_bracket_span is None
     )
-    if fits and all(
+    if is_accepted and all(
         len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compilation.source.text)
     ):
         assert answer.code == plain_program.code, f"{answer} {model.most_bytes}\n{data!r}"
@@ -144,10 +144,10 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
     assert compilation.program is not None and compilation.program.start == answer.start
     actual, wanted_trace = (trace(code, kit, senses) for code in (answer.code, compilation.code))
     if any(lines[-1].endswith("LIMIT") for lines in (actual, wanted_trace)):
-        least = (
+        common_length = (
             min(len(actual), len(wanted_trace)) - 1
         )  # the meaning does not include where a run was cut
-        actual, wanted_trace = actual[:least], wanted_trace[:least]
+        actual, wanted_trace = actual[:common_length], wanted_trace[:common_length]
     assert actual == wanted_trace, data.decode()
 
 

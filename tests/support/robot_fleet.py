@@ -93,16 +93,16 @@ class RobotFleet:
         by_end = {pupil.our_end: pupil for pupil in self.pupils}
         lasts = dict.fromkeys(by_end, time.monotonic())
         while not self._is_over:
-            ready, _, _ = select.select(list(by_end), [], [], STEP_MS / 2000)
+            ready_ends, _, _ = select.select(list(by_end), [], [], STEP_MS / 2000)
             now_s = time.monotonic()
             for end, pupil in by_end.items():
                 passed_ms = int((now_s - lasts[end]) * 1000)
-                if passed_ms < (1 if end in ready else STEP_MS):
+                if passed_ms < (1 if end in ready_ends else STEP_MS):
                     continue
                 lasts[end] += passed_ms / 1000
                 if pupil.simulated is not None:
                     continue
-                data = os.read(end, 4096) if end in ready else b""
+                data = os.read(end, 4096) if end in ready_ends else b""
                 sent_bytes = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
                 if sent_bytes and select.select([], [end], [], 0)[1]:
                     os.write(end, sent_bytes)

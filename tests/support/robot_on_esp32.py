@@ -38,13 +38,15 @@ def wait_for_outcome(
     raise AssertionError("the request is not over")
 
 
-def claim_robot(robot: Esp32Robot, clients: Ends, who: Session, role: int = 0) -> None:
+def claim_robot(robot: Esp32Robot, clients: Ends, session: Session, role: int = 0) -> None:
     """Claim a robot for a session, and hold its button."""
-    claim = who.claim(role)
+    claim = session.claim(role)
     for milliseconds, flags in ((300, 0), (2500, 1), (800, 2)):
         talk(robot, clients, milliseconds, flags)
     assert claim.outcome and claim.outcome.status == 0
 
 
-def upload_text(robot: Esp32Robot, clients: Ends, who: Session, text: str = AWAY_PROGRAM) -> str:
-    return wait_for_outcome(robot, clients, who.upload(image_of(text), saves=False))
+def upload_text(
+    robot: Esp32Robot, clients: Ends, session: Session, text: str = AWAY_PROGRAM
+) -> str:
+    return wait_for_outcome(robot, clients, session.upload(image_of(text), saves=False))

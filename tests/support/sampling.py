@@ -49,7 +49,7 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
             tests[mark.kwargs["of"]][""].append(item)
         elif mark is not None:
             tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
-    left_out = _long_left_out(config, items) | _files_left_out(config, items)
+    omitted_items = _long_left_out(config, items) | _files_left_out(config, items)
     for name, groups in tests.items():
         together = _mark(next(iter(groups.values()))).kwargs.get("draw", "")
         rng = random.Random(f"{seed(config)} {together or name}")
@@ -59,10 +59,10 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
             chosen_items = {
                 rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))
             }
-            left_out |= set(rows) - chosen_items
-    if left_out:
-        items[:] = [item for item in items if item not in left_out]
-        config.hook.pytest_deselected(items=list(left_out))
+            omitted_items |= set(rows) - chosen_items
+    if omitted_items:
+        items[:] = [item for item in items if item not in omitted_items]
+        config.hook.pytest_deselected(items=list(omitted_items))
 
 
 def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
@@ -87,12 +87,14 @@ def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pyte
             if "files" in mark.kwargs:
                 items_by_path = files[mark.kwargs["files"], mark.kwargs["keep"]]
                 items_by_path.setdefault(item.path, []).append(item)
-    left_out: set[pytest.Item] = set()
+    omitted_items: set[pytest.Item] = set()
     for (name, keep), items_by_path in files.items():
         rng = random.Random(f"{seed(config)} {name}")
         for path in rng.sample(sorted(items_by_path), len(items_by_path))[keep:]:
-            left_out |= set(items_by_path[path] if path not in _list_named_files(config) else ())
-    return left_out
+            omitted_items |= set(
+                items_by_path[path] if path not in _list_named_files(config) else ()
+            )
+    return omitted_items
 
 
 def _list_named_files(config: pytest.Config) -> set[Path]:

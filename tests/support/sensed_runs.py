@@ -55,9 +55,9 @@ def sensed_run(
 
 def is_steady(text: str, seed: int) -> bool:
     """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
-    usual, *other_runs = (
+    usual_run, *other_runs = (
         sensed_run(text, seed, False, BYTE_TICKS + tick_shift).did for tick_shift in (0, -1, 1)
     )
     return all(
-        largest_difference_ms(usual, other_run) <= LARGEST_DELAY_MS for other_run in other_runs
+        largest_difference_ms(usual_run, other_run) <= LARGEST_DELAY_MS for other_run in other_runs
     )

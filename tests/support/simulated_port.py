@@ -47,12 +47,12 @@ class PtyPort:
         raise NotImplementedError
 
     def _through_noise(self, data: bytes) -> bytes:
-        noisy = bytearray(data)
-        for k in range(len(noisy)):
+        noisy_data = bytearray(data)
+        for k in range(len(noisy_data)):
             self._passed_count += 1
             if self.damages and self._passed_count % self.damages == 0:
-                noisy[k] ^= 0x24
-        return bytes(noisy)
+                noisy_data[k] ^= 0x24
+        return bytes(noisy_data)
 
     def _close(self) -> None:
         for end in (self.our_end, self._device_end):

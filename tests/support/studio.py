@@ -243,9 +243,9 @@ class Pages:
         else:
             context = self._own({})
             self._contexts.remove(context)
-            still = context.new_page()
-            still.goto(self.address + STILL_FILE)
-            still.evaluate(HOLDING_SCRIPT)
+            still_page = context.new_page()
+            still_page.goto(self.address + STILL_FILE)
+            still_page.evaluate(HOLDING_SCRIPT)
         self._to_leave.append(context)
         return context
 
@@ -262,10 +262,10 @@ class Pages:
             context.close()
         for context in self._to_leave:
             context.remove_listener("request", self._note_request)
-            still, *other_pages = context.pages
+            still_page, *other_pages = context.pages
             for page in other_pages:
                 page.close()
-            session = context.new_cdp_session(still)
+            session = context.new_cdp_session(still_page)
             clear_options = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
             session.send("Storage.clearDataForOrigin", clear_options)
             session.detach()

@@ -45,7 +45,7 @@ def compare_task_program(
         for machine in machines:
             actual = machine(image, KIT, Senses(senses, MAX_MS))
             assert actual == wanted_trace, f"seed {seed}, {image.hex()}:\n{text}"
-    laid_out = format_source(Source(text))
-    assert compile_text(laid_out, KIT).image == compilations[0].image, f"seed {seed}"
-    assert format_source(Source(laid_out)) == laid_out, f"seed {seed}"
+    formatted_text = format_source(Source(text))
+    assert compile_text(formatted_text, KIT).image == compilations[0].image, f"seed {seed}"
+    assert format_source(Source(formatted_text)) == formatted_text, f"seed {seed}"
     return wanted_trace.split()[-1]

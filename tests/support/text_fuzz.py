@@ -132,9 +132,10 @@ class Fuzz:
         self.step(flags=2)
 
     def turn(self) -> None:
-        acts = (self.bytes_, self.line, self.line, self.line, self.tokens, self.frames, self.frames,
+        actions = (self.bytes_, self.line, self.line, self.line, self.tokens, self.frames,
+            self.frames,
                 self.zeros, self.silence, self.silence, self.button)  # fmt: skip
-        self.rng.choice(acts)()
+        self.rng.choice(actions)()
 
     # -- the invariants afterwards ----------------------------------------------------------------
 

@@ -99,7 +99,7 @@ def check_pins(case: Case, uno: Uno) -> None:
     robot, senses = robot_and_senses(case)
     image = unpack(compile_case(case).image)
     trace = MACHINES["python"](compile_case(case).image, robot.kit, senses)
-    expected, reads = parsed_trace(trace)
+    expected, reading_times = parsed_trace(trace)
     end_ms = float(trace.splitlines()[-1].split()[0])
     is_over = not trace.endswith("LIMIT\n")
     distances = [value / 1000 for value in senses.readings.get("DISTANCE", [0])]
@@ -113,16 +113,16 @@ def check_pins(case: Case, uno: Uno) -> None:
         return
     heard_count = len(uno.received_bytes)
     assert wired_uno.until(wired_uno.session.upload(image, is_detached=True)) == OK
-    began = last_zero(uno, heard_count)
+    start_count = last_zero(uno, heard_count)
     if image.start == "SB":
         wired_uno.run(300)
-        assert motor_settings(uno, began) == []
+        assert motor_settings(uno, start_count) == []
         uno.press("button", 60)
-        began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
+        start_count = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
     triggers = 0
     distances = simulate_pings(distances)
-    last_ms = end_ms + FIRST_READING_MS + READING_MS * len(reads) + LAST_MESSAGE_MS
-    while (uno.cycle - began) / CYCLES_PER_MS < last_ms:
+    last_ms = end_ms + FIRST_READING_MS + READING_MS * len(reading_times) + LAST_MESSAGE_MS
+    while (uno.cycle - start_count) / CYCLES_PER_MS < last_ms:
         wired_uno.run(2)
         pulses = [
             pin_change for pin_change in uno.pins.history("trigger") if pin_change.state == "high"
@@ -131,14 +131,14 @@ def check_pins(case: Case, uno: Uno) -> None:
             triggers = len(pulses)
             wired_uno.run(PING_MS)
             uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
-    settings = motor_settings(uno, began)
+    settings = motor_settings(uno, start_count)
     events = wired_uno.session.events()
     if not is_over:
         settings = [setting for setting in settings if setting.ms < end_ms]
         expected = [setting for setting in expected if setting.ms < end_ms]
     assert [setting[1:] for setting in settings] == [setting[1:] for setting in expected]
     for pins, line in zip(settings, expected, strict=True):
-        read_count = sum(read_ms <= line.ms for read_ms in reads)
+        read_count = sum(read_ms <= line.ms for read_ms in reading_times)
         late_ms = (
             OFF_MS + READING_MS * read_count + (FIRST_READING_MS - READING_MS) * bool(read_count)
         )

@@ -92,14 +92,14 @@ class Pupil:
         deeds = EDIT_KINDS + ("delete",) * 8 if len(ids) > LARGE_PROGRAM else EDIT_KINDS
         deed = self._rng.choice(deeds) if ids else "insert"
         if deed == "undo":
-            was_done = page.undo()
+            is_done = page.undo()
         else:
             make_operations: Callable[[Tree, list[str], str], list[Operation]] = getattr(
                 self, f"_{deed}"
             )
-            was_done = apply_edits(page, make_operations(view, ids, self._near(ids) if ids else ""))
-        self.counts_by_deed[f"{deed}{'' if was_done else ', not possible'}"] += 1
-        return was_done
+            is_done = apply_edits(page, make_operations(view, ids, self._near(ids) if ids else ""))
+        self.counts_by_deed[f"{deed}{'' if is_done else ', not possible'}"] += 1
+        return is_done
 
     def _near(self, ids: list[str]) -> str:
         k = round(self._rng.gauss(self.focus * len(ids), max(2.0, len(ids) * self._spread)))
@@ -137,10 +137,10 @@ class Pupil:
 
     def _move(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         run = self._run(view, block_id, 3, has_arms=False)
-        to = self._near(ids)
-        if not run or any(view.is_in(to, id) for id in run):
+        target_id = self._near(ids)
+        if not run or any(view.is_in(target_id, id) for id in run):
             return []
-        return [Move(tuple(run), self._place_at(view, to))]
+        return [Move(tuple(run), self._place_at(view, target_id))]
 
     def _wrap(self, view: Tree, ids: list[str], block_id: str) -> list[Operation]:
         run = self._run(view, block_id, 4, has_arms=False)
@@ -209,8 +209,8 @@ class Pupil:
         k = self._line(text) if text else 0
         return k + 1 if text and "|" in text[k] else k
 
-    def _code(self, text: Text, fits: Callable[[str], bool] = lambda row: True) -> int | None:
-        rows = [k for k, row in enumerate(text) if row.strip() and "//" not in row and fits(row)]
+    def _code(self, text: Text, matches: Callable[[str], bool] = lambda row: True) -> int | None:
+        rows = [k for k, row in enumerate(text) if row.strip() and "//" not in row and matches(row)]
         aim = self._line(text) if text else 0
         return min(rows, key=lambda k: abs(k - aim)) if rows else None
 

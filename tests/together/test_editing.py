@@ -157,10 +157,10 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         if editor.is_hot:  # no one else edits the line being typed
             assert editor.text.split("\n")[editor.line] == row
         if rng.random() < 0.1:
-            loose = editor.loose
+            loose_before = editor.loose
             editor.begin(answer["kept"])
-            assert editor.loose[len(editor.loose) - len(loose) :] == loose
-            reloads += bool(loose)
+            assert editor.loose[len(editor.loose) - len(loose_before) :] == loose_before
+            reloads += bool(loose_before)
     for editor in editors:
         editor.is_hot = False
         editor.take(editor.step())

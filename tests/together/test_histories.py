@@ -127,13 +127,13 @@ def _print_counts(worlds: list[World]) -> None:
     change_count, refused_count = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
     refusals = sum((world.refusals_by_reason for world in worlds), Counter[str]())
-    happened = sum((world.counts for world in worlds), Counter[str]())
+    action_counts = sum((world.counts for world in worlds), Counter[str]())
     percent = 100 * refused_count / change_count
     print(
         f"{change_count} changes, refused {refused_count} ({percent:.2f} %) {dict(refusals)}, "
         f"values replaced that their page had not seen: {unseen}"
     )
-    print(dict(happened))
+    print(dict(action_counts))
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
     rows: list[Any] = []
     program = SharedProgram(parse_tree(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
     page = Page.of("z", program.news("z", -1, ""))
-    came: Counter[str] = Counter()
+    refusals: Counter[str] = Counter()
     for k in range(1, MESSAGE_COUNT + 1):
         operation = an_operation(rng)
         uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
@@ -77,10 +77,10 @@ def test_no_change_spoils_the_program(seed: int) -> None:
         try:
             change = change_of(sent_data)
         except Refused as refusal:
-            came[refusal.reason] += 1
+            refusals[refusal.reason] += 1
             continue
         program.submit([change])
-        came[str(rows[-1].get("refused", "taken"))] += 1
+        refusals[str(rows[-1].get("refused", "taken"))] += 1
         if k % 10 == 0:
             tree = program.tree
             assert parse_tree(text_of(tree)).shape() == tree.shape()
@@ -88,8 +88,8 @@ def test_no_change_spoils_the_program(seed: int) -> None:
             assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
             page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
             assert not page.is_astray
-    assert came["taken"] > MESSAGE_COUNT / 50
-    assert came[BAD] > MESSAGE_COUNT / 50
+    assert refusals["taken"] > MESSAGE_COUNT / 50
+    assert refusals[BAD] > MESSAGE_COUNT / 50
 
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)

@@ -273,15 +273,15 @@ class World:
 
     def check_nothing_is_lost(self) -> None:
         """Every node is still there unless a delete or an unwrap removed it."""
-        alive = set(self.first_ids)
+        alive_ids = set(self.first_ids)
         for change in self.taken_changes:
             for operation in change.operations:
-                alive |= _list_added_ids(operation)
+                alive_ids |= _list_added_ids(operation)
                 if isinstance(operation, Delete):
-                    alive -= set(operation.ids)
+                    alive_ids -= set(operation.ids)
                 elif isinstance(operation, Unwrap):
-                    alive.discard(operation.id)
-        assert alive == set(self.program.tree.node_by_id)
+                    alive_ids.discard(operation.id)
+        assert alive_ids == set(self.program.tree.node_by_id)
 
 
 def _list_added_ids(operation: Operation) -> set[str]:
