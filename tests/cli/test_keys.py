@@ -226,9 +226,9 @@ def test_claims_that_were_left_leave_few_keys() -> None:
     ]
 
 
-@pytest.mark.parametrize("role", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("kind", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("status", [OK, STATUSES["NOT_OWNER"]])
-def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, role: int, status: int) -> None:
+def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, kind: int, status: int) -> None:
     """The other one it still has, and so has this computer; a refused one stays."""
     ring = [
         OWNER_KEY._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
@@ -237,13 +237,13 @@ def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, role: int, st
     ]
     key_file.add(ring)
     robot = DeviceInfo("TINI", OWNER_KEY.id, (2, 1), 0, 389, cast(HelloReply, None))
-    exchange = disown(key_file, robot, role)
+    exchange = disown(key_file, robot, kind)
     next(exchange)
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
     key_ids = {(key.id, key.which) for key in key_file.all()}
     given_up_keys = {(key.id, key.which) for key in ring} - key_ids
-    assert given_up_keys == ({(OWNER_KEY.id, role)} if status == OK else set())
+    assert given_up_keys == ({(OWNER_KEY.id, kind)} if status == OK else set())
 
 
 ROBOT_ADDRESS = "tcp://ana"

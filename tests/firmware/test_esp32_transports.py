@@ -425,7 +425,7 @@ def test_a_teachers_stop_holds_on_every_transport() -> None:
     teacher = Session(1, 115200, robot.robot.kit.fingerprint, keys=keys)
     pupil = session(2, robot)
     ends: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
-    claim_robot(robot, ends, teacher, role=1)
+    claim_robot(robot, ends, teacher, kind=1)
     assert wait_for_outcome(robot, ends, teacher.hold_back()) == "OK"
     talk(robot, ends[1:], AUTHORITY_MS + 100)
     assert wait_for_outcome(robot, ends[1:], pupil.clear()) == "HELD_BACK"

@@ -19,7 +19,7 @@ from tiniscript.link.requests import ACCEPTING_STATUSES, OK, DeviceInfo, Exchang
 from tiniscript.link.seal import siphash
 from tiniscript.studio.page_line import PageKeys
 
-SLOTS = [(robot, role) for robot in (1, 2) for role in (KEY_OWNER, KEY_TEACHER)]
+SLOTS = [(robot, kind) for robot in (1, 2) for kind in (KEY_OWNER, KEY_TEACHER)]
 CHANGE_COUNT = 40
 CHALLENGE, NONCE = b"12345678", 7
 T = TypeVar("T")
@@ -109,29 +109,29 @@ class Robot:
             return cast(Reply[T], end.value)
 
     def _reply(self, request: Request) -> Reply[Any]:
-        role = int(request.values["which"])
+        kind = int(request.values["which"])
         if request.name == "CLAIM":
-            status = self._take(role, cast(bytes, request.values["key"]))
+            status = self._take(kind, cast(bytes, request.values["key"]))
             return Reply(status, 0, EmptyReply())
         assert request.name == "AUTHENTICATE"
-        tag, key = request.values["tag"], self.keys.get(role)
+        tag, key = request.values["tag"], self.keys.get(kind)
         if not tag:
             return Reply(OK, 0, AuthenticateReply(0, CHALLENGE))
         self._is_stale = not self._is_stale and self.rng.random() < 0.2
         if self._is_stale:  # it was stopped in this moment
             return Reply(STATUSES["STALE"])
-        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, role])
+        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, kind])
         is_right = key is not None and tag == siphash(key, message)
         return Reply(OK, 0, AuthenticateReply(0, b"")) if is_right else Reply(STATUSES["WRONG_KEY"])
 
-    def _take(self, role: int, key: bytes) -> int:
+    def _take(self, kind: int, key: bytes) -> int:
         if not key:
-            self.keys.pop(role, None)
+            self.keys.pop(kind, None)
             return OK
         statuses = [OK, *ACCEPTING_STATUSES, STATUSES["NOT_OWNER"]]
         status = self._status_by_key.setdefault(key, self.rng.choice(statuses))
         if status in (OK, *ACCEPTING_STATUSES):
-            self.keys[role] = key
+            self.keys[kind] = key
         return status
 
 

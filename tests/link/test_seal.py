@@ -18,7 +18,7 @@ from tiniscript.link.seal import LAST_COUNTER, Seal, session_key, siphash
 
 KEY = bytes(range(16))
 CHALLENGE = bytes.fromhex("a1a2a3a4a5a6a7a8")
-NONCE, ROBOT_NONCE, EPOCH, ROLE = 0x01020304, 0x08070605, 10, 0
+NONCE, ROBOT_NONCE, EPOCH, KEY_KIND = 0x01020304, 0x08070605, 10, 0
 NUMBERS = [
     number for number in range(1, 64) if number != BY_NAME["WIFI"].number
 ]  # that is covered, too
@@ -60,7 +60,7 @@ def sealed_by_hand(frame: Frame, counter: int) -> bytes:
 
 
 def seal(heard_counter: int = 0, sent_counter: int = 0) -> Seal:
-    made_seal = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, ROLE))
+    made_seal = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, KEY_KIND))
     made_seal.heard_counter, made_seal.sent_counter = heard_counter, sent_counter
     return made_seal
 
@@ -141,7 +141,7 @@ def test_each_bit_and_each_length_counts() -> None:
 def test_another_origin_is_another_key() -> None:
     sealed_bytes = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
     assert cpp_link().opens(KEY, ORIGIN, 0, sealed_bytes)
-    keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, ROLE)}
+    keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, KEY_KIND)}
     for index in range(len(ORIGIN)):
         other_origin = bytearray(ORIGIN)
         other_origin[index] ^= 1

@@ -131,8 +131,8 @@ def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
     assert owner.robot.is_running
 
 
-def key(robot: int, role: int = OWNER, byte: int = 1) -> RobotKey:
-    return RobotKey(robot, role, bytes([byte] * 16), "TINI")
+def key(robot: int, kind: int = OWNER, byte: int = 1) -> RobotKey:
+    return RobotKey(robot, kind, bytes([byte] * 16), "TINI")
 
 
 def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:

@@ -49,10 +49,10 @@ class Keys(KeyRing):
         self.stored_keys = change(self.stored_keys)
         return True
 
-    def create_pending_key(self, robot: int, role: int, name: str) -> RobotKey | None:
+    def create_pending_key(self, robot: int, kind: int, name: str) -> RobotKey | None:
         if self.is_full:
             return None
-        key = RobotKey(robot, role, bytes([self.next_number] * 16), name, True)
+        key = RobotKey(robot, kind, bytes([self.next_number] * 16), name, True)
         self.next_number += 1
         self.stored_keys.append(key)
         return key
@@ -130,15 +130,15 @@ class OwnedRobot:
     def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
         self.robot.pass_time(session, milliseconds, flags)
 
-    def claim(self, session: Session, role: int = 0) -> str:
-        request = session.claim(role)
+    def claim(self, session: Session, kind: int = 0) -> str:
+        request = session.claim(kind)
         self.pass_time(session, 500)
         self.hold(session, 2200)
         return self.outcome(session, request)
 
-    def claim_session(self, keys: Keys, role: int = 0) -> Session:
+    def claim_session(self, keys: Keys, kind: int = 0) -> Session:
         session = self.session(keys)
-        assert self.claim(session, role) == "OK"
+        assert self.claim(session, kind) == "OK"
         return session
 
     def tries(self, session: Session) -> str:

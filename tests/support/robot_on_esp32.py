@@ -38,9 +38,9 @@ def wait_for_outcome(
     raise AssertionError("the request is not over")
 
 
-def claim_robot(robot: Esp32Robot, clients: Ends, session: Session, role: int = 0) -> None:
+def claim_robot(robot: Esp32Robot, clients: Ends, session: Session, kind: int = 0) -> None:
     """Claim a robot for a session, and hold its button."""
-    claim = session.claim(role)
+    claim = session.claim(kind)
     for milliseconds, flags in ((300, 0), (2500, 1), (800, 2)):
         talk(robot, clients, milliseconds, flags)
     assert claim.outcome and claim.outcome.status == 0
