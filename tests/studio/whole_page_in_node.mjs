@@ -285,7 +285,7 @@ const ACTS = {
     const line = view.state.doc.lineAt(view.state.selection.main.head), before = linesNow();
     view.state.facet(codemirror.keymap).flat().find(({ key }) => key === 'F9').run(view);
     if (pageState.checkResult.value?.places.length) return; // those of the compiler are taken
-    const wanted = !/^\s*[^\s/]/.test(line.text) ? before : before.includes(line.number) ? before.filter((each) => each !== line.number) : [...before, line.number];
+    const wanted = !/^\s*[^\s/]/.test(line.text) ? before : before.includes(line.number) ? before.filter((item) => item !== line.number) : [...before, line.number];
     if (`${wanted.toSorted()}` !== `${linesNow().toSorted()}`) throw new Error(`in ${line.text}, which is not compiled, breakpoints are at ${linesNow()}, and not at ${wanted}`);
   },
   key(random, { isAnew }) {
