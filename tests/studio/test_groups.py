@@ -104,7 +104,7 @@ class Teacher(Member):
     """The teacher's page in a group."""
 
     def __init__(self, school: School, key: str, text_before: str = "") -> None:
-        self.school, self.name, self.saw = school, "Teacher", 0
+        self.school, self.name, self.seen_count = school, "Teacher", 0
         answer = self.asks("group_visit", group=key, name=self.name, before=text_before)
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)

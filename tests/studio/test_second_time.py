@@ -143,7 +143,7 @@ def own_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Room, "now_ms", 0)
     monkeypatch.setattr(Room, "actions", [])
     monkeypatch.setattr(Room, "robots", [])
-    monkeypatch.setattr(Room, "not_waited_for", [])
+    monkeypatch.setattr(Room, "unwaited_pairs", [])
 
 
 @pytest.fixture
@@ -385,8 +385,8 @@ def test_a_port_that_is_let_go_once_is_held_for_nobody(
     monkeypatch.setattr(hosted_robot, "Client", HeldClient)
     monkeypatch.setattr(hosted_robot, "robot_data", lambda robot: {})
     monkeypatch.setattr(opening, "remember", lambda *_: None)
-    monkeypatch.setattr(HeldClient, "all_left", Event())
-    monkeypatch.setattr(HeldClient, "was_held", None)
+    monkeypatch.setattr(HeldClient, "has_emptied", Event())
+    monkeypatch.setattr(HeldClient, "is_held", None)
     robot = hosted_robot.HostedRobot("p", "tinibot", "en")
     until(lambda: robot.name != "", "it is met")
     for lets_go in lets_go_values:
