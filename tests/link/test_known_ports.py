@@ -54,17 +54,19 @@ PORTS_BY_NAME = {
 def test_the_newest_port_is_first_and_the_one_used_last_is_known(seed: int) -> None:
     """This holds whatever was remembered before, and whether the port was used or only seen; a port
     of several names has the last one."""
-    chance, last_port, names = Random(seed), None, dict[str, str]()
+    rng, last_port, names = Random(seed), None, dict[str, str]()
     for _ in range(20):
         port, name, is_used = (
-            chance.choice([*PORTS_BY_NAME]),
-            chance.choice("AB"),
-            chance.random() < 0.5,
+            rng.choice([*PORTS_BY_NAME]),
+            rng.choice("AB"),
+            rng.random() < 0.5,
         )
         known_ports.remember(port, name, is_used)
         last_port = port if is_used else last_port
         other_names = {
-            other: names[other] for other in names if PORTS_BY_NAME[other] != PORTS_BY_NAME[port]
+            other_name: names[other_name]
+            for other_name in names
+            if PORTS_BY_NAME[other_name] != PORTS_BY_NAME[port]
         }
         names = {port: name, **other_names}
         assert known_ports.remembered_ports() == (last_port, names)
