@@ -213,10 +213,10 @@ def test_a_head_ends_at_16_kilobytes(server: serving.Server, server_host: str, l
 
 
 def test_a_page_asks_on_one_connection_as_often_as_it_wants(
-    server: serving.Server, own: str
+    server: serving.Server, server_host: str
 ) -> None:
     """Its tenth head may be as long as its first."""
-    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
+    headers = {"Origin": f"http://{server_host}", serving.TOKEN_HEADER: server.entrances.token}
     headers["X-More"] = "x" * (serving.HEAD_BYTES // 3)
     with closing(
         HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
@@ -230,9 +230,11 @@ def test_a_page_asks_on_one_connection_as_often_as_it_wants(
         assert len(sockets) == 1
 
 
-def test_the_body_of_a_refused_request_is_no_request(server: serving.Server, own: str) -> None:
-    body = f"GET / HTTP/1.1\r\nHost: {own}\r\n\r\n"
-    head = f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://e\r\n"
+def test_the_body_of_a_refused_request_is_no_request(
+    server: serving.Server, server_host: str
+) -> None:
+    body = f"GET / HTTP/1.1\r\nHost: {server_host}\r\n\r\n"
+    head = f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {server_host}\r\nOrigin: http://e\r\n"
     with socket.create_connection(
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
     ) as client:
