@@ -112,12 +112,12 @@ def own_cache(
     folder: pytest scans all folders of a run for the name of the next one.
     """
     if "tmp_path" in request.fixturenames:
-        own = request.getfixturevalue("tmp_path")
+        cache_folder = request.getfixturevalue("tmp_path")
     else:
-        own = tmp_path_factory.getbasetemp() / "kept" / str(next(UNSEEN))
-    monkeypatch.setenv("XDG_CACHE_HOME", str(own / "cache"))
-    monkeypatch.setenv("XDG_CONFIG_HOME", str(own / "settings"))
-    monkeypatch.setenv("WIN_PD_OVERRIDE_LOCAL_APPDATA", str(own / "local"))
+        cache_folder = tmp_path_factory.getbasetemp() / "kept" / str(next(UNSEEN))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_folder / "cache"))
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(cache_folder / "settings"))
+    monkeypatch.setenv("WIN_PD_OVERRIDE_LOCAL_APPDATA", str(cache_folder / "local"))
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", "unix:path=/nonexistent")  # nor their Bluetooth
     monkeypatch.delenv("TINISCRIPT_DEBUG", raising=False)

@@ -21,7 +21,7 @@ elif [ "${1:-}" = --quick ]; then
         tests/syntax/test_lexer.py tests/syntax/test_parser.py tests/semantics tests/codegen
         tests/bytecode/test_image.py tests/diagnostics/test_rendering.py tests/robots/test_every_driver.py
         tests/languages/test_catalogues.py::test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one
-        tests/pupils/test_pupils.py::test_the_corpus_is_as_it_was
+        tests/pupils/test_pupils.py::test_the_corpus_is_unchanged
         tests/vm/test_cases.py tests/cli/test_cli.py tests/cli/test_check.py tests/link/test_session.py
         tests/link/test_messages.py"
 fi

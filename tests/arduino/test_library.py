@@ -129,7 +129,7 @@ def test_library_and_examples_compile_for_a_chip_of_esp_boards(
         chips.compile_one(chips.CHIPS[name], path, str(tmp_path / "one.o"), flags)
 
 
-def test_an_image_in_flash_drives(
+def test_an_image_in_flash_runs(
     built_library: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     program = elf(built_library, "ImageInFlash", "uno", shared_folder(tmp_path_factory))
@@ -183,9 +183,7 @@ def test_platformio_packs_it(built_library: Path, tmp_path: Path) -> None:
     } <= names
 
 
-def test_a_folder_of_somebody_else_stays(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_foreign_folder_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "kept.txt").write_text("mine", encoding="utf-8")
     assert library.main([str(tmp_path), "--url", URL]) == 2
     assert (tmp_path / "kept.txt").read_text(encoding="utf-8") == "mine"

@@ -127,8 +127,8 @@ class Teller(Terminal):
                  if text.strip() and not text.strip().startswith(ROBOT)]  # fmt: skip
         awaited = [word for (word, end), (after, _) in pairwise(words)
                    if word == after and end.endswith("\n")]  # fmt: skip
-        own = [line for line in self.shown_lines if not line.startswith((ADVICE, ROBOT))]
-        others = [line for line in own if not STANDING.search(line)]
+        own_lines = [line for line in self.shown_lines if not line.startswith((ADVICE, ROBOT))]
+        others = [line for line in own_lines if not STANDING.search(line)]
         return sorted({*awaited, *(line for line in others if others.count(line) > 1)})
 
     def longest_silence_s(self) -> float:

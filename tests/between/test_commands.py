@@ -143,18 +143,18 @@ def try_command(words: Words, fault: Fault, seed: int) -> TriedCommand:
         if holder is not None:
             line.begin(fault, choice_after)
         has_ended = _play_fault(teller, line, words, chance, holder)
-        wrong = [] if has_ended else ["it has no end"]
+        faults = [] if has_ended else ["it has no end"]
         if not has_ended:
             teller.process.kill()
             teller.wait(LONGEST_END_S)
-        wrong += _contradictions(teller, line, words)
+        faults += _contradictions(teller, line, words)
         if fault.has_end or not fault.pulls:
-            wrong += _next_try(line, env, words)
+            faults += _next_try(line, env, words)
         asked_s = [at_s for at_s, text in teller.timed_output if not text]
         began_s = asked_s[0] if asked_s else teller.began_s
         assert teller.ended_s is not None
         return TriedCommand(words.name, fault.name, teller.longest_silence_s(),
-                     teller.ended_s - began_s, tuple(wrong), teller.text)  # fmt: skip
+                     teller.ended_s - began_s, tuple(faults), teller.text)  # fmt: skip
 
 
 def _make_line(words: Words, fault: Fault, chance: Random, after: int) -> BehindBadLine:
@@ -258,11 +258,12 @@ def print_table(commands: Sequence[TriedCommand]) -> None:
         rows[tried_command.name].append(tried_command)
     print("| command | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
     for command in ALL_COMMANDS:
-        if mine := rows[command.name]:
-            quiet = max(mine, key=lambda tried_command: tried_command.silence_s)
-            late = max(mine, key=lambda tried_command: tried_command.took_s)
-            print(f"| `{command.name}` | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
-                  f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
+        if tried_commands := rows[command.name]:
+            quiet = max(tried_commands, key=lambda tried_command: tried_command.silence_s)
+            slowest = max(tried_commands, key=lambda tried_command: tried_command.took_s)
+            print(f"| `{command.name}` | {len(tried_commands)} |"
+                  f" {quiet.silence_s:.1f} ({quiet.fault}) |"
+                  f" {slowest.took_s:.1f} ({slowest.fault}) |")  # fmt: skip
 
 
 def draw_cases(
@@ -285,21 +286,21 @@ def test_a_sample_of_commands_keeps_the_laws_behind_bad_lines(
 
     seed = Random(sampling.seed(request.config)).randrange(10**6)
     commands = try_all(draw_cases(SAMPLE_SIZE, seed, is_whole=False))
-    wrong = {
+    faults_by_name = {
         f"{tried_command.name}, {tried_command.fault}": (
             list_faults(tried_command, TOLERANCE_IN_CI_S),
             tried_command.output,
         )
         for tried_command in commands
     }
-    assert not {name: why for name, why in wrong.items() if why[0]}
+    assert not {name: faults for name, faults in faults_by_name.items() if faults[0]}
 
 
 @pytest.mark.parametrize(("name", "after_s"), [
     ("nothing", 0.2), ("nothing", 0.05), ("nothing", 0.02), ("very late", 0.2),
     ("robot hears nothing", 0.2),
 ])  # fmt: skip
-def test_a_second_ctrl_c_ends_the_wait_and_is_not_a_second_word(
+def test_a_second_ctrl_c_ends_the_wait_without_a_second_message(
     name: str, after_s: float, tmp_path: Path
 ) -> None:
     """The waits are for the stop, and for the save after it."""
@@ -344,7 +345,7 @@ if __name__ == "__main__":
                 f"{tried_command.output}"
             )
     process_times = os.times()
-    print(f"\n{len(commands)} tried, {sum(bool(why) for _, why in faults_by_command)} wrong; "
+    print(f"\n{len(commands)} tried, {sum(bool(faults) for _, faults in faults_by_command)} wrong; "
           f"{CLOCK.now_s - began_s:.0f} s, "
           f"{sum(process_times[:4]):.0f} s of a processor")  # fmt: skip
-    sys.exit(any(why for _, why in faults_by_command))
+    sys.exit(any(faults for _, faults in faults_by_command))

@@ -51,14 +51,14 @@ def change_byte(offset: int, value: int, image: bytes = IMAGE) -> bytes:
 
 @pytest.mark.parametrize("start", ["SI", "SB", "PING"])
 @pytest.mark.parametrize("code", [b"", CODE, bytes(32767)], ids=["empty", "short", "longest"])
-@pytest.mark.parametrize("later", [b"", b"?", bytes(240)], ids=["", "1", "240"])
-def test_what_is_packed_is_read_back(start: str, code: bytes, later: bytes) -> None:
+@pytest.mark.parametrize("later_fields", [b"", b"?", bytes(240)], ids=["", "1", "240"])
+def test_packed_images_are_unpacked_unchanged(start: str, code: bytes, later_fields: bytes) -> None:
     if start == "PING" and code:
         return
-    data = pack(start, 0x1234, code, later)
-    assert unpack(data) == Image(start, 0x1234, code, checksum(data), (2, 0), later)
+    data = pack(start, 0x1234, code, later_fields)
+    assert unpack(data) == Image(start, 0x1234, code, checksum(data), (2, 0), later_fields)
     assert checksum(data) == zlib.crc32(data[:10] + data[14:])
-    assert len(data) == data[5] + len(code) == HEADER_BYTES + len(later) + len(code)
+    assert len(data) == data[5] + len(code) == HEADER_BYTES + len(later_fields) + len(code)
 
 
 @pytest.mark.parametrize("image", [IMAGE, pack("SI", 0, CODE, LATER)], ids=["", "later"])
@@ -77,18 +77,19 @@ def test_every_changed_bit_is_noticed(image: bytes) -> None:
             assert refusal(bytes(data)) in expected
 
 
-def test_the_first_reason_that_applies_is_said() -> None:
+def test_the_first_applicable_reason_is_reported() -> None:
     """Each reason takes precedence over later ones in the table, whatever else is wrong."""
     bad_start, bad_needs = change_byte(4, 3), change_byte(14, 4)
-    both = change_byte(4, 3, bad_needs)
-    damaged_bytes = both[:-1] + bytes([both[-1] ^ 1])
+    doubly_changed = change_byte(4, 3, bad_needs)
+    damaged_bytes = doubly_changed[:-1] + bytes([doubly_changed[-1] ^ 1])
     bad_header = change_byte(9, 0x80, damaged_bytes)
-    other = change_byte(2, 3, bad_header)
+    other_header = change_byte(2, 3, bad_header)
     rows = [
-        (b"S" + other[:1], "NOT_AN_IMAGE"), (other[:4], "OTHER_VERSION"), (other, "OTHER_VERSION"),
+        (b"S" + other_header[:1], "NOT_AN_IMAGE"), (other_header[:4], "OTHER_VERSION"),
+        (other_header, "OTHER_VERSION"),
         (bad_header[:15], "BAD_HEADER"), (damaged_bytes[:-1], "TRUNCATED"),
         (damaged_bytes + b"?", "TRAILING"),
-        (damaged_bytes, "DAMAGED"), (both, "UNKNOWN_NEEDS"), (bad_start, "UNKNOWN_START"),
+        (damaged_bytes, "DAMAGED"), (doubly_changed, "UNKNOWN_NEEDS"), (bad_start, "UNKNOWN_START"),
     ]  # fmt: skip
     for data, name in rows:
         assert refusal(data) == name
@@ -96,7 +97,7 @@ def test_the_first_reason_that_applies_is_said() -> None:
     assert numbers == list(range(1, 11))
 
 
-def test_an_image_of_version_1_says_which_it_is() -> None:
+def test_an_image_of_version_1_is_refused_with_its_version() -> None:
     """This holds for whole, cut and damaged images: the remedy is to compile again."""
     for data in (OLD, OLD[:9], OLD + b"?", OLD[:-1] + b"?", OLD[:4]):
         with pytest.raises(ImageRefused) as exception_info:
@@ -105,7 +106,7 @@ def test_an_image_of_version_1_says_which_it_is() -> None:
         assert exception_info.value.values == {"theirs": "1.0", "ours": f"{ISA_MAJOR}.{ISA_MINOR}"}
 
 
-def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
+def test_an_image_has_the_lowest_version_with_all_its_instructions() -> None:
     texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
     versions = set()
     for compilation in (compile_text(text, KIT) for text in texts):
@@ -116,17 +117,21 @@ def test_it_has_the_lowest_version_that_has_all_of_it() -> None:
     assert versions == {*second_reader.VERSIONS}
 
 
-def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_instruction_can_raise_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
     """This holds for whichever instruction is the newest, at any position."""
     for op in (op for op in OPS if not op.needs):
         others = b"".join(
-            other.opcode + bytes(other.size - 1) for other in OPS if not other.needs | other.since
+            other_op.opcode + bytes(other_op.size - 1)
+            for other_op in OPS
+            if not other_op.needs | other_op.since
         )
         code = others + op.opcode + bytes(op.size - 1) + others
         assert pack("SI", 0, code)[3] == op.since
         with monkeypatch.context() as patch:
-            later = [op._replace(since=9) if other == op else other for other in BY_CODE]
-            patch.setattr(opcodes, "BY_CODE", later)
+            later_ops = [
+                op._replace(since=9) if other_op == op else other_op for other_op in BY_CODE
+            ]
+            patch.setattr(opcodes, "BY_CODE", later_ops)
             assert pack("SI", 0, code)[3] == 9
 
 
@@ -136,10 +141,10 @@ def test_each_instruction_counts_for_the_version(monkeypatch: pytest.MonkeyPatch
 def test_an_image_that_uses_no_device_runs_anywhere() -> None:
     image = compile_text("SI|F(5,80)", KIT).image
     assert load_image(image, Kit((), ())).devices == 0
-    used = compile_text("DISTANCE", KIT).image
-    assert load_image(used, KIT).devices == KIT.hashes[2]
+    using_image = compile_text("DISTANCE", KIT).image
+    assert load_image(using_image, KIT).devices == KIT.hashes[2]
     with pytest.raises(ImageRefused, match="OTHER_KIT"):  # in this kit the word is a key
-        load_image(used, Kit((), ()))
+        load_image(using_image, Kit((), ()))
     with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
         load_image(compile_text("PAD_Y", KIT).image, Kit(KIT.sensors * 3))
     # The code uses none, but the header claims some.
@@ -147,15 +152,15 @@ def test_an_image_that_uses_no_device_runs_anywhere() -> None:
         load_image(pack("SI", 1, CODE), KIT)
 
 
-def test_a_kit_may_grow_after() -> None:
+def test_unused_devices_of_the_kit_may_change() -> None:
     """Anything that a program does not use may change too."""
     image = compile_text("LOOP(FOREVER);IF(DISTANCE < 10);STOP;ENDIF;END_LOOP", KIT).image
-    more = (*KIT.sensors, Device("SONAR", NUMBER, "cm", 0, 1000))
-    others = (
+    more_sensors = (*KIT.sensors, Device("SONAR", NUMBER, "cm", 0, 1000))
+    other_sensors = (
         *(sensor._replace(name="X" + sensor.name) for sensor in KIT.sensors[:2]),
         KIT.sensors[2],
     )
-    for sensors in (more, others):
+    for sensors in (more_sensors, other_sensors):
         kit = KIT._replace(sensors=sensors)
         assert kit.fingerprint != KIT.fingerprint
         load_image(image, kit)
@@ -168,12 +173,12 @@ def test_a_kit_may_grow_after() -> None:
     [{"name": "DISTANCES"}, {"kind": YES_NO}, {"unit": ""}, {"low": 1}, {"high": 399_000}],
     ids=lambda change: next(iter(change)),
 )
-@pytest.mark.parametrize("uses", [1, 2, 15, 16, 17, 255, 256, 1000])
-def test_a_device_that_is_another_one_is_noticed(change: dict[str, object], uses: int) -> None:
+@pytest.mark.parametrize("use_count", [1, 2, 15, 16, 17, 255, 256, 1000])
+def test_a_different_device_is_noticed(change: dict[str, object], use_count: int) -> None:
     """However often it is used: no number of uses makes two devices the same."""
     sensors = (*KIT.sensors[:2], KIT.sensors[2]._replace(**change))  # type: ignore[arg-type]
-    code = bytes.fromhex("3802") * uses
-    image = pack("SI", KIT.hash_of_used([("sensor", 2)] * uses), code)
+    code = bytes.fromhex("3802") * use_count
+    image = pack("SI", KIT.hash_of_used([("sensor", 2)] * use_count), code)
     load_image(image, KIT)
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
         load_image(image, Kit(sensors, ()))
@@ -190,10 +195,12 @@ def test_the_code_is_verified_before_its_devices() -> None:
 def test_the_polynomial_is_primitive() -> None:
     """Therefore 65,535 uses of one device are the first number that could hide it."""
     kit = Kit((), (Device("A", YES_NO, "", 0, 1),))
-    one = kit.hash_of_used([("actuator", 0)])
+    single_hash = kit.hash_of_used([("actuator", 0)])
     period_later = kit.hash_of_used([("actuator", 0)] * 65_536)
-    assert one == period_later
-    hashes = {kit.hash_of_used([("actuator", 0)] * uses) for uses in (1, 3, 5, 15, 17, 255, 257)}
+    assert single_hash == period_later
+    hashes = {
+        kit.hash_of_used([("actuator", 0)] * use_count) for use_count in (1, 3, 5, 15, 17, 255, 257)
+    }
     assert len(hashes) == 7
     assert all(kit.hash_of_used([("actuator", 0)] * (65_535 // prime)) for prime in (3, 5, 17, 257))
 
@@ -205,13 +212,13 @@ def test_the_spec_has_an_example_of_hashes() -> None:
     rows = re.findall(
         r"^\| `grabber` \| \d \| `(sensor|actuator) (.*)` \| `([0-9a-f]{4})` \|$", text, flags=re.M
     )
-    lines = [f"{what} {rest}" for what, rest, _ in rows]
+    lines = [f"{device_text} {rest}" for device_text, rest, _ in rows]
     assert lines == [line.rstrip("\n") for line in kit.lines()]
     hashes = dict(zip(kit.device_lines(), kit.hashes, strict=True))
     assert [int(number, 16) for _, _, number in rows] == [hashes[line] for line in kit.lines()]
-    whole = "".join(f"{line}\n" for line in lines).encode()
-    assert f"`{zlib.crc32(whole) & 0xFFFF:04x}`" in text
-    assert kit.fingerprint == zlib.crc32(whole) & 0xFFFF
+    joined_lines = "".join(f"{line}\n" for line in lines).encode()
+    assert f"`{zlib.crc32(joined_lines) & 0xFFFF:04x}`" in text
+    assert kit.fingerprint == zlib.crc32(joined_lines) & 0xFFFF
     source = re.search(r"```tiniscript\n(.*DISTANCE.*GRIPPER.*)\n```", text)
     assert source
     image = compile_text(source[1], kit).image
@@ -227,14 +234,14 @@ def test_the_spec_has_the_devices_of_every_robot() -> None:
         assert f"`{name}`" in text
 
 
-def test_the_spec_promises_no_number_that_is_taken() -> None:
+def test_the_spec_promises_no_number_that_is_in_use() -> None:
     text = SPEC.read_text(encoding="utf-8")
-    later = text[text.index("### Room to grow") :]
-    promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM)\s+\((\d+)\)", later))
+    section = text[text.index("### Room to grow") :]
+    promised = dict(re.findall(r"(NO_PLACE|LIST_FULL|NO_ROOM)\s+\((\d+)\)", section))
     assert int(promised.pop("NO_ROOM")) not in {number for number, _ in REFUSALS.values()}
     assert not {int(number) for number in promised.values()} & {number for number, *_ in FAULTS}
     assert len(promised) == 2
-    first = re.search(r"for\s+rules,\s+these\s+start\s+at\s+(\d+)", later)
+    first = re.search(r"for\s+rules,\s+these\s+start\s+at\s+(\d+)", section)
     assert first
     assert int(first[1]) == 1 + max(number for number, *_ in RULES.values())
 

@@ -116,12 +116,12 @@ def faults_of(op: Op) -> set[str]:
         (1).to_bytes(operand.kind.size, "little") for operand in op.operands
     )
     fault_names = set()
-    for first in EDGES:
+    for first_name in EDGES:
         for second in EDGES:
             machine = machine_for(op, code)
             task = machine.task
-            task.stack[:] = [first, second][: op.pops]
-            task.variables[:] = [first] * VARIABLES
+            task.stack[:] = [first_name, second][: op.pops]
+            task.variables[:] = [first_name] * VARIABLES
             task.counters[:], task.calls[:] = [2], [0]
             machine.tick(2**31, 1)
             fault_names.add(machine.fault)
@@ -157,15 +157,15 @@ def test_codes_and_numbers_are_used_once() -> None:
 
 
 def test_an_instruction_of_one_byte_has_its_operand_in_its_last_bits() -> None:
-    short = [op for op in OPS if op.implied is not None]
-    assert len(short) == 6 * SHORTS
-    for op in short:
+    short_ops = [op for op in OPS if op.implied is not None]
+    assert len(short_ops) == 6 * SHORTS
+    for op in short_ops:
         assert op.implied is not None
         assert op.size == 1 and op.name == f"{op.family}_{op.code % SHORTS}"
         assert op.implied.value == op.code % SHORTS
-        long = BY_NAME[op.family]
-        assert [operand.kind for operand in long.operands] == [op.implied.kind]
-        assert (long.effect, long.control_role) == (op.effect, op.control_role)
+        long_op = BY_NAME[op.family]
+        assert [operand.kind for operand in long_op.operands] == [op.implied.kind]
+        assert (long_op.effect, long_op.control_role) == (op.effect, op.control_role)
 
 
 def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> None:
@@ -175,7 +175,7 @@ def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> N
             assert op.code % 8 == BY_NAME[comparator].code % 8
 
 
-def test_a_byte_begins_the_codes_of_two() -> None:
+def test_the_escape_byte_begins_two_byte_opcodes() -> None:
     assert opcodes.BY_CODE[ESCAPE] is None
     for code, op in ESCAPED_OPS.items():
         assert op_at(bytes([0, ESCAPE, code]), 1) is op
@@ -204,7 +204,7 @@ def test_numbers_of_one_byte_follow_one_another() -> None:
     assert codes == list(range(codes[0], codes[0] + len(PUSHED_NUMBERS)))
 
 
-def test_a_time_of_one_byte_is_a_time_of_its_own() -> None:
+def test_each_time_byte_encodes_a_distinct_time() -> None:
     times = [time8_ms(byte) for byte in range(256)]
     assert times == sorted({*times})
     assert [times[byte] for byte in (0, 1, 99, 100, 101, 199, 200, 255)] == [
@@ -244,11 +244,13 @@ def test_an_instruction_that_comes_after_a_release_has_a_later_version() -> None
     """Otherwise a machine that lacks it would accept an image that it cannot run."""
     for minor, ranges in RELEASED.items():
         codes: set[int] = set()
-        for first, _, last in (part.partition("-") for part in ranges.split()):
-            codes.update(range(int(first, 16), int(last or first, 16) + 1))
+        for first_name, _, last_name in (part.partition("-") for part in ranges.split()):
+            codes.update(range(int(first_name, 16), int(last_name or first_name, 16) + 1))
         newer_codes = {op.code for op in OPS if op.since == minor}
-        more = [op.name for op in OPS if op.code in newer_codes - codes]
-        assert not more, f"give {more} since={max(RELEASED) + 1}: {minor} has been released"
+        newer_names = [op.name for op in OPS if op.code in newer_codes - codes]
+        assert not newer_names, (
+            f"give {newer_names} since={max(RELEASED) + 1}: {minor} has been released"
+        )
         assert newer_codes == codes, "a code is a promise"
 
 
@@ -263,8 +265,8 @@ def test_a_version_that_is_not_released_is_in_the_changelog() -> None:
 def test_a_robot_makes_the_version_of_the_same_instructions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    later = [op._replace(since=9) if op.name == "BEEP" else op for op in OPS]
-    monkeypatch.setattr(opcodes, "OPS", later)
+    later_ops = [op._replace(since=9) if op.name == "BEEP" else op for op in OPS]
+    monkeypatch.setattr(opcodes, "OPS", later_ops)
     code = BY_NAME["BEEP"].code
     assert re.search(
         rf"minor_of_op\(uint8_t code\) {{ return .*code == 0x{code:02x} \? 9 : .*0; }}",

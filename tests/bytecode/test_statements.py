@@ -13,7 +13,7 @@ from tiniscript.bytecode.statements import statement_of, statement_starts
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_every_offset_is_in_the_statement_that_begins_last_before_it(seed: int) -> None:
+def test_every_offset_belongs_to_the_last_statement_begun_before_it(seed: int) -> None:
     oracle_kit, kit = KITS[seed % len(KITS)]
     code = image_of(programs.program(random.Random(seed), oracle_kit), kit).code
     starts = statement_starts(code)

@@ -64,7 +64,7 @@ def test_devices_are_counted(sensors: int) -> None:
                 verify(code, sensors, 0)
 
 
-def test_verdict_says_what_code_needs() -> None:
+def test_the_verdict_contains_the_needs_of_the_code() -> None:
     _oracle_kit, kit = KITS[0]
     text = """
         DEF IN; LOOP(2); LOOP(3); SHOW(1 + TIME * 2); END_LOOP; END_LOOP; END_DEF

@@ -50,7 +50,7 @@ def result_of(name: str) -> Result:
     return results.read_results()[name]
 
 
-def test_it_goes_on_where_it_was(
+def test_a_campaign_resumes_where_it_stopped(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     interrupted_after(monkeypatch, 1)
@@ -93,7 +93,7 @@ def interrupted_after(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
     monkeypatch.setattr(campaign, "run_piece", interrupt_piece)
 
 
-def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_failure_is_reported_with_its_seed_and_rerun(capsys: pytest.CaptureFixture[str]) -> None:
     assert campaign.main(["bad"]) == 1
     assert "this one is wrong" in capsys.readouterr().out
     assert result_of("bad").done == 0 and "seed 7" in result_of("bad").wrong
@@ -101,7 +101,7 @@ def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFix
     assert "--seed 7" in capsys.readouterr().out
 
 
-def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_results_of_other_code_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     interrupted_after(monkeypatch, 2)
     campaign.main(["done"])
     monkeypatch.setattr(results, "current_commit", lambda: "b" * 10)
@@ -110,7 +110,7 @@ def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPa
     assert (result_of("done").done, result_of("done").commit) == (10, "b" * 10)
 
 
-def test_what_code_has_reached_that_is_in_no_commit_is_not_kept(
+def test_results_of_uncommitted_code_are_not_kept(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(results, "current_commit", lambda: "a" * 10 + "+")
@@ -118,7 +118,7 @@ def test_what_code_has_reached_that_is_in_no_commit_is_not_kept(
     assert results.read_results() == {}
 
 
-def test_a_figure_is_old_when_what_it_tried_has_changed(
+def test_a_figure_is_stale_once_the_tested_code_has_changed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def commit_file(name: str, text: str) -> str:
@@ -155,12 +155,12 @@ def test_a_figure_is_old_when_what_it_tried_has_changed(
 
 
 @pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)
-def test_each_goal_names_what_it_tries(goal: Goal) -> None:
+def test_each_goal_names_the_code_that_it_tests(goal: Goal) -> None:
     assert goal.paths
     assert [path for path in goal.paths if not (ROOT / path).exists()] == []
 
 
-def test_each_figure_is_of_a_commit_that_led_here(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_figure_is_of_an_ancestor_commit(monkeypatch: pytest.MonkeyPatch) -> None:
     is_shallow = ("rev-parse", "--is-shallow-repository")
     if not which("git") or results.git(*is_shallow).stdout.strip() != "false":
         pytest.skip("the commits of this copy are not here: nobody can tell which led to it")
@@ -174,7 +174,7 @@ def test_each_figure_is_of_a_commit_that_led_here(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)
-def test_each_goal_has_a_command_that_takes_its_words(
+def test_each_goal_has_a_command_that_accepts_its_arguments(
     goal: Goal, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Only its options are read: `--help` ends it."""

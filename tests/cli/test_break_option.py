@@ -62,7 +62,7 @@ def halt_output(terminal: Terminal) -> list[str]:
     return lines[halt_index:]
 
 
-def test_without_a_terminal_it_tells_each_halt_and_goes_on(
+def test_without_a_terminal_each_halt_is_reported_and_the_program_continues(
     pty_robot: PtyRobot, program: Path
 ) -> None:
     result = on(pty_robot, "upload", program, "--no-save", "--break", "7", "--break", "4").gives(
@@ -93,7 +93,7 @@ def test_a_line_without_an_instruction_halts_before_the_next_one(
     assert result.out.splitlines()[1:] == [*HALT_BEFORE_6, *END_LINES]
 
 
-def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
+def test_a_halt_reports_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     result = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
     place_lines = result.out.splitlines()[1:6]
@@ -106,7 +106,7 @@ def test_it_tells_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     ]
 
 
-def test_an_instruction_that_is_joined_to_the_one_before_halts_there(pty_robot: PtyRobot) -> None:
+def test_an_instruction_joined_to_the_previous_one_halts_there(pty_robot: PtyRobot) -> None:
     """The compiler takes a reading once: the statement has both."""
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     joined_text = "SI|DISTANCE\nIF(DISTANCE < 10)\nSTOP\nENDIF\nSHOW(2)\n"
@@ -138,7 +138,9 @@ def test_a_key_steps_one_instruction_of_the_text(
 
 
 @pytest.mark.parametrize("key", ["g", "G"])
-def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program: Path) -> None:
+def test_a_key_continues_to_the_next_breakpoint(
+    key: str, pty_robot: PtyRobot, program: Path
+) -> None:
     terminal = start_terminal(pty_robot, program, 4, 7)
     for line in (4, 7):
         terminal.until(rf"(?s)before line {line}.*Ctrl-C: stop\n*$")
@@ -152,7 +154,7 @@ def test_a_key_goes_on_to_the_next_place(key: str, pty_robot: PtyRobot, program:
     ]
 
 
-def test_a_key_counts_once_and_others_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
+def test_a_key_counts_once_and_other_keys_do_nothing(pty_robot: PtyRobot, program: Path) -> None:
     """Keys typed before the halt is reported do not answer it."""
     terminal = start_terminal(pty_robot, program, 4)
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
@@ -183,7 +185,7 @@ def test_a_loop_is_stepped_one_instruction_at_a_time(pty_robot: PtyRobot, tmp_pa
     assert halts == [f"Halted before {instruction}" for instruction in loop * 2]
 
 
-def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None:
+def test_ctrl_c_stops_a_halted_program(pty_robot: PtyRobot, program: Path) -> None:
     terminal = start_terminal(pty_robot, program, 4)
     terminal.until(r"(?s)before line 4.*Ctrl-C: stop\n*$")
     terminal.interrupt()
@@ -205,14 +207,14 @@ def test_ctrl_c_stops_what_is_halted(pty_robot: PtyRobot, program: Path) -> None
         (["--break", "4", "--no-run"], 2, "--break needs a run"),
     ],
 )
-def test_what_no_robot_does_is_said_before_anything_is_sent(
+def test_breakpoints_on_no_instruction_are_refused_before_anything_is_sent(
     words: list[str], code: int, message: str, pty_robot: PtyRobot, program: Path
 ) -> None:
     on(pty_robot, "upload", program, *words).gives(code, message)
     assert pty_robot.actions == [] and on(pty_robot, "start").code == 3, "it has no program"
 
 
-def test_an_image_whose_text_nobody_knows_has_no_lines(
+def test_an_image_of_unknown_text_has_no_lines(
     pty_robot: PtyRobot, program: Path, tmp_path: Path, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     image = tmp_path / "drive.bin"
@@ -223,7 +225,7 @@ def test_an_image_whose_text_nobody_knows_has_no_lines(
     on(pty_robot, "upload", image, "--break", "7").gives(2, "an image has no lines")
 
 
-def test_a_robot_that_cannot_halt_gets_nothing(
+def test_nothing_is_sent_to_a_robot_that_cannot_halt(
     pty_robot: PtyRobot, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(debugger, "BREAKPOINTS", 0)
@@ -237,7 +239,7 @@ SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{final}" for final in "PQ
 
 
 @pytest.mark.parametrize("seed", range(50))
-def test_no_key_of_several_characters_steps_or_goes_on(seed: int) -> None:
+def test_no_key_of_several_characters_steps_or_continues(seed: int) -> None:
     """F4 ends with an S. Text typed between such keys counts."""
     rng = random.Random(seed)
     pressed_keys = [rng.choice([*SEQUENCES, *(STEP_KEYS + GO_KEYS)]) for _ in range(8)]
@@ -283,7 +285,7 @@ LINES = (
 )
 
 
-def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot: PtyRobot) -> None:
+def test_a_line_halts_at_its_own_breakpoints_and_at_no_earlier_ones(pty_robot: PtyRobot) -> None:
     """The lines that it needs are sent before it. Lines of the text that is typed count."""
     result = on(pty_robot, "live", "-", "--break", "3", data="\n".join(LINES).encode()).gives(0, "")
     assert result.out.splitlines() == [
@@ -299,7 +301,7 @@ def test_a_line_halts_where_it_is_told_and_nowhere_in_what_came_before(pty_robot
 
 
 @pytest.mark.parametrize("halts", ["1", "4"])
-def test_lines_that_halt_do_what_they_do_alone(halts: str, pty_robot: PtyRobot) -> None:
+def test_lines_that_halt_do_the_same_as_without_halts(halts: str, pty_robot: PtyRobot) -> None:
     data = "\n".join(LINES).encode()
     lines_alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
     halt_rows = (
@@ -338,7 +340,7 @@ def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:
     assert terminal.end() == 0
 
 
-def test_a_line_that_has_no_such_place_or_a_robot_that_cannot_halt_gets_nothing(
+def test_nothing_is_sent_for_a_missing_place_or_to_a_robot_that_cannot_halt(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     on(pty_robot, "live", "F(1, 80)", "--break", "2").gives(1, "on or after line 2")

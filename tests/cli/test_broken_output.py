@@ -56,7 +56,7 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
-def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> None:
+def test_a_program_that_prints_nothing_is_also_stopped(pty_robot: PtyRobot) -> None:
     """The program is endless, and tsc has no output whose writing could fail."""
     port_option = ("--port", pty_robot.port)
     for words in (("upload", "-e", FOREVER), ("start",)):
@@ -68,7 +68,7 @@ def test_a_program_that_prints_nothing_is_stopped_too(pty_robot: PtyRobot) -> No
     assert code == EXIT_OF_CLOSED_PIPE and "stopped the robot" in err
 
 
-def test_many_robots_that_show_nothing_are_stopped() -> None:
+def test_many_robots_whose_programs_print_nothing_are_stopped() -> None:
     with RobotFleet([robots.load("tinibot").kit] * 2) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
         code, _ = after_lines(0, "upload", "-e", FOREVER, *port_options)
@@ -76,7 +76,7 @@ def test_many_robots_that_show_nothing_are_stopped() -> None:
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
 
 
-def test_a_slow_reader_and_a_file_are_none_that_has_gone(
+def test_a_slow_reader_and_a_file_do_not_count_as_a_closed_pipe(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
     words = ["upload", "-e", "SI|F(1, 80)", "--port", pty_robot.port]
@@ -87,7 +87,7 @@ def test_a_slow_reader_and_a_file_are_none_that_has_gone(
         assert process.stdout and b"Done." in process.stdout.read()
 
 
-def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
+def test_a_save_is_finished_before_the_stop(pty_robot: PtyRobot) -> None:
     """The program drives without a pause, so saving waits for the stop."""
     moves = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{moves}SHOW(1);END_LOOP", "--port", pty_robot.port]
@@ -111,7 +111,7 @@ def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
-def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
+def test_detached_programs_continue(pty_robot: PtyRobot) -> None:
     port_option = ("--port", pty_robot.port)
     code, err = after_lines(0, "upload", "-e", SHOW_PROGRAM, "--detach", *port_option)
     assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
@@ -158,7 +158,7 @@ def test_only_robots_that_a_command_drives_are_stopped(
     assert bool(stopped_ports) == is_stopped
 
 
-def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
+def test_a_full_disk_also_stops_the_robot(pty_robot: PtyRobot) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
     with Path("/dev/full").open("wb") as full:
@@ -294,7 +294,7 @@ def test_a_command_with_unread_output_ends_with_ctrl_c(pty_robot: PtyRobot, verb
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such pipes")
 @pytest.mark.parametrize("reader", ["reads", "is slow", "has gone"])
 @pytest.mark.parametrize("stream", ["stdout", "stderr"])
-def test_whoever_shares_the_pipe_of_an_interrupted_command_has_it_as_it_was(
+def test_an_interrupted_command_leaves_a_shared_pipe_as_it_was(
     monkeypatch: pytest.MonkeyPatch, stream: str, reader: str
 ) -> None:
     """In `(tsc upload prog; echo done) | less`, the next command may wait for the reader."""

@@ -48,7 +48,7 @@ def school(tmp_path: Path) -> Iterator[School]:
         broker.kill()
 
 
-def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) -> None:
+def test_a_robot_speaks_tls_with_brokers_that_it_trusts(school: School, tmp_path: Path) -> None:
     def set_wifi(*words: str) -> str:
         result = on(school.robot, "set", "wifi", *words, "--user", "robots", data=b"a secret\n")
         assert result.code == 0 and "a secret" not in result.out + result.err, result.err
@@ -94,7 +94,9 @@ def test_an_invalid_certificate_is_reported_before_the_robot_is_asked(tmp_path: 
         assert run_in_process(*words, "--port", "/none").code == 3, "there is no such port"
 
 
-def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_path: Path) -> None:
+def test_a_computer_trusts_the_brokers_own_certificate_regardless_of_its_signer(
+    tmp_path: Path,
+) -> None:
     """Like a robot, it refuses another certificate of the same authority. An untrusted broker and
     an absent one have different messages.
 
@@ -131,13 +133,13 @@ def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_pat
     (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "certificate, not 127.0.0.1"),
     (["--tls"], "--broker HOST"), (["--trust", "CA"], "--broker HOST"),
 ])  # fmt: skip
-def test_options_that_make_no_sense(words: list[str], message: str, tmp_path: Path) -> None:
+def test_nonsensical_options_are_refused(words: list[str], message: str, tmp_path: Path) -> None:
     file = str(Authority(tmp_path).file)
     words = [file if word == "CA" else word for word in words]
     run_in_process("set", "wifi", *words, "--port", "/none").gives(2, message, out="")
 
 
-def test_every_state_of_a_broker_has_a_sentence() -> None:
+def test_every_broker_state_has_a_message() -> None:
     from tiniscript.cli.robot.robot_broker import UNSTARTED_STATES
     from tiniscript.cli.texts import has_text
 

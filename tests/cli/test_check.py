@@ -45,7 +45,7 @@ def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc
     )
 
 
-def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path, tsc: Tsc) -> None:
+def test_correct_programs_give_exit_code_0_and_are_checked_once(folder: Path, tsc: Tsc) -> None:
     """A single program has no table; a folder may be empty."""
     result = tsc("check", "a.ts", "./a.ts", "a.ts")
     assert (result.code, result.out.count("no mistakes")) == (0, 1)
@@ -89,7 +89,7 @@ def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
     assert (second_row["errores"], second_row["línea"], second_row["código"]) == ("1", "1", "TS017")
 
 
-def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Tsc) -> None:
+def test_an_unreadable_file_has_its_row_and_gives_exit_code_2(folder: Path, tsc: Tsc) -> None:
     result = tsc("check", "a.ts", "none.ts", "b.ts")
     assert result.code == 2
     assert "none.ts: there is no file none.ts" in result.out
@@ -97,7 +97,7 @@ def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Ts
     assert "b.ts: line 1" in result.out
 
 
-def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
+def test_other_contents_of_a_folder_do_no_harm(folder: Path, tsc: Tsc) -> None:
     (folder / "x\n\x1b[31m.ts").write_text(RIGHT_PROGRAM, encoding="utf-8")
     (folder / "bytes.ts").write_bytes(b"\0\xff")
     (folder / ".hidden.ts").write_text(WRONG_PROGRAM, encoding="utf-8")
@@ -128,7 +128,9 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
 # -- repairs ------------------------------------------------------------------------------------
 
 
-def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Tsc) -> None:
+def test_fix_writes_the_sure_repairs_and_reports_the_remaining_mistakes(
+    folder: Path, tsc: Tsc
+) -> None:
     """Twice is once."""
     result = tsc("check", "--fix", "sub/c.ts", "--lang", "es").gives(1)
     once = (folder / "sub" / "c.ts").read_bytes()
@@ -148,7 +150,7 @@ def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Ts
 
 
 @pytest.mark.parametrize("option", ["--diff", "--dry-run"])
-def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) -> None:
+def test_showing_the_difference_writes_nothing(folder: Path, tsc: Tsc, option: str) -> None:
     """Without a file, the program is printed."""
     for options in ([option], ["--fix", option]):
         result = tsc("check", *options, "b.ts")

@@ -141,7 +141,7 @@ def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> No
     )
 
 
-def test_who_has_no_key_sees_and_stops(
+def test_computers_without_a_key_can_watch_and_stop(
     room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Clients without the broker's password do not see the class."""
@@ -161,7 +161,7 @@ def test_who_has_no_key_sees_and_stops(
     assert not any(robot.moves for robot in room)
 
 
-def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
+def test_a_suspended_driver_keeps_no_robot_driving(room: Class) -> None:
     """A robot keeps its client for 3 s; another client waits for that, and then gets a message."""
     command = start_endless_upload(room)
     command.signal(signal.SIGSTOP)
@@ -176,7 +176,7 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
 
 
 @sampled
-def test_whoever_only_looks_changes_nothing(room: Class) -> None:
+def test_watching_changes_nothing(room: Class) -> None:
     """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
@@ -191,7 +191,7 @@ def test_whoever_only_looks_changes_nothing(room: Class) -> None:
     command.process.kill()
 
 
-def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
+def test_only_clients_that_drive_robots_have_to_keep_them_alive() -> None:
     room = SimpleNamespace(
         address=("h", 1), group="c", options=SimpleNamespace(verb="class"),
         broker=SimpleNamespace(attend=print),
@@ -204,7 +204,7 @@ def test_only_who_has_robots_drive_has_to_attend_to_them() -> None:
         assert options.ports == ["mqtt://h:1/c/00000001"]
 
 
-def test_a_fleet_is_asked_for_no_option_that_a_class_lacks() -> None:
+def test_messages_about_a_fleet_suggest_no_option_that_class_lacks() -> None:
     """Options that a class lacks have the fleet's default."""
     class_options = Options("class", "en").read(["upload"])
     room = SimpleNamespace(
@@ -271,7 +271,7 @@ def test_the_times_of_all_robots_count_from_one_start() -> None:
 
 @pytest.mark.parametrize("code", [0, 1, 2, 3])
 @pytest.mark.parametrize("verb", ["list", "show", "show for a second", "upload", "stop"])
-def test_what_became_of_the_robots_is_the_exit_code(
+def test_the_exit_code_tells_the_outcome_for_the_robots(
     monkeypatch: pytest.MonkeyPatch, verb: str, code: int
 ) -> None:
     """Ctrl-C is the usual end of `class show`, and of no other command. 1 is a program with a
@@ -303,7 +303,7 @@ def test_what_became_of_the_robots_is_the_exit_code(
 
 @pytest.mark.parametrize("is_present", [True, False])
 @pytest.mark.parametrize("losses", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
-def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
+def test_a_stop_succeeds_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     losses: tuple[bool | None, ...], is_present: bool,
 ) -> None:  # fmt: skip
@@ -341,7 +341,7 @@ def test_a_stop_goes_on_whichever_of_its_messages_is_lost(
     assert has_gone == (not is_present and any(losses))
 
 
-def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
+def test_a_missing_broker_and_an_empty_class_are_reported(broker: Mosquitto) -> None:
     """A stranger's retained messages never reach a terminal unescaped."""
     run_in_process("class", "--broker", "127.0.0.1:1").gives(3, "no MQTT broker responds")
     broker_option = ("--broker", f"127.0.0.1:{broker.port}")
@@ -365,7 +365,7 @@ def test_nobody_and_a_stranger_at_the_broker(broker: Mosquitto) -> None:
     ["--broker", "x", "--tls", "--trust", "/none"], ["--broker", "x", "--user", ""],
     ["drive", "--broker", "x"], ["list", "--broker", "x", "--csv", "f"],
 ])  # fmt: skip
-def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: list[str]) -> None:
+def test_nonsensical_arguments_are_refused_before_anything_is_contacted(words: list[str]) -> None:
     for language in ("en", "es"):
         result = run_in_process("class", *words, "--lang", language)
         assert result.code == 2 and result.err.startswith("tsc: ") and not result.out
@@ -375,12 +375,12 @@ def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: lis
     ["--broker", "x", "--no-broker"], ["NET", "--broker", "x"], ["--forget", "--no-broker"],
     ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
 ])  # fmt: skip
-def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
+def test_a_robots_broker_is_set_with_valid_arguments_only(words: list[str]) -> None:
     result = run_in_process("set", "wifi", *words, "--port", "/none", data=PASSWORD)
     assert result.code == 2 and result.err.startswith("tsc: ")
 
 
-def test_a_robot_that_knows_no_broker_is_said_to_be_old() -> None:
+def test_a_robot_without_broker_support_is_reported_as_old() -> None:
     """Its firmware refuses the step: the sentence about a bad value would not help."""
     connection = SimpleNamespace(
         name="Tini",
@@ -402,7 +402,7 @@ def retain_message(client: Broker, topic: str, payload: bytes) -> None:
     client.close()
 
 
-def test_a_large_message_that_a_broker_keeps_is_named_and_a_stop_is_told_as_sent(
+def test_a_large_retained_message_is_named_and_a_stop_is_reported_as_sent(
     broker: Mosquitto,
 ) -> None:
     place_options = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]

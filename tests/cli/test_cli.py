@@ -24,7 +24,7 @@ VERB_OPTIONS = (
 
 
 @pytest.mark.parametrize("verb_options", VERB_OPTIONS)
-def test_a_mistake_is_exit_code_1_whatever_is_done_with_the_program(
+def test_a_mistake_gives_exit_code_1_in_every_command(
     tsc: Tsc, working_folder: Path, verb_options: str
 ) -> None:
     """Nothing is written, run or sent."""
@@ -63,7 +63,7 @@ def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> N
     ("LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
      "stack 1 of 16\n"),
 ])  # fmt: skip
-def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
+def test_compile_reports_the_duration(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
     assert runs in tsc("compile", "-e", text, "-o", tmp_path / "a.bin").out
 
 
@@ -84,7 +84,7 @@ def test_compile_to_standard_output(
     assert b"18 bytes" in capture_result.err
 
 
-def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
+def test_map_names_the_lines(tsc: Tsc, tmp_path: Path) -> None:
     source, places = tmp_path / "a.ts", tmp_path / "a.map"
     source.write_text("// hello\nW(1)\nX = 0; SHOW(1 / X)\n", encoding="utf-8")
     assert tsc("compile", source, "--map", places).code == 0
@@ -126,7 +126,7 @@ def test_code_has_a_limit_on_every_robot(tsc: Tsc, tmp_path: Path) -> None:
 # -- check --------------------------------------------------------------------------------------
 
 
-def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
+def test_check_reports_all_mistakes_in_both_languages(tsc: Tsc) -> None:
     text = "F(2 80);S = 5\nIF(DISTANCE < 10) STOP ENDIF"
     english, spanish = tsc("check", "-e", text), tsc("check", "--lang", "es", "-e", text)
     assert english.code == spanish.code == 1
@@ -171,7 +171,7 @@ def test_run_prints_the_trace_and_nothing_else(tsc: Tsc) -> None:
     ]  # fmt: skip
 
 
-def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
+def test_run_accepts_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
     result = tsc("run", program.with_suffix(".bin"))
     assert result.out == "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"
@@ -179,7 +179,7 @@ def test_run_takes_an_image_and_standard_input(tsc: Tsc, program: Path) -> None:
     assert run_in_process("check", "-", data=b"S = 5").code == 1
 
 
-def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
+def test_max_steps_limits_only_steps_that_take_no_time(tsc: Tsc) -> None:
     for text, steps, last_line in (
         ("W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "50", "2000 LIMIT"),
         ("X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP", "100", "60000 LIMIT"),
@@ -207,12 +207,12 @@ def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
     ["--robot", "nobody"], ["--robot", ""], ["--robot", "/"], ["--robot", "no/such.toml"],
     ["-e", "W(1)"], ["--lang", "fr"], ["--nonsense"], ["another.ts"],
 ])  # fmt: skip
-def test_wrong_use_of_run(tsc: Tsc, arguments: list[str]) -> None:
+def test_run_refuses_wrong_use(tsc: Tsc, arguments: list[str]) -> None:
     for language in ([], ["--lang", "es"]):
         tsc("run", "-e", "DISTANCE", *language, *arguments).gives(2, out="")
 
 
-def test_sensor_of_another_robot(tsc: Tsc) -> None:
+def test_a_sensor_of_another_robot_is_explained(tsc: Tsc) -> None:
     result = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "LINER", "--sensor", "LINE_L=TRUE")
     assert result.out == "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 DONE\n"
     tsc("run", "-e", "SHOW(LINE_L)", "--robot", "liner", "--sensor", "LINE_L=2").gives(2)
@@ -247,7 +247,7 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
         assert word in result.err
 
 
-def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
+def test_an_image_of_another_robot_names_that_robot(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "a.bin"
     for text, robot in (("SHOW(LINE_L)", "liner"), ("GRIPPER(30)", "grabber")):
         assert tsc("compile", "-e", text, "-o", target, "--robot", robot).code == 0
@@ -303,7 +303,7 @@ def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
     assert tsc("fmt", "-e", formatted_text).out == formatted_text
 
 
-def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
+def test_fmt_leaves_wrong_programs_and_those_that_would_become_too_large(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.cli.commands.fmt.LARGEST_SOURCE_BYTES", 1000)
@@ -315,7 +315,7 @@ def test_fmt_leaves_what_is_wrong_and_what_it_would_make_too_large(
     assert tsc("fmt", program.with_suffix(".bin")).code == 2
 
 
-def test_explain(tsc: Tsc) -> None:
+def test_explain_prints_the_explanation_of_a_code(tsc: Tsc) -> None:
     result = tsc("check", "--explain", "TS012").gives(0, out="TS012")
     assert tsc("check", "--explain", "ts012", "--lang", "es").out != result.out
     assert tsc("check", "--explain").out.count("\nTS") > 50

@@ -31,7 +31,7 @@ def complete(tsc: Tsc, *words: str) -> set[str]:
     return {line.partition("\t")[0] for line in result.out.splitlines()[1:]}
 
 
-def test_verbs_options_and_values(tsc: Tsc) -> None:
+def test_verbs_options_and_values_are_completed(tsc: Tsc) -> None:
     assert complete(tsc, "") == set(VERBS)
     assert complete(tsc, "st") == {"start", "stop", "studio"}
     assert complete(tsc, "--lang", "es", "up") == {"upload"}
@@ -61,7 +61,7 @@ def test_verbs_options_and_values(tsc: Tsc) -> None:
     assert complete(tsc, "nonsense", "") == set()
 
 
-def test_every_option_of_every_verb(tsc: Tsc) -> None:
+def test_every_option_of_every_verb_is_completed(tsc: Tsc) -> None:
     for command, parser in parsers().items():
         flags = {flag for action in parser._actions for flag in action.option_strings}
         flags |= {flag for option in selecting_options_of(command) for flag in option.flags.split()}
@@ -81,7 +81,7 @@ def words(tmp_path: Path) -> dict[str, str]:
 
 
 @pytest.mark.skipif(not BASH, reason="there is no bash")
-def test_tab_in_bash(tmp_path: Path) -> None:
+def test_tab_completes_in_bash(tmp_path: Path) -> None:
     (tmp_path / "my program.ts").write_text("S")
     (tmp_path / "rc").write_text(f'PS1="> "; cd {shlex.quote(str(tmp_path))}\n'
                                  'eval "$(tsc help --completion bash)"\n')  # fmt: skip
@@ -101,7 +101,7 @@ def test_tab_in_bash(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not ZSH, reason="there is no zsh")
-def test_tab_in_zsh(tmp_path: Path) -> None:
+def test_tab_completes_in_zsh(tmp_path: Path) -> None:
     (tmp_path / ".zshrc").write_text(
         'PS1="> "; unsetopt zle_bracketed_paste; autoload -Uz compinit && compinit -u -D\n'
         f'cd {shlex.quote(str(tmp_path))}; eval "$(tsc help --completion zsh --lang es)"\n'
@@ -124,7 +124,7 @@ def test_tab_in_zsh(tmp_path: Path) -> None:
     assert shell.end() == 0
 
 
-def test_brackets_and_quotes_of_powershell_close() -> None:
+def test_brackets_and_quotes_of_the_powershell_script_balance() -> None:
     """No PowerShell is available to read the script. A quote of print would close a text, too."""
     script = help_completion.SCRIPTS["powershell"]
     assert not set("‘’‚‛“”„") & set(script)
@@ -140,7 +140,7 @@ def test_brackets_and_quotes_of_powershell_close() -> None:
     assert not open_signs
 
 
-def test_a_shell_that_is_not_known(tsc: Tsc) -> None:
+def test_an_unknown_shell_is_refused(tsc: Tsc) -> None:
     tsc("help", "--completion", "fish").gives(
         2, "--completion takes bash, zsh or powershell, not fish"
     )

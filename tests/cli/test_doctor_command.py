@@ -33,7 +33,7 @@ def causes(done_out: str) -> list[str]:
 # -- the whole firmware -------------------------------------------------------------------------
 
 
-def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
+def test_a_healthy_robot_is_reported_as_fine(pty_robot: PtyRobot) -> None:
     bytes_before: list[bytes] = []
     pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
     pty_robot.ask(lambda robot: bytes_before.append(robot.memory()))
@@ -54,7 +54,7 @@ def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
 
 
 @pytest.mark.parametrize("is_others", [False, True])
-def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
+def test_a_run_continues_during_an_examination(pty_robot: PtyRobot, is_others: bool) -> None:
     """Both a run left alone, and one that another tsc attends."""
     if is_others:
         command = start_endless_upload(pty_robot)
@@ -69,12 +69,14 @@ def test_a_run_goes_on(pty_robot: PtyRobot, is_others: bool) -> None:
         command.kill()
 
 
-def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobot) -> None:
+def test_the_doctor_asks_through_the_command_that_holds_the_port(
+    link: Command, pty_robot: PtyRobot
+) -> None:
     on(pty_robot, "doctor", "--lang", "es").gives(0, out="1. tinibot está bien (seguro)")
     assert on(pty_robot, "doctor", "--identify").code == 0
 
 
-def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
+def test_faults_of_a_robot_are_reported(pty_robot: PtyRobot) -> None:
     """Another kit than that of the robot that was named, weak batteries, and a bad line."""
     on(pty_robot, "doctor", "--robot", "liner").gives(
         3, out=("(tinibot), not the kit of liner", "--robot tinibot")
@@ -88,7 +90,7 @@ def test_what_is_wrong_with_a_robot_is_said(pty_robot: PtyRobot) -> None:
     assert "lossy" in causes(result.out)
 
 
-def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
+def test_a_restart_while_driving_is_reported(pty_robot: PtyRobot) -> None:
     """Its power fails when the motors start; this chip only reports a power-on."""
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
@@ -117,7 +119,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
 # -- other things -------------------------------------------------------------------------------
 
 
-def test_a_port_that_another_program_has_locked() -> None:
+def test_a_port_locked_by_another_program_is_reported() -> None:
     with PtyEnd(Firmware()) as end:
         holder = open_port(end.port, 9600)
         result = run_in_process("doctor", "--port", end.port)
@@ -155,7 +157,7 @@ SEVEN_BOARDS = [
 @pytest.mark.parametrize(
     ("end", "cause", "board_name", "heard_text"), SEVEN_BOARDS, ids=[row[1] for row in SEVEN_BOARDS]
 )
-def test_a_board_that_is_not_ours_at_a_real_port(
+def test_a_foreign_board_at_a_real_port_is_reported(
     tsc: Tsc, end: boards.Board, cause: str, board_name: str, heard_text: str
 ) -> None:
     """The speed is that of a robot with an HC-05, which most boards do not have."""
@@ -172,7 +174,7 @@ def test_a_board_that_is_not_ours_at_a_real_port(
     (boards.SnekBoard, "The board runs Snek"),
     (boards.Esp32Board, "An ESP32 is starting up here"),
 ])  # fmt: skip
-def test_an_upload_says_what_is_there_instead_of_a_robot(
+def test_an_upload_names_the_device_that_is_there_instead_of_a_robot(
     tsc: Tsc, hasty: None, board: type[boards.Board], sentence: str
 ) -> None:
     """It sends only HELLO, and reads a board's start message."""
@@ -206,7 +208,7 @@ def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
         yield pty_end
 
 
-def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, cable: PtyEnd) -> None:
+def test_a_cable_is_opened_only_after_consent(tsc: Tsc, cable: PtyEnd) -> None:
     result = tsc("doctor", "--port", cable.port)
     assert (result.code, cable.received) == (3, b"")
     assert "tsc doctor --yes" in result.out
@@ -217,7 +219,7 @@ def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, cable: PtyEnd) -> None:
 @pytest.mark.parametrize(
     ("answer", "code"), [("1\n", 0), ("yes\n", 0), ("sí\n", 0), ("2\n", 3), ("\n", 3), ("", 3)]
 )
-def test_the_question_before_a_cable_is_opened(
+def test_the_doctor_asks_before_it_opens_a_cable(
     tsc: Tsc, cable: PtyEnd, monkeypatch: pytest.MonkeyPatch, answer: str, code: int
 ) -> None:
     keys = io.StringIO(answer)
@@ -254,7 +256,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
         assert "unknown_kit" not in file.read_text(encoding="utf-8")
 
 
-def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_foreign_file_is_not_overwritten_by_a_report(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "drive.ts"
     for text in ("SI|F(2, 80)\n", report.REPORT_MARK + " of mine\n", "x" * 100_000):
         file.write_text(text, encoding="utf-8")
@@ -280,11 +282,11 @@ def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path) -> None:
         ("/home/ana/port", "…"),
     ],
 )
-def test_ports_in_a_report(port: str, shown_text: str) -> None:
+def test_a_report_lists_the_ports(port: str, shown_text: str) -> None:
     assert report.redacted_port(port) == shown_text
 
 
-def test_values_of_others_stay_out_of_a_report() -> None:
+def test_a_report_contains_no_values_of_other_programs() -> None:
     finding = sure_finding("busy", by="ModemManager, secret-tool")
     assert report.values_of(finding) == {"by": "ModemManager, …"}
     finding = sure_finding("fine", name="ANA", kit="tinibot", id="12347f3a", n="20")

@@ -214,7 +214,7 @@ def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
     assert places[100] == places[200]
 
 
-def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_path_stays_in_view_and_in_bounded_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sketch, "MOST_CORNERS", 100)
     long_sketch = sketch.Sketch(robots.load("tinibot"))
     for k in range(3000):
@@ -229,5 +229,5 @@ def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch)
     (0, "     │     "), (100, "     │█████"), (-100, "█████│     "), (1, "     │▌    "),
     (-50, "  ▐██│     "), (80, "     │████ "),
 ])  # fmt: skip
-def test_a_bar_shows_how_much_and_which_way(percent: int, bar: str) -> None:
+def test_a_bar_shows_amount_and_direction(percent: int, bar: str) -> None:
     assert run_drawing._bar(percent) == bar

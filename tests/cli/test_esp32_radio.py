@@ -71,14 +71,14 @@ def start_endless_upload(robot: Esp32PtyRobot, place: str) -> Command:
     return command
 
 
-def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) -> None:
+def test_a_robot_without_an_owner_names_the_first_step(robot: Esp32PtyRobot) -> None:
     for words in (("set", "wifi", NETWORK), ("set", "wifi"), ("set", "wifi", "--forget")):
         on(robot, *words, data=PASSWORD + b"\n").gives(3, "tsc set owner", out="")
     assert "Primero hazlo tuyo" in on(robot, "set", "wifi", NETWORK, "--lang", "es").err
     assert ask_radios(robot, "joins") == "0"
 
 
-def test_a_network_is_set_told_and_forgotten(
+def test_a_network_is_set_shown_and_forgotten(
     robot_in_network: Esp32PtyRobot, tmp_path: Path
 ) -> None:
     assert ask_radios(robot_in_network, "password").encode() == PASSWORD
@@ -99,7 +99,7 @@ def test_a_network_is_set_told_and_forgotten(
     assert ask_radios(robot_in_network, "network") == ""
 
 
-def test_a_network_of_its_own_is_said_to_be_unreliable_beside_bluetooth(
+def test_an_access_point_is_reported_as_unreliable_next_to_bluetooth(
     robot: Esp32PtyRobot,
 ) -> None:
     """According to Espressif's table of coexistence; Bluetooth is always on."""
@@ -124,7 +124,7 @@ def test_anything_but_a_password_changes_nothing(robot_in_network: Esp32PtyRobot
     ("x" * 33,), ("",), ("a\tb",), ("X", "--forget"),
     ("--access-point",), ("--access-point", "--forget"),
 ])  # fmt: skip
-def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
+def test_nonsensical_arguments_are_refused_before_any_port_is_opened(
     words: tuple[str, ...],
 ) -> None:
     for language in ("en", "es"):
@@ -134,7 +134,7 @@ def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
         assert result.code == 2 and result.err.startswith("tsc: ")
 
 
-def test_two_computers_at_once_over_cable_and_network(
+def test_two_computers_use_cable_and_network_at_once(
     robot_in_network: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     place = f"socket://127.0.0.1:{ask_radios(robot_in_network, 'port')}"
@@ -157,7 +157,7 @@ def test_two_computers_at_once_over_cable_and_network(
     )
 
 
-def test_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:
+def test_a_program_runs_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:
     bad_network = BadNetwork(int(ask_radios(robot_in_network, "port")))
     place = f"socket://127.0.0.1:{bad_network.port}"
     for _ in range(3):

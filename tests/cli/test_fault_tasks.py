@@ -37,7 +37,9 @@ def path(tmp_path: Path) -> Path:
         ("DEF", "line 3:  ", "línea 3:  "),  # both tasks call it
     ],
 )
-def test_its_line_and_its_task(place: str, english: str, spanish: str, path: Path) -> None:
+def test_a_fault_names_its_line_and_its_task(
+    place: str, english: str, spanish: str, path: Path
+) -> None:
     path.write_text(program(place), encoding="utf-8")
     for language, sentence in (("en", english), ("es", spanish)):
         result = run_in_process("run", path, "--lang", language)
@@ -46,13 +48,13 @@ def test_its_line_and_its_task(place: str, english: str, spanish: str, path: Pat
         assert line.startswith(sentence) and line.endswith(FAULT), line
 
 
-def test_a_program_without_tasks_has_none(path: Path) -> None:
+def test_a_fault_of_a_program_without_tasks_names_no_task(path: Path) -> None:
     path.write_text("N = 0\nTASKS = 1 / N\n", encoding="utf-8")
     assert run_in_process("run", path).err.endswith("line 2:  TASKS = 1 / N\n")
 
 
 @pytest.mark.parametrize("robot", ["grabber", "tinibot32"])
-def test_from_a_robot(robot: str, path: Path) -> None:
+def test_a_fault_on_a_robot_names_its_task(robot: str, path: Path) -> None:
     path.write_text(program("WHEN"), encoding="utf-8")
     result = run_in_process("upload", path, "--virtual", "--robot", robot)
     assert (result.code, "line 6, in the WHEN on line 5:  " in result.err) == (1, True), result.err

@@ -204,7 +204,7 @@ def start_fetching(clone: Clone) -> Iterator[Begin]:
     ([], "about 40 MB", "Continue? [y/N] ", "y", "no terminal."),
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
-def test_a_page_that_is_missing_is_built_after_a_yes(
+def test_a_missing_page_is_built_after_consent(
     clone: Clone,
     start_fetching: Begin,
     words: list[str],
@@ -244,7 +244,7 @@ def test_a_page_that_is_missing_is_built_after_a_yes(
 @pytest.mark.parametrize(("words", "expected"), [
     ([], "is out of date: the sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
-def test_a_page_of_other_sources_is_told(
+def test_a_page_built_from_other_sources_is_reported(
     clone: Clone, start_fetching: Begin, words: list[str], expected: str
 ) -> None:
     clone.install_node()
@@ -274,7 +274,7 @@ def test_a_wheel_begins_with_the_same_question(clone: Clone, start_fetching: Beg
     assert person.wait_for_exit() == 0 and clone.page.exists()
 
 
-def test_node_is_fetched_where_there_is_none(clone: Clone, start_fetching: Begin) -> None:
+def test_node_is_downloaded_if_it_is_missing(clone: Clone, start_fetching: Begin) -> None:
     person = start_fetching(clone.studio())
     output = person.sees("[y/N]")
     assert (
@@ -304,7 +304,7 @@ def test_an_old_node_and_one_without_npm_are_not_used(
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_where_pip_may_install_nothing_it_says_what_to_install(
+def test_if_pip_may_not_install_the_required_packages_are_named(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, language: str
 ) -> None:
     monkeypatch.setattr(serving, "PAGE", tmp_path)
@@ -315,7 +315,9 @@ def test_where_pip_may_install_nothing_it_says_what_to_install(
     assert "node.js 22" in result.err and "nodejs.org" in result.err and "[studio]" in result.err
 
 
-def test_no_clone_says_so(tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_clone_is_reported(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(serving, "PAGE", tmp_path)
     monkeypatch.setattr(building, "LOCK", tmp_path / "none")
     tsc("studio", "--no-browser", "--yes", "--lang", "es").gives(2, "no está en esta instalación")
@@ -332,7 +334,7 @@ NO_DISK = "npm warn tar ENOSPC: no space left on device\\nnpm error code ENOSPC"
     (NO_DISK, "the disk is full"),
     ("PermissionError: [Errno 13] Permission denied: 'page'", "Permission denied"),
 ])  # fmt: skip
-def test_what_fails_has_a_sentence_and_leaves_no_page(
+def test_a_failed_build_has_a_message_and_leaves_no_page(
     clone: Clone, expected: str, words: str
 ) -> None:
     clone.install_node()
@@ -364,7 +366,7 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, start_fetching: 
 @pytest.mark.parametrize(("words", "size", "question"), [
     ([], "about 54 MB", "Continue? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
-def test_platformio_is_installed_after_a_yes(
+def test_platformio_is_installed_after_consent(
     clone: Clone, start_fetching: Begin, words: list[str], size: str, question: str
 ) -> None:
     """Then its compiler alone is asked for, if it is not there, and once."""
@@ -409,7 +411,7 @@ def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
 @pytest.mark.parametrize(
     ("expected", "lasts_s"), [(fetching.INSTALLING_MESSAGE, 1), ("Downloading", 600)]
 )
-def test_what_must_not_end_in_the_middle_is_waited_for(
+def test_an_uninterruptible_step_is_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, expected: str, lasts_s: int
 ) -> None:
     """pip is let end once it puts packages into place: half of one would be taken for whole."""
@@ -431,7 +433,7 @@ def test_what_must_not_end_in_the_middle_is_waited_for(
 
 
 @pytest.mark.parametrize("end", [*CHILD_ENDS, None])
-def test_what_does_not_end_well_has_not_done_it(tmp_path: Path, end: str | None) -> None:
+def test_a_process_that_fails_has_not_succeeded(tmp_path: Path, end: str | None) -> None:
     """The same holds for a process killed by the system, without an exit code."""
     code = f"import os, signal, sys; print('Compiling a', flush=True); {end or ''}"
     failures = [] if end is None else [2]
@@ -512,7 +514,7 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
     assert most_measures / 2 < len(sizes) - 1 <= most_measures
 
 
-def test_files_that_go_away_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_vanishing_files_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("a", "gone", "z"):
         (tmp_path / name).write_bytes(b"12345")
     real_lstat = os.lstat
@@ -526,14 +528,14 @@ def test_files_that_go_away_do_not_count(tmp_path: Path, monkeypatch: pytest.Mon
     assert fetching.size_of(tmp_path) == 10
 
 
-def test_the_measure_of_the_progress_is_that_of_the_packages() -> None:
+def test_progress_is_measured_by_the_size_of_the_packages() -> None:
     if not building.are_packages_fetched():
         need("the packages of npm are not there")
     megabytes = fetching.size_of(building.MODULES) / 1e6
     assert abs(megabytes - building.NODE_MODULES_MB) <= building.NODE_MODULES_MB / 10
 
 
-def test_what_pip_fetches_for_the_page_is_known_by_its_digests() -> None:
+def test_packages_for_the_page_are_pinned_by_digest() -> None:
     """Covers the version that the package requires, and all its dependencies."""
     lock = install_advice.LOCKS[install_advice.STUDIO]
     name, _, version = install_advice.requirements(install_advice.STUDIO)[0].partition("==")

@@ -44,7 +44,7 @@ def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyP
         assert (files.cache_folder(), files.settings_folder()) == (cache, settings), (folder, home)
 
 
-def test_no_folder_on_windows_is_in_one_of_an_author(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_folder_on_windows_has_an_author_folder(monkeypatch: pytest.MonkeyPatch) -> None:
     """Such folders would repeat the program's name as the author: tiniscript\\tiniscript."""
     calls: list[tuple[str, object]] = []
 
@@ -63,7 +63,7 @@ def mode_of(path: Path) -> int:
     return stat.S_IMODE(path.stat().st_mode)
 
 
-def test_a_new_file_has_the_mode_of_the_umask_and_another_keeps_its_own(tmp_path: Path) -> None:
+def test_a_new_file_follows_the_umask_and_an_existing_one_keeps_its_mode(tmp_path: Path) -> None:
     for umask in (0o022, 0o077, 0o002):
         umask_before = os.umask(umask)
         try:
@@ -79,7 +79,7 @@ def test_a_new_file_has_the_mode_of_the_umask_and_another_keeps_its_own(tmp_path
         assert (mode_of(path), path.read_bytes()) == (mode, b"%o" % mode)
 
 
-def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_one(tmp_path: Path) -> None:
+def test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_a_pipe(tmp_path: Path) -> None:
     """A file is never overwritten in place, but a path without old content is written directly."""
     (tmp_path / "x").write_bytes(b"1")
     os.link(tmp_path / "x", tmp_path / "y")
@@ -112,7 +112,7 @@ def test_a_private_file_is_never_open_to_others(
     assert modes == [0o600]
 
 
-def test_a_link_that_was_laid_for_the_new_file_is_not_followed(
+def test_a_link_planted_at_the_new_file_is_not_followed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Even one who knew its name could only keep the file from being written."""
@@ -126,7 +126,7 @@ def test_a_link_that_was_laid_for_the_new_file_is_not_followed(
     assert not (tmp_path / "x").exists()
 
 
-def test_the_name_of_a_new_file_is_another_each_time(
+def test_the_temporary_name_differs_each_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     names = []
@@ -143,7 +143,7 @@ def test_the_name_of_a_new_file_is_another_each_time(
     assert not any(str(os.getpid()) == part for name in names for part in name.split("."))
 
 
-def test_a_link_stays_a_link_and_a_circle_of_them_ends(tmp_path: Path) -> None:
+def test_a_link_stays_a_link_and_a_cycle_of_links_ends(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     target, link = tmp_path / "folder" / "x", tmp_path / "link"
     target.write_bytes(b"1")
@@ -157,7 +157,9 @@ def test_a_link_stays_a_link_and_a_circle_of_them_ends(tmp_path: Path) -> None:
         files.replace(tmp_path / "a", b"x")
 
 
-def test_what_goes_wrong_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_write_leaves_no_temporary_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "x").write_bytes(b"1")
     for failure in (OSError(28, "No space left on device"), KeyboardInterrupt()):
 
@@ -211,7 +213,7 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     assert names == ["a.bin", "a.ts"], "nor is there an empty map"
 
 
-def test_one_place_replaces_files() -> None:
+def test_only_one_module_replaces_files() -> None:
     for path in LIBRARY_FOLDER.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
         # One builds in a folder of its own, the other has its files in the memory of a browser.
@@ -223,7 +225,7 @@ def test_one_place_replaces_files() -> None:
 # -- remains of killed commands --------------------------------------------------------------------
 
 
-def test_abandoned_files_of_the_cache_go(tsc: Tsc, tmp_path: Path) -> None:
+def test_abandoned_files_of_the_cache_are_removed(tsc: Tsc, tmp_path: Path) -> None:
     folder = files.cache_folder() / "maps"
     folder.mkdir(parents=True)
     old_path, new_path = folder / ".x.json.00.new", folder / ".y.json.00.new"
@@ -246,7 +248,7 @@ def names() -> set[str]:
     return {path.name for path in registry._folder().iterdir()}
 
 
-def test_a_lock_goes_with_its_command() -> None:
+def test_a_lock_ends_with_its_command() -> None:
     lock = registry.lock_port("socket://127.0.0.1:1")
     assert lock is not None
     assert registry.lock_port("socket://127.0.0.1:1") is None
@@ -258,7 +260,7 @@ def test_a_lock_goes_with_its_command() -> None:
     assert names() == set()
 
 
-def test_the_lock_and_the_note_of_a_killed_command_go() -> None:
+def test_the_lock_and_the_registration_of_a_killed_command_are_removed() -> None:
     """The next command that checks removes them."""
     with socket.create_server(("127.0.0.1", 0)) as unused_socket:
         number = unused_socket.getsockname()[1]
@@ -342,7 +344,7 @@ def test_another_user_s_link_in_a_shared_folder_leads_nowhere(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
-def test_what_a_command_keeps_is_its_users_alone_also_where_it_was_not_before(
+def test_kept_files_are_private_even_if_they_were_not_before(
     tmp_path: Path,
 ) -> None:
     folder = tmp_path / "kept"
@@ -357,7 +359,7 @@ def test_what_a_command_keeps_is_its_users_alone_also_where_it_was_not_before(
     assert not files.keep(folder / "da\0ta", b"new")
 
 
-def test_a_lock_is_held_by_one_until_its_end_whatever_that_is(
+def test_a_lock_has_one_holder_until_it_ends_in_any_way(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now_s = 0.0
@@ -381,7 +383,7 @@ def test_a_lock_is_held_by_one_until_its_end_whatever_that_is(
             assert now_s == start_s
 
 
-def test_what_is_read_is_a_file_of_no_more_than_so_many_bytes(tmp_path: Path) -> None:
+def test_only_regular_files_within_the_size_limit_are_read(tmp_path: Path) -> None:
     path = tmp_path / "data"
     path.write_bytes(b"12345")
     assert files.read_limited(path, 5) == b"12345"

@@ -79,7 +79,7 @@ def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("ends_in_time")
-def test_a_program_with_a_button_ends_when_it_is_told() -> None:
+def test_a_program_with_a_button_ends_at_its_time_limit() -> None:
     """Ends at the time of `--for`, to the millisecond. A mere upload presses no button."""
     text = FOREVER.replace("SI", "SB")
     result = run_in_process(
@@ -106,7 +106,7 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
 
 @pytest.mark.usefixtures("ends_in_time")
 @pytest.mark.parametrize("hurry", ["1", "50", "max"])
-def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
+def test_the_duration_of_for_is_program_time(hurry: str) -> None:
     result = run_in_process(
         "upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry
     ).gives(0)
@@ -168,7 +168,7 @@ def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     assert directory.running_robots() == []
 
 
-def test_stop_stops_all_that_are_in_use() -> None:
+def test_stop_stops_all_robots_in_use() -> None:
     """Rather one too many than one too few; the last used one, too, where it is there."""
     with robot() as running_robot:
         first, second = Upload("--seed", "1"), Upload("--seed", "2")
@@ -182,9 +182,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
         assert running_robot.until("STOP")
 
 
-def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_stop_includes_the_last_used_port(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     from tiniscript.cli.robot import in_reach
 
     usb = tmp_path / "usb"
@@ -197,7 +195,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     assert in_reach.ports_to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
 
 
-def test_a_virtual_robot_that_is_gone_is_not_a_port(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_virtual_robot_that_has_ended_is_not_a_port(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     with robot("--name", "KAT") as running_robot:
         assert run_in_process("doctor", "--ports", "--ask").code == 0
@@ -238,7 +236,9 @@ def test_a_virtual_robot_that_is_gone_is_not_a_port(monkeypatch: pytest.MonkeyPa
          "BATTERY always read 0. To supply readings:  --sensor BATTERY=1,0.2\n"),
     ],
 )  # fmt: skip
-def test_a_sensor_without_readings_is_told_once(words: list[str], message: str, tsc: Tsc) -> None:
+def test_a_sensor_without_readings_is_reported_once(
+    words: list[str], message: str, tsc: Tsc
+) -> None:
     assert tsc("run", *words).gives(0).err == message
     for option in re.findall(r"(--sensor) (\S+)", message):  # every option in the message works
         assert (
@@ -247,7 +247,7 @@ def test_a_sensor_without_readings_is_told_once(words: list[str], message: str, 
         )
 
 
-def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
+def test_a_division_by_zero_is_reported_with_its_cause(tsc: Tsc) -> None:
     result = tsc("run", "-e", "SI|SHOW(1 / DISTANCE)").gives(1)
     assert result.err.startswith(
         "DISTANCE always read 0. To supply readings:  --sensor DISTANCE=50,9\nfault DIVIDE_BY_ZERO"
@@ -255,7 +255,7 @@ def test_a_fault_by_a_zero_is_told_with_its_cause(tsc: Tsc) -> None:
 
 
 @each_row("language, try_it", [("en", "Try"), ("es", "Prueba"), ("pt", "Tente")])
-def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: Tsc) -> None:
+def test_an_option_of_another_verb_suggests_that_verb(language: str, try_it: str, tsc: Tsc) -> None:
     for verb, option, other_verb in (
         ("run", "--virtual", "upload"), ("run", "--hurry", "upload"), ("run", "--detach", "upload"),
         ("upload", "--max-steps", "run"), ("upload", "--show", "run"),
@@ -269,7 +269,7 @@ def test_what_the_other_verb_takes_leads_there(language: str, try_it: str, tsc: 
 # -- a program for another robot ------------------------------------------------------------------
 
 
-def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
+def test_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     result = tsc("check", *LINE)
     assert result.code == 1
     # The message names the program's first word.
@@ -314,7 +314,7 @@ def test_up_to_three_robots_are_named() -> None:
     }  # fmt: skip
 
 
-def test_the_robot_that_answers_says_which_kit_it_has() -> None:
+def test_the_kit_comes_from_the_robot_that_answers() -> None:
     with robot("--robot", "liner", "--world", "line") as running_robot:
         kit_note = "liner is connected; tsc compiles for it.\n"
         result = run_in_process("check", *LINE, "--virtual")
@@ -332,7 +332,7 @@ def test_the_robot_that_answers_says_which_kit_it_has() -> None:
         run_in_process("upload", *LINE, "--robot", "grabber").gives(1, "grabber has no LINE_L")
 
 
-def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
+def test_a_profile_from_an_earlier_command_is_remembered(tmp_path: Path) -> None:
     shipped_path = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     profile = tmp_path / "own.toml"
     profile.write_text(shipped_path.read_text(encoding="utf-8").replace("LIGHT_R", "SIREN"))
@@ -353,7 +353,7 @@ def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
 # -- the prompt -----------------------------------------------------------------------------------
 
 
-def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
+def test_tsc_commands_typed_at_the_prompt_are_recognized() -> None:
     known_state = LiveState(robots.load("tinibot").kit)
     for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
         assert requested_command(line, known_state) == LEAVE, line
@@ -436,7 +436,7 @@ def test_values_are_hidden_from_the_mark_to_the_end_of_their_run_alone(seed: int
 # -- slips with names -----------------------------------------------------------------------------
 
 
-def test_help_is_a_verb_too(tsc: Tsc) -> None:
+def test_help_is_also_a_verb(tsc: Tsc) -> None:
     assert tsc("help", "upload").out == tsc("upload", "--help").out
     assert tsc("--lang", "es", "ayuda", "run").out == tsc("run", "--help", "--lang", "es").out
     assert tsc("--lang", "pt", "ajuda", "run").out == tsc("run", "--help", "--lang", "pt").out
@@ -448,7 +448,7 @@ def test_help_is_a_verb_too(tsc: Tsc) -> None:
     tsc("help", "uplod").gives(2, "Did you mean upload?")
 
 
-def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_program_without_a_verb_suggests_one(tsc: Tsc, tmp_path: Path) -> None:
     tsc("prog.ts").gives(2, "tsc upload prog.ts --virtual   or:  tsc run prog.ts")
     assert "¿qué hago con prog.ts?" in tsc("prog.ts", "--lang", "es").err
     named_path = tmp_path / "my robot"
@@ -482,14 +482,14 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
 
 @pytest.mark.parametrize("options", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
 @pytest.mark.parametrize("chip", ["nano", "MEGA"])
-def test_a_chip_in_the_place_of_a_robot_leads_to_its_option(
+def test_a_chip_instead_of_a_robot_suggests_its_option(
     tsc: Tsc, chip: str, options: tuple[str, ...]
 ) -> None:
     for words in (("--board", chip, *options), (*options, f"--board={chip}")):
         tsc("firmware", *words).gives(2, f"Try:  tsc firmware --chip {chip.lower()}\n")
 
 
-def test_board_says_where_the_build_looks(
+def test_board_names_the_folder_of_the_build(
     tsc: Tsc, working_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     home = working_folder / "vm_arduino" / "src" / "boards" / "kits"
@@ -509,7 +509,7 @@ def test_board_says_where_the_build_looks(
     )
 
 
-def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:
+def test_the_first_program_has_no_warning(tsc: Tsc) -> None:
     """The first command of README, and the program at its start."""
     assert tsc("check", ROOT / PROGRAM).gives(0, out="no mistakes").err == ""
     for path in sorted(ROOT.glob("README*.md")):
@@ -519,7 +519,7 @@ def test_the_first_program_is_one_without_a_warning(tsc: Tsc) -> None:
         assert f"`{PROGRAM.as_posix()}`" in program, path
 
 
-def test_the_programs_that_warn_say_so(tsc: Tsc) -> None:
+def test_programs_with_warnings_report_them(tsc: Tsc) -> None:
     for path in sorted((ROOT / "examples").glob("*.ts")):
         err = tsc("check", path).gives(0, out="no mistakes").err
         assert err.count("Warning") == ("tsc warns" in path.read_text(encoding="utf-8")), path

@@ -164,7 +164,7 @@ class WatchedFleet:
 
 @pytest.mark.parametrize("interruption", ["lines", "a table", "stop"])
 @pytest.mark.parametrize("presses", [1, 2, 3])
-def test_the_first_ctrl_c_waits_for_the_robots_for_a_while_and_the_second_for_none(
+def test_the_first_ctrl_c_waits_for_the_robots_and_the_second_does_not(
     monkeypatch: pytest.MonkeyPatch, interruption: str, presses: int
 ) -> None:
     """They may come at any time; without a second press, it ends by itself."""

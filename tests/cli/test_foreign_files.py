@@ -36,7 +36,7 @@ WRITING_COMMANDS = [
 
 
 @pytest.mark.parametrize(("words", "option"), WRITING_COMMANDS, ids=lambda value: str(value))
-def test_a_foreign_file_stays_and_an_own_one_is_replaced(
+def test_a_foreign_file_is_kept_and_a_generated_one_is_replaced(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], option: str
 ) -> None:
     target = working_folder / "there"
@@ -55,7 +55,7 @@ def test_a_foreign_file_stays_and_an_own_one_is_replaced(
 
 
 @pytest.mark.parametrize("lang", ["es", "en"])
-def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, lang: str) -> None:
+def test_a_table_with_a_teachers_column_is_kept(tsc: Tsc, tmp_path: Path, lang: str) -> None:
     folder, table = tmp_path / "class", tmp_path / "marks.csv"
     folder.mkdir()
     (folder / "ana.ts").write_text(PROGRAM)
@@ -70,7 +70,7 @@ def test_a_table_with_a_column_of_the_teacher_stays(tsc: Tsc, tmp_path: Path, la
     assert table.read_bytes() == marked_bytes
 
 
-def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: Path) -> None:
+def test_the_default_image_path_spares_a_foreign_file(tsc: Tsc, tmp_path: Path) -> None:
     program, neighbour_path = tmp_path / "photo.ts", tmp_path / "photo.bin"
     program.write_text(PROGRAM)
     neighbour_path.write_bytes(b"a firmware of something else")
@@ -144,7 +144,7 @@ def test_a_link_to_a_foreign_file_is_refused_and_a_pipe_is_not_foreign(
     assert not is_foreign(pipe)  # opening the pipe would block
 
 
-def test_a_picture_and_rows(tmp_path: Path) -> None:
+def test_pictures_and_tables_spare_foreign_files(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     for _ in range(2):
         assert (
@@ -153,7 +153,7 @@ def test_a_picture_and_rows(tmp_path: Path) -> None:
         assert not is_foreign(picture)
 
 
-def test_rows_of_a_monitor(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_monitor_output_spares_a_foreign_file(pty_robot: PtyRobot, tmp_path: Path) -> None:
     rows, letter = tmp_path / "rows.csv", tmp_path / "letter.csv"
     letter.write_bytes(b"a;b\n1;2\n")
     rows.write_bytes(b"ms,event,value\n5,SHOW,1\n")  # permissions of an older tsc

@@ -59,7 +59,7 @@ def line(rng: random.Random) -> Text:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> None:
+def test_the_terminal_shows_the_last_picture_below_all_printed_lines(seed: int) -> None:
     """Includes lines that appear, vanish and change, and lines printed above."""
     rng = random.Random(seed)
     terminal = Terminal()
@@ -83,14 +83,14 @@ def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> 
         assert not any(lines_shown[len(expected) :])
 
 
-def test_nothing_is_written_where_nothing_changes() -> None:
+def test_unchanged_parts_are_not_rewritten() -> None:
     terminal = Terminal()
     lines = [Text("one"), Text("two", style="red")]
     assert terminal.draw(lines)
     assert terminal.draw([text.copy() for text in lines]) == ""
 
 
-def test_a_line_that_has_not_changed_is_not_written_again() -> None:
+def test_an_unchanged_line_is_not_rewritten() -> None:
     terminal = Terminal()
     lines = [Text(f"value {k}") for k in range(8)]
     terminal.draw(lines)
@@ -102,7 +102,7 @@ def test_a_line_that_has_not_changed_is_not_written_again() -> None:
 
 
 @pytest.mark.parametrize("rows", [1, 3, 4, 5, 30])
-def test_what_is_long_or_much_is_said_whole(rows: int) -> None:
+def test_long_rows_and_many_rows_are_printed_in_full(rows: int) -> None:
     """A row that wraps, and more rows than there is room for above the picture."""
     terminal = Terminal()
     lines = [Text(f"value {k}") for k in range(8)]
@@ -116,7 +116,7 @@ def test_what_is_long_or_much_is_said_whole(rows: int) -> None:
     assert [line for line in terminal.all_lines() if line] == expected
 
 
-def test_another_colour_is_a_change() -> None:
+def test_a_different_colour_is_a_change() -> None:
     terminal = Terminal()
     terminal.draw([Text("stop", style="green"), Text("x")])
     terminal.draw([Text("stop", style="red"), Text("x")])
@@ -200,7 +200,7 @@ def test_a_line_goes_from_dot_to_dot() -> None:
     assert plain(canvas) == ["⠉⠉⢹", "  ⢸"]
 
 
-def test_what_lies_outside_is_not_drawn() -> None:
+def test_points_outside_the_canvas_are_not_drawn() -> None:
     canvas = Canvas(2, 1)
     canvas.draw_lines([(-9, 1), (90, 1)])
     canvas.draw_lines([(0, -5), (0, -1)])
@@ -208,13 +208,13 @@ def test_what_lies_outside_is_not_drawn() -> None:
     assert plain(canvas) == ["⠒⠒"]
 
 
-def test_a_line_that_is_too_long_to_be_drawn_whole_ends_soon() -> None:
+def test_an_overlong_line_is_clipped_quickly() -> None:
     canvas = Canvas(2, 1)
     canvas.draw_lines([(0, 0), (10**12, 0)])
     assert plain(canvas) == ["⠁ "]
 
 
-def test_a_copy_is_another_canvas() -> None:
+def test_a_copy_is_independent_of_its_canvas() -> None:
     canvas = Canvas(1, 1)
     copied_canvas = canvas.copy()
     copied_canvas.draw_lines([(0, 0), (0, 0)])
@@ -234,7 +234,7 @@ def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -
     ]  # fmt: skip
 
 
-def test_a_letter_takes_the_place_of_the_character_that_a_dot_lies_in() -> None:
+def test_a_letter_replaces_the_character_that_contains_its_dot() -> None:
     lines = [Text("abc"), Text("def")]
     put_letter(lines, (3, 5), "X", "bold")
     for dot in ((-1, 0), (0, -1), (6, 0), (0, 8)):
@@ -242,7 +242,7 @@ def test_a_letter_takes_the_place_of_the_character_that_a_dot_lies_in() -> None:
     assert [line.plain for line in lines] == ["abc", "dXf"]
 
 
-def test_a_table_is_straight_with_letters_that_take_two_columns(
+def test_a_table_stays_aligned_with_wide_characters(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     firmware_wiring._print_rows([("左モーター", "D5", "a"), ("motor", "D6", "b")])

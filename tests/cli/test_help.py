@@ -61,9 +61,7 @@ def flags_in_help(verb: str) -> list[str]:
 
 @in_both
 @of_each
-def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
-    tsc: Tsc, verb: str, language: str
-) -> None:
+def test_parser_flags_and_help_agree(tsc: Tsc, verb: str, language: str) -> None:
     """Includes whether the flag has a value."""
     words = command_words(verb).split()
     values = [] if words[-1] in words_of(verb) else ["x"]
@@ -130,7 +128,7 @@ def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
 
 
 @in_both
-def test_the_first_help_has_the_ten_that_most_people_need(language: str) -> None:
+def test_the_first_help_lists_the_ten_most_needed_commands(language: str) -> None:
     help_text = help.overview(language)
     assert len(help_text.splitlines()) <= 30
     assert [row.split()[1] for row in rows_of(help_text) if row.startswith("tsc ")] == list(
@@ -155,7 +153,7 @@ def test_a_command_is_found_by_what_it_does(tsc: Tsc, asked_text: str, verb: str
     assert tsc("help", *asked_text.split()).out == result.out
 
 
-def test_a_question_that_no_command_answers(tsc: Tsc) -> None:
+def test_an_unanswerable_question_is_reported(tsc: Tsc) -> None:
     tsc("help", "bake", "a", "cake").gives(2, "no command matches “bake a cake”")
     assert tsc("help", "todo", "--lang", "es").out == help.full_help("es")
 
@@ -179,7 +177,7 @@ def test_every_command_is_a_module_and_every_module_a_command() -> None:
 
 
 @each_row("option", OPTIONS)
-def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option: Option) -> None:
+def test_every_row_of_the_table_has_a_verb_and_text_in_both_languages(option: Option) -> None:
     assert option.verbs in ("*", "tsc") or set(option.verbs.split()) <= set(COMMANDS)
     english, spanish = (option.help(language) for language in ("en", "es"))
     assert english and spanish and english != spanish
@@ -217,7 +215,7 @@ AVR_ROBOTS = [name for name in robots.names() if robots.load(name).board.chip in
         ("firmware", "--robot", AVR_ROBOTS),
     ],
 )
-def test_names_that_help_lists_are_those_that_there_are(
+def test_help_lists_exactly_the_existing_names(
     verb: str, flag: str, names: list[str], language: str
 ) -> None:
     (option,) = (option for option in options_of(verb) if option.flags == flag)
@@ -225,9 +223,7 @@ def test_names_that_help_lists_are_those_that_there_are(
     assert set(names) <= set(listed_names)
 
 
-def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
-    tsc: Tsc, tmp_path: Path
-) -> None:
+def test_every_verb_with_a_program_accepts_it_on_the_command_line(tsc: Tsc, tmp_path: Path) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
     program_verbs = [
         verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))
@@ -243,7 +239,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
 
 @pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
-def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
+def test_the_documents_contain_the_full_help(verb: str, language: str) -> None:
     common_text, *sections = page(language, "a test", table).split("\n## ")
     sections = [section for part in sections for section in part.split("\n### ")]
     (section,) = (
@@ -295,7 +291,7 @@ def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
         (100, {"PAGER": "false"}),  # the text fits on the screen
     ],
 )
-def test_help_is_printed_where_there_is_no_pager(
+def test_help_is_printed_without_a_pager(
     capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
     rows: int, environ: dict[str, str],
 ) -> None:  # fmt: skip
@@ -307,9 +303,7 @@ def test_help_is_printed_where_there_is_no_pager(
     assert capfd.readouterr().out == help.help_of("upload", "en", 80)
 
 
-def test_help_that_goes_elsewhere_is_never_paged(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_redirected_help_is_never_paged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     marker = tmp_path / "begun"
     monkeypatch.setenv("PAGER", f"touch {marker}")
     result = run_in_process("help", "upload", "--lang", "en")
@@ -339,7 +333,7 @@ time.sleep(1000)
 @pytest.mark.parametrize(
     ("pager_mode", "output"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
 )
-def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
+def test_ctrl_c_belongs_to_the_pager_and_tsc_waits_silently(
     tmp_path: Path, pager_mode: str, output: str
 ) -> None:
     """`less` continues after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
@@ -359,7 +353,7 @@ def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
     (["doctor", "x"], "x is not an option or argument of this command",
      "x no es una opción ni un argumento de este comando"),
 ])  # fmt: skip
-def test_what_argparse_says_is_said_in_plain_words(
+def test_argparse_errors_are_reported_in_plain_words(
     tsc: Tsc, words: list[str], english: str, spanish: str
 ) -> None:
     for language, expected in (("en", english), ("es", spanish)):
@@ -375,14 +369,16 @@ def test_what_argparse_says_is_said_in_plain_words(
     (["flash"], "firmware"), (["serial"], "monitor"), (["simulate", "x"], "robot"),
     (["repl"], "live"), (["version"], "--version"),
 ])  # fmt: skip
-def test_what_was_meant_stands_before_what_to_try(
+def test_the_suggestion_precedes_the_command_to_try(
     tsc: Tsc, words: list[str], meant_text: str
 ) -> None:
     assert f". Did you mean {meant_text}? Try:  tsc " in tsc(*words, "--lang", "en").err
     assert f". ¿Quisiste decir {meant_text}? Prueba:  tsc " in tsc(*words, "--lang", "es").err
 
 
-def test_ctrl_c_before_tsc_knows_its_language(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_before_the_language_is_known_ends_tsc_cleanly(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def interrupt() -> None:
         raise KeyboardInterrupt
 

@@ -84,7 +84,7 @@ def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str
 
 
 @pytest.mark.parametrize("verb", ["compile", "check", "run", "show", "fmt"])
-def test_files_that_are_none_or_may_not_be_read(
+def test_irregular_and_unreadable_files_are_refused(
     tsc: Tsc, tmp_path: Path, program: Path, monkeypatch: pytest.MonkeyPatch, verb: str
 ) -> None:
     folder = tmp_path / "folder"
@@ -124,7 +124,7 @@ def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.Monkey
     ("2>&-", "LOOP(3);S;END_LOOP;X = 1", 0), ("2>&-", "F(1", 1), ("<&-", "S", 0), (">&-", "S", 0),
     (">/dev/full", "S", 2),
 ])  # fmt: skip
-def test_closed_and_full_streams(closed_text: str, program: str, code: int) -> None:
+def test_closed_and_full_streams_are_handled(closed_text: str, program: str, code: int) -> None:
     """Without any output, there is still an exit code, and the trace is complete."""
     if "full" in closed_text and not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
@@ -140,7 +140,7 @@ def test_closed_and_full_streams(closed_text: str, program: str, code: int) -> N
         assert completed.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
 
 
-def test_ctrl_c_is_said() -> None:
+def test_ctrl_c_is_reported() -> None:
     loop = "LOOP(FOREVER);SHOW(1);END_LOOP"
     command = Command("run", "-e", loop, "--max-steps", "1000000000")
     command.until("SHOW 1")
@@ -154,7 +154,7 @@ def in_encoding(name: str, data: bytes = b"") -> io.TextIOWrapper:
 
 
 @pytest.mark.parametrize(("stream", "options"), [("stderr", []), ("stdout", ["--json"])])
-def test_output_that_is_not_unicode(
+def test_output_without_unicode_is_readable(
     monkeypatch: pytest.MonkeyPatch, stream: str, options: list[str]
 ) -> None:
     """JSON is JSON there, too."""
@@ -178,7 +178,7 @@ def test_binary_input_is_refused(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> N
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")
 @pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
-def test_files_of_the_cache_may_be_anything(kind: str) -> None:
+def test_any_content_of_cache_files_is_handled(kind: str) -> None:
     """No command waits for them or reads them forever: they are ignored."""
     port = "socket://127.0.0.1:4000"
     robot = directory._folder() / "4000.json"

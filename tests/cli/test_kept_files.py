@@ -199,7 +199,7 @@ def restore(kept_memory: KeptNumbers, tmp_path: Path) -> list[int]:
 
 @pytest.mark.sampled("name", keep=3)
 @each_kept_file
-def test_a_kill_at_any_line_leaves_what_was_kept(
+def test_a_kill_at_any_line_leaves_the_kept_data_intact(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     kept_memory = KEPT_FILES[name]
@@ -233,7 +233,7 @@ def expected_values(kept_memory: KeptNumbers, counts_before: list[int], number: 
 
 
 @each_kept_file
-def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_path: Path) -> None:
+def test_a_disk_full_at_any_byte_leaves_the_kept_data_intact(name: str, tmp_path: Path) -> None:
     kept_memory = KEPT_FILES[name]
     for free_bytes in (0, 1, 10, 60):
         saved_numbers = restore(kept_memory, tmp_path)
@@ -256,7 +256,7 @@ def test_a_disk_that_is_full_at_any_byte_leaves_what_was_kept(name: str, tmp_pat
 @pytest.mark.parametrize(
     "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
 )
-def test_of_two_at_once_neither_loses_what_the_other_keeps(
+def test_concurrent_commands_lose_none_of_their_data(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     """One is paused at a line; the other one ends meanwhile, or waits for it."""
@@ -297,7 +297,7 @@ def test_of_two_at_once_neither_loses_what_the_other_keeps(
 @pytest.mark.parametrize(
     "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
 )
-def test_one_that_stands_still_keeps_no_other_one_waiting_for_ever(
+def test_a_suspended_writer_does_not_block_others_for_ever(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""

@@ -33,7 +33,7 @@ def has_one(secrets: list[bytes], data: bytes) -> bool:
     return any(secret in b"".join(data.split()) for secret in secrets)
 
 
-def test_a_key_is_in_its_file_alone(
+def test_a_key_occurs_only_in_its_file(
     pty_robot: PtyRobot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.link.ports.list_ports", list)

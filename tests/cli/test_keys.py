@@ -29,7 +29,7 @@ def key_file(tmp_path: Path) -> KeyFile:
     return KeyFile(tmp_path / "settings" / "keys.json")
 
 
-def test_only_this_person_reads_the_file(key_file: KeyFile) -> None:
+def test_the_key_file_is_private(key_file: KeyFile) -> None:
     key_file.create_pending_key(1, KEY_OWNER, "A")
     assert stat.S_IMODE(key_file.path.stat().st_mode) == 0o600
     assert stat.S_IMODE(key_file.path.parent.stat().st_mode) == 0o700
@@ -63,7 +63,7 @@ def test_an_invalid_key_file_is_left_as_it_is(key_file: KeyFile, data: bytes) ->
     assert key_file.path.read_bytes() == data
 
 
-def test_what_is_known_of_a_robots_seals_outlives_a_list_that_does_not_say_it(
+def test_known_seal_support_survives_a_list_without_it(
     key_file: KeyFile,
 ) -> None:
     key_file.settle_key(OWNER_KEY._replace(uses_seals=True))
@@ -126,7 +126,7 @@ def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
     assert [key.is_stale for key in robot_keys] == [key.id % 5 == 0 for key in robot_keys]
 
 
-def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
+def test_a_suspended_command_does_not_block_others_for_ever(
     key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     key_file.add([OWNER_KEY])
@@ -157,7 +157,7 @@ def test_the_command_lists_names_and_no_key(tsc: Tsc) -> None:
     assert SECRET not in json.dumps(rows)
 
 
-def test_a_class_list_goes_out_and_in(
+def test_a_class_list_is_exported_and_imported(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "one"))
@@ -184,7 +184,7 @@ def test_a_class_list_goes_out_and_in(
     )
 
 
-def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
+def test_keys_that_do_not_fit_leave_the_existing_keys(tsc: Tsc, tmp_path: Path) -> None:
     """The keys of a stranger would remove a person's own robots."""
     key_file, large_file = KeyFile(), tmp_path / "many.json"
     key_file.add([OWNER_KEY])
@@ -200,7 +200,7 @@ def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Pat
     assert OWNER_KEY in key_file.all() and len(key_file.all()) == MOST_KEYS
 
 
-def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
+def test_a_broken_or_publicly_readable_file_is_reported(tsc: Tsc) -> None:
     path = KeyFile().path
     KeyFile().add([OWNER_KEY])
     path.chmod(0o644)
@@ -210,7 +210,7 @@ def test_a_broken_file_and_one_that_others_may_read_are_told(tsc: Tsc) -> None:
     assert path.read_text() == "broken"
 
 
-def test_claims_that_were_left_leave_few_keys() -> None:
+def test_abandoned_claims_leave_few_keys() -> None:
     """Each key that is shown takes time: of pending ones the last two are kept, of each kind."""
     key_file = KeyFile()
     for _ in range(6):
@@ -228,7 +228,7 @@ def test_claims_that_were_left_leave_few_keys() -> None:
 
 @pytest.mark.parametrize("kind", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("status", [OK, STATUSES["NOT_OWNER"]])
-def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, kind: int, status: int) -> None:
+def test_giving_up_a_robot_removes_one_key(key_file: KeyFile, kind: int, status: int) -> None:
     """The other one it still has, and so has this computer; a refused one stays."""
     ring = [
         OWNER_KEY._replace(id=robot, which=kind, key=bytes([robot % 256, kind] * 8))
@@ -249,7 +249,7 @@ def test_what_a_robot_gives_up_is_one_key_of_it(key_file: KeyFile, kind: int, st
 ROBOT_ADDRESS = "tcp://ana"
 
 
-def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) -> None:
+def test_the_addresses_of_robots_are_kept_privately(key_file: KeyFile) -> None:
     key_file.remember_robot(ROBOT_ADDRESS, OWNER_KEY.id)
     key_file.remember_robot("/dev/ttyUSB0", 7)
     key_file.remember_robot(ROBOT_ADDRESS, 8)
@@ -279,7 +279,7 @@ def test_where_a_robot_was_met_is_kept_for_this_person_alone(key_file: KeyFile) 
     [b"", b"[]", b"{", b"\xff", b"[" * 100_000, b'{"places": [], "accepted": []}',
      b'{"places": {"a": 7}, "accepted": []}', b'{"places": {}, "accepted": ["x"]}'],
 )  # fmt: skip
-def test_an_invalid_file_of_places_is_replaced(key_file: KeyFile, data: bytes) -> None:
+def test_an_invalid_file_of_addresses_is_replaced(key_file: KeyFile, data: bytes) -> None:
     key_file.path.parent.mkdir()
     key_file.path.with_name("robots.json").write_bytes(data)
     assert key_file.robot_at(ROBOT_ADDRESS) is None and not key_file.accepts(7)
@@ -287,7 +287,7 @@ def test_an_invalid_file_of_places_is_replaced(key_file: KeyFile, data: bytes) -
     assert key_file.robot_at(ROBOT_ADDRESS) == 7
 
 
-def test_places_that_cannot_be_kept_end_nothing(key_file: KeyFile) -> None:
+def test_a_failure_to_keep_addresses_ends_nothing(key_file: KeyFile) -> None:
     key_file.path.parent.write_bytes(b"a file where the folder should be")
     key_file.remember_robot(ROBOT_ADDRESS, 7)
     assert key_file.robot_at(ROBOT_ADDRESS) is None
@@ -295,7 +295,7 @@ def test_places_that_cannot_be_kept_end_nothing(key_file: KeyFile) -> None:
         key_file.accept(7)
 
 
-def test_no_more_places_are_kept_than_a_file_holds(
+def test_the_number_of_kept_addresses_is_limited(
     key_file: KeyFile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(met_robots, "MOST_PLACES", 3)

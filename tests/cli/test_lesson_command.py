@@ -45,7 +45,7 @@ def test_the_lessons_are_listed(tsc: Tsc) -> None:
     assert rows[0] == " 1  La primera línea   (tinibot)"
 
 
-def test_one_program(tsc: Tsc, folder: Path) -> None:
+def test_a_program_is_checked(tsc: Tsc, folder: Path) -> None:
     result = tsc("lesson", "check", "1", folder / "ana.ts")
     assert result.code == 0
     assert "done! This solves lesson 1." in result.out
@@ -55,7 +55,7 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
     tsc("lesson", "check", "1", "-e", WRONG_ANSWER).gives(1, "TS017", out="fix the mistakes first")
 
 
-def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
+def test_the_world_of_a_failed_check_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "left.ts"
     path.write_text("SI|F(2.6, 60);L(0.42, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
     result = tsc("lesson", "check", "8", path).gives(1)
@@ -112,7 +112,7 @@ def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
     assert result == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
 
-def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path) -> None:
+def test_lesson_draws_the_path_and_prints_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     assert tsc("lesson", "check", "1", "-e", SHORT_ANSWER, "--plot", picture).code == 1
     assert picture.read_bytes().startswith(b"\x89PNG")
@@ -148,14 +148,14 @@ def test_a_picture_of_the_way_and_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path
         (["check", "1", "."], "has no programs"),
     ],
 )
-def test_wrong_use_says_the_next_step(
+def test_wrong_use_names_the_next_step(
     tsc: Tsc, arguments: list[str], sentence: str, working_folder: Path
 ) -> None:
     result = tsc("lesson", *arguments).gives(2, sentence)
     assert tsc("lesson", *arguments, "--lang", "es").err != result.err
 
 
-def test_anything_but_a_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
+def test_an_irregular_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     """Circular and dangling links, a pipe, an image: none blocks, and none is left out."""
     (tmp_path / "a.bin").write_bytes(b"TS\x02")
     assert "its source" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
@@ -175,7 +175,7 @@ def test_anything_but_a_file_has_a_row(tsc: Tsc, folder: Path, tmp_path: Path) -
         assert not finding["sentence"].startswith("tsc")
 
 
-def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_custom_lesson_is_checked(tsc: Tsc, tmp_path: Path) -> None:
     shipped_path = catalogue.folders()[0]
     for name in ("lesson.toml", "world.toml"):
         (tmp_path / name).write_bytes((shipped_path / name).read_bytes())
@@ -190,7 +190,9 @@ def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", range(1, 15))
-def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: Path) -> None:
+def test_worksheets_are_complete_pages(
+    tsc: Tsc, number: int, language: str, tmp_path: Path
+) -> None:
     """A sheet is one file: it downloads nothing, closes every element, and includes the drawing."""
     for options in ([], ["--teacher"]):
         path = tmp_path / "sheet.html"
@@ -209,7 +211,7 @@ def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: 
         assert open_tags == []
 
 
-def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> None:
+def test_a_word_of_another_robot_suggests_no_option_that_lesson_lacks(tsc: Tsc) -> None:
     for language in ("en", "es"):
         result = tsc("lesson", "check", "1", "-e", "SI|F(1,60) UNTIL(LINE_L)", "--lang", language)
         assert result.code == 1
@@ -218,7 +220,7 @@ def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> N
     assert "// robot: liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err
 
 
-def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_class_folder_may_contain_anything(tsc: Tsc, tmp_path: Path) -> None:
     """Broken, empty, huge, binary and wrongly stored files have a row each, and none is lost."""
     pupils = tmp_path / "class"
     pupils.mkdir()
@@ -251,7 +253,7 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
         assert verdict_by_name[name.replace("\x1b", "?")] == verdicts[verdict], name
 
 
-def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Path) -> None:
+def test_notes_are_ignored_and_folders_of_pupils_are_checked(tsc: Tsc, tmp_path: Path) -> None:
     pupils = tmp_path / "año 3 ñandú"
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name).mkdir(parents=True)

@@ -15,7 +15,7 @@ from tiniscript.cli.robot.live_state import LiveState, LiveValue, missing_ends
 KIT = robots.load("tinibot").kit
 
 
-def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> None:
+def test_a_line_runs_at_once_and_the_stored_program_stays(pty_robot: PtyRobot) -> None:
     assert on(pty_robot, "upload", "-e", "SB|W(1)").code == 0
     result = on(pty_robot, "live", "F(0.2, 80);SHOW(1.5)")
     assert (result.code, result.out) == (0, "SHOW 1.5\nDone.\n")
@@ -27,7 +27,7 @@ def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> No
     assert on(pty_robot, "live", "X = 0;SHOW(1 / X)").code == 1
 
 
-def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
+def test_variables_and_defs_persist(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(0, 0, 30_000))
     lines = (
         "X = DISTANCE + 0.5; READY = TRUE",
@@ -46,7 +46,7 @@ def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
     assert "DIVIDE_BY_ZERO" in result.err
 
 
-def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
+def test_the_prompt_runs_typed_lines(pty_robot: PtyRobot) -> None:
     """Types lines, makes a mistake, presses Ctrl-C while it drives, and leaves with Ctrl-D."""
     terminal = Terminal("live", "--port", pty_robot.port)
 
@@ -94,7 +94,7 @@ PLACES = {
 }
 
 
-def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRobot) -> None:
+def test_ctrl_c_stops_the_robot_from_any_prompt(pty_robot: PtyRobot) -> None:
     """This includes a program that its button has started."""
     assert on(pty_robot, "upload", "-e", "SB|F(60, 80)").code == 0
     terminal = Terminal("live", "--port", pty_robot.port)
@@ -114,7 +114,7 @@ def test_ctrl_c_stops_what_the_robot_does_wherever_a_person_is(pty_robot: PtyRob
     assert terminal.end() == 0
 
 
-def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
+def test_a_block_may_span_lines(pty_robot: PtyRobot) -> None:
     """Up to its end, or to the first line with a mistake."""
 
     def run_live(lines: str) -> CommandResult:
@@ -143,11 +143,11 @@ def test_a_block_goes_on_over_lines(pty_robot: PtyRobot) -> None:
     ("END_LOOP; LOOP(2)", ""),
     ("// LOOP(2)", ""),
 ])  # fmt: skip
-def test_which_ends_are_missing(text: str, missing_text: str) -> None:
+def test_missing_block_ends_are_found(text: str, missing_text: str) -> None:
     assert missing_ends(text) == missing_text
 
 
-def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
+def test_a_line_is_sent_with_its_dependencies_only() -> None:
     known_state = LiveState(KIT)
     known_state.value_by_name = {
         "X": LiveValue(5000, False),
@@ -172,7 +172,7 @@ def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
     assert known_state.compile_line("Y = NOT Y", 5).loses_values
 
 
-def test_mistakes_and_warnings_are_those_of_the_line() -> None:
+def test_mistakes_and_warnings_concern_only_the_line() -> None:
     known_state = LiveState(KIT)
     known_state.value_by_name = {"X": LiveValue(5000, False)}
     line = known_state.compile_line("X = X + 1; F(X 2)", 55)

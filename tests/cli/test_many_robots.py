@@ -43,7 +43,7 @@ def results(result: CommandResult) -> dict[str, dict[str, object]]:
 
 
 @pytest.mark.sampled(of="slow commands")
-def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
+def test_thirty_robots_get_a_program_despite_three_faulty_ones() -> None:
     kits = [
         LINER_KIT if number == OTHER_KIT_ROBOT else TINIBOT_KIT for number in range(ROBOT_COUNT)
     ]
@@ -94,7 +94,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
 
 
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
-def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -> None:
+def test_a_babbling_device_delays_no_robot(class_: RobotFleet, babble: bytes) -> None:
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
     *other_pupils, last_robot = class_.pupils
     last_robot.babble = babble
@@ -113,7 +113,7 @@ def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -
     assert not any(pupil.moves for pupil in class_.pupils)
 
 
-def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
+def test_flashing_one_board_delays_no_stop_of_others(
     class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
@@ -133,7 +133,7 @@ def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
     assert not any(pupil.moves for pupil in class_.pupils)
 
 
-def test_all_stop_however_what_drives_them_ends(class_: RobotFleet) -> None:
+def test_all_robots_stop_however_the_driving_command_ends(class_: RobotFleet) -> None:
     """They stop after `stop --all` from another terminal, after Ctrl-C, and after a kill."""
 
     def drive_all() -> Command:
@@ -192,7 +192,7 @@ def test_each_robot_has_a_row(class_: RobotFleet) -> None:
 
 
 @pytest.mark.sampled(of="slow commands")
-def test_the_doctor_examines_each_of_many_as_it_does_one(class_: RobotFleet) -> None:
+def test_the_doctor_examines_each_of_many_robots_like_a_single_one(class_: RobotFleet) -> None:
     """Its causes are in the row of the robot, and each is asked as often as was said."""
     weak = class_.pupils[1]
     with weak._lock:
@@ -218,7 +218,7 @@ def pings(heard_bytes: bytes) -> int:
     return sum(frame is not None and frame.number == BY_NAME["PING"].number for frame in frames)
 
 
-def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
+def test_undo_has_a_row_for_each_robot_and_continues_after_failures(class_: RobotFleet) -> None:
     first_program, second_program = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
     assert run_in_process("upload", "-e", first_program, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
@@ -261,7 +261,7 @@ def test_a_port_that_never_had_a_robot_is_not_a_failure(
         os.close(end)
 
 
-def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
+def test_robots_of_a_fleet_are_remembered_but_none_as_the_last_used(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """So a robot that is silent the next time is reported missing, and the next command drives the
@@ -276,7 +276,7 @@ def test_who_has_answered_among_many_is_known_and_none_of_them_is_used_last(
     assert {*places} < {*memory.name_by_port} and memory.last_port == "own"
 
 
-def test_nobody_and_wrong_use(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_fleet_and_wrong_use_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     for language, words in (("en", "no robot responds"), ("es", "ningún robot responde")):
         run_in_process("stop", "--all", "--lang", language).gives(3, words)

@@ -61,7 +61,7 @@ def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
 
 
 @pytest.mark.parametrize("end", [Hc05(57600), Hc06()])
-def test_quick_and_slow_ones_behind_a_real_port(tsc: Tsc, end: Simulated) -> None:
+def test_quick_and_slow_modules_are_set_behind_a_real_port(tsc: Tsc, end: Simulated) -> None:
     """Tests the port's timeout. All kinds of modules are in `tests/modules/`."""
     pin = "471123"[: len(end.pin)]
     with PtyEnd(end) as pty_end:
@@ -82,7 +82,7 @@ def test_a_dry_run_shows_the_commands_and_changes_nothing(tsc: Tsc, module: Simu
     assert not any("ANA" in command or "UART" in command for command in module.commands)
 
 
-def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
+def test_without_settings_the_found_module_is_reported(tsc: Tsc) -> None:
     with PtyEnd(Bt05(38400)) as pty_end:
         result = tsc("doctor", "--module", "--port", pty_end.port)
     assert result.code == 0
@@ -91,7 +91,7 @@ def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
     assert "--pin 123456" in result.out
 
 
-def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_port_is_reported(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(talk, "SLOW_ANSWER_MS", 20)
     monkeypatch.setattr(talk, "ANSWER_MS", 20)
     end = Hc06New()
@@ -120,13 +120,13 @@ def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
         (["--id", "1", "--name", "A"], "Leave one"),
     ],
 )
-def test_what_no_module_can_have_is_refused_before_anything_is_opened(
+def test_settings_no_module_supports_are_refused_before_a_port_is_opened(
     tsc: Tsc, words: list[str], message: str
 ) -> None:
     tsc("doctor", "--module", "--port", "/dev/not-there", *words).gives(2, message)
 
 
-def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc: Tsc) -> None:
+def test_settings_this_module_lacks_are_refused_before_any_change(tsc: Tsc) -> None:
     end = Bt05()
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA", "--pin", "1234")
@@ -143,7 +143,7 @@ def test_invalid_ports_are_refused(tsc: Tsc) -> None:
 
 
 @pytest.mark.parametrize("is_locked", [False, True])
-def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
+def test_an_unopenable_port_has_the_same_message_as_in_the_doctor(
     tsc: Tsc, module: Simulated, is_locked: bool
 ) -> None:
     port = port_of(module) if is_locked else "/dev/not-there"
@@ -158,7 +158,7 @@ def test_a_port_that_does_not_open_is_what_the_doctor_says_of_it(
     assert module.name != "ANA"
 
 
-def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
+def test_each_outcome_of_a_step_is_a_cause_of_the_doctors_table() -> None:
     """No other cause concerns a setting."""
     outcome_by_cause = {
         cause: outcome for outcome, causes in MESSAGES_BY_CAUSE.items() for cause in causes
@@ -169,7 +169,7 @@ def test_how_a_step_ends_is_a_cause_of_the_doctors_table() -> None:
     } == {cause for cause in outcome_by_cause if CAUSES[cause].verdict == WRONG}
 
 
-def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:
+def test_a_module_that_fails_gives_an_exit_code(tsc: Tsc, module: Simulated) -> None:
     module.breaks_after = 4
     result = tsc(
         "doctor", "--module", "--port", port_of(module), "--name", "ANA", "--baud", "115200"
@@ -184,7 +184,7 @@ def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulate
     (True, False, 2, "The module was being set to 115200 baud: it has that speed or the old one."),
     (False, False, 2, "tsc: stopped. The module's speed has not changed."),
 ])  # fmt: skip
-def test_a_pulled_cable_and_ctrl_c_say_at_which_speeds_the_module_may_be(
+def test_a_pulled_cable_and_ctrl_c_report_the_possible_speeds(
     is_on: bool, is_pulled: bool, code: int, expected: str
 ) -> None:
     end = Hm10()

@@ -20,7 +20,7 @@ from tiniscript.link.outcomes import LOST, Event, LostEvent
 from tiniscript.link.requests import OK
 
 
-def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_monitor_writes_the_robots_values(pty_robot: PtyRobot, tmp_path: Path) -> None:
     rows = tmp_path / "rows.csv"
     assert (
         on(pty_robot, "upload", "-e", "SB|SHOW(1.5);W(0.1);SHOW(TRUE);X = 0;SHOW(1 / X)").code == 0
@@ -42,7 +42,7 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
     ]  # fmt: skip
 
 
-def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
+def test_monitor_keeps_the_last_rows_if_no_robot_answers(tmp_path: Path) -> None:
     rows = tmp_path / "rows.csv"
     rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
     run_in_process(
@@ -83,7 +83,7 @@ def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
                 assert all(line.cell_len <= width for line in lines)
 
 
-def test_monitor_and_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_monitor_survives_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> None:
     files = [Path("/dev/full"), tmp_path, tmp_path / "no" / "such"]
     for file in files if files[0].exists() else files[1:]:
         on(pty_robot, "monitor", "--csv", file, "--max-time", "1").gives(2, "--csv", out="")

@@ -34,7 +34,7 @@ def liner(tmp_path: Path) -> Path:
     return path
 
 
-def test_all_verbs_are_here() -> None:
+def test_every_verb_is_covered() -> None:
     robot_verbs = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
              and option.kind is not None and option.kind.name == "program"}  # fmt: skip
     assert robot_verbs == set(OPTIONS_BY_VERB)
@@ -49,7 +49,7 @@ def test_every_verb_takes_the_robot_that_a_program_names(verb: str, tsc: Tsc, li
 
 
 @each_row("verb", ["check", "run", "compile", "show", "upload"])
-def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> None:
+def test_an_option_takes_precedence_with_one_notice(verb: str, tsc: Tsc, liner: Path) -> None:
     words = OPTIONS_BY_VERB[verb] or []
     result = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
     assert result.err.startswith(PRECEDENCE_MESSAGE.format("tinibot", liner, "liner"))
@@ -60,7 +60,7 @@ def test_an_option_wins_and_says_so_once(verb: str, tsc: Tsc, liner: Path) -> No
     assert " takes precedence: " not in same.err
 
 
-def test_a_robot_of_ones_own_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_custom_robot_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
     shipped_path = ROOT / "compiler" / "tiniscript" / "robots" / "liner.toml"
     robot_file = tmp_path / "mine.toml"
     robot_file.write_text(shipped_path.read_text(encoding="utf-8"), encoding="utf-8")
@@ -84,19 +84,21 @@ def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Pa
 @each_row(
     "language, message", [("es", "Ningún robot se llama x2"), ("pt", "Nenhum robô se chama x2")]
 )
-def test_it_is_said_in_all_languages(language: str, message: str, tsc: Tsc) -> None:
+def test_an_unknown_robot_is_reported_in_all_languages(
+    language: str, message: str, tsc: Tsc
+) -> None:
     result = tsc("check", "-e", "// robot: x2\nS", "--lang", language).gives(1)
     assert message in result.err and "--robot" in result.err
 
 
-def test_an_editor_is_told_where(tsc: Tsc) -> None:
+def test_an_editor_gets_the_place_of_the_name(tsc: Tsc) -> None:
     (finding,) = json.loads(tsc("check", "-e", UNKNOWN_ROBOT_PROGRAM, "--json").gives(1).out)
     assert (finding["code"], finding["line"], finding["column"], finding["end_column"]) == (
         "TS138", 1, 11, 16,
     )  # fmt: skip
 
 
-def test_each_program_of_a_folder_has_its_own(tsc: Tsc, tmp_path: Path) -> None:
+def test_each_program_of_a_folder_has_its_own_robot(tsc: Tsc, tmp_path: Path) -> None:
     (tmp_path / "a.ts").write_text(LINER_PROGRAM, encoding="utf-8")
     (tmp_path / "b.ts").write_text("SI|SHOW(DISTANCE)\n", encoding="utf-8")
     (tmp_path / "c.ts").write_text("// robot: grabber\nSI|F(2 60);LED(TRUE)\n", encoding="utf-8")
@@ -108,11 +110,11 @@ def test_each_program_of_a_folder_has_its_own(tsc: Tsc, tmp_path: Path) -> None:
     assert "F(2, 60)" in (tmp_path / "c.ts").read_text(encoding="utf-8")
 
 
-def test_the_examples_are_right_as_they_are(tsc: Tsc) -> None:
+def test_the_examples_are_correct_unchanged(tsc: Tsc) -> None:
     assert "free of mistakes: 11" in tsc("check", ROOT / "examples").gives(0).out
 
 
-def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path) -> None:
+def test_a_named_robot_takes_precedence_over_the_connected_one(liner: Path) -> None:
     with robot("--robot", "liner", "--world", "line") as running_robot:
         assert (
             run_in_process("upload", liner, "--port", running_robot.port, "--no-run").gives(0).err
@@ -124,7 +126,7 @@ def test_the_one_that_answers_does_not_take_the_place_of_a_named_one(liner: Path
         assert run_in_process("check", liner, "--virtual").gives(0).err == ""
 
 
-def test_python_takes_it_too() -> None:
+def test_the_library_accepts_a_named_robot() -> None:
     assert tiniscript.compile(LINER_PROGRAM).robot == "liner"
     assert tiniscript.check(LINER_PROGRAM) == []
     assert [event.name for event in tiniscript.run(LINER_PROGRAM).events] == [

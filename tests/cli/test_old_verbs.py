@@ -64,7 +64,7 @@ def test_no_file_names_an_old_verb() -> None:
     assert count > 1000 and not old_uses, "\n".join(old_uses)
 
 
-def test_what_is_searched_for_is_found() -> None:
+def test_the_pattern_finds_former_commands() -> None:
     for name in FORMER_COMMANDS:
         for words in ("Try:  tsc {}", "`tsc {} x`", '["tsc", "{}"]', "python -m tiniscript {}",
                       '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
@@ -113,7 +113,7 @@ def find_unknown_word(command: str) -> str | None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_what_messages_say_to_type_is_a_command(language: str) -> None:
+def test_messages_suggest_only_existing_commands(language: str) -> None:
     count = 0
     for path in (FOLDER / language).glob("*.toml"):
         if path.stem == "language" or not all_said(language, path.stem):
@@ -128,7 +128,7 @@ def test_what_messages_say_to_type_is_a_command(language: str) -> None:
     assert [*commands_in(owned_text, is_document=False, is_robots=True)]
 
 
-def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
+def test_robot_sources_suggest_only_existing_commands() -> None:
     """The compiler shows it to the person who builds a firmware."""
     count = 0
     for path in files():
@@ -140,7 +140,7 @@ def test_what_sources_of_robots_say_to_type_is_a_command() -> None:
     assert count
 
 
-def test_a_wrong_command_in_a_robot_s_message_is_found() -> None:
+def test_a_wrong_command_in_a_robots_message_is_found() -> None:
     for wrong_command in (
         "Owned: tsc set txet on, or button 2 s.",
         "Take other pins with tsc firmwear -b.",
@@ -149,7 +149,7 @@ def test_a_wrong_command_in_a_robot_s_message_is_found() -> None:
         assert find_unknown_word(command) in ("txet", "firmwear")
 
 
-def test_what_documents_say_to_type_is_a_command() -> None:
+def test_documents_suggest_only_existing_commands() -> None:
     """Descriptions of the past do not count."""
     count = 0
     for path in files():
@@ -165,7 +165,7 @@ def test_what_documents_say_to_type_is_a_command() -> None:
 
 
 @each_row("name", FORMER_COMMANDS)
-def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
+def test_an_old_name_suggests_the_new_one(tsc: Tsc, name: str) -> None:
     assert name not in VERBS
     for language in LANGUAGES:
         for options in ([], ["--nonsense"], ["--lang", language]):
@@ -192,7 +192,7 @@ def test_an_old_name_says_what_it_is_now(tsc: Tsc, name: str) -> None:
     ("wifi --help", "set wifi --help"), ("completion bash", "help --completion bash"),
     ("text on", "set text on"), ("link", "monitor --hold"),
 ])  # fmt: skip
-def test_what_was_typed_after_it_stands_after_the_new_one(tsc: Tsc, old: str, now: str) -> None:
+def test_arguments_of_an_old_command_follow_the_new_one(tsc: Tsc, old: str, now: str) -> None:
     result = tsc(*shlex.split(old), "--lang", "en").gives(2, out="")
     assert result.err.rstrip("\n").rpartition("  tsc ")[2].removesuffix(" --lang en") == now
 
@@ -208,7 +208,7 @@ def test_help_on_an_old_name_is_that_of_the_new_command(tsc: Tsc) -> None:
     ("set owner --give-up --list", "set owner --give-up", "set owner --list"),
     ("firmware --wiring --board x", "firmware --wiring", "firmware --board"),
 ])  # fmt: skip
-def test_two_steps_are_not_done_at_once(tsc: Tsc, words: str, first: str, second: str) -> None:
+def test_two_steps_at_once_are_refused(tsc: Tsc, words: str, first: str, second: str) -> None:
     tsc(*words.split(), "--lang", "en").gives(2, f"tsc {first} or tsc {second}", out="")
 
 
@@ -231,7 +231,7 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
         tsc("set", "trmi", *options, "--lang", "en").gives(2, "Did you mean trim?")
 
 
-def test_each_command_is_chosen_by_what_is_typed_for_it() -> None:
+def test_each_command_is_chosen_by_its_typed_name() -> None:
     for command in COMMANDS:
         verb, *words = command_words(command).split()
         assert command_of(verb, words)[0] == command

@@ -54,7 +54,7 @@ def arguments(verb: str, files: dict[str, Path]) -> list[str]:
     )
 
 
-def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
+def test_every_option_with_a_value_is_classified_as_file_or_not() -> None:
     """Every new option must be classified; a name of a file in one verb is one in all."""
     read_files = {("compile", "map", "program"), ("compile", "output", "program")}
     assert read_files | {("show_port", "output", "robot")} <= set(PAIRS)
@@ -105,7 +105,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
 @pytest.mark.sampled("spelling")
 @pytest.mark.parametrize("spelling", ["same", "dot", "link", "hard"])
 @pytest.mark.parametrize(("verb", "output", "other_output"), PAIRS)
-def test_no_output_is_another_file_of_its_command(
+def test_no_output_overwrites_another_file_of_its_command(
     tsc: Tsc, working_folder: Path, verb: str, output: str, other_output: str,
     spelling: str,
 ) -> None:  # fmt: skip
@@ -128,7 +128,7 @@ def test_no_output_is_another_file_of_its_command(
     assert sorted(os.listdir(working_folder)) == files_before  # noqa: PTH208 - nothing was made either
 
 
-def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) -> None:
+def test_the_default_image_path_is_also_an_output(tsc: Tsc, tmp_path: Path) -> None:
     program = tmp_path / "a.ts"
     program.write_text(PROGRAM)
     image = tmp_path / "a.bin"
@@ -139,7 +139,7 @@ def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) 
     assert profile.read_text(encoding="utf-8") == PROFILE
 
 
-def test_two_outputs_that_are_not_there_yet_are_told_apart(tsc: Tsc, working_folder: Path) -> None:
+def test_two_missing_outputs_are_told_apart(tsc: Tsc, working_folder: Path) -> None:
     """Capitals do not count: on many systems they do not once the files are there."""
     (working_folder / "folder").mkdir()
     (working_folder / "link").symlink_to("x")
@@ -203,7 +203,7 @@ OUTPUTS = [
 
 
 @pytest.mark.parametrize(("verb", "output"), OUTPUTS)
-def test_what_cannot_be_written_is_said_before_anything_is_done(
+def test_unwritable_outputs_are_reported_before_anything_is_done(
     tsc: Tsc, working_folder: Path, monkeypatch: pytest.MonkeyPatch, verb: str, output: str
 ) -> None:
     """No robot drives for a picture that has no place."""
@@ -215,7 +215,7 @@ def test_what_cannot_be_written_is_said_before_anything_is_done(
     assert list(working_folder.iterdir()) == []
 
 
-def test_a_file_that_may_not_be_written(
+def test_a_write_protected_file_is_refused(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     output = tmp_path / "x.bin"

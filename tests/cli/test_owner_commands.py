@@ -26,7 +26,7 @@ from tiniscript.link.sharing.requests import ClientRequests
 DRIVE_PROGRAM = "SI|F(0.2, 80)"
 
 
-def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
+def test_the_robot_has_been_asked_before_hold_is_printed(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The press is over before the command continues."""
@@ -43,7 +43,7 @@ def test_a_slow_computer_has_asked_the_robot_when_it_says_hold(
     assert main(["set", "owner", "--port", pty_robot.port]) == 0
 
 
-def test_whoever_claims_a_robot_drives_it_and_nobody_else(
+def test_only_the_owner_drives_a_claimed_robot(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["owner"] == "free"
@@ -71,7 +71,7 @@ def test_whoever_claims_a_robot_drives_it_and_nobody_else(
     assert on(pty_robot, "stop").code == 0
 
 
-def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
+def test_a_robot_claimed_by_another_computer_is_reported_with_the_next_step(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert claim_with_button(pty_robot).code == 0
@@ -91,7 +91,7 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     assert result.code == 0 and "claimed the robot again." not in result.err
 
 
-def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
+def test_giving_up_a_robot_frees_it(pty_robot: PtyRobot) -> None:
     """A robot with an owner accepts text only if allowed."""
     assert "has no owner to remove" in on(pty_robot, "set", "owner", "--give-up").out
     assert "no owner" in on(pty_robot, "set", "text", "off").out
@@ -106,7 +106,7 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     assert ", free" in on(pty_robot, "doctor").out
 
 
-def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
+def test_a_live_line_fits_a_sealed_frame(pty_robot: PtyRobot) -> None:
     """Variables without room to be shown are forgotten; a longer line gets a message about it."""
     longest_line = (
         "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"
@@ -120,7 +120,7 @@ def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -
     assert "42" in result.err
 
 
-def test_a_claim_without_the_button_says_what_to_do(
+def test_a_claim_without_the_button_names_the_next_step(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If the key cannot be stored, the robot issues none."""
@@ -152,7 +152,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     assert {key.which for key in KeyFile().all()} == {KEY_TEACHER}
 
 
-def test_a_shared_port_has_the_authority_and_its_messages_no_key(
+def test_a_shared_port_has_authority_but_its_messages_no_key(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     link = Command("monitor", "--hold", "--port", pty_robot.port)
@@ -175,7 +175,7 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
         assert set(request.message) == {"do", "which"}
 
 
-def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
+def test_a_different_robot_at_a_known_address_is_refused_until_accepted(
     pty_robot: PtyRobot,
 ) -> None:
     """An attacker who redirects the connection has a robot, but no key."""
@@ -203,7 +203,7 @@ def test_another_robot_at_the_place_of_ours_is_refused_until_it_is_accepted(
     assert on(pty_robot, "stop").code == 0
 
 
-def test_whoever_claims_many_robots_at_one_cable_is_not_asked(pty_robot: PtyRobot) -> None:
+def test_claiming_many_robots_at_one_cable_asks_no_questions(pty_robot: PtyRobot) -> None:
     for _ in range(2):
         claim_with_button(pty_robot).gives(0, out="yours")
         assert on(pty_robot, "upload", "-e", DRIVE_PROGRAM).code == 0

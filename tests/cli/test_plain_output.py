@@ -98,7 +98,7 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     ["help", HOSTILE_TEXT],
     ["run", "-e", "W(1)", "--sensor", "DISTANCE=1", "--sensor", f"DISTANCE={HOSTILE_TEXT}"],
 ])  # fmt: skip
-def test_unknown_verbs_and_options_are_said_plainly(tsc: Tsc, words: list[str]) -> None:
+def test_unknown_verbs_and_options_are_reported_in_plain_text(tsc: Tsc, words: list[str]) -> None:
     for language in ("en", "es"):
         result = tsc(*words, *([] if "--lang" in words[0] else ["--lang", language]))
         assert_plain(result.out, result.err)
@@ -148,7 +148,7 @@ def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
             assert_plain(result.out, result.err)
 
 
-def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path: Path) -> None:
+def test_the_faulting_line_is_shown_in_plain_text(tsc: Tsc, tmp_path: Path) -> None:
     """The text of a program is data; a fault and a disassembly quote it."""
     program = tmp_path / "a.ts"
     program.write_text("X = 1/(TIME - TIME)  // \x1b[31m\u202e\x9b\tred", encoding="utf-8")
@@ -160,7 +160,7 @@ def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path
         assert verb == "check" or "TIME" in result.out + result.err
 
 
-def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip # noqa: E501
+def test_a_bug_is_reported_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip # noqa: E501
     from tiniscript.cli import main
 
     def raise_hostile_error(arguments: list[str], language: str) -> int:
@@ -173,7 +173,7 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
     assert_plain(output)
 
 
-def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
+def test_a_sentence_leaves_the_lines_of_other_sentences() -> None:
     sentence = Sentence("{a}|{b}").format(a="x\ny", b=Sentence("x\ny"))
     assert sentence == "x?y|x\ny"
     assert Sentence("{a}").format(a="x" * 10_000) == "x" * MOST_VALUE_CHARACTERS + "…"
@@ -186,7 +186,7 @@ def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
     )
 
 
-def test_what_is_printable_stays() -> None:
+def test_printable_characters_are_kept() -> None:
     for printable_text in ("", "Tini", "año ñandú", "机器人", "🤖", "a b", "-e 'SI|F(2, 80)'"):
         assert printable(printable_text) == printable_text
     assert printable("abc", 2) == "ab…"
@@ -214,7 +214,7 @@ def is_harmless(text: str) -> bool:
 
 
 @each_row("sign", CONTROL_SIGNS)
-def test_a_name_has_no_signs_that_act(sign: str) -> None:
+def test_a_name_has_no_control_characters(sign: str) -> None:
     name = f"AB{sign}C".encode("utf-8", "surrogateescape")[:16]
     values = make_payload(HelloReply, {**DESCRIPTION, "name": name})
     shown_name = device_info_of(values).name
@@ -224,7 +224,9 @@ def test_a_name_has_no_signs_that_act(sign: str) -> None:
 
 
 @each_row("sign", CONTROL_SIGNS)
-def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_device_description_has_no_control_characters(
+    sign: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     class Port:
         device, description = "/dev/x", f"Arduino{sign}Uno"
 
@@ -243,7 +245,7 @@ def test_a_device_describes_itself_without_them(sign: str, monkeypatch: pytest.M
         ("/dev/ttySAC0", "n/a", ""),
     ],
 )
-def test_a_port_without_a_robot_says_what_it_is(
+def test_a_port_without_a_robot_is_described(
     device: str, description: str, expected: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     class Port:
@@ -271,7 +273,7 @@ def print_name(text: str, is_json: bool) -> tuple[str, str]:
 
 
 @each_row("sign", CONTROL_SIGNS)
-def test_a_text_is_printed_without_them(sign: str) -> None:
+def test_a_text_is_printed_without_control_characters(sign: str) -> None:
     for is_json in (False, True):
         output, row = print_name(f"AB{sign}C", is_json)
         assert is_harmless(output) and is_harmless(row)
@@ -288,6 +290,6 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
     ]
 
 
-def test_numbers_and_words_stay() -> None:
+def test_numbers_and_words_are_kept() -> None:
     for plain_text in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
         assert escape_formula(plain_text) == plain_text

@@ -76,7 +76,7 @@ def test_a_run_is_as_long_as_it_may_be(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("run", file).gives(0).err.startswith(SAME_RUN_MESSAGE)
 
 
-def test_a_fault_is_recorded_and_told(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_fault_is_recorded_and_reported(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "run.tsr"
     result = tsc("run", "-e", TEXT, "--record", file).gives(1)
     assert "FAULT DIVIDE_BY_ZERO" in result.out and "ine 3" in result.err
@@ -120,7 +120,7 @@ F(FOREVER, 60) UNTIL(DISTANCE < 20)
 SHOW(LIGHT_L + LIGHT_R)"""
 
 
-def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
+def test_a_real_run_is_recorded_with_its_readings_and_replayed_in_another_world(
     tmp_path: Path,
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
@@ -141,7 +141,7 @@ def test_a_real_run_is_recorded_with_what_it_read_and_played_in_another_world(
         )
 
 
-def test_a_robot_that_does_not_report_readings_says_so(
+def test_a_robot_without_reading_reports_is_noted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(upload, "READINGS", 0)
@@ -253,7 +253,7 @@ def test_a_file_that_another_program_has_saved_is_read(tsc: Tsc, tmp_path: Path)
     ],
     ids=["torn", "cut", "older", "newer", "robot", "program", "long", "large"],
 )
-def test_a_file_that_cannot_be_played_says_why(
+def test_an_unplayable_file_is_refused_with_a_reason(
     tsc: Tsc, tmp_path: Path, data: bytes, message: str, dicho: str
 ) -> None:
     file = tmp_path / "run.tsr"
@@ -287,7 +287,7 @@ def test_a_file_that_cannot_be_played_says_why(
         (("upload", "-e", TEXT, "--virtual", "--record", "letter"), "tsc did not write it."),
     ],
 )  # fmt: skip
-def test_what_is_not_recorded_or_played_says_why(
+def test_unrecordable_runs_are_refused_with_a_reason(
     tsc: Tsc, working_folder: Path, words: tuple[str, ...], message: str
 ) -> None:
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
@@ -339,9 +339,7 @@ def test_a_recording_has_an_end_and_no_more(
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_whatever_a_robot_tells_after_the_end_of_its_run_is_not_recorded(
-    tmp_path: Path, seed: int
-) -> None:
+def test_messages_after_the_end_of_a_run_are_not_recorded(tmp_path: Path, seed: int) -> None:
     rng, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
     tested_recorder = Recorder(str(file), HEAD, monotonic(), kit=kit)
     for k in range(12):
@@ -397,7 +395,7 @@ def test_after_ctrl_c_the_time_of_saving_does_not_count(
     assert decode(file.read_bytes()).rows == (Row(5000, "STOPPED"),)
 
 
-def test_a_place_without_room_says_so(tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_while_recording(tmp_path: Path) -> None:
     with pytest.raises(CommandError) as exception_info:
         Recorder(str(tmp_path / "no" / "run.tsr"), HEAD, began_s=monotonic())
     assert "with --record" in exception_info.value.sentence("en")

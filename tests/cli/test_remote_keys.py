@@ -82,7 +82,7 @@ def test_anything_but_a_remote_control_key_holds_nothing(typed_text: str) -> Non
 
 
 @pytest.mark.parametrize("typed_text", ["q", "Q", "\x04", UP_KEY + "q", "aaaq"])
-def test_who_wants_to_leave(typed_text: str) -> None:
+def test_quit_keys_leave(typed_text: str) -> None:
     assert HeldKeys().press_typed(typed_text, 0.0)
 
 
@@ -90,7 +90,7 @@ OTHER_KEYS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 
 
 @pytest.mark.parametrize("seed", range(50))
-def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
+def test_keys_in_pieces_count_like_whole_keys(seed: int) -> None:
     """Keys may be split anywhere, after any input: no part of a key is left for the next."""
     rng = random.Random(seed)
     whole_keys, split_keys = HeldKeys(), HeldKeys()
@@ -109,7 +109,7 @@ def test_what_comes_in_pieces_is_what_comes_whole(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_what_was_typed_a_while_ago_holds_nothing_now(seed: int) -> None:
+def test_keys_typed_earlier_are_no_longer_held(seed: int) -> None:
     rng, used_keys, unused_keys, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
     for _ in range(20):
         used_keys.press_typed(rng.choice(KEYS)[0], now_s)
@@ -172,7 +172,7 @@ def remote_at(table: Table, monkeypatch: pytest.MonkeyPatch) -> TerminalRemote:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_robot_hears_at_once_what_is_held_and_again_while_it_is(
+def test_held_keys_are_sent_at_once_and_repeatedly(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It hears nothing while nothing is held."""
@@ -211,7 +211,7 @@ def test_a_robot_that_accepts_no_keys_is_an_error(
     assert not older_table.is_entered and not older_table.words
 
 
-def test_q_interrupts_as_ctrl_c_does_and_is_told_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_q_interrupts_like_ctrl_c_but_is_distinguishable(monkeypatch: pytest.MonkeyPatch) -> None:
     table = Table()
     with remote_at(table, monkeypatch) as remote:
         remote.poll()

@@ -30,7 +30,7 @@ KIT = robots.load("tinibot").kit
 # -- endings ------------------------------------------------------------------------------------
 
 
-def test_a_port_that_another_program_uses_is_said(
+def test_a_port_in_use_by_another_program_is_reported(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import serial
@@ -41,7 +41,7 @@ def test_a_port_that_another_program_uses_is_said(
     assert pty_robot.received == b""
 
 
-def test_however_a_command_ends_its_robot_stops(pty_robot: PtyRobot) -> None:
+def test_a_robot_stops_however_its_command_ends(pty_robot: PtyRobot) -> None:
     """It stops after Ctrl-C, the robot's button, a kill, and an unplugged cable."""
     command = start_endless_upload(pty_robot)
     pressed_ms = pty_robot.robot_ms
@@ -93,7 +93,7 @@ def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot
         assert "10 round trips" in run_in_process("upload", "-e", "PING|check_connection").out
 
 
-def test_the_level_of_text_is_that_of_two_bits(
+def test_the_text_level_is_encoded_in_two_bits(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     described = requests.device_info_of
@@ -130,7 +130,7 @@ def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     assert "Ñandú, remembered   last used" in run_in_process("doctor", "--ports").out
 
 
-def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, pty_robot: PtyRobot, hasty: None) -> None:
+def test_ports_queries_robots_only_on_request(tsc: Tsc, pty_robot: PtyRobot, hasty: None) -> None:
     known_ports.remember(pty_robot.port, "TINI")
     rows = json.loads(tsc("doctor", "--ports", "--json").out)
     row = next(row for row in rows if row["port"] == pty_robot.port)
@@ -159,7 +159,7 @@ def test_a_person_without_a_port_is_asked_for_a_port(
     assert tsc("doctor", "--identify").err == ""  # the port is remembered
 
 
-def test_nobody_something_else_and_another_version(
+def test_silence_other_devices_and_other_versions_are_reported(
     tsc: Tsc, pty_robot: PtyRobot, hasty: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as patch:
@@ -194,7 +194,7 @@ def test_invalid_ports_are_refused(tsc: Tsc, verb: str, tmp_path: Path) -> None:
         assert tsc(*verb.split(), "--port", "x", "--baud", "fast", "--lang", language).code == 2
 
 
-def test_every_reason_has_a_sentence_with_a_next_step(
+def test_every_failure_has_a_message_with_a_next_step(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from serial import SerialException

@@ -51,7 +51,7 @@ def find_with_selftest(
     }
 
 
-def test_a_good_robot_without_a_person(pty_robot: PtyRobot) -> None:
+def test_a_good_robot_passes_without_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     code, parts = find_with_selftest(pty_robot)
     assert code == 0
@@ -96,7 +96,7 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
         assert code == 0
 
 
-def test_another_kit_than_was_said() -> None:
+def test_a_kit_other_than_the_named_one_is_reported() -> None:
     with PtyRobot(robots.load("liner").kit) as robot:
         code, parts = find_with_selftest(robot, "--robot", "tinibot")
     assert code == 3
@@ -105,7 +105,9 @@ def test_another_kit_than_was_said() -> None:
 
 
 @pytest.mark.parametrize(("reset", "finding"), [("BROWN_OUT", "brown_out"), ("WATCHDOG", "hung")])
-def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: str) -> None:
+def test_a_restart_during_the_self_test_is_reported(
+    pty_robot: PtyRobot, reset: str, finding: str
+) -> None:
     with pty_robot._lock:
         pty_robot._take_power()
         number = [name for name, _ in RESETS].index(reset)
@@ -115,7 +117,7 @@ def test_a_robot_that_has_restarted(pty_robot: PtyRobot, reset: str, finding: st
     assert (parts["supply"]["verdict"], parts["supply"]["cause"]) == ("wrong", finding)
 
 
-def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
+def test_the_self_test_agrees_with_the_doctor(pty_robot: PtyRobot) -> None:
     """The causes are in one table, so supply, line and kit have no texts of their own here."""
     pty_robot.ask(lambda robot: robot.supply(True))
     on(pty_robot, "upload", "-e", "SB|F(1, 50)")
@@ -132,7 +134,7 @@ def test_it_says_the_same_of_a_robot_as_the_doctor(pty_robot: PtyRobot) -> None:
             assert own_finding["said"] == finding["said"]
 
 
-def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
+def test_the_self_test_finds_faults(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
     lowest_reading = pty_robot.kit.sensors[0].low
     pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
@@ -158,7 +160,7 @@ def test_what_is_wrong_is_found(pty_robot: PtyRobot) -> None:
 
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", ["missing", "other speed", "locked", "silent radio"])
-def test_where_no_robot_answers_it_says_at_once_what_the_doctor_finds(kind: str) -> None:
+def test_without_a_robot_the_doctors_findings_are_reported_at_once(kind: str) -> None:
     """It prints the causes, the evidence and the next step, so that no other command is needed."""
     with ExitStack() as stack:
         port = "/dev/not-there"
@@ -278,7 +280,7 @@ def causes(json_output: str) -> set[str]:
     return {finding["cause"] for finding in json.loads(json_output)["found"]}
 
 
-def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
+def test_a_good_robot_passes_with_a_person(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     assert on(pty_robot, "upload", "-e", "SB|F(1, 50)").code == 0
     code, out, _ = run_self_test(pty_robot, person(pty_robot), "--json")
@@ -304,7 +306,7 @@ def test_ctrl_c_stops_the_robot_whichever_motor_turns(pty_robot: PtyRobot, motor
     assert not pty_robot.moves
 
 
-def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
+def test_faults_seen_by_a_person_are_reported(pty_robot: PtyRobot) -> None:
     """The person reports motors that turn wrong or not at all, and sensors that notice nothing."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     for wires, expected in (
@@ -321,7 +323,7 @@ def test_what_a_person_sees_is_wrong(pty_robot: PtyRobot) -> None:
     assert out.count("does not react") == len(pty_robot.kit.sensors)
 
 
-def test_each_cause_of_what_a_person_sees(pty_robot: PtyRobot) -> None:
+def test_each_fault_seen_by_a_person_has_a_cause(pty_robot: PtyRobot) -> None:
     deaf = person(pty_robot, Wires(is_dead=True), is_noticed=False)
 
     def answer(question: str) -> str:
@@ -338,7 +340,7 @@ def test_each_cause_of_what_a_person_sees(pty_robot: PtyRobot) -> None:
     assert "as_bright" in causes(out)
 
 
-def test_each_cause_of_a_line_that_the_robot_ends(
+def test_each_line_ended_by_the_robot_has_a_cause(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The robot still answers, so the other parts are checked too."""
@@ -372,7 +374,7 @@ def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wir
         assert ("motors swapped" in out) == wires.is_exchanged, "what it keeps now is said"
 
 
-def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
+def test_repeating_a_step_turns_the_motor_again(pty_robot: PtyRobot) -> None:
     """Without a requested number, no motor moves. If the person leaves, no motor turns either."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
     assert on(pty_robot, "doctor", "--selftest").code == 0
@@ -394,7 +396,7 @@ HURRIED_PACE = 50.0
 
 
 @pytest.mark.parametrize("number", [None, 0, 1])
-def test_a_disc_that_flickers_at_rest_is_wrong(number: int | None) -> None:
+def test_a_disc_that_flickers_at_rest_is_reported(number: int | None) -> None:
     robot = robot_in(name="tinibot2", eeprom_us=0)
     if number is not None:
         Flicker(robot, number, 20)
@@ -443,7 +445,7 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
     assert robot_file.read_text() == "mine"
 
 
-def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
+def test_a_missing_robot_has_a_report(tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
     run_in_process("doctor", "--selftest", "--port", "/dev/serial-of-Ana", "--report", file).gives(
         3
@@ -454,7 +456,7 @@ def test_a_robot_that_is_not_there_has_a_report_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("answers", range(4))
-def test_who_has_not_answered_once_is_asked_and_shown_nothing_more(
+def test_after_an_unanswered_question_nothing_more_is_asked(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], answers: int
 ) -> None:
     """Nothing moves after an unanswered question."""

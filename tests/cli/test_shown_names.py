@@ -34,7 +34,7 @@ def forget_maps() -> None:
         path.unlink()
 
 
-def test_upload_names_what_its_program_shows(pty_robot: PtyRobot) -> None:
+def test_upload_names_the_values_of_its_program(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(20_000, 60_000, 12_500))
     text = "SI|SHOW(DISTANCE); SHOW(light_r-light_l)\nSHOW(7)\nSHOW(DISTANCE)"
     result = on(pty_robot, "upload", "-e", text).gives(0)
@@ -105,7 +105,7 @@ def event(text: str, number: int, program: int | None = None) -> ShownEvent:
     )
 
 
-def test_two_on_one_line_are_told_apart_in_a_table() -> None:
+def test_two_values_of_one_line_are_told_apart_in_a_table() -> None:
     text = "X = 1; SHOW(-X); SHOW(-X)"
     shown_names: list[str] = []
     table: list[tuple[object, ...]] = []
@@ -151,7 +151,7 @@ def test_each_name_has_a_curve_of_its_own() -> None:
 
 
 @pytest.mark.parametrize("width", [3, 20, 79])
-def test_no_more_curves_than_colours(width: int) -> None:
+def test_there_are_no_more_curves_than_colours(width: int) -> None:
     """The curve whose last value is oldest ends first; the others keep their colours."""
     plot = Plot()
     names = [f"X + {k}" for k in range(len(STYLES))]

@@ -54,7 +54,7 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 
 
 @pytest.mark.parametrize("is_shared", [False, True])
-def test_whoever_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
+def test_simultaneous_stops_are_all_confirmed(pty_robot: PtyRobot, is_shared: bool) -> None:
     server = start_endless_upload(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
     results = [command.wait_for_result() for command in stops]
@@ -64,9 +64,7 @@ def test_whoever_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_share
         assert server.wait_for_result().code == 3
 
 
-def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
-    pty_robot: PtyRobot, link: Command
-) -> None:
+def test_an_unconfirmed_stop_delays_nobody_for_long(pty_robot: PtyRobot, link: Command) -> None:
     pty_robot.switch_off()
     on(pty_robot, "stop").gives(3, "has not confirmed")
     pty_robot.switch_on()
@@ -99,13 +97,13 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_nobody_is_told_to_push_the_button_of_a_robot_that_may_stand(language: str) -> None:
+def test_no_message_suggests_the_button_of_a_robot_that_may_be_stopped(language: str) -> None:
     sentence = text("not_confirmed", language)
     assert not re.search(r"(?<!not )press its button|pulsa su botón", sentence)
     assert re.search(r"batter|pilas", sentence)
 
 
-def test_the_doctor_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:
+def test_the_doctor_reports_uart_errors(pty_robot: PtyRobot) -> None:
     fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
     assert (fields["framing"], fields["overrun"]) == (0, 0)
     assert "framing" not in on(pty_robot, "doctor").out
@@ -221,7 +219,9 @@ def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> Non
 
 
 @pytest.mark.parametrize("is_known", [True, False])
-def test_whoever_holds_up_a_stop_is_named(is_known: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_process_that_delays_a_stop_is_named(
+    is_known: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     now_s = [0.0]
     monkeypatch.setattr(opening, "monotonic", lambda: now_s[0])
     monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))

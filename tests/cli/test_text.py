@@ -39,13 +39,13 @@ def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path)
     assert line.with_suffix(".bin").read_bytes() == program.with_suffix(".bin").read_bytes()
 
 
-def test_a_line_that_has_changed_does_nothing(tsc: Tsc) -> None:
+def test_a_changed_line_does_nothing(tsc: Tsc) -> None:
     for verb in ("run", "check", "fmt", "compile"):
         options = ["-o", "-"] if verb == "compile" else []
         tsc(verb, "-e", LINE.replace("80", "90"), *options).gives(1, "[TS058]", out="")
 
 
-def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
+def test_exceeding_a_level_is_a_mistake_with_its_place(tsc: Tsc) -> None:
     result = tsc("check", "--text-level", "uno", "-e", LONG_PROGRAM)
     assert result.code == 1
     assert "line 256:  S\n" in result.err
@@ -58,7 +58,7 @@ def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
     assert tsc("check", "-e", LONG_PROGRAM).code == 0
 
 
-def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path) -> None:
+def test_programs_beyond_a_level_are_not_written(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "line.ts"
     result = tsc("compile", "--text", "--text-level", "esp32", "-e", LONG_PROGRAM, "-o", target)
     assert result.code == 1 and "[TS309]" in result.err and not target.exists()
@@ -75,7 +75,7 @@ def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path)
         (["--text", "--text-level", "nano"], "--text-level takes uno, mega or esp32, not nano"),
     ],
 )
-def test_options_that_do_not_go_together(
+def test_incompatible_options_are_refused(
     tsc: Tsc, program: Path, arguments: list[str], message: str
 ) -> None:
     tsc("compile", program, *arguments).gives(2, message)

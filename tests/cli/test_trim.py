@@ -65,7 +65,7 @@ def drive_and_record(robot: HostFirmware, session: Session, left: int, right: in
 # -- the robot ------------------------------------------------------------------------------------
 
 
-def test_motors_get_what_the_trim_makes_of_it() -> None:
+def test_motor_powers_follow_the_trim() -> None:
     robot, session = switched_on(), computer()
     for trim, power, powers in (
         (Trim(), (80, 40), "80 40"),
@@ -111,7 +111,7 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     assert stored_trim(pty_robot) == Trim(pace=Pace())
 
 
-def test_what_cannot_be_set_is_said_without_a_robot() -> None:
+def test_invalid_settings_are_refused_without_a_robot() -> None:
     for option, value in (
         ("--balance", "41"), ("--least", "-1"), ("--exchange", "maybe"), ("--least", "x"),
         ("--speed-80", "-1"), ("--turn-80", "656"), ("--turn-40", "fast"),
@@ -153,7 +153,7 @@ def text_of_cause(cause: str, part: str, **values: str) -> str:
     )
 
 
-def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -> None:
+def test_a_robot_that_cannot_be_trimmed_keeps_its_trim(pty_robot: PtyRobot) -> None:
     assert run_trim(pty_robot, "--balance", "7", "--least", "3").code == 0
     for answers, expected in (
         ("\n1\n2\n", text_of_cause("same_wheel", "motors")),
@@ -167,7 +167,7 @@ def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(pty_robot: PtyRobot) -
         assert not pty_robot.moves
 
 
-def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
+def test_a_stop_from_elsewhere_during_trimming_keeps_the_previous_trim(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Another terminal stops the robot in the moment in which it is given a trim to try."""
@@ -196,7 +196,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
         assert given_bytes.pop() == Trim(balance=7).data() and not given_bytes
 
 
-def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) -> None:
+def test_ctrl_c_stops_the_robot_and_keeps_its_trim(pty_robot: PtyRobot) -> None:
     assert run_trim(pty_robot, "--balance", "7").code == 0
     command = Command("set", "trim", "--port", pty_robot.port, data=b"\n")
     pty_robot.until(lambda: pty_robot.moves, "a motor turns")
@@ -244,7 +244,7 @@ def test_a_measured_robot_may_not_move_at_all_with_little_power() -> None:
     assert fault_name(status.outcome.values.fault) == "NO_POWER"
 
 
-def test_a_robot_refuses_a_pace_that_does_not_rise_whole() -> None:
+def test_a_pace_that_does_not_rise_is_refused_entirely() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.trim(Trim(balance=3, pace=TRIM_PACE).data())) == OK
     for pace in (Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)):
@@ -294,7 +294,7 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
     assert "turns 144 degrees per second at 40 % and 288 at 80 %" in told_by_info
 
 
-def test_whoever_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None:
+def test_a_lower_speed_at_80_is_measured_again(pty_robot: PtyRobot) -> None:
     wrong_answers = "1\n\n33\n\n33\n"
     result = run_trim(
         pty_robot, data=LIFTED_ANSWERS + wrong_answers + "\n0\n\n13 in\n\n144\n\n288\n"
@@ -304,7 +304,7 @@ def test_whoever_measures_less_at_80_measures_again(pty_robot: PtyRobot) -> None
     assert stored_trim(pty_robot).pace == Pace(0, 16.51, 144, 288)
 
 
-def test_whoever_stops_measuring_leaves_what_was_there(pty_robot: PtyRobot) -> None:
+def test_an_interrupted_measurement_keeps_the_stored_pace(pty_robot: PtyRobot) -> None:
     run_trim(pty_robot, "--speed-40", "20").gives(2, "faster than at 40 %")
     assert stored_trim(pty_robot).pace == Pace()
     assert run_trim(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0

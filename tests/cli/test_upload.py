@@ -34,7 +34,7 @@ def test_upload_runs_the_program_and_stays_until_it_ends(
     assert pty_robot.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
-def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
+def test_slots_and_checksums_are_printed_on_request(pty_robot: PtyRobot) -> None:
     image = compile_text("SI|S", KIT).image
     checksum = f"{int.from_bytes(image[10:14], 'little'):08x}"
     result = on(pty_robot, "upload", "-e", "SI|S", "--verbose").gives(0, "")
@@ -51,7 +51,7 @@ def test_slots_and_checksums_are_for_those_who_ask(pty_robot: PtyRobot) -> None:
     assert result.out.splitlines()[0].endswith("   only in RAM   SI: running")
 
 
-def test_a_program_goes_on_without_tsc(pty_robot: PtyRobot) -> None:
+def test_a_program_continues_without_tsc(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "upload", "-e", OBSTACLE, "--detach")
     assert result.code == 0 and result.out.endswith("SI: running without tsc\n")
     pty_robot.ask(lambda robot: robot.wait(7000))
@@ -88,7 +88,7 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
     assert listing.split("\n", 1)[1] == run_in_process("show", compiled_file).out.split("\n", 1)[1]
 
 
-def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
+def test_the_receipt_is_available_as_json(pty_robot: PtyRobot) -> None:
     text = "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)"
     result = on(pty_robot, "upload", "-e", text, "--json").gives(1)
     lines = [json.loads(line) for line in result.out.splitlines()]
@@ -112,12 +112,14 @@ def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
     assert on(pty_robot, "start").code == 1
 
 
-def test_mistakes_keep_the_program_off_the_robot(pty_robot: PtyRobot) -> None:
+def test_a_program_with_mistakes_is_not_sent(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", "F(2 80)").gives(1, "TS017")
     assert pty_robot.received == b""
 
 
-def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_a_program_that_does_not_fit_is_refused_with_sizes(
+    pty_robot: PtyRobot, tmp_path: Path
+) -> None:
     target = tmp_path / "a.bin"
     target.write_bytes(compile_text("SHOW(TIME * 1.234);" * 90, robots.load("grabber").kit).image)
     result = on(pty_robot, "upload", target)
@@ -159,7 +161,7 @@ def interrupt(command: Command) -> CommandResult:
     return command.wait_for_result()
 
 
-def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyRobot) -> None:
+def test_saving_is_reported_while_a_stationary_program_runs(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", WAITING_PROGRAM, "--port", pty_robot.port)
     command.until("Saved. The button starts it.")
     pty_robot.switch_off_and_on()
@@ -167,7 +169,7 @@ def test_a_program_that_stands_is_told_to_be_saved_while_it_runs(pty_robot: PtyR
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
-def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
+def test_after_ctrl_c_the_save_is_reported(pty_robot: PtyRobot) -> None:
     interrupt(start_endless_upload(pty_robot)).gives(
         2, "the robot has confirmed the stop", out="Saved. The button starts it."
     )
@@ -175,7 +177,7 @@ def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
-def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
+def test_while_driving_a_name_and_a_trim_are_reported_as_saved_later(pty_robot: PtyRobot) -> None:
     command = start_endless_upload(pty_robot)
     naming, trimming = ("set", "name", "ANA"), ("set", "trim", "--balance", "5")
     for words in (naming, trimming):
@@ -191,7 +193,7 @@ def test_a_name_and_a_trim_while_it_drives_are_told_to_be_kept_later(pty_robot: 
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "ANA"
 
 
-def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
+def test_weak_batteries_are_reported(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     result = on(pty_robot, "upload", "-e", "SI|SHOW(6)", "--no-save")
     assert result.code == 0 and "batter" not in result.err + result.out, "nothing is to be saved"
@@ -211,7 +213,7 @@ def test_weak_batteries_are_told(pty_robot: PtyRobot) -> None:
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
-def test_a_supply_that_is_enough_again_saves_what_runs(pty_robot: PtyRobot) -> None:
+def test_a_recovered_supply_saves_the_running_program(pty_robot: PtyRobot) -> None:
     """Somebody plugs the USB cable in."""
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     command = Command("upload", "-e", WAITING_PROGRAM, "--port", pty_robot.port, "--json")
@@ -235,7 +237,7 @@ def upload_two(pty_robot: PtyRobot) -> list[str]:
     return [json.loads(result.out.splitlines()[0])["checksum"] for result in results]
 
 
-def test_it_is_told_which_program_is_back_and_that_it_is_saved(pty_robot: PtyRobot) -> None:
+def test_undo_reports_the_restored_program_and_its_save(pty_robot: PtyRobot) -> None:
     """The JSON form is a receipt."""
     first_checksum, second_checksum = upload_two(pty_robot)
     for language, checksum, expected, saved_text in (
@@ -276,7 +278,7 @@ def test_without_a_previous_program_the_next_step_is_named(pty_robot: PtyRobot) 
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
-def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> None:
+def test_undo_ends_the_program_of_another_terminal(pty_robot: PtyRobot) -> None:
     upload_two(pty_robot)
     command = start_endless_upload(pty_robot)
     result = on(pty_robot, "start", "--previous").gives(0)
@@ -286,7 +288,7 @@ def test_while_another_terminal_drives_its_program_ends(pty_robot: PtyRobot) -> 
 
 
 @pytest.mark.sampled(of="slow commands")
-def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
+def test_with_weak_batteries_undo_reports_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
     first_checksum, second_checksum = upload_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
@@ -303,7 +305,7 @@ def test_with_weak_batteries_it_is_told_that_nothing_is_lost(pty_robot: PtyRobot
     )
 
 
-def test_ports_and_options_are_those_of_the_other_verbs() -> None:
+def test_undo_accepts_the_ports_and_options_of_other_verbs() -> None:
     for words in (("--port", "/dev/no-such-port"), ("--virtual",)):
         result = run_in_process("start", "--previous", *words)
         assert result.code == 3 and result.err.startswith("tsc: ") and not result.out

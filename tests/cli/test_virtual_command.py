@@ -24,7 +24,9 @@ from tiniscript.virtual import directory
 # -- a robot with a port --------------------------------------------------------------------------
 
 
-def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> None:
+def test_another_terminal_finds_the_virtual_robot_and_its_actions_are_printed(
+    tmp_path: Path,
+) -> None:
     picture = tmp_path / "way.png"
     with robot("--name", "KAT", "--world", "light", "--plot", picture) as running_robot:
         assert running_robot.port.startswith("socket://127.0.0.1:")
@@ -76,7 +78,7 @@ def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
         assert line.endswith(" FAULT LINK_LOST")
 
 
-def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_works_at_any_moment(monkeypatch: pytest.MonkeyPatch) -> None:
     """The firmware calls Python from C, where an exception is dropped."""
     dropped: list[object] = []
     monkeypatch.setattr(sys, "unraisablehook", dropped.append)
@@ -91,7 +93,7 @@ def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> Non
     assert len(dropped) == 1  # other hooks still run
 
 
-def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
+def test_a_second_computer_is_refused_because_the_port_is_in_use() -> None:
     """Unfinished text of one client is not part of the next client's."""
     with robot() as running_robot:
         with visitor(running_robot.port) as first:
@@ -107,7 +109,7 @@ def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
         run_in_process("upload", "--port", running_robot.port, "-e", "SI|F(0.1, 50)").gives(0, "")
 
 
-def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
+def test_the_memory_of_a_virtual_robot_may_be_a_file(tmp_path: Path) -> None:
     """The button starts it at the same millisecond, so with the same seed all is the same."""
     memory = tmp_path / "kept.bin"
     text = OBSTACLE.replace("SI|", "SB|")
@@ -139,7 +141,7 @@ def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "size"), [("tinibot", 1024), ("tinibot2", 1024), ("tinibot32", 16_640)]
 )
-def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Path) -> None:
+def test_each_robot_reads_its_own_memory_file(name: str, size: int, tmp_path: Path) -> None:
     """A robot refuses the memory of another kind."""
     memory = tmp_path / "kept.bin"
     options = ("--robot", name, "--memory", memory, "--for", "3", "--hurry", "max")
@@ -153,7 +155,7 @@ def test_each_robot_reads_what_it_has_written(name: str, size: int, tmp_path: Pa
         assert len(memory.read_bytes()) == wrong_size
 
 
-def test_a_pseudo_terminal_is_a_port_too() -> None:
+def test_a_pseudo_terminal_is_also_a_port() -> None:
     with robot("--pty") as running_robot:
         port = running_robot.line()
         assert port.startswith("/dev/")
@@ -161,7 +163,7 @@ def test_a_pseudo_terminal_is_a_port_too() -> None:
         assert running_robot.until("100 DONE")
 
 
-def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
+def test_a_stale_registration_is_not_trusted() -> None:
     running_robot = Robot()
     assert len(directory.running_robots()) == 1
     running_robot.kill()
@@ -174,7 +176,7 @@ def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
     assert run_in_process("stop", "--virtual").code == 3
 
 
-def test_of_several_robots_one_is_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_among_several_robots_one_must_be_named(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
     with robot() as first, robot("--world", "line") as second:
         result = tsc("doctor", "--identify", "--virtual").gives(3, second.port)
@@ -238,7 +240,7 @@ def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None
     assert directory.running_robots() == []
 
 
-def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
+def test_an_accelerated_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
     text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
     result = run_in_process("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
     assert result.code == 0  # text that a radio inserts is printed too
@@ -250,7 +252,7 @@ def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
 
 @pytest.mark.parametrize("start", ["SI", "SB"])
 @pytest.mark.parametrize(("text", "code"), [("SHOW(1)", 0), ("X = 0;SHOW(1 / X)", 1)])
-def test_the_exit_code_is_that_of_the_run_whatever_has_begun_it(
+def test_the_exit_code_is_that_of_the_run_however_it_was_started(
     start: str, text: str, code: int
 ) -> None:
     result = run_in_process("upload", "--virtual", "-e", f"{start}|{text}", "--hurry", "max").gives(
@@ -259,7 +261,7 @@ def test_the_exit_code_is_that_of_the_run_whatever_has_begun_it(
     assert "Saved." in result.out
 
 
-def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
+def test_upload_and_live_print_the_same_as_for_any_robot() -> None:
     result = run_in_process(
         "upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7"
     )
@@ -272,7 +274,7 @@ def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
     assert result.out.startswith("BATTERY 7.4\nDone.\nThe virtual robot drove 5 cm")
 
 
-def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path) -> None:
+def test_ctrl_c_stops_the_virtual_robot_and_draws_its_path_so_far(tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
     text = "SI|LOOP(FOREVER);F(0.1, 30);SHOW(1);END_LOOP"
     command = Command("upload", "--virtual", "-e", text, "--plot", str(picture))
@@ -325,7 +327,7 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         (["live", "S", "--port", "COM1", "--virtual"], "--virtual cannot be combined"),
     ],
 )
-def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], message: str) -> None:
+def test_wrong_options_are_reported(tsc: Tsc, arguments: list[str], message: str) -> None:
     tsc(*arguments).gives(2, message)
     spanish = tsc(*arguments, "--lang", "es").gives(2)
     assert message not in spanish.err or message.startswith("There")
@@ -345,7 +347,7 @@ def test_a_port_in_use_and_an_invalid_memory_are_refused(tsc: Tsc, tmp_path: Pat
     ("wasmtime", ["upload --virtual -e SI|S", "robot --for 1", "lesson check 1 -e SI|S"]),
     ("PIL", ["upload --virtual -e SI|S --plot way.png"]),
 ])  # fmt: skip
-def test_what_is_not_installed_is_said(name: str, commands: list[str]) -> None:
+def test_missing_packages_are_reported(name: str, commands: list[str]) -> None:
     code = (
         f"import sys; sys.modules[{name!r}] = None; from tiniscript.cli import main;"
         "sys.exit(str([main(each.split()) for each in sys.argv[1:]]))"

@@ -101,7 +101,7 @@ def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> No
     assert "The virtual robot drove 0 cm in 0.0 s" in "\n".join(terminal.lines())
 
 
-def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
+def test_after_ctrl_c_the_motors_are_also_off_in_the_picture() -> None:
     terminal = Terminal("upload", "-e", "SI|F(30, 80)", "--virtual", size=SIZE)
     terminal.until(r"left motor +80 %")
     terminal.interrupt()
@@ -112,7 +112,7 @@ def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
     assert "80 %" not in drawn_text
 
 
-def test_the_prompt_shows_what_a_person_shows_and_nothing_else() -> None:
+def test_the_prompt_shows_only_requested_values() -> None:
     terminal = Terminal("live", "--virtual", size=SIZE)
     terminal.until("tini>")
     terminal.type("X = 5; SHOW(7)\n")

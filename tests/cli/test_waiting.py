@@ -48,7 +48,7 @@ def silent_port(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
         yield end.port
 
 
-def test_whoever_waits_for_a_robot_is_told(
+def test_waiting_for_a_robot_is_reported(
     tsc: Tsc, silent_port: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A short wait prints nothing, and a program that reads the output sees nothing."""
@@ -62,7 +62,7 @@ def test_whoever_waits_for_a_robot_is_told(
     assert "Waiting" not in tsc("doctor", "--identify", "--port", silent_port).err
 
 
-def test_whoever_waits_for_a_board_is_told_until_it_is_written(
+def test_waiting_for_a_board_is_reported_until_it_is_written(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     watch_output(monkeypatch)
@@ -90,7 +90,7 @@ SILENT_VERBS = [
 
 
 @pytest.mark.parametrize("words", SILENT_VERBS, ids=lambda words: " ".join(words))
-def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
+def test_waiting_for_a_robot_silent_after_hello_is_reported_once(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str]
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
@@ -110,7 +110,7 @@ def test_a_robot_that_is_silent_after_hello_is_said_to_be_waited_for_once(
     assert result.err.count(f"Waiting for the robot on {pty_robot.port} …\n") == 1
 
 
-def test_a_stop_that_is_not_confirmed_is_waited_for_in_words(
+def test_waiting_for_an_unconfirmed_stop_is_reported(
     tsc: Tsc, silent_port: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     watch_output(monkeypatch)
@@ -159,7 +159,7 @@ def test_a_bar_is_not_full_before_all_is_done(
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_bar_writes_where_something_changes_and_leaves_nothing(
+def test_a_bar_writes_only_changes_and_leaves_nothing(
     seed: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds for any amount, also for none, and however often it is drawn and ended."""
@@ -187,7 +187,7 @@ def test_a_bar_writes_where_something_changes_and_leaves_nothing(
         line = wanted_text
 
 
-def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_received_bytes_may_come_from_a_late_robot(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is not reported as foreign or silent while it waits for its button."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     for late_ms in (990, 1300):  # silence of 3 s counts as a lost link
@@ -198,7 +198,7 @@ def test_what_is_heard_may_be_a_robot_that_answers_late(monkeypatch: pytest.Monk
             )
 
 
-def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
+def test_a_long_wait_is_reported_once_and_soon_enough(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """After HELLO and after the request: a wait continues from one to the other."""
@@ -228,7 +228,7 @@ def test_a_wait_that_goes_on_is_said_once_and_soon_enough(
     assert result.err.count("Waiting for the robot") == 1
 
 
-def test_nothing_is_said_of_a_wait_that_is_over(
+def test_a_finished_wait_is_not_reported(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Even where the moment is over at the same time."""
@@ -261,7 +261,7 @@ def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.Monk
     assert events == ["thread", "wait"] * 2
 
 
-def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(
+def test_a_long_live_line_and_its_warnings_are_reported_once(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     outputs = {}
@@ -277,7 +277,7 @@ def test_a_live_line_that_runs_for_long_says_so_and_its_warnings_once(
 
 
 @pytest.mark.parametrize("moment", ["handle_signals", "say_aside"])
-def test_the_end_of_a_studio_says_what_it_waits_for(
+def test_the_studio_reports_what_its_shutdown_waits_for(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, moment: str
 ) -> None:
     """Whenever that is, before its server has begun too."""

@@ -100,11 +100,11 @@ def instructions(text: str) -> list[str]:
         ("IF(DISTANCE < 9); S; ENDIF", ["PUSH_READ_2", "IF8_LT 9 -> 0005", "STOP"]),
     ],
 )  # fmt: skip
-def test_the_shortest_instruction(text: str, expected: list[str]) -> None:
+def test_the_shortest_instruction_is_chosen(text: str, expected: list[str]) -> None:
     assert instructions(text) == expected
 
 
-def test_a_reading_before_a_label_stays_where_it_is() -> None:
+def test_a_reading_before_a_label_is_not_moved() -> None:
     """A jump that comes to the SHOW has not passed the READ: it shows the kept reading."""
     text = "X = TRUE; DISTANCE; IF(X); DISTANCE; ENDIF; SHOW(DISTANCE)"
     assert instructions(text)[-4:] == ["IF -> 0007", "READ_2", "PUSH_SENSOR_2", "SHOW"]
@@ -114,7 +114,7 @@ def test_a_reading_before_a_label_stays_where_it_is() -> None:
 
 
 @pytest.mark.parametrize(
-    ("right", "has_jump"),
+    ("right_operand", "has_jump"),
     [
         ("Y > 2", False),
         ("Y > 2 AND Y < 5", True),  # eight terms with its AND_LEFT: a jump costs less
@@ -127,11 +127,13 @@ def test_a_reading_before_a_label_stays_where_it_is() -> None:
         ("TIME > 2", True),
     ],
 )
-def test_the_right_side_of_an_and_is_skipped_where_it_matters(right: str, has_jump: bool) -> None:
-    text = f"X = TRUE; Y = 1; Z = 2; SHOW(X AND ({right})); SHOW(Y + Z)"
+def test_the_right_operand_of_and_is_skipped_if_it_matters(
+    right_operand: str, has_jump: bool
+) -> None:
+    text = f"X = TRUE; Y = 1; Z = 2; SHOW(X AND ({right_operand})); SHOW(Y + Z)"
     rows = instructions(text)
     assert any(line.startswith("AND_THEN") for line in rows) == has_jump
-    assert ("AND" in rows) != has_jump or right.count("AND") == 1
+    assert ("AND" in rows) != has_jump or right_operand.count("AND") == 1
 
 
 # -- relaxing branches ----------------------------------------------------------------------------
@@ -155,15 +157,15 @@ JUMPS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "most", "name"), JUMPS)
-def test_a_jump_is_short_as_long_as_it_reaches(text: str, most: int, name: str) -> None:
+@pytest.mark.parametrize(("text", "most_count", "name"), JUMPS)
+def test_a_jump_is_short_as_long_as_it_reaches(text: str, most_count: int, name: str) -> None:
     def jump(count: int) -> str:
         rows = instructions(text.format("S;" * count))
         return next(word for word in (line.split()[0] for line in rows)
                     if word in (name, name + "_FAR"))  # fmt: skip
 
-    assert jump(most) == name
-    assert jump(most + 1) == name + "_FAR"
+    assert jump(most_count) == name
+    assert jump(most_count + 1) == name + "_FAR"
 
 
 @pytest.mark.parametrize("count", [0, 249, 250, 252, 253, 254, 255, 256, 300, 700])
@@ -183,7 +185,7 @@ def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> N
 
 
 @pytest.mark.parametrize(
-    ("condition", "short", "far"),
+    ("condition", "short_name", "far_rows"),
     [
         ("X = 5", "IF_VAR8_EQ", ["PUSH_VAR_0", "PUSH_NUM_5", "EQ", "IF_FAR"]),
         ("X <> 300", "IF_VAR16_NE", ["PUSH_VAR_0", "PUSH16 300", "NE", "IF_FAR"]),
@@ -191,20 +193,27 @@ def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> N
         ("LIGHT_R >= 300", "IF16_GE", ["PUSH_SENSOR_0", "PUSH16 300", "GE", "IF_FAR"]),
     ],
 )
-def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: list[str]) -> None:
+def test_a_comparing_branch_has_no_far_form(
+    condition: str, short_name: str, far_rows: list[str]
+) -> None:
     """If its target is too far, it becomes the longer form, with the same reading."""
     text = f"X = 3; LIGHT_R; LIGHT_L; IF({condition}); {{}} ENDIF; SHOW(X)"
-    near = instructions(text.format("S;" * 255))
-    assert [line for line in near if line.startswith(short)]
+    near_rows = instructions(text.format("S;" * 255))
+    assert [line for line in near_rows if line.startswith(short_name)]
     code = compile_right_text(text.format("S;" * 256)).code
     row_texts = [row.text for row in rows(code)]
-    at = next(k for k, line in enumerate(row_texts) if line.startswith("IF_FAR"))
-    assert [row_texts[at].split()[0], *row_texts[at - 3 : at]] == [far[3], *far[:3]]
-    assert row_texts[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # at the PUSH_VAR_0 of SHOW(X)
-    assert row_texts.count("READ_0") == near.count("READ_0")
+    far_index = next(k for k, line in enumerate(row_texts) if line.startswith("IF_FAR"))
+    assert [row_texts[far_index].split()[0], *row_texts[far_index - 3 : far_index]] == [
+        far_rows[3],
+        *far_rows[:3],
+    ]
+    assert row_texts[far_index].endswith(
+        f"-> {rows(code)[-2].offset:04x}"
+    )  # at the PUSH_VAR_0 of SHOW(X)
+    assert row_texts.count("READ_0") == near_rows.count("READ_0")
 
 
-def test_one_jump_that_gets_longer_makes_others_longer() -> None:
+def test_lengthening_one_jump_lengthens_others() -> None:
     """The outermost of nested IFs gets its far form first, which moves the others."""
     opened_text, closed_text = "IF(X);" * 8, "ENDIF;" * 8
     border = 255 - 7 * 3  # seven IFs with their PUSH_VAR lie in the outermost one, 3 bytes each
@@ -212,15 +221,17 @@ def test_one_jump_that_gets_longer_makes_others_longer() -> None:
         rows = instructions(f"X = TRUE; {opened_text} {'S;' * count} {closed_text}")
         bytes_of = {"IF": 3, "IF_FAR": 4}
         sizes = [bytes_of[line.split()[0]] for line in rows if line.startswith("IF")]
-        over = [count + sum(sizes[k + 1 :]) for k in range(8)]  # bytes that each IF jumps over
-        assert [size == 4 for size in sizes] == [skipped > 255 for skipped in over]
+        skipped_bytes = [
+            count + sum(sizes[k + 1 :]) for k in range(8)
+        ]  # bytes that each IF jumps over
+        assert [size == 4 for size in sizes] == [skipped > 255 for skipped in skipped_bytes]
 
 
-def test_code_that_no_machine_takes_is_refused_and_not_laid_out_for_ever() -> None:
-    most = compile_text("S;" * CODE_BYTES, KIT)
-    assert most.is_right and len(most.code) == CODE_BYTES
-    over = compile_text("S;" * (CODE_BYTES + 1), KIT)
-    assert [diagnostic.code.number for diagnostic in over.diagnostics] == ["TS306"]
-    assert over.diagnostics[0].values["over"] == "1"
+def test_code_beyond_every_machine_is_refused_without_endless_layout() -> None:
+    longest_count = compile_text("S;" * CODE_BYTES, KIT)
+    assert longest_count.is_right and len(longest_count.code) == CODE_BYTES
+    overlong = compile_text("S;" * (CODE_BYTES + 1), KIT)
+    assert [diagnostic.code.number for diagnostic in overlong.diagnostics] == ["TS306"]
+    assert overlong.diagnostics[0].values["over"] == "1"
     nested_text = "X = TRUE;" + "IF(X);" + "S;" * 3 * CODE_BYTES + "ENDIF"
     assert not compile_text(nested_text, KIT).is_right

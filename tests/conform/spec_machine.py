@@ -37,10 +37,10 @@ class Spec:
         if needs and not self.refuses_only:
             refusal = "UNKNOWN_NEEDS"
         code = data[data[5] :] if not refusal else b""
-        rule, at = verifier.verdict(code, len(sensors), len(actuators), needs, self.verifier)
+        rule, offset = verifier.verdict(code, len(sensors), len(actuators), needs, self.verifier)
         if rule:
             names = {number: name for name, number in rule_numbers().items()}
-            refusal = f"{names[rule]} {at}"
+            refusal = f"{names[rule]} {offset}"
         hashes = {"sensor": list(map(_hash, sensors, ["sensor"] * 32)),
                   "actuator": list(map(_hash, actuators, ["actuator"] * 32))}  # fmt: skip
         if not refusal and _devices(code, hashes) != int.from_bytes(data[6:8], "little"):
@@ -57,10 +57,12 @@ class Spec:
         def late(waited_ms: int, reached: int) -> int:
             return -reached % every[min(waited_ms, len(every)) - 1]
 
-        slow = {int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])}
+        delays_by_sensor = {
+            int(k): tuple(map(int, times)) for k, *times in rows_by_word.get("slow", [])
+        }
 
         def is_slow(sensor: int, passed_ms: int) -> bool:
-            period_ms, from_ms, to_ms = slow.get(sensor, (1, 0, 0))
+            period_ms, from_ms, to_ms = delays_by_sensor.get(sensor, (1, 0, 0))
             return from_ms <= passed_ms % period_ms < to_ms
 
         limits = numbers["until"], numbers["seed"], 10**6
@@ -79,14 +81,14 @@ def _hash(row: list[str], word: str) -> int:
 
 def _devices(code: bytes, hashes: dict[str, list[int]]) -> int:
     """Return the hash of those that the code uses."""
-    total = at = 0
-    while at < len(code):
-        row = instruction_at(code, at)
-        used = [(operand.kind, value) for operand, value in row.read(code, at)]
-        for kind, value in (*used, *row.implied):
+    total = position = 0
+    while position < len(code):
+        row = instruction_at(code, position)
+        used_devices = [(operand.kind, value) for operand, value in row.read(code, position)]
+        for kind, value in (*used_devices, *row.implied):
             if kind in hashes:
                 total = total << 1 & 0xFFFF ^ 0x2D * (total >> 15) ^ hashes[kind][value]
-        at += row.size
+        position += row.size
     return total
 
 

@@ -66,8 +66,8 @@ CPP: dict[str, tuple[Callable[[Run], str], str, int]] = {  # one of so many runs
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "here"))
-        for name, (_, why, _) in CPP.items()
+        pytest.param(name, marks=pytest.mark.skipif(bool(reason), reason=reason or "here"))
+        for name, (_, reason, _) in CPP.items()
     ],
 )
 def test_a_machine_in_cpp_agrees(name: str) -> None:
@@ -99,7 +99,7 @@ def is_for(name: str, run: Run, answer: list[str]) -> bool:
 UNREAD = "text: The dashes and spaces that phones insert are accepted"
 
 
-def test_the_oracles_say_the_same() -> None:
+def test_the_oracles_agree() -> None:
     """The interpreter has the language reference alone. Code without text and tasks is judged by
     the machine written from the specification alone, and all refused code by its verifier."""
     spec = Spec()

@@ -19,18 +19,18 @@ def runs_by_name() -> dict[str, Run]:
 
 
 @pytest.mark.parametrize("fault", [pytest.param(fault, id=fault.says) for fault in faults()])
-def test_the_case_notices_the_fault(fault: Fault) -> None:
+def test_each_fault_fails_its_case(fault: Fault) -> None:
     run = runs_by_name()[fault.noticed_by]
-    right = answer_of(run)
-    assert right is not None
+    right_answer = answer_of(run)
+    assert right_answer is not None
     with machine_with(fault) as module:
         parts = {name: module[name] for name in ("load_image", "machine_of") if name in module}
         try:
             answer = answer_of(run, **parts)
         except (LookupError, AssertionError):  # the machine has crashed
             answer = []
-    assert answer != right
-    assert answer_of(run) == right, "a fault stays behind"
+    assert answer != right_answer
+    assert answer_of(run) == right_answer, "a fault stays behind"
 
 
 def test_each_fault_is_different() -> None:

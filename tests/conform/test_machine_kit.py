@@ -72,8 +72,8 @@ def test_a_sensor_that_is_late_has_a_line_after_the_readings() -> None:
     (rows,) = runs(case.request().splitlines(keepends=True))
     assert rows[-7:-5] == ["readings 0 5000", "slow 0 100 0 32"]
     assert Spec().answer(rows) == ["33 READ LIGHT_R 5", "33 SHOW 5.033", "33 DONE"]
-    late = case._replace(until_ms=31)
-    (rows,) = runs(late.request().splitlines(keepends=True))
+    late_case = case._replace(until_ms=31)
+    (rows,) = runs(late_case.request().splitlines(keepends=True))
     assert Spec().answer(rows) == ["31 LIMIT"]
 
 
@@ -84,18 +84,18 @@ def machine(tmp_path: Path, source: str) -> str:
     return shlex.join([sys.executable, str(path)])
 
 
-def conform(tsc: Tsc, command: str, *more: str) -> CommandResult:
-    return tsc("doctor", "--conform", "--machine", command, *more)
+def conform(tsc: Tsc, command: str, *options: str) -> CommandResult:
+    return tsc("doctor", "--conform", "--machine", command, *options)
 
 
-def find_differences(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
+def find_differences(tsc: Tsc, command: str, *options: str) -> list[dict[str, object]]:
     """Return the differences."""
-    result = conform(tsc, command, "--json", *more).gives(1)
+    result = conform(tsc, command, "--json", *options).gives(1)
     rows: list[dict[str, object]] = json.loads(result.out)["found"]
     return rows
 
 
-def test_the_machine_from_the_specification_passes_all(
+def test_the_machine_from_the_specification_passes_all_cases(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
@@ -115,16 +115,16 @@ def test_the_machine_from_the_specification_passes_all(
 
 
 @pytest.mark.parametrize("refusal", ["UNKNOWN_NEEDS", "OTHER_VERSION"])
-def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_some(refusal: str) -> None:
+def test_a_machine_lacks_tasks_only_if_it_refuses_the_first_image_with_tasks(refusal: str) -> None:
     cases = [case for case in machine_cases() if case.needs][:4]
     answers = iter([f"REFUSED {refusal}"])
     judged = list(verdicts(cases, lambda request, most: [next(answers)]))
     assert [verdict.what for verdict in judged] == [LACKS] * 4
-    last = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
-    judged = list(verdicts(cases, lambda request, most: next(last)))
+    answers_with_late_refusal = iter([*(case.answer for case in cases[:3]), [f"REFUSED {refusal}"]])
+    judged = list(verdicts(cases, lambda request, most: next(answers_with_late_refusal)))
     assert [verdict.what for verdict in judged] == [AGREES] * 3 + [DIFFERS]
-    other = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
-    judged = list(verdicts(cases, lambda request, most: next(other)))
+    answers_with_other_refusal = iter([["REFUSED DAMAGED"], *(case.answer for case in cases[1:])])
+    judged = list(verdicts(cases, lambda request, most: next(answers_with_other_refusal)))
     assert [verdict.what for verdict in judged] == [DIFFERS] + [AGREES] * 3
 
 
@@ -176,31 +176,33 @@ BREAKAGES = [
 ]  # fmt: skip
 
 
-def patch_oracle(name: str, old: str, becomes: str) -> ModuleType:
+def patch_oracle(name: str, old_code: str, new_code: str) -> ModuleType:
     """Return a module of `tests/oracle` that is changed in one place."""
     module = ModuleType(f"tests.oracle.{name}")
     path = ROOT / "tests" / "oracle" / f"{name}.py"
     source, module.__file__ = path.read_text(encoding="utf-8"), str(path)
-    assert old in source
-    exec(compile(source.replace(old, becomes), name, "exec"), vars(module))
+    assert old_code in source
+    exec(compile(source.replace(old_code, new_code), name, "exec"), vars(module))
     return module
 
 
 @pytest.mark.parametrize(
-    ("file", "old", "new", "named_text"), BREAKAGES, ids=[b[1] for b in BREAKAGES]
+    ("file", "old_code", "new_code", "named_text"), BREAKAGES, ids=[b[1] for b in BREAKAGES]
 )
-def test_a_broken_machine_is_told(file: str, old: str, new: str, named_text: str) -> None:
+def test_a_broken_machine_is_reported(
+    file: str, old_code: str, new_code: str, named_text: str
+) -> None:
     spec = Spec()
     if file == "verifier":
-        assert old in verifier.text()
-        spec.verifier = verifier.text().replace(old, new)
+        assert old_code in verifier.text()
+        spec.verifier = verifier.text().replace(old_code, new_code)
     elif file == "image":
-        spec.image = patch_oracle(file, old, new)
+        spec.image = patch_oracle(file, old_code, new_code)
     elif file == "machine":
-        spec.machine = patch_oracle(file, old, new)
+        spec.machine = patch_oracle(file, old_code, new_code)
     else:
         spec.machine = patch_oracle("machine", "", "")
-        spec.machine.__dict__.update(vars(patch_oracle(file, old, new)))
+        spec.machine.__dict__.update(vars(patch_oracle(file, old_code, new_code)))
     cases = [case for case in machine_cases() if named_text in case.name and not case.needs]
 
     def answer_request(request: str, most: int) -> list[str]:
@@ -245,7 +247,7 @@ def kit_of(case: MachineCase) -> Kit:
     return Kit(sensors, actuators, speeds["speed"], speeds["turn"])
 
 
-def test_names_are_unique_and_each_refusal_is_there() -> None:
+def test_names_are_unique_and_each_refusal_has_a_case() -> None:
     from tiniscript.bytecode.image import REFUSALS
     from tiniscript.bytecode.verify import RULES
 
@@ -260,7 +262,7 @@ def test_names_are_unique_and_each_refusal_is_there() -> None:
 ONE_SHOT = "list(iter(sys.stdin.readline, 'run\\n'))\nprint('0 DONE', flush=True)"
 
 
-def test_a_machine_that_ends_after_each_answer_is_started_again(tsc: Tsc, tmp_path: Path) -> None:
+def test_a_machine_that_ends_after_each_answer_is_restarted(tsc: Tsc, tmp_path: Path) -> None:
     rows = find_differences(tsc, machine(tmp_path, ONE_SHOT), "--only", "images: ")
     assert rows
     assert {row["what"] for row in rows} == {"differs"}
@@ -276,19 +278,19 @@ HOSTILE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("what", HOSTILE)
-def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None:
-    source, message, tried = HOSTILE[what]
+@pytest.mark.parametrize("behaviour", HOSTILE)
+def test_a_hostile_machine_is_named(behaviour: str, tsc: Tsc, tmp_path: Path) -> None:
+    source, message, tried = HOSTILE[behaviour]
     command = machine(tmp_path, source)
-    timeout_s = "1" if what == "hang" else "100"  # a busy computer starts Python in a second
+    timeout_s = "1" if behaviour == "hang" else "100"  # a busy computer starts Python in a second
     result = conform(tsc, command, "--timeout", timeout_s).gives(1, out=message)
     assert result.out.splitlines()[-1].startswith("0 of ")
     assert "too many got no response." in result.out
     rows = find_differences(tsc, command, "--timeout", timeout_s)
-    assert [row["what"] for row in rows] == [what] * tried
+    assert [row["what"] for row in rows] == [behaviour] * tried
 
 
-def test_a_slow_reader_takes_nothing_of_the_next_process(
+def test_a_slow_reader_reads_nothing_of_the_next_process(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A number of a file that is closed is the next pipe's."""
@@ -319,21 +321,19 @@ def test_a_machine_that_has_ended_is_not_waited_for(
     assert next(looks) == 1, "only when it began to wait"
 
 
-def test_of_a_machine_that_crashed_without_a_word_the_exit_code_is_told(
-    tsc: Tsc, tmp_path: Path
-) -> None:
+def test_a_silent_crash_is_reported_with_its_exit_code(tsc: Tsc, tmp_path: Path) -> None:
     result = conform(tsc, machine(tmp_path, "sys.exit(3)"), "--only", "images: no code")
     assert re.search(r"exit code 3\b(?!:)", result.out)
 
 
-def test_half_an_answer_is_that_of_a_machine_that_crashed(tsc: Tsc, tmp_path: Path) -> None:
+def test_half_an_answer_is_reported_as_a_crash(tsc: Tsc, tmp_path: Path) -> None:
     source = "sys.stdin.readline()\nos.write(1, b'0 SHOW 1\\n')\nsys.exit('half')"
     conform(tsc, machine(tmp_path, source), "--only", "images: no code", "--timeout", "100").gives(
         1, out=("exit code 1: half", "line 1: 0 SHOW 1")
     )
 
 
-def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path) -> None:
+def test_binary_output_is_shown_safely(tsc: Tsc, tmp_path: Path) -> None:
     source = "os.write(1, bytes(range(256)) + b'\\n\\x1b[2J 0 DONE')"
     result = conform(tsc, machine(tmp_path, source), "--only", "images: whole").gives(1)
     assert "\x1b" not in result.out
@@ -348,7 +348,7 @@ def test_a_machine_that_reads_nothing_does_no_harm(tsc: Tsc, tmp_path: Path) -> 
     assert "did not finish" in result.out
 
 
-def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
+def test_children_of_a_machine_end_with_it(tsc: Tsc, tmp_path: Path) -> None:
     note = tmp_path / "child"
     source = (
         "import subprocess\n"
@@ -364,13 +364,13 @@ def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", ["no_such_command", "", "'", "/"])
-def test_a_command_that_does_not_start(command: str, tsc: Tsc) -> None:
+def test_a_command_that_does_not_start_is_reported(command: str, tsc: Tsc) -> None:
     result = conform(tsc, command).gives(2)
     assert "does not start" in result.err and "Errno" not in result.err
     assert "no arranca" in conform(tsc, command, "--lang", "es").err
 
 
-def test_without_its_file_the_command_that_makes_it_is_named(
+def test_a_missing_case_file_names_the_command_that_makes_it(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(kit_files, "FOLDER", tmp_path)
@@ -395,7 +395,7 @@ sys.exit(conformance.main(sys.argv[1:]))
 """
 
 
-def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
+def test_cases_are_reproducible_without_test_packages(
     tmp_path: Path,
 ) -> None:
     """A release makes them in two clones, with sets in another order in each."""
@@ -407,7 +407,7 @@ def test_cases_are_made_without_the_tools_of_tests_and_are_the_same(
         assert (tmp_path / name).read_bytes() == (conformance.FOLDER / name).read_bytes()
 
 
-def test_wrong_use(tsc: Tsc) -> None:
+def test_wrong_use_is_refused(tsc: Tsc) -> None:
     assert "--port" in tsc("doctor", "--conform").err
     assert tsc("doctor", "--conform").code == 2
     assert tsc("doctor", "--conform", "--machine", "x", "--only", "no such case").code == 2
@@ -421,13 +421,13 @@ def fences() -> Sequence[str]:
     return re.findall(r"^```\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
 
 
-def test_the_page_shows_a_run_as_it_is_asked_for_and_answered() -> None:
+def test_the_page_shows_a_real_request_and_its_answer() -> None:
     case = next(case for case in machine_cases() if case.name == "bytecode_spec: Instructions")
     assert case.request() in fences()
     assert "".join(f"{row}\n" for row in case.answer) in fences()
 
 
-def test_the_page_says_how_many(tsc: Tsc) -> None:
+def test_the_page_states_the_number_of_cases(tsc: Tsc) -> None:
     """About: a new case or two leave the page as true as it was."""
     count = len(machine_cases())
     needing = sum(bool(case.needs) for case in machine_cases())

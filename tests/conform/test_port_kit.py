@@ -60,7 +60,7 @@ def number_of(name: str) -> int:
     return BY_NAME[name].number
 
 
-def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
+def test_our_firmware_passes_all_checks(pty_robot: PtyRobot, tsc: Tsc) -> None:
     result = tsc("doctor", "--conform", "--port", pty_robot.port).gives(0)
     count = len(all_checks(link_test_suite()))
     assert count > 200
@@ -70,7 +70,7 @@ def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
 
 @pytest.mark.sampled("group")
 @pytest.mark.parametrize("group", ["link: ", "images: ", "stops: ", "programs: moves"])
-def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:
+def test_an_uno_passes_the_checks(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:
     with Uno(sketch, names=NAMES, eeprom=tmp_path / "eeprom", baud=BAUD, tells_sleep=False) as uno:
         uno.go()
         result = tsc("doctor", "--conform", "--port", uno.pty, "--only", group)
@@ -134,10 +134,10 @@ FRAME_CHANGES: dict[str, tuple[Change, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.sampled("what", keep=len(FRAME_CHANGES) // 4)
-@pytest.mark.parametrize("what", FRAME_CHANGES)
-def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
-    change, named_text = FRAME_CHANGES[what]
+@pytest.mark.sampled("change_name", keep=len(FRAME_CHANGES) // 4)
+@pytest.mark.parametrize("change_name", FRAME_CHANGES)
+def test_a_frame_changed_in_transit_is_named(change_name: str, pty_robot: PtyRobot) -> None:
+    change, named_text = FRAME_CHANGES[change_name]
     checks = [
         check for check in all_checks(link_test_suite()) if check.name.startswith(named_text)
     ][:3]
@@ -201,8 +201,9 @@ def flood(peer: socket.socket) -> None:
     ],
     ids=["closes", "closes later", "floods"],
 )
-def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], sentence: str, tsc: Tsc,
-                                   monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+def test_other_devices_on_the_port_are_reported(
+    serve: Callable[[socket.socket], None], sentence: str, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from tiniscript.cli.commands import doctor_conform
 
     monkeypatch.setattr(doctor_conform, "RADIO_TIMEOUT_MS", 50)
@@ -212,7 +213,7 @@ def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], sente
     assert sentence in result.err
 
 
-def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
+def test_a_pulled_cable_is_reported(pty_robot: PtyRobot, tsc: Tsc) -> None:
     pulled_timer = threading.Timer(3.0, pty_robot.pull)
     pulled_timer.start()
     result = tsc("doctor", "--conform", "--port", pty_robot.port)
@@ -221,13 +222,13 @@ def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
     assert "disappeared after" in result.err
 
 
-def test_a_port_that_is_not_there(tsc: Tsc) -> None:
+def test_a_missing_port_is_refused(tsc: Tsc) -> None:
     assert tsc("doctor", "--conform", "--port", "/dev/ttyNO").code == 3
     assert tsc("doctor", "--conform", "--port", " ").code == 2
 
 
-def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
-                                            monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+def test_an_owned_robot_is_not_checked(pty_robot: PtyRobot, tsc: Tsc,
+                                       monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
     from tiniscript.conformance import port_checks
     from tiniscript.conformance.wire_robot import Answer
     from tiniscript.link.messages import OWNED
@@ -236,7 +237,7 @@ def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
     tsc("doctor", "--conform", "--port", pty_robot.port).gives(3, "tsc set owner --give-up")
 
 
-def test_wrong_use_of_a_port(tsc: Tsc) -> None:
+def test_wrong_use_of_a_port_is_refused(tsc: Tsc) -> None:
     assert tsc("doctor", "--conform", "--port", "P", "--machine", "x").code == 2
     assert tsc("doctor", "--conform", "--port", "P", "--timeout", "3").code == 2
     assert tsc("doctor", "--conform", "--port", "P", "--only", "no such check").code == 2

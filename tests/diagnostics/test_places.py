@@ -52,7 +52,7 @@ def picture(text: str, start: int, end: int) -> list[str]:
         ("ab", 5, 9, (1, 2, 1, 3)),  # outside
     ],
 )
-def test_lines_and_columns(
+def test_a_place_has_its_line_and_column(
     text: str, start: int, end: int, place: tuple[int, int, int, int]
 ) -> None:
     assert message_at(text, start, end)[2:6] == place
@@ -68,7 +68,7 @@ def test_a_tab_is_four_columns() -> None:
     assert picture("F\t)", 1, 2) == ["line 1:  F    )", "          ^^^^"]
 
 
-def test_wide_characters_are_two_columns_and_marks_none() -> None:
+def test_wide_characters_take_two_columns_and_combining_marks_none() -> None:
     assert picture("机器人)", 3, 4) == ["line 1:  机器人)", "               ^"]
     assert picture("机器人)", 1, 2) == ["line 1:  机器人)", "           ^^"]
     assert picture("🤖)", 1, 2) == ["line 1:  🤖)", "           ^"]
@@ -76,7 +76,7 @@ def test_wide_characters_are_two_columns_and_marks_none() -> None:
     assert picture("\u3000)", 1, 2) == ["line 1:    )", "           ^"]
 
 
-def test_characters_that_cannot_be_seen_are_replaced() -> None:
+def test_invisible_characters_are_replaced() -> None:
     assert picture("\x00\x1b[31m\x7f\u202e\udc80)", 9, 10) == [
         "line 1:  ␀␛[31m␡\ufffd\ufffd)",
         "                  ^",
@@ -93,7 +93,7 @@ def test_a_place_at_a_line_end_is_marked_after_the_line() -> None:
     assert picture("\n\n", 0, 1) == ["line 1:", "         ^"]
 
 
-def test_of_a_long_line_a_window_is_shown() -> None:
+def test_a_long_line_is_shown_in_part() -> None:
     text = "F(1, 50);" * 1000
     line, carets = picture(text, 4500, 4508)
     assert line == "line 1:  …" + text[4460:4560] + "…"
@@ -159,7 +159,7 @@ def check_messages(compilation: Compilation) -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(20))
-def test_any_text_is_told_well(seed: int) -> None:
+def test_any_text_gets_well_formed_messages(seed: int) -> None:
     dice = random.Random(seed)
     for _ in range(50):
         check_messages(check_text(some_text(dice), KIT))
@@ -177,11 +177,11 @@ def test_each_kind_of_line_end_ends_a_line(text: str) -> None:
     assert check_text(text.replace("\n", "\r"), KIT).diagnostics == compilation.diagnostics
 
 
-def test_letters_of_no_name_where_a_number_goes_are_told_well() -> None:
+def test_foreign_letters_in_place_of_a_number_get_well_formed_messages() -> None:
     check_messages(check_text("X=é", KIT))
 
 
-def test_marks_without_end_are_shown_in_a_window() -> None:
+def test_endless_combining_marks_are_shown_in_part() -> None:
     rows = picture("e" + "\u0301" * 100_000 + ")", 100_001, 100_002)
     assert len(rows[0]) < 250
     rows = picture("(" * 500_000, 250_000, 250_001)

@@ -67,7 +67,7 @@ def first_message(text: str, lang: str = "en") -> tuple[Message, Source]:
 # -- the table ------------------------------------------------------------------------------------
 
 
-def test_each_code_has_its_words_and_no_words_lack_a_code() -> None:
+def test_codes_and_texts_correspond() -> None:
     for texts in TEXTS.values():
         assert {key.partition("/")[0] for key in texts} == {"label", "term", *CODES}
     assert set(EXAMPLES) == set(CODES) - set(WITHOUT_EXAMPLE)
@@ -126,7 +126,7 @@ def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> Non
         assert "{" not in full_message.message + full_message.fix
 
 
-def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
+def test_a_program_too_long_for_any_robot_is_reported_with_its_excess() -> None:
     message, source = first_message("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
     assert message.code == "TS306"
     assert re.search(r"\d+ bytes too long: a robot holds at most 32767$", message.message)
@@ -137,7 +137,7 @@ def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
 # -- gaps -----------------------------------------------------------------------------------------
 
 
-def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
+def test_a_text_with_an_empty_gap_is_replaced_by_the_next() -> None:
     known_diagnostic = Diagnostic(codes.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
     unknown = known_diagnostic._replace(values={"found": "Y", "near": ""})
     source = Source("Y")
@@ -146,14 +146,14 @@ def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
     assert message(unknown, source, "en").fix.startswith("Which number is Y?")
 
 
-def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
+def test_braces_ats_and_line_ends_in_a_program_have_no_effect() -> None:
     for text in ("{fix}", "{0.__class__}", "{", "}", "%s", "@", "@number?", "a\nb\tc", "\x07"):
         values = {"by": "W", "found": text}
         full_message = message(
             Diagnostic(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en"
         )
-        plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
-        assert full_message.fix == f"Write a number instead of {plain}"
+        plain_text = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
+        assert full_message.fix == f"Write a number instead of {plain_text}"
 
 
 def test_terms_and_units_are_translated() -> None:
@@ -185,7 +185,7 @@ def test_colors_change_nothing_but_colors() -> None:
         assert re.sub(r"\033\[[0-9;]*m", "", colored_text) == as_text(message, source, "en")
 
 
-def test_as_json() -> None:
+def test_messages_are_available_as_json() -> None:
     compilation = check_text("F()\nX = 0.0001\nSHOW(X)", KIT)
     messages = [
         message(diagnostic, compilation.source, "en") for diagnostic in compilation.diagnostics
@@ -229,7 +229,7 @@ def test_each_code_is_explained(code: str, lang: str) -> None:
             assert row in text
 
 
-def test_an_explanation_whole() -> None:
+def test_an_explanation_is_complete() -> None:
     assert explain("012", "es") == (
         "TS012 (error): Un decimal con coma\n"
         "\n"
@@ -247,9 +247,9 @@ def test_an_explanation_whole() -> None:
 
 
 def test_a_code_is_found_however_it_is_written() -> None:
-    whole = explain("TS017", "en")
-    assert whole is not None
-    assert explain("ts017", "en") == explain(" 017 ", "en") == whole
+    full_text = explain("TS017", "en")
+    assert full_text is not None
+    assert explain("ts017", "en") == explain(" 017 ", "en") == full_text
     for code in ("TS999", "", "TS", "terms", "labels", "TSTS017", "٢٠٥", "hello"):
         assert explain(code, "en") is None
 

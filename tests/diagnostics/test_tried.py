@@ -28,7 +28,9 @@ def messages_of(program: str, language: str = "en") -> list[Message]:
 @each_row("language", LANGUAGES)
 @each_row("word", "FBLR")
 @each_row("number", (1, 2, 19, 20, 30, 45, 60, 90, 100, 101, 180, 360))
-def test_what_one_value_may_be_is_shown_whole(language: str, word: str, number: int) -> None:
+def test_alternatives_for_one_value_are_shown_in_full(
+    language: str, word: str, number: int
+) -> None:
     """The message shows power, centimetres or degrees, and no gap between the brackets."""
     (message,) = messages_of(f"{word}({number})", language)
     calls = re.findall(r"\b[FBLR]\([^()]*\d[^()]*\)", message.fix)
@@ -64,7 +66,7 @@ def test_a_word_is_read_with_its_brackets_and_in_its_place(program: str, wanted_
         ("// robot: grabber\nLED = LOW", "LED(FALSE)"),
     ],
 )
-def test_what_a_pin_is_said_to_be_is_a_yes_or_no(program: str, fix: str) -> None:
+def test_a_pin_set_high_or_low_becomes_a_yes_no(program: str, fix: str) -> None:
     assert [message.fix for message in messages_of(program)] == [fix]
 
 
@@ -114,7 +116,7 @@ def test_words_of_another_kit_are_one_mistake(program: str, words: list[tuple[st
         ("F(RANDOM(1,3) ms, 50)", ["Write the result as one number, without a unit."]),
     ],
 )  # fmt: skip
-def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> None:
+def test_suggested_programs_keep_the_written_meaning(program: str, fixes: list[str]) -> None:
     """A robot at rest stays at rest, and one condition is reported once."""
     assert [message.fix for message in messages_of(program)] == fixes
 
@@ -129,14 +131,14 @@ def test_what_is_tried_does_what_was_written(program: str, fixes: list[str]) -> 
         ("WHENEVER DISTANCE < 9\nB(1, 60)\nEND", "WHEN(DISTANCE < 9)\nB(1, 60)\nEND_WHEN"),
     ],
 )
-def test_what_is_done_beside_is_a_task(program: str, wanted_text: str) -> None:
+def test_parallel_work_becomes_a_task(program: str, wanted_text: str) -> None:
     repaired_program = repair_program(
         program, lambda to: list(compile_source(to.encode(), TINIBOT, "", True).diagnostics)
     )
     assert (repaired_program.text, repaired_program.diagnostics_left) == (wanted_text, [])
 
 
-def test_what_spanish_pupils_say_for_when_is_shown() -> None:
+def test_spanish_phrases_for_when_are_suggested() -> None:
     """SIEMPRE QUE may also mean WHILE: the repair is shown, but not applied."""
     (message,) = messages_of("SIEMPRE QUE DISTANCE < 9\nB(1, 60)\nFIN", "es")
     assert message.fix == "WHEN(DISTANCE < 9); B(1, 60); END_WHEN"
@@ -167,7 +169,7 @@ def test_an_unknown_word_is_one_mistake(program: str, lines: list[int]) -> None:
         ("import robot\nF(2, 80)", "F(2, 80)"),
     ],
 )  # fmt: skip
-def test_what_is_taken_out_leaves_no_line_and_no_blank(program: str, repaired_text: str) -> None:
+def test_a_removed_part_leaves_no_line_and_no_blank(program: str, repaired_text: str) -> None:
     assert (
         repair_program(program, lambda to: check_text(to, TINIBOT.kit).diagnostics).text
         == repaired_text

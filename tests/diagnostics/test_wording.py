@@ -36,13 +36,13 @@ def test_no_number_is_called_a_word(text: str, lang: str) -> None:
      "SI|{};F(1, 60);END_LOOP"],
 )  # fmt: skip
 @pytest.mark.parametrize("word", ["void loop()", *ENDLESS])
-def test_what_begins_a_block_is_never_called_forever_alone(word: str, template: str) -> None:
+def test_the_start_of_a_block_is_never_called_just_forever(word: str, template: str) -> None:
     for diagnostic in check(template.format(word)):
         if "LOOP(FOREVER)" in str(diagnostic.values):
             assert diagnostic.values.get("right") != "FOREVER"
 
 
-def test_forever_is_called_so_where_it_is_a_time() -> None:
+def test_forever_is_suggested_as_a_time() -> None:
     (message,) = messages_of("SI|W(SIEMPRE) UNTIL(DISTANCE < 9)", "en")
     assert message.message == "In TiniScript, SIEMPRE is FOREVER"
     (message,) = messages_of("void loop() {\n  F(1, 60);\n}", "es")
@@ -50,8 +50,8 @@ def test_forever_is_called_so_where_it_is_a_time() -> None:
 
 
 @pytest.mark.parametrize("lang", LANGUAGES)
-@pytest.mark.parametrize("last", ["F(1, 60)", "LOOP(2);S;END_LOOP", "IF(KEY_A)\nS\nENDIF"])
-def test_the_end_of_a_block_is_on_a_line_of_its_own(last: str, lang: str) -> None:
-    text = f"SI|IF(DISTANCE < 9)\n{last}"
+@pytest.mark.parametrize("last_line", ["F(1, 60)", "LOOP(2);S;END_LOOP", "IF(KEY_A)\nS\nENDIF"])
+def test_the_end_of_a_block_is_on_a_line_of_its_own(last_line: str, lang: str) -> None:
+    text = f"SI|IF(DISTANCE < 9)\n{last_line}"
     message = messages_of(text, lang)[-1]
     assert message.code == "TS024" and "ENDIF" in message.fix and ": ENDIF" not in message.fix

@@ -66,7 +66,9 @@ class DamagedFirmware(Firmware):
 @pytest.mark.sampled("seed", keep=7)
 @pytest.mark.parametrize("seed", range(15))
 @pytest.mark.parametrize("kind", [RandomEnd, DamagedFirmware])
-def test_anything_at_the_other_end(kind: type[RandomEnd | DamagedFirmware], seed: int) -> None:
+def test_any_device_at_the_other_end_is_diagnosed(
+    kind: type[RandomEnd | DamagedFirmware], seed: int
+) -> None:
     for is_radio in (False, True):
         wire = SimulatedWire(kind(seed))
         findings = diagnose_line(
@@ -79,7 +81,7 @@ def test_anything_at_the_other_end(kind: type[RandomEnd | DamagedFirmware], seed
 
 @pytest.mark.parametrize("platform", ["linux", "darwin", "win32"])
 @pytest.mark.parametrize("seed", range(10))
-def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int) -> None:
+def test_any_output_of_system_tools_is_handled(tmp_path: Path, platform: str, seed: int) -> None:
     rng = random.Random(seed)
     parts = ('{"SPUSBDataType": [', "{}", "]}", "null", "[[", '"_items": 7', "Device", " ", ":",
              "\n", "USB\\VID_1A86&PID_7523", "BTHENUM\\DEV_000000000000", "\0", "é")  # fmt: skip

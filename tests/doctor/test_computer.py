@@ -24,7 +24,7 @@ def linux(tmp_path: Path) -> FakeComputer:
 # -- Linux --------------------------------------------------------------------------------------
 
 
-def test_a_computer_without_anything(linux: FakeComputer) -> None:
+def test_a_bare_computer_is_inspected(linux: FakeComputer) -> None:
     assert diagnosis.inspect_computer(linux).adapters is None  # no sysfs: USB is unknown
     linux.usb("usb1", "1d6b", "0002")  # the computer's own hub
     computer = diagnosis.inspect_computer(linux)
@@ -37,7 +37,7 @@ def test_a_computer_without_anything(linux: FakeComputer) -> None:
     [("1a86", "7523", "CH340"), ("0403", "6001", "FT232"), ("10C4", "EA60", "CP2102"),
      ("2341", "0043", "Arduino")],
 )  # fmt: skip
-def test_an_adapter_with_and_without_its_driver(
+def test_an_adapter_is_found_with_and_without_its_driver(
     linux: FakeComputer, vendor: str, product: str, chip: str
 ) -> None:
     linux.usb("1-1", vendor, product)
@@ -48,7 +48,7 @@ def test_an_adapter_with_and_without_its_driver(
     assert adapter == Adapter(chip, adapter.wanted_driver, "some", True)
 
 
-def test_an_adapter_that_brltty_has_taken(linux: FakeComputer) -> None:
+def test_an_adapter_taken_by_brltty_is_found(linux: FakeComputer) -> None:
     linux.usb("1-1", "1a86", "7523", driver="usbfs")
     linux.program(77, "brltty")
     computer = diagnosis.inspect_computer(linux)
@@ -56,7 +56,7 @@ def test_an_adapter_that_brltty_has_taken(linux: FakeComputer) -> None:
     assert computer.programs == {"brltty"}
 
 
-def test_bluetooth_of_linux(linux: FakeComputer) -> None:
+def test_the_state_of_bluetooth_on_linux_is_found(linux: FakeComputer) -> None:
     linux.write("/sys/class/bluetooth/hci0/address", "00:11:22:33:44:55")
     linux.write("/sys/class/rfkill/rfkill1/type", "wlan")
     linux.write("/sys/class/rfkill/rfkill1/soft", "1")
@@ -106,7 +106,7 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
 # -- macOS and Windows --------------------------------------------------------------------------
 
 
-def test_macos(tmp_path: Path) -> None:
+def test_adapters_on_macos_are_found(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "darwin")
     hub = {"_name": "Hub", "_items": [
         {"_name": "USB Serial", "vendor_id": "0x1a86", "product_id": "0x7523"},
@@ -127,7 +127,7 @@ def test_macos(tmp_path: Path) -> None:
     assert adapter.has_port
 
 
-def test_bluetooth_of_macos(tmp_path: Path) -> None:
+def test_the_state_of_bluetooth_on_macos_is_found(tmp_path: Path) -> None:
     off = [{"controller_properties": {"controller_state": "attrib_off"}}]
     system = FakeComputer(tmp_path, "darwin")
     assert diagnosis.inspect_computer(system).bluetooth == UNKNOWN
@@ -143,7 +143,7 @@ def test_bluetooth_of_macos(tmp_path: Path) -> None:
         assert (computer.bluetooth, computer.adapters) == (state, None), output
 
 
-def test_the_user_of_a_port_of_macos_is_named(tmp_path: Path) -> None:
+def test_the_user_of_a_port_on_macos_is_named(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "darwin")
     port = "/dev/cu.usbserial-1420"
     system.write(port, "")
@@ -160,7 +160,7 @@ Estado:                     Iniciado
 """
 
 
-def test_windows_in_any_language(tmp_path: Path) -> None:
+def test_adapters_on_windows_are_found_in_any_language(tmp_path: Path) -> None:
     system = FakeComputer(tmp_path, "win32")
     computer = diagnosis.inspect_computer(system)
     assert (computer.adapters, computer.bluetooth, computer.has_module) == (None, UNKNOWN, None)
@@ -186,7 +186,7 @@ def test_windows_in_any_language(tmp_path: Path) -> None:
 # -- names, and the real door -------------------------------------------------------------------
 
 
-def test_names_of_modules() -> None:
+def test_bluetooth_modules_are_known_by_name() -> None:
     for name in ("HC-05", "hc-06", "Tini-7F3A", "HMSoft", "MLT-BT05", "linvor"):
         assert is_module(name)
     assert not is_module("Telephone of Ana")
@@ -194,7 +194,7 @@ def test_names_of_modules() -> None:
     assert not looks_wireless("/dev/ttyUSB0", "USB Serial")
 
 
-def test_this_computer_can_be_looked_at() -> None:
+def test_this_computer_can_be_inspected() -> None:
     """No computer raises an exception, and a missing program gives None."""
     system = System()
     computer = diagnosis.inspect_computer(system)
@@ -207,6 +207,6 @@ def test_this_computer_can_be_looked_at() -> None:
     assert system.owner("/no/such") is None
 
 
-def test_nothing_is_written_through_the_door() -> None:
+def test_system_access_is_read_only() -> None:
     public = {name for name in dir(System) if not name.startswith("_")}
     assert public == {"ports", "names", "text", "target", "owner", "groups", "user", "output"}

@@ -242,14 +242,14 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
 @pytest.mark.parametrize(
     ("port", "set_case", "cause", "is_sure"), ROWS, ids=lambda value: str(value)[:20]
 )
-def test_each_cause_of_computer_and_port(
+def test_each_cause_at_the_computer_or_port_is_found(
     case: Case, port: str | None, set_case: Make, cause: str, is_sure: bool
 ) -> None:
     set_case(case)
     assert case.cause(port) == (cause, is_sure)
 
 
-def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case: Case) -> None:
+def test_a_cable_is_opened_only_after_consent_and_a_radio_without_it(case: Case) -> None:
     diagnosis = case.diagnosis(RADIO)
     assert (diagnosis.findings[0].cause, diagnosis.is_opened) == ("fine", True)
     assert (case.opened_names.pop(), case.asked_names) == (RADIO, [])
@@ -262,7 +262,7 @@ def test_a_port_of_a_cable_is_opened_after_a_yes_alone_and_a_radio_without(case:
     assert case.wire is not None and case.wire.is_gone  # the port is closed
 
 
-def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
+def test_ports_without_a_cable_are_named_in_the_finding(case: Case) -> None:
     """`tsc doctor --ports` lists them, so the doctor does not claim that there are no ports."""
     case.virtual_ports = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
     (finding,) = case.diagnosis(None).findings
@@ -277,7 +277,7 @@ def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
         assert "tsc doctor --port" in hint
 
 
-def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> None:
+def test_the_only_virtual_robot_is_examined_if_there_is_no_cable(case: Case) -> None:
     case.says_yes = True
     case.virtual_ports = ("socket://127.0.0.1:7007",)
     assert case.diagnosis(None).port == case.virtual_ports[0]
@@ -288,14 +288,14 @@ def test_the_only_virtual_robot_is_looked_at_where_no_cable_is(case: Case) -> No
 @pytest.mark.parametrize(
     "set_case", [_set_stranger, _set_member, _port_in_use("minicom"), _other_tsc]
 )
-def test_a_port_that_is_not_ours_is_not_opened(case: Case, set_case: Make) -> None:
+def test_a_foreign_port_is_not_opened(case: Case, set_case: Make) -> None:
     set_case(case)
     case.says_yes = True
     assert not case.diagnosis().is_opened
     assert case.opened_names == []
 
 
-def test_the_last_port_and_the_only_port(case: Case) -> None:
+def test_the_last_or_only_port_is_chosen(case: Case) -> None:
     case.with_port("/dev/ttyS0").with_port(CABLE)
     assert case.diagnosis(None).port == CABLE  # the other one is no robot's
     case.with_port("/dev/ttyACM0")
@@ -308,7 +308,7 @@ def test_the_last_port_and_the_only_port(case: Case) -> None:
     ("platform", "port", "description"),
     [("linux", "/dev/tty5", "Bluetooth"), ("win32", "COM3", ""), ("darwin", "/dev/tty.HC-05", "")],
 )
-def test_the_only_port_of_each_system(
+def test_the_only_port_is_found_on_each_system(
     case: Case, platform: str, port: str, description: str
 ) -> None:
     case.system.platform = platform
@@ -320,7 +320,7 @@ def test_the_only_port_of_each_system(
     ("port", "cause", "is_sure"),
     [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
 )
-def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) -> None:
+def test_a_vanishing_port_is_reported(case: Case, port: str, cause: str, is_sure: bool) -> None:
     class Gone(UnpoweredEnd):
         def answer(self, data: bytes) -> bytes:
             raise OSError("gone")
@@ -340,7 +340,9 @@ def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) 
         ([Reply(UNPROVEN)], "unproven"),
     ],
 )
-def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) -> None:
+def test_a_robot_is_examined_through_another_tsc(
+    case: Case, replies: list[Reply[Any]], cause: str
+) -> None:
     case.shared_connection = OtherCommand(*replies)
     diagnosis = case.diagnosis()
     assert [finding.cause for finding in diagnosis.findings] == [cause]
@@ -348,7 +350,7 @@ def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) 
     assert case.opened_names == []
 
 
-def test_what_another_tsc_has_heard_of_a_board_that_is_not_ours(case: Case) -> None:
+def test_a_foreign_board_heard_by_another_tsc_is_recognized(case: Case) -> None:
     case.shared_connection = OtherCommand(Reply(LOST))
     case.shared_connection.early_bytes = FIRMATA
     (finding,) = case.diagnosis().findings
@@ -375,7 +377,7 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
     assert case.shared_connection.replies == [], "one that is heard again has all of them again"
 
 
-def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(case: Case) -> None:
+def test_a_healthy_robot_on_a_shared_port_is_watched(case: Case) -> None:
     case.watch_ms = 1000
     # The reason that the shared connection reports.
     assert case.cause(RADIO) == ("falls_silent", False)
@@ -385,7 +387,7 @@ def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(c
 
 
 @pytest.mark.parametrize("cause", ["other_robot", "unproven"])
-def test_a_robot_that_may_be_another_one_is_asked_nothing_more(case: Case, cause: str) -> None:
+def test_a_doubtful_robot_gets_no_further_requests(case: Case, cause: str) -> None:
     places = []
 
     def doubts(port: str, hello: HelloReply) -> str:
@@ -421,7 +423,7 @@ def test_the_ownership_of_a_robot_is_shown_by_its_answer_to_a_key(case: Case) ->
     assert "of_another_owner" not in [finding.cause for finding in case.diagnosis().findings]
 
 
-def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
+def test_an_unopened_port_is_not_reported_as_opened(case: Case) -> None:
     _plug(*CH340)(case)
     diagnosis = case.diagnosis(None)
     assert diagnosis.findings[0].values == {"chip": "CH340", "driver": "ch341"}

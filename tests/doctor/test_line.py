@@ -97,7 +97,7 @@ def causes(end: OtherEnd, **options: object) -> dict[str, Finding]:
 
 
 @pytest.mark.parametrize("is_radio", [False, True])
-def test_a_robot_that_is_fine_and_is_only_asked(is_radio: bool) -> None:
+def test_a_healthy_robot_gets_only_harmless_requests(is_radio: bool) -> None:
     """No frame acts, and there are never four zeros in a row: these would stop it."""
     (finding,) = findings_on(Firmware(), is_radio=is_radio, kit=KIT)
     assert (finding.cause, finding.is_sure) == ("fine", True)
@@ -126,7 +126,7 @@ def test_a_robot_that_is_fine_and_is_only_asked(is_radio: bool) -> None:
         ({"saved": SAVED_NUMBER_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
     ],
 )
-def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
+def test_faults_that_a_robot_reports_are_found(values: dict[str, int], cause: str) -> None:
     assert only_cause(Firmware(**values), kit=KIT) == (cause, True)
 
 
@@ -140,7 +140,7 @@ def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
         ({"features": OWNERS | OWNED}, "of_another_owner"),
     ],
 )
-def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: str) -> None:
+def test_notable_facts_are_not_faults(values: dict[str, int], cause: str) -> None:
     findings = findings_on(Firmware(**values), kit=KIT)
     assert [(finding.cause, finding.is_sure) for finding in findings] == [
         (cause, True),
@@ -155,7 +155,7 @@ def test_a_robot_whose_key_this_computer_has_is_fine() -> None:
 
 
 @pytest.mark.parametrize(("features", "expected"), [(0, "-"), (OWNERS | OWNED, "OWNERS, OWNED")])
-def test_a_report_tells_what_a_robot_can_do(features: int, expected: str) -> None:
+def test_a_report_lists_the_features_of_a_robot(features: int, expected: str) -> None:
     robot = WireRobot(SimulatedWire(Firmware(features=features)), 4711, KIT)
     reply, noted = robot.hello(), dict[str, str]()
     assert reply is not None
@@ -163,7 +163,7 @@ def test_a_report_tells_what_a_robot_can_do(features: int, expected: str) -> Non
     assert noted["features"] == expected
 
 
-def test_a_kit_that_nobody_knows() -> None:
+def test_an_unknown_kit_is_reported() -> None:
     assert only_cause(Firmware(kit=0x1234)) == ("unknown_kit", True)
     assert only_cause(Firmware(kit=0x1234), kit=0x1234) == ("fine", True)
 
@@ -177,13 +177,13 @@ def test_a_kit_that_nobody_knows() -> None:
         (("BAD_LENGTH", 0), "firmware_older", False),  # probably
     ],
 )
-def test_a_robot_that_refuses_hello(refuses: tuple[str, int], cause: str, is_sure: bool) -> None:
+def test_a_refused_hello_is_reported(refuses: tuple[str, int], cause: str, is_sure: bool) -> None:
     end = Firmware()
     end.hello_refusal = (STATUSES[refuses[0]], refuses[1])
     assert only_cause(end) == (cause, is_sure)
 
 
-def test_a_robot_that_restarts_by_itself_or_by_its_watchdog() -> None:
+def test_spontaneous_and_watchdog_restarts_are_reported() -> None:
     end = Firmware()
     end.restarts_ms, end.resets = 700, "POWER"
     finding = causes(end)["restarts"]
@@ -210,7 +210,7 @@ def test_each_restart_counts_once(restarts_ms: int) -> None:
 
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])
-def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool) -> None:
+def test_restarts_at_motor_starts_are_reported(resets: str, is_sure: bool) -> None:
     """The finding is sure if its chip reports the voltage, and probable otherwise."""
 
     class Driver(Firmware):
@@ -227,7 +227,7 @@ def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool)
 
 
 @pytest.mark.parametrize("is_radio", [False, True])
-def test_a_radio_that_loses_much(is_radio: bool) -> None:
+def test_a_lossy_radio_is_reported(is_radio: bool) -> None:
     end = Firmware()
     end.deaf, end.hears_badly = 5, True
     finding = causes(end, is_radio=is_radio)["lossy"]
@@ -236,7 +236,7 @@ def test_a_radio_that_loses_much(is_radio: bool) -> None:
 
 
 @pytest.mark.parametrize("epoch", [0, 1, 7, 255])
-def test_a_robot_tells_all_of_itself_whatever_was_stopped_before(epoch: int) -> None:
+def test_a_robot_reports_everything_whatever_was_stopped_before(epoch: int) -> None:
     end = Firmware()
     end.epoch, end.trim = epoch, {"wheels": 5, "balance": -2, "least": 30, "pace": b""}
     robot_answers: list[RobotAnswers] = []
@@ -248,7 +248,7 @@ def test_a_robot_tells_all_of_itself_whatever_was_stopped_before(epoch: int) -> 
 
 
 @pytest.mark.parametrize(("damaged_count", "is_lossy"), [(1, False), (2, True)])
-def test_a_robot_that_hears_badly_and_answers_all_the_same(
+def test_a_robot_that_hears_badly_but_answers_is_reported(
     damaged_count: int, is_lossy: bool
 ) -> None:
     class Noisy(Firmware):
@@ -262,9 +262,7 @@ def test_a_robot_that_hears_badly_and_answers_all_the_same(
 
 @pytest.mark.parametrize("count_before", [0, 100, 240, 253, 255])
 @pytest.mark.parametrize("count", ["damaged", "framing", "overrun"])
-def test_what_is_damaged_is_counted_past_the_end_of_a_counter(
-    count: str, count_before: int
-) -> None:
+def test_damage_is_counted_across_a_counter_overflow(count: str, count_before: int) -> None:
     """Its 256 values follow each other in a circle."""
 
     class Noisy(Firmware):
@@ -276,7 +274,7 @@ def test_what_is_damaged_is_counted_past_the_end_of_a_counter(
     assert causes(Noisy(**{count: count_before}))["lossy"].values["damaged"] == "4"
 
 
-def test_how_bad_a_line_was_before() -> None:
+def test_earlier_damage_on_a_line_counts() -> None:
     """Then it is probably bad; one lost frame among twenty proves nothing."""
     assert "lossy" not in causes(Firmware(overrun=19))
     assert not causes(Firmware(overrun=20))["lossy"].is_sure
@@ -287,7 +285,7 @@ def test_how_bad_a_line_was_before() -> None:
 
 
 @pytest.mark.parametrize("requests", [1, 5, 22])
-def test_a_robot_that_falls_silent(requests: int) -> None:
+def test_a_robot_that_falls_silent_is_reported(requests: int) -> None:
     end = Firmware()
     end.dies_after = requests
     assert only_cause(end) == ("falls_silent", False)
@@ -297,13 +295,13 @@ def test_a_robot_that_falls_silent(requests: int) -> None:
 
 
 @pytest.mark.parametrize("baud", [19200, 38400, 57600, 115200])
-def test_a_robot_at_another_speed(baud: int) -> None:
+def test_a_robot_at_another_baud_rate_is_found(baud: int) -> None:
     (finding,) = findings_on(Firmware(baud))
     assert (finding.cause, finding.is_sure) == ("wrong_baud", True)
     assert finding.values["baud"] == str(baud)
 
 
-def test_a_robot_at_another_speed_with_another_trouble() -> None:
+def test_a_robot_at_another_baud_rate_with_another_fault_is_found() -> None:
     end = Firmware(115200, saved=SAVED_NUMBER_BY_NAME["LOW_SUPPLY"])
     assert [finding.cause for finding in findings_on(end)] == ["wrong_baud", "low_supply"]
 
@@ -328,12 +326,12 @@ def test_a_robot_at_another_speed_with_another_trouble() -> None:
         (UnpoweredEnd(), "silent", False),
     ],
 )  # fmt: skip
-def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
+def test_causes_on_a_cable_are_found(end: OtherEnd, cause: str, is_sure: bool) -> None:
     assert only_cause(end) == (cause, is_sure)
 
 
 @pytest.mark.parametrize("speed", BAUDS)
-def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
+def test_bytes_heard_at_only_one_baud_rate_are_reported(speed: int) -> None:
     """This holds for each speed: at the others, the line is silent."""
 
     class Deaf(SimulatedWire):
@@ -356,7 +354,7 @@ def test_what_is_heard_at_one_speed_alone_is_told(speed: int) -> None:
         (UnpoweredEnd(), "crossed", False),
     ],
 )
-def test_by_radio(end: OtherEnd, cause: str, is_sure: bool) -> None:
+def test_causes_by_radio_are_found(end: OtherEnd, cause: str, is_sure: bool) -> None:
     assert only_cause(end, is_radio=True) == (cause, is_sure)
 
 
@@ -380,7 +378,7 @@ KINDS = [
 
 @pytest.mark.parametrize("its_baud", [9600, 19200, 38400, 57600, 115200])
 @pytest.mark.parametrize(("kind", "cause", "sentence"), KINDS)
-def test_a_board_that_is_not_ours_on_a_cable(
+def test_a_foreign_board_on_a_cable_is_recognized(
     kind: type[boards.Board], cause: str, sentence: str, its_baud: int
 ) -> None:
     """This holds for any speed of the board, and any speed of a robot here."""
@@ -394,7 +392,7 @@ def test_a_board_that_is_not_ours_on_a_cable(
 
 
 @pytest.mark.parametrize(("kind", "cause", "sentence"), KINDS)
-def test_a_board_that_is_not_ours_by_radio(
+def test_a_foreign_board_by_radio_is_recognized(
     kind: type[boards.Board], cause: str, sentence: str
 ) -> None:
     """The board was not restarted, so its start message is not received."""
@@ -409,7 +407,7 @@ def test_a_board_that_is_not_ours_by_radio(
     assert finding.is_sure == (kind not in unheard)
 
 
-def test_a_robot_that_sends_and_hears_nothing() -> None:
+def test_a_robot_that_sends_but_hears_nothing_is_reported() -> None:
     """Its frames and lines are never those of a foreign board."""
 
     class OneWay(UnpoweredEnd):
@@ -429,7 +427,7 @@ def test_a_robot_that_sends_and_hears_nothing() -> None:
     b"Distancia: 34 cm \xc2\xa1m\xc3\xa1s!\r\n", b"\x1b[0;32mI (71) boot: x\x1b[0m\r\n",
     b"0\r\n", b"I received: 65\r\n", b"\xff\x00 Distance: 34 cm\r\n", b"a,b;c|",
 ])  # fmt: skip
-def test_what_is_text_at_a_speed_is_not_a_wrong_one(line: bytes) -> None:
+def test_readable_text_means_the_right_baud_rate(line: bytes) -> None:
     for baud in (9600, 57600):
         end = Sketch(baud)
         end.line = line
@@ -439,20 +437,20 @@ def test_what_is_text_at_a_speed_is_not_a_wrong_one(line: bytes) -> None:
     assert finding.cause == "other_sketch", finding
 
 
-def test_a_text_of_a_board_that_is_probably_known_is_told_as_that() -> None:
+def test_text_of_a_probably_known_board_is_attributed_to_it() -> None:
     end = Sketch()
     end.line = boards.MBOT_START
     assert only_cause(end) == ("mbot", False)
 
 
-def test_what_a_sketch_prints_is_told_in_part_and_as_text() -> None:
+def test_output_of_a_sketch_is_reported_as_shortened_text() -> None:
     end = Sketch()
     end.line = b"x" * 300 + b"\r\n"
     (finding,) = findings_on(end)
     assert finding.values["said"] == "x" * 60
 
 
-def test_a_wire_that_is_gone_is_an_os_error() -> None:
+def test_a_lost_wire_raises_an_os_error() -> None:
     wire = SimulatedWire(Firmware())
     wire.close()
     with pytest.raises(OSError):

@@ -80,12 +80,12 @@ def sentences(cause: str, *kinds: str) -> Iterator[str]:
 
 
 @each_row("cause", [cause for cause in CAUSES if cause not in (*PART_CAUSES, *foreign.NAMES)])
-def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
+def test_each_cause_has_a_finding_evidence_and_advice(cause: str) -> None:
     assert len([*sentences(cause, "found", "seen", "next")]) > 3
 
 
 @each_row("cause", PART_CAUSES)
-def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> None:
+def test_each_fault_of_a_part_has_advice(cause: str) -> None:
     values = dict.fromkeys(VALUES.get(cause, ()), "7")
     assert [*sentences(cause, "found")]
     for language in ("en", "es", "pt"):
@@ -95,7 +95,7 @@ def test_what_came_of_a_part_says_what_to_do_if_it_is_not_right(cause: str) -> N
 
 
 @each_row("cause", foreign.NAMES)
-def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(cause: str) -> None:
+def test_each_foreign_board_has_a_finding_evidence_and_advice(cause: str) -> None:
     for language in ("en", "es", "pt"):
         for heard_text in ("Distance: 34", ""):
             sentences = sentences_of(Finding(cause, True, {"said": heard_text}), language)
@@ -105,12 +105,12 @@ def test_a_board_that_is_not_ours_says_what_it_is_what_was_seen_and_what_to_do(c
         assert "a?b" in link.meaning and link.advice == sentences.advice
 
 
-def test_no_sentence_is_of_a_board_that_has_no_row() -> None:
+def test_every_sentence_about_a_board_has_a_row() -> None:
     names = {key.partition("/")[0] for key in all_said("en", "foreign")}
     assert names == {*foreign.NAMES, "says"}
 
 
-def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
+def test_every_sentence_about_a_cause_has_its_cause() -> None:
     known_names = {f"found_{cause}" for cause in CAUSES}
     known_names |= {f"next_{row.next_key or cause}" for cause, row in CAUSES.items()}
     known_names -= {f"next_{cause}" for cause in PART_CAUSES}
@@ -143,7 +143,7 @@ def test_each_part_has_a_name() -> None:
     }
 
 
-def test_an_examination_finds_what_is_about_a_part_or_that_it_is_not_a_robot_of_ours() -> None:
+def test_findings_of_an_examination_concern_parts_or_foreign_devices() -> None:
     names = [*CAUSES]
     about_it = names[names.index("other_robot") : names.index("fine")]
     assert {cause for cause in about_it if not CAUSES[cause].part} == {
@@ -152,7 +152,7 @@ def test_an_examination_finds_what_is_about_a_part_or_that_it_is_not_a_robot_of_
     assert {CAUSES[cause].part for cause in about_it} == {"", *SELF_REPORTED_PARTS}
 
 
-def test_one_restart_takes_the_singular() -> None:
+def test_a_single_restart_takes_the_singular() -> None:
     """A count of 1 has a sentence of its own: "1 veces" is no Spanish."""
     for cause in ("restarts", "motors_restart"):
         for count, words in (("1", ("once", "una vez")), ("3", ("3 times", "3 veces"))):

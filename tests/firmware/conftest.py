@@ -37,8 +37,8 @@ def robot(board: str, sketches: Callable[[str], Path], memory: Path) -> Iterator
 def brokers(request: pytest.FixtureRequest, tmp_path: Path) -> Callable[..., Mosquitto]:
     """Return a factory of brokers for a test; the arguments are those of `Mosquitto`."""
 
-    def begin(user: str = "", password: str = "", more: str = "") -> Mosquitto:
-        mosquitto = Mosquitto(tmp_path, user, password, more)
+    def begin(user: str = "", password: str = "", extra_rules: str = "") -> Mosquitto:
+        mosquitto = Mosquitto(tmp_path, user, password, extra_rules)
         request.addfinalizer(mosquitto.kill)
         return mosquitto
 

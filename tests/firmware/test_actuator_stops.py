@@ -24,11 +24,11 @@ WAITING_PROGRAM = "SI|LED(TRUE);GRIPPER(90);W(60)"
 SET_ACTIONS = ["SET 1 1", "SET 0 90000"]
 
 
-def start_program(text: str, **how: bool) -> tuple[HostFirmware, Session]:
+def start_program(text: str, **options: bool) -> tuple[HostFirmware, Session]:
     robot = HostFirmware(KIT)
     robot.wait(200)
     session = Session(1, 9600, KIT.fingerprint)
-    assert robot.until(session, session.upload(image_of(text, KIT), **how)) == OK
+    assert robot.until(session, session.upload(image_of(text, KIT), **options)) == OK
     robot.talk(session, 50)
     return robot, session
 
@@ -59,7 +59,7 @@ END_ACTIONS: dict[str, Callable[[HostFirmware, Session], object]] = {
 
 
 @pytest.mark.parametrize("end", END_ACTIONS)
-def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
+def test_an_interrupted_program_releases_the_actuators(end: str) -> None:
     robot, session = start_program(WAITING_PROGRAM)
     END_ACTIONS[end](robot, session)
     robot.wait(5)
@@ -74,7 +74,9 @@ def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
     ("SI|LED(TRUE);GRIPPER(90);W(0.1)", False),
     ("SI|LED(TRUE);GRIPPER(90);X = 0;SHOW(1 / X)", True),
 ])  # fmt: skip
-def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) -> None:
+def test_a_normal_end_keeps_the_actuators_and_a_fault_releases_them(
+    text: str, lets_go: bool
+) -> None:
     robot, session = start_program(text)
     robot.talk(session, 500)
     assert ("ACTUATORS OFF" in "".join(robot.did)) == lets_go
@@ -92,7 +94,7 @@ HOLDING_GRABBER = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop 
     ("grabber", ["RELEASE GRIPPER", "SET LED FALSE"], {1: 0}),
     ("holds", ["SET LED FALSE"], {0: 90000, 1: 0}),
 ])  # fmt: skip
-def test_the_virtual_robot_says_and_draws_it(
+def test_the_virtual_robot_prints_and_draws_the_release(
     robot_name: str, sentences: list[str], drawn_values: dict[int, int]
 ) -> None:
     profile = {"grabber": GRABBER, "holds": HOLDING_GRABBER}[robot_name]

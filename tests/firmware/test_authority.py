@@ -29,7 +29,7 @@ __all__ = ("robots_of_both_kinds",)  # a fixture
 DISCONNECTED = 8  # the STATE pin of a module
 
 
-def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
+def test_a_stranger_can_only_watch_and_stop() -> None:
     table, keys = OwnedRobot(), Keys()
     owner = table.claim_session(keys)
     assert table.tries(owner) == "OK"
@@ -45,7 +45,7 @@ def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
     assert table.outcome(stranger, stranger.clear()) == "NOT_OWNER"
 
 
-def test_every_request_has_a_side() -> None:
+def test_every_request_is_classified_by_authority() -> None:
     """Requests that act and are not listed here need authority, and the owner's run continues."""
     table, keys = OwnedRobot(), Keys()
     assert table.tries(table.claim_session(keys)) == "OK"
@@ -62,8 +62,8 @@ def test_every_request_has_a_side() -> None:
     assert state_of(table, stranger) == STATE_RUNNING
 
 
-@pytest.mark.parametrize("how", ["silence", "STATE", "HELLO"])
-def test_authority_ends_with_its_connection_and_is_shown_again(how: str) -> None:
+@pytest.mark.parametrize("ending", ["silence", "STATE", "HELLO"])
+def test_authority_ends_with_its_connection_and_is_proved_again(ending: str) -> None:
     """It ends less than 2 s after its last frame if a radio dropped out, or when another client
     arrives."""
     table, keys = OwnedRobot(), Keys()
@@ -71,9 +71,9 @@ def test_authority_ends_with_its_connection_and_is_shown_again(how: str) -> None
     session._handshake._keys = None  # without a key, it cannot authenticate
     table.pass_time(None, 1900)
     assert table.outcome(session, session.trim()) == "OK"
-    if how == "silence":
+    if ending == "silence":
         table.pass_time(None, 2050)
-    elif how == "STATE":
+    elif ending == "STATE":
         table.pass_time(None, 10, DISCONNECTED)
     else:
         session = table.session(nonce=9)
@@ -83,7 +83,7 @@ def test_authority_ends_with_its_connection_and_is_shown_again(how: str) -> None
     assert table.outcome(session, session.trim()) == "OK"  # the session authenticates by itself
 
 
-def test_a_recorded_session_opens_nothing() -> None:
+def test_a_replayed_session_grants_nothing() -> None:
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     next_session = table.session(keys, nonce=4)
@@ -96,7 +96,7 @@ def test_a_recorded_session_opens_nothing() -> None:
     assert not [line for line in table.robot.did if "MOTORS" in line]
 
 
-def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
+def test_a_replayed_tag_grants_nothing_in_its_own_epoch() -> None:
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     owner = table.session(keys, nonce=4)
@@ -132,14 +132,14 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
     assert status_of_tag(thief, shown_frame.payload[1:]) == STATUSES["WRONG_KEY"]
 
 
-def test_wrong_keys_cost_the_owner_nothing() -> None:
+def test_wrong_keys_do_not_affect_the_owner() -> None:
     """This is on a line whose other end is unknown to the robot."""
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
-    wrong = Keys()
+    wrong_keys = Keys()
     for count in range(20):
-        wrong.stored_keys = [keys.stored_keys[0]._replace(key=bytes([200 + count] * 16))]
-        thief = table.session(wrong, nonce=10 + count)
+        wrong_keys.stored_keys = [keys.stored_keys[0]._replace(key=bytes([200 + count] * 16))]
+        thief = table.session(wrong_keys, nonce=10 + count)
         assert owner_of(table, thief) == OWNED_BY_OTHER
         assert table.outcome(thief, thief.start()) == "WRONG_KEY"
     owner = table.session(keys, nonce=9)
@@ -148,7 +148,7 @@ def test_wrong_keys_cost_the_owner_nothing() -> None:
     assert table.robot.now_ms - began_ms < 500
 
 
-def test_no_challenge_is_a_tag() -> None:
+def test_no_challenge_can_serve_as_a_tag() -> None:
     """Both are hashes with one key: the sender of a session's nonce cannot obtain a tag."""
     table, keys = OwnedRobot(), Keys()
     owner = table.claim_session(keys)
@@ -167,22 +167,22 @@ def test_no_challenge_is_a_tag() -> None:
     assert second not in [siphash(key.key, text) for text in texts]
 
 
-def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> None:
+def test_a_reset_with_the_same_seed_gives_a_new_challenge_or_needs_the_key() -> None:
     """Two robots with one memory and one nonce: a tag shown to one never opens the other."""
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     memory = table.robot.memory()
     challenges = set()
     for seed in range(12):
-        later = OwnedRobot(memory, seed=seed)
-        session = later.session(keys, nonce=4)
-        _, answers = later.frames(session, session.hello())
+        restarted = OwnedRobot(memory, seed=seed)
+        session = restarted.session(keys, nonce=4)
+        _, answers = restarted.frames(session, session.hello())
         reply = max(answers, key=len)
         challenges.add(b"".join(answer for answer in answers if answer != reply))
     assert len(challenges) == 12
 
 
-def test_forged_and_reordered_frames_drive_nothing(frames: int = 3000) -> None:
+def test_forged_and_reordered_frames_have_no_effect(frames: int = 3000) -> None:
     """`python -m tests.firmware.test_authority 100000` sends more of them."""
     assert send_forged_frames(frames, 1) == 0
 
@@ -212,8 +212,8 @@ def send_forged_frames(frames: int, seed: int) -> int:
             stopped_event = table.robot.wait(60, bytes(8))
             assert b"\xa2" in stopped_event, (count, stopped_event)  # STOPPED
             table.robot.wait(1100)
-        how = chance.randrange(3)
-        if how == 0:
+        kind = chance.randrange(3)
+        if kind == 0:
             data = chance.choice(recorded_bytes) + b"\0"
         else:
             message = chance.choice(
@@ -227,7 +227,7 @@ def send_forged_frames(frames: int, seed: int) -> int:
             if message.name == "CLAIM":
                 payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 16)))
             thief._seq = (thief._seq + 1) & 0xFF
-            seq = thief._seq if how == 1 else chance.randrange(256)
+            seq = thief._seq if kind == 1 else chance.randrange(256)
             data = encode_frame(Frame(message.number, seq, thief._epoch, payload))
         sent_bytes = table.robot.step(b"\0" + data)
         accepted_count += sum(grants_key_request(answer) for answer in sent_bytes.split(b"\0"))

@@ -23,7 +23,7 @@ def power_program(reading: str) -> str:
 
 @pytest.mark.sampled("echo")
 @pytest.mark.parametrize("echo", ["10", "53", "2", "18", "21"])  # changes of port B; INT
-def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
+def test_an_echo_is_measured_on_other_pins_of_a_mega(echo: str) -> None:
     robot = on_board("tinibot", "mega", ("echo = 3", f"echo = {echo}"), ("= 2 ", "= 4 "),
                      ("trigger = 4", "trigger = 20"),
                      ("right_backward = 10", "right_backward = 40"))  # fmt: skip
@@ -38,7 +38,9 @@ def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
 @pytest.mark.parametrize(
     ("echo", "group", "mask"), [("14", 1, 2), ("15", 1, 1), ("A8", 2, 0), ("A15", 2, 7)]
 )
-def test_interrupts_that_are_not_simulated(echo: str, group: int, mask: int) -> None:
+def test_pin_change_interrupts_of_ports_j_and_k_are_enabled(
+    echo: str, group: int, mask: int
+) -> None:
     """Port J and K of a Mega: the interrupts that are on while the sketch listens."""
     robot = on_board(
         "tinibot", "mega", ("echo = 3", f'echo = "{echo}"' if "A" in echo else f"echo = {echo}")
@@ -54,7 +56,7 @@ PCICR, PCMSK0 = 0x68, 0x6B
 
 
 @pytest.mark.parametrize("width_us", [0, 38_000])
-def test_no_echo_is_far_away_and_takes_three_times_25_ms(width_us: int) -> None:
+def test_a_missing_echo_reads_as_far_away_after_three_times_25_ms(width_us: int) -> None:
     """A later reading waits until the sensor has lowered its echo."""
     robot = robots.load("tinibot")
     text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;W(0.04);IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
@@ -98,18 +100,22 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     return level == f"pwm {20 * 653 >> 8}"
 
 
-@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "says"), [
+@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "expected"), [
     ("liner", "LINE_L", 15, True, True),
     ("liner", "LINE_R", 16, False, False),
     ("liner", "BUTTON", 12, True, False),
     ("liner", "BUTTON", 12, False, True),
     ("grabber", "BUTTON", 28, False, True),
 ])  # fmt: skip
-def test_a_level_is_yes_or_no(name: str, sensor: str, pin: int, is_high: bool, says: bool) -> None:
-    assert is_true(robots.load(name), sensor, lambda board: board.level(0, pin, is_high)) == says
+def test_a_level_reads_as_yes_or_no(
+    name: str, sensor: str, pin: int, is_high: bool, expected: bool
+) -> None:
+    assert (
+        is_true(robots.load(name), sensor, lambda board: board.level(0, pin, is_high)) == expected
+    )
 
 
-def test_a_threshold_and_thousandths() -> None:
+def test_thresholds_and_thousandths_are_read() -> None:
     """149 of 1023 are slightly more than 1.4565 of 10 V: the half distinguishes the two."""
     workshop = on_board("tinibot", "uno", *WORKSHOP)
     assert is_true(workshop, "BRIGHT", lambda board: board.analog(2, 2910))
@@ -118,12 +124,12 @@ def test_a_threshold_and_thousandths() -> None:
 
 
 @pytest.mark.parametrize(("sensor", "channel"), [("LINE_L", 2), ("LINE_M", 1), ("LINE_R", 0)])
-def test_a_car_is_over_black_from_250_on(sensor: str, channel: int) -> None:
+def test_a_line_sensor_is_over_black_from_250_on(sensor: str, channel: int) -> None:
     """The threshold is that of ELEGOO's own program."""
     car = robots.load("elegoo4")
-    for millivolts, says in ((1180, False), (1260, True)):
+    for millivolts, expected in ((1180, False), (1260, True)):
         is_black = is_true(car, sensor, lambda board, mv=millivolts: board.analog(channel, mv))  # type: ignore[misc]
-        assert is_black == says
+        assert is_black == expected
 
 
 DIM_SENSOR = (
@@ -153,13 +159,13 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     draw = random.Random(seed)
     tasks = []
     for number in range(draw.randint(2, 4)):
-        reads = [READING_CODE.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
+        reading_programs = [READING_CODE.format(number, draw.choice(["LIGHT_R", "LIGHT_L", "DIM"]))
                  for _ in range(draw.randint(1, 3))]  # fmt: skip
         pause = draw.choice(["", "W(0.001)", "W(0.003)", "W(0.01)"])
-        tasks.append(f"LOOP(FOREVER)\n{''.join(reads)}{pause}\nEND_LOOP")
-    own, *others = tasks[:3]
-    text = f"SI|LONGEST = 0;COUNT = 0\n{own}\n"
-    text += "".join(f"TASK\n{other}\nEND_TASK\n" for other in others) + SHOW_RESULTS_CODE
+        tasks.append(f"LOOP(FOREVER)\n{''.join(reading_programs)}{pause}\nEND_LOOP")
+    main_task, *other_tasks = tasks[:3]
+    text = f"SI|LONGEST = 0;COUNT = 0\n{main_task}\n"
+    text += "".join(f"TASK\n{task}\nEND_TASK\n" for task in other_tasks) + SHOW_RESULTS_CODE
     board = start_board(on_board("tinibot", "mega", *DIM_SENSOR), text).run_for(START_MS + 530)
     longest, count = (int(board.motors(START_MS + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20
@@ -187,7 +193,7 @@ def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
     assert abs(measured_hertz / hertz - 1) < 0.01
 
 
-def test_a_beep_of_no_time_ends_the_one_before() -> None:
+def test_a_beep_of_zero_length_ends_the_previous_one() -> None:
     robot = on_board("tinibot", "mega")
     board = start_board(robot, "SI|BEEP(0.5, 440)\nTASK\nW(0.1);BEEP(0, 440);W(9)\nEND_TASK")
     board.watch(buzzer_of(robot))
@@ -196,7 +202,7 @@ def test_a_beep_of_no_time_ends_the_one_before() -> None:
     assert 95 < edges[-1] < 103
 
 
-def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_could_start() -> None:
+def test_an_ended_program_plays_its_tune_and_the_light_shows_readiness() -> None:
     robot = robots.load("tinibot")
     light = robot.board.status_led
     assert light is not None
@@ -212,7 +218,7 @@ def test_a_program_that_has_ended_plays_its_tune_and_the_light_says_that_one_cou
     assert [board.pin(light, START_MS + ms) for ms in (-50, 50, 250)] == ["high", "low", "high"]
 
 
-def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
+def test_no_note_of_a_tune_follows_a_tone() -> None:
     """The button starts the program again while the first note of its end sounds."""
     robot = robots.load("tinibot")
     board = start_board(robot, "SI|BEEP(0.05, 880);W(0.2)")
@@ -225,7 +231,7 @@ def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     assert not any(400 < edge < 585 for edge in edges)
 
 
-def test_a_servo_and_a_lamp() -> None:
+def test_servo_and_lamp_are_set() -> None:
     robot = robots.load("grabber")
     board = start_board(
         robot, "SI|GRIPPER(0);LED(TRUE);W(0.1);GRIPPER(90);W(0.1);GRIPPER(9 * 9 * 9);W(0.1)"
@@ -235,15 +241,17 @@ def test_a_servo_and_a_lamp() -> None:
     board.run_for(START_MS + 320)
     pulse_list = pulses(board, 11)
     assert pulse_list[0][0] > START_MS
-    for after, us in ((25, 600), (125, 1500), (225, 2400)):
+    for after_ms, us in ((25, 600), (125, 1500), (225, 2400)):
         lengths = [
-            length for ms, length in pulse_list if START_MS + after < ms < START_MS + after + 70
+            length
+            for ms, length in pulse_list
+            if START_MS + after_ms < ms < START_MS + after_ms + 70
         ]
         assert lengths and all(abs(length - us) < 3 for length in lengths)
     assert board.pin(30, START_MS + 50) == "high"
 
 
-def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
+def test_fan_and_active_low_lamp_are_set() -> None:
     robot = on_board("tinibot", "uno", *WORKSHOP)
     board = start_board(
         robot, "SI|FAN(-30000);LAMP(TRUE);W(0.1);FAN(0);LAMP(FALSE);W(0.1);FAN(999 * 99)"
@@ -257,7 +265,7 @@ def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
     assert [board.pin(19, START_MS + ms) for ms in (-1, 50, 150)] == ["high", "low", "high"]
 
 
-def test_a_reading_of_the_last_program_is_not_used_by_the_next() -> None:
+def test_a_reading_of_the_previous_program_is_not_reused() -> None:
     """A program is stopped while it measures; the next one measures again."""
     robot = robots.load("tinibot")
     pins = robot.board.sensors[2].pins
@@ -293,8 +301,8 @@ def test_interrupts_are_never_off_for_long(name: str) -> None:
     text = "SI|LOOP(30);M(80, 80);BEEP(0.001, 20000);A = DISTANCE;END_LOOP"
     if name == "grabber":
         text = text.replace("A = DIS", "GRIPPER(90);A = DIS")
-    at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
-    pins = robot.board.sensors[at].pins
+    sonar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
+    pins = robot.board.sensors[sonar_index].pins
     board = start_board(robot, text)
     board.echoes(pins["trigger"], pins["echo"], [1000])
     board.run_for(START_MS + 200)

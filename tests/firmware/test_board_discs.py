@@ -42,7 +42,7 @@ extern "C" void test_turn() {
 
 
 def counting_board(robot: Robot) -> Board:
-    board = Board(robot, more=COPY_COUNTS_CODE)
+    board = Board(robot, extra_code=COPY_COUNTS_CODE)
     board.watched |= {LEFT_COUNT_REGISTER, RIGHT_COUNT_REGISTER}
     assert robot.board.discs
     for pin in robot.board.discs.pins.values():
@@ -67,7 +67,7 @@ def counts(board: Board, ms: float) -> tuple[int, int]:
 
 @pytest.mark.sampled("name")
 @each_board
-def test_each_edge_of_both_counts(name: str) -> None:
+def test_each_edge_of_both_discs_counts(name: str) -> None:
     """Fast and slow ones, and both at once; 65.6 ms apart is no glitch where the clock wraps."""
     robot = robots.load("tinibot2", name)
     board = counting_board(robot)
@@ -86,7 +86,7 @@ def test_each_edge_of_both_counts(name: str) -> None:
 @each_board
 @pytest.mark.parametrize("span_us", [1, 5, 20, 60, 200])
 @pytest.mark.parametrize("is_high", [False, True])
-def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_high: bool) -> None:
+def test_too_short_pulses_do_not_count(name: str, span_us: float, is_high: bool) -> None:
     """Motor brushes cause such pulses on a low or a high line. Edges between them count."""
     robot = robots.load("tinibot2", name)
     board = counting_board(robot)
@@ -107,9 +107,7 @@ def test_pulses_that_are_too_short_do_not_count(name: str, span_us: float, is_hi
 
 @each_board
 @pytest.mark.parametrize("span_us", [4, 10, 37, 150])
-def test_a_line_that_glitches_without_end_counts_again_afterwards(
-    name: str, span_us: float
-) -> None:
+def test_edges_count_again_after_an_endless_glitch(name: str, span_us: float) -> None:
     """Its interrupt is off in between, and the clock of the other disc's edges goes on."""
     robot = robots.load("tinibot2", name)
     board = counting_board(robot)
@@ -126,7 +124,7 @@ def test_a_line_that_glitches_without_end_counts_again_afterwards(
 
 @pytest.mark.sampled("name")
 @each_board
-def test_two_channels_count_back(name: str) -> None:
+def test_two_channels_count_backwards(name: str) -> None:
     robot = with_discs(name, "two_channel")
     board = counting_board(robot)
     discs = robot.board.discs
@@ -147,7 +145,7 @@ def test_two_channels_count_back(name: str) -> None:
 # -- how far a tinibot2 goes whose wheels turn discs ----------------------------------------------
 
 
-def test_it_goes_and_turns_as_far_as_was_said(sketches: Callable[[str], Path]) -> None:
+def test_moves_and_turns_have_the_requested_length(sketches: Callable[[str], Path]) -> None:
     robot = DrivenUno(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
     with robot.uno:
         assert robot.drive("F(30 CM, 60); R(90 DEG, 60)") == "DONE"
@@ -155,7 +153,7 @@ def test_it_goes_and_turns_as_far_as_was_said(sketches: Callable[[str], Path]) -
     assert abs(pose.x_cm - 30) <= 1.5 and abs(pose.y_cm) <= 2 and abs(pose.heading + 90) <= 6
 
 
-def test_it_goes_as_far_if_a_when_interrupts_it(sketches: Callable[[str], Path]) -> None:
+def test_a_move_interrupted_by_when_keeps_its_length(sketches: Callable[[str], Path]) -> None:
     robot = DrivenUno(sketches(ENVIRONMENT), 2, (92.5, 107.5), Roughness(0.005))
     text = """X = 0; F(60 CM, 80)
 WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
@@ -167,7 +165,7 @@ WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
     assert abs(pose.x_cm - 60) <= 1.5 and abs(pose.y_cm) <= 2
 
 
-def test_it_goes_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]) -> None:
+def test_moves_are_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]) -> None:
     """The fault is that of the wheel. The next program is as straight as the first one."""
     robot = DrivenUno(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
     held_wheel = robot.wheels.wheels[1]
@@ -178,22 +176,22 @@ def test_it_goes_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]
         pose_before = robot.pose
         assert robot.drive("F(100 CM, 80)") == "DONE"
         pose = robot.pose
-    along = math.radians(pose_before.heading)
+    heading_rad = math.radians(pose_before.heading)
     x, y = pose.x_cm - pose_before.x_cm, pose.y_cm - pose_before.y_cm
-    assert abs(x * math.cos(along) + y * math.sin(along) - 100) <= 1.5
-    assert abs(y * math.cos(along) - x * math.sin(along)) <= 2.4
+    assert abs(x * math.cos(heading_rad) + y * math.sin(heading_rad) - 100) <= 1.5
+    assert abs(y * math.cos(heading_rad) - x * math.sin(heading_rad)) <= 2.4
 
 
 def flicker(uno: Uno, hertz: int, milliseconds: int, run_ms: Callable[[int], None]) -> None:
     """Toggle both discs at this rate."""
     half = CYCLES_PER_MS * 1000 // (2 * hertz)
-    at, level = uno.cycle, False
+    cycle, level = uno.cycle, False
     for _ in range(milliseconds):
-        while at < uno.cycle + CYCLES_PER_MS:
+        while cycle < uno.cycle + CYCLES_PER_MS:
             level = not level
             for number, pin in enumerate(pins(ROBOT)):
-                uno.drive(f"D{pin}", level, at=at + number * half // 3)
-            at += half
+                uno.drive(f"D{pin}", level, at=cycle + number * half // 3)
+            cycle += half
         run_ms(1)
 
 
@@ -234,7 +232,7 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
 
 
 @pytest.mark.sampled(of="long ways of a chip")
-def test_a_nano_with_discs_has_tasks(sketches: Callable[[str], Path]) -> None:
+def test_a_nano_with_discs_runs_tasks(sketches: Callable[[str], Path]) -> None:
     """The reader of text has left room for them: it backs away from obstacles."""
     robot = DrivenUno(sketches("nano_tinibot2"), 1, (100, 100), Roughness())
     pins = ROBOT.board.sensors[2].pins

@@ -27,9 +27,7 @@ TRIES = 5
 
 @pytest.mark.sampled("sketch_name")
 @pytest.mark.parametrize("sketch_name", ["uno", "nano"])
-def test_what_a_hand_holds_reaches_the_motors(
-    sketch_name: str, sketches: Callable[[str], Path]
-) -> None:
+def test_held_keys_reach_the_motors(sketch_name: str, sketches: Callable[[str], Path]) -> None:
     """So do released keys; and a lost line releases all."""
     with Hand(sketches(sketch_name), BAUD, PAD_PROGRAM) as hand:
         for _ in range(TRIES):

@@ -133,7 +133,7 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
 @pytest.mark.sampled("name", "chip")
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 @pytest.mark.parametrize("name", SIDES)
-def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> None:
+def test_both_motors_of_a_side_run_alike(name: str, chip: str) -> None:
     sides = SIDES[name]
     board = start_board(shield(*sides, chip), MOVES_PROGRAM).run_for(START_MS + OFF_MS + 50)
     states = motor_states(board)
@@ -147,7 +147,7 @@ def test_the_motors_of_a_side_do_what_the_side_does(name: str, chip: str) -> Non
 
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(8))
-def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
+def test_no_motor_turns_against_its_side(seed: int) -> None:
     """This holds for any program: in between, a motor is only off, or has one of the two powers."""
     draw = random.Random(seed)
     moves = [(draw.choice([-80, -40, 0, 40, 80]), draw.choice([-80, -40, 0, 40, 80]))
@@ -158,12 +158,12 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
     left_of = set(sides[0].split())
     previous = (0, 0)
     for number, (left, right) in enumerate(moves):
-        begin, end = START_MS + 20 * number, START_MS + 20 * (number + 1)
+        begin_ms, end_ms = START_MS + 20 * number, START_MS + 20 * (number + 1)
         levels = [int(percent * 2.55) for percent in (left, right)]
-        steady = powers_at(states, end - 1)
+        steady = powers_at(states, end_ms - 1)
         assert steady == {m: p for m, p in both(sides, *levels).items() if p}
         for state in states:
-            if not begin - 1 < state.cycle / MS < end - 1:
+            if not begin_ms - 1 < state.cycle / MS < end_ms - 1:
                 continue
             for motor, power in state.powers.items():
                 side = 0 if motor in left_of else 1
@@ -175,8 +175,8 @@ def test_no_motor_turns_another_way_than_its_side(seed: int) -> None:
 @pytest.mark.parametrize("chip", ["uno", "mega"])
 def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     robot = shield(*SIDES["four"], chip)
-    more = STOPS if chip == "uno" else ""
-    board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", more)
+    extra_code = STOPS if chip == "uno" else ""
+    board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", extra_code)
     if chip == "uno":
         board.level(START_MS + 50.123, 19, True)
     board.press(400, 450)
@@ -189,7 +189,7 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     assert enable[0] < 100, "its outputs are off before a program drives"
 
 
-@pytest.mark.parametrize(("changes", "why"), [
+@pytest.mark.parametrize(("changes", "message"), [
     ([(0, "data", True), (20, "clock", True)], "data before the clock"),
     ([(0, "data", True), (0, "clock", True)], "data before the clock"),
     ([(0, "clock", True), (HOLD_NS - 1, "data", True)], "data after the clock"),
@@ -198,14 +198,16 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     ([(0, "clock", True), (10, "latch", True)], "the clock before the latch"),
     ([(0, "latch", True), (10, "latch", False)], "a pulse of the latch"),
 ])  # fmt: skip
-def test_the_part_refuses_wrong_timing(changes: list[tuple[float, str, bool]], why: str) -> None:
+def test_the_simulated_register_refuses_wrong_timing(
+    changes: list[tuple[float, str, bool]], message: str
+) -> None:
     register = ShiftRegister()
-    with pytest.raises(WrongTiming, match=why):
+    with pytest.raises(WrongTiming, match=message):
         for ns, name, is_high in changes:
             register.change(ns, name, is_high)
 
 
-def test_the_part_shows_eight_bits_at_its_latch_and_not_before() -> None:
+def test_the_simulated_register_shows_eight_bits_at_its_latch_only() -> None:
     register = ShiftRegister()
     ns = 0.0
     for bit in (1, 0, 1, 0, 0, 1, 1, 0):
@@ -225,7 +227,7 @@ def messages_of(robot: str) -> list[str]:
     return describe(exception_info.value, "en")
 
 
-def test_what_takes_the_shields_pins_is_named() -> None:
+def test_devices_that_take_the_shields_pins_are_named() -> None:
     """A buzzer takes the timer of M1 and M2, on a Mega a servo that of M1."""
     four = profile(*SIDES["four"])
     assert read(four, "test").board.buzzer is None

@@ -24,12 +24,12 @@ DELAY_US = 460  # time from the trigger to the echo
 
 
 def board_with_distances(
-    text: str, *distances_cm: float, robot: Robot | None = None, more: str = ""
+    text: str, *distances_cm: float, robot: Robot | None = None, extra_code: str = ""
 ) -> Board:
     """The distances of its pings, one after the other; the last one stays."""
     robot = robot or robots.load("tinibot")
     trigger, echo = sonar_pins(robot)
-    board = start_board(robot, text, more)
+    board = start_board(robot, text, extra_code)
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM for distance_cm in distances_cm])
     return board
@@ -44,12 +44,12 @@ def read_power_cm(board: Board, ms: float) -> int:
 @pytest.mark.sampled("distance_cm", keep=2)
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 99, 399])
-def test_pings_leave_30_ms_apart_and_hear_how_far_it_is(name: str, distance_cm: int) -> None:
+def test_pings_are_30_ms_apart_and_measure_the_distance(name: str, distance_cm: int) -> None:
     """A program that only measures does not measure more often. A sensor wants 10 us, and the loop
     does not wait for it."""
     robot = robots.load(name)
-    at = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
-    trigger, echo = sonar_pins(robot, at)
+    offset_usnar_index = [sensor.driver for sensor in robot.board.sensors].index("hc_sr04")
+    trigger, echo = sonar_pins(robot, offset_usnar_index)
     board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM])
@@ -77,12 +77,12 @@ def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     assert read_power_cm(board, third + 5) == 60
 
 
-def test_until_looks_again_every_40_ms() -> None:
+def test_until_checks_again_every_40_ms() -> None:
     """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
     board = board_with_distances(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START_MS + 250)
-    left = [ms - START_MS for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
-    assert [round(ms / 10) for ms in left] == [0, 3, 6, 10, 14, 17]
+    ping_ms = [ms - START_MS for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
+    assert [round(ms / 10) for ms in ping_ms] == [0, 3, 6, 10, 14, 17]
     assert board.motors(START_MS + 173)[0] == "pwm 51"
     assert board.motors(START_MS + 178)[0] == "low"
 
@@ -108,15 +108,15 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     robot = robots.load("tinibot")
     trigger, _ = sonar_pins(robot)
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
-    plain = board_with_distances(text, 20, 70).run_for(START_MS + 40)
-    left = plain.edges(trigger)[0] / MS
-    board = board_with_distances(text, 20, 70, robot=robot, more=RESTART_CODE)
-    board.level(left + after_ms, 19, True)
+    plain_board = board_with_distances(text, 20, 70).run_for(START_MS + 40)
+    first_ping_ms = plain_board.edges(trigger)[0] / MS
+    board = board_with_distances(text, 20, 70, robot=robot, extra_code=RESTART_CODE)
+    board.level(first_ping_ms + after_ms, 19, True)
     board.run_for(START_MS + 160)
     first, second, *others = ping_starts_ms(board, trigger)
     assert SPACING_MS <= second - first < SPACING_MS + 2
     drive_starts_ms = driven_ms(board, 1)
-    assert not [ms for ms in drive_starts_ms if left + after_ms + 0.5 < ms < others[1] + 3]
+    assert not [ms for ms in drive_starts_ms if first_ping_ms + after_ms + 0.5 < ms < others[1] + 3]
     assert {read_power_cm(board, ms) for ms in drive_starts_ms if ms > second} == {70}
 
 
@@ -151,8 +151,8 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
         board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
     board.run_for(START_MS + 600)
     starts_ms = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
-    both = sorted(ms for times in starts_ms for ms in times)
-    assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
+    all_starts_ms = sorted(ms for times in starts_ms for ms in times)
+    assert min(b - a for a, b in pairwise(all_starts_ms)) >= SPACING_MS
     assert min(len(times) for times in starts_ms) >= 4
     drive_starts_ms = driven_ms(board, 2)
     assert len(drive_starts_ms) > 10
@@ -171,9 +171,12 @@ ECHO_US = 50 * US_PER_CM
 EDGE_US = 100.0  # distance from an edge within which a glitch may count as the edge
 PHASES = [
     *range(5, 440, 29),  # before the echo
-    *(DELAY_US + at for at in (-60, -31, -20, -5, 5, 20, 40, 71, 95, 130)),
+    *(DELAY_US + offset_us for offset_us in (-60, -31, -20, -5, 5, 20, 40, 71, 95, 130)),
     *range(DELAY_US + 150, DELAY_US + 2900, 149),
-    *(DELAY_US + round(ECHO_US) + at for at in (-120, -95, -60, -31, -15, -5, 5, 20, 69, 90, 120)),
+    *(
+        DELAY_US + round(ECHO_US) + offset_us
+        for offset_us in (-120, -95, -60, -31, -15, -5, 5, 20, 69, 90, 120)
+    ),
     *range(DELAY_US + 3100, 24_000, 1501),
 ]
 
@@ -268,7 +271,7 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
     assert board.pin(echo, hangs + 1100) == "in"
 
 
-def test_a_line_that_is_high_for_a_moment_only_is_not_a_hung_sensor() -> None:
+def test_a_briefly_high_line_is_not_a_hung_sensor() -> None:
     """This holds after any pause: a glitch at the moment of a query is not read as 0."""
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;W(0.5);END_LOOP"
     robot = robots.load("tinibot")
@@ -285,7 +288,7 @@ def test_a_line_that_is_high_for_a_moment_only_is_not_a_hung_sensor() -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
-def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
+def test_one_wrong_sample_in_fifty_never_becomes_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""
     true, heard_cm = approaching_obstacle(seed, 100)
     board = board_with_distances("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard_cm)
@@ -296,14 +299,14 @@ def test_one_wrong_sample_in_fifty_is_never_a_reading(seed: int) -> None:
     for ms in readings:
         number = sum(sent < ms for sent in times) - 1
         cm = 2 * int(board.motors(ms)[0].removeprefix("pwm ")) / 2.55
-        most = max(4, 0.2 * true[number] + 3)
-        assert abs(cm - true[number]) < most, (number, heard_cm[number - 2 : number + 1])
+        most_cm = max(4, 0.2 * true[number] + 3)
+        assert abs(cm - true[number]) < most_cm, (number, heard_cm[number - 2 : number + 1])
 
 
 @pytest.mark.sampled("number", keep=2)
 @pytest.mark.parametrize("wrong_cm", [3, 400])
 @pytest.mark.parametrize("number", range(FIRST_SAMPLES))
-def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> None:
+def test_a_first_value_is_the_median_of_three(number: int, wrong_cm: float) -> None:
     heard_cm: list[float] = [50] * (FIRST_SAMPLES + 1)
     heard_cm[number] = wrong_cm
     board = board_with_distances(
@@ -313,7 +316,7 @@ def test_a_first_value_is_the_middle_of_three(number: int, wrong_cm: float) -> N
 
 
 @pytest.mark.parametrize("before_cm", [400, 100])
-def test_what_is_suddenly_there_takes_a_second_ping(before_cm: float) -> None:
+def test_a_sudden_obstacle_needs_a_second_ping(before_cm: float) -> None:
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
     board = board_with_distances(text, *[before_cm] * 10, 8).run_for(START_MS + 500)
     comes, confirmed = ping_starts_ms(board, sonar_pins(board.robot)[0])[10:12]

@@ -23,12 +23,12 @@ WIRE = 53  # a pin of a Mega whose change is an interrupt
 HANGING_HANDLER = "ISR(PCINT0_vect) { sei(); for (;;) {} }"
 
 
-def grabber_robot(holds: bool = False) -> Robot:
-    return on_board("grabber", "mega", *([HOLD_AT_STOP] if holds else []))
+def grabber_robot(holds_position: bool = False) -> Robot:
+    return on_board("grabber", "mega", *([HOLD_AT_STOP] if holds_position else []))
 
 
-def busy(robot: Robot, text: str, more: str = "") -> Board:
-    board = start_board(robot, text, more)
+def busy(robot: Robot, text: str, extra_code: str = "") -> Board:
+    board = start_board(robot, text, extra_code)
     board.watch(GRIPPER)
     board.watch(LED)
     return board
@@ -43,24 +43,24 @@ def interrupt(code: str) -> str:
 
 
 def pulses_from(board: Board, ms: float) -> int:
-    return sum(at > ms for at, _ in pulses(board, GRIPPER))
+    return sum(at_ms > ms for at_ms, _ in pulses(board, GRIPPER))
 
 
-@pytest.mark.sampled("holds")
-@pytest.mark.parametrize("holds", [False, True])
-def test_a_stop_turns_actuators_off(holds: bool) -> None:
+@pytest.mark.sampled("holds_position")
+@pytest.mark.parametrize("holds_position", [False, True])
+def test_a_stop_turns_actuators_off(holds_position: bool) -> None:
     """A lamp in any case; a servo gets no more pulses, unless its profile says that it holds."""
-    board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)")
+    board = busy(grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)")
     board.press(START_MS + 105, START_MS + 300)
     board.run_for(START_MS + 280)
     assert board.pin(LED, START_MS + 104) == "high"
     assert board.pin(LED, START_MS + 106) == "low"
     assert pulses_from(board, START_MS) >= 5
-    assert (pulses_from(board, START_MS + 106) >= 5) == holds
+    assert (pulses_from(board, START_MS + 106) >= 5) == holds_position
     assert all(abs(us - 1500) < 6 for _, us in pulses(board, GRIPPER)), "a pulse was cut"
 
 
-def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
+def test_a_stopped_actuator_stays_off_until_a_program_sets_it() -> None:
     board = busy(grabber_robot(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
     board.press(START_MS + 150, START_MS + 200)
     board.press(START_MS + 300, START_MS + 400 - STEADY_MS)
@@ -69,9 +69,9 @@ def test_what_was_turned_off_stays_off_until_a_program_sets_it() -> None:
     for ms in (152, 299, 399, 450, 498):
         assert board.pin(LED, START_MS + ms) == "low"
     assert board.pin(LED, START_MS + 505) == "high"
-    times = [at - START_MS for at, _ in pulses(board, GRIPPER)]
-    assert not [at for at in times if 151 < at < 499]
-    assert [at for at in times if at > 500]
+    times = [at_ms - START_MS for at_ms, _ in pulses(board, GRIPPER)]
+    assert not [at_ms for at_ms in times if 151 < at_ms < 499]
+    assert [at_ms for at_ms in times if at_ms > 500]
 
 
 def test_a_program_that_is_being_stopped_sets_nothing() -> None:
@@ -81,15 +81,17 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     board.level(START_MS + 50.123, WIRE, True)
     board.run_for(START_MS + 80)
     edges = [cycle / MS - START_MS for cycle in board.edges(LED)]
-    assert [at for at in edges if at < 50.1]
-    assert not [at for at in edges if at > 50.3]
+    assert [at_ms for at_ms in edges if at_ms < 50.1]
+    assert not [at_ms for at_ms in edges if at_ms > 50.3]
 
 
-@pytest.mark.sampled("holds")
-@pytest.mark.parametrize("holds", [False, True])
-def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
+@pytest.mark.sampled("holds_position")
+@pytest.mark.parametrize("holds_position", [False, True])
+def test_a_hanging_main_loop_turns_everything_off(holds_position: bool) -> None:
     """This includes outputs that a profile holds, because nothing controls them any more."""
-    board = busy(grabber_robot(holds), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER))
+    board = busy(
+        grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER)
+    )
     board.level(START_MS + 50, WIRE, True)
     board.run_for(START_MS + 170)
     assert board.pin(LED, START_MS + 140) == "high"
@@ -98,7 +100,7 @@ def test_a_main_loop_that_hangs_lets_everything_go(holds: bool) -> None:
     assert pulses_from(board, START_MS + 160) == 0
 
 
-def test_a_stop_turns_a_fan_and_a_lamp_off_that_is_on_when_low() -> None:
+def test_a_stop_turns_off_a_fan_and_an_active_low_lamp() -> None:
     board = start_board(on_board("tinibot", "uno", *WORKSHOP), "SI|FAN(80);LAMP(TRUE);W(5)")
     for pin in (9, 19):
         board.watch(pin)

@@ -46,20 +46,20 @@ def test_the_pins_follow_the_trace(case: Case, robot: Uno) -> None:
 
 
 @each_board
-def test_while_four_tasks_count_the_clock_goes_on(robot: Uno) -> None:
+def test_the_clock_runs_on_while_four_tasks_count(robot: Uno) -> None:
     text = "LOOP(3);F(0.1, 60);B(0.1, 60);END_LOOP;" + BUSY_PROGRAM.partition(";")[2]
     check_pins(
         program(text)._replace(parts={"tiniscript": text, "senses": "max-time = 0.5"}), robot
     )
 
 
-def list_settings(robot: Uno, since: int) -> list[MotorSetting]:
+def list_settings(robot: Uno, since_cycle: int) -> list[MotorSetting]:
     """Return the motor settings since a cycle, without those of standing."""
-    return [setting for setting in motor_settings(robot, since) if setting[1:] != (0, 0)]
+    return [setting for setting in motor_settings(robot, since_cycle) if setting[1:] != (0, 0)]
 
 
 @each_board
-def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
+def test_the_robot_backs_away_from_an_obstacle_and_drives_on(robot: Uno) -> None:
     """It does so each time, and if the obstacle has gone in the meantime, it drives on at once."""
     robot.sonar("trigger", "echo", 80)
     wired_uno = computer(robot)
@@ -68,12 +68,12 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
     assert states(robot) == FORWARD
     for wait_ms in (0, 7):
         wired_uno.run(wait_ms)
-        near = robot.cycle
+        near_cycle = robot.cycle
         robot.sonar("trigger", "echo", 10)
         wired_uno.run(700)
         robot.sonar("trigger", "echo", 80)
         wired_uno.run(800)
-        settings = list_settings(robot, near)
+        settings = list_settings(robot, near_cycle)
         assert [setting[1:] for setting in settings] == [(-60, -60), (60, -60), (60, 60)]
         begins, turns, goes_on = (setting.ms for setting in settings)
         assert begins < NOTICE_MS and abs(turns - begins - 500) < OFF_MS
@@ -81,7 +81,7 @@ def test_it_backs_away_from_what_comes_near_and_drives_on(robot: Uno) -> None:
 
 
 @each_board
-def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
+def test_a_missing_echo_delays_no_other_task(robot: Uno) -> None:
     robot.sonar("trigger", "echo", None)
     wired_uno = computer(robot)
     heard_count = len(robot.received_bytes)
@@ -98,7 +98,7 @@ def test_an_echo_that_does_not_come_holds_up_no_other_task(robot: Uno) -> None:
 @pytest.mark.sampled("later_ms", "board", keep=2)
 @BOARDS
 @pytest.mark.parametrize("later_ms", [100, 200, 500, 5000])
-def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
+def test_an_echo_before_an_interruption_ends_no_move(later_ms: int, robot: Uno) -> None:
     """A ping is under way when a WHEN takes the motors: after that a new one is heard."""
     robot.sonar("trigger", "echo", 350)
     wired_uno = computer(robot)
@@ -123,7 +123,7 @@ def test_an_echo_from_before_an_interruption_ends_no_move(later_ms: int, robot: 
 
 
 @each_board
-def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
+def test_a_stop_ends_busy_tasks(robot: Uno) -> None:
     """It reaches the pins as fast as in any program, and no motor starts again."""
     wired_uno = computer(robot)
     send(wired_uno, BUSY_PROGRAM, is_detached=True)
@@ -132,9 +132,9 @@ def test_a_stop_in_the_middle_of_busy_tasks(robot: Uno) -> None:
     robot.send(STOP_BYTES)
     robot.run_ms(20)
     stop_cycle = max(robot.pins[name].cycle for name in ("left", "right"))
-    last = robot.received_bytes[STOP_ZEROS - 1 - len(STOP_BYTES)].cycle
+    last_cycle = robot.received_bytes[STOP_ZEROS - 1 - len(STOP_BYTES)].cycle
     assert states(robot) == OFF
-    assert 0 < stop_cycle - last < STOP_US * CYCLES_PER_MS // 1000
+    assert 0 < stop_cycle - last_cycle < STOP_US * CYCLES_PER_MS // 1000
     wired_uno.run(300)
     assert states(robot) == OFF
     assert wired_uno.session.events()[-1].name == "STOPPED"

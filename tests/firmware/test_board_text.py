@@ -71,7 +71,7 @@ def test_a_program_whose_line_never_ends_runs(
 
 @pytest.mark.sampled("sketch_name")
 @pytest.mark.parametrize("sketch_name", ["uno", "nano"])
-def test_a_start_begins_a_line_anew(
+def test_a_start_discards_a_partial_line(
     sketch_name: str, sketches: Callable[[str], Path], memory: Path
 ) -> None:
     """It does so only after a module's message, and after a program that never ended."""
@@ -96,7 +96,7 @@ def test_a_start_begins_a_line_anew(
 
 
 @each_board
-def test_a_line_turns_the_motors_and_s_stops_them(robot: Uno) -> None:
+def test_a_line_starts_the_motors_and_s_stops_them(robot: Uno) -> None:
     assert type_and_listen(robot, "SI|F(2,80)\n", 60) == ["// OK"]
     assert states(robot) == FORWARD
     assert 0 < time_since_line_end_ms(robot) <= LINE_MS
@@ -110,13 +110,13 @@ def test_a_line_turns_the_motors_and_s_stops_them(robot: Uno) -> None:
 
 
 @each_board
-def test_the_obstacle_program_in_lines(robot: Uno) -> None:
+def test_the_obstacle_program_runs_line_by_line(robot: Uno) -> None:
     robot.sonar("trigger", "echo", 40)
-    *lines, last = OBSTACLE_LINES
+    *lines, last_line = OBSTACLE_LINES
     for line in lines:
         assert type_and_listen(robot, f"{line}\r\n", 40) == []
     assert states(robot) == OFF
-    assert type_and_listen(robot, f"{last}\r", 40) == ["// OK"]
+    assert type_and_listen(robot, f"{last_line}\r", 40) == ["// OK"]
     assert states(robot) == FORWARD
     assert 0 < time_since_line_end_ms(robot) <= PROGRAM_MS
     robot.sonar("trigger", "echo", 5)
@@ -139,7 +139,7 @@ def test_a_stop_is_as_quick_while_text_is_read(uno: Uno, text: str) -> None:
 
 
 @each_board
-def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
+def test_a_board_accepts_the_words_of_its_level(board: str, robot: Uno) -> None:
     wired_uno = computer(robot)
     features = wired_uno.complete(wired_uno.session.hello()).features
     assert TEXT_LEVELS[features & TEXT_LEVEL][0] == board.upper()
@@ -152,7 +152,7 @@ def test_its_words_are_those_of_its_level(board: str, robot: Uno) -> None:
 
 
 @pytest.mark.parametrize("board", ["mega"])
-def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -> None:
+def test_a_wrong_line_does_not_end_a_program_on_boards_with_room_for_both(robot: Uno) -> None:
     assert type_and_listen(
         robot, "SI|LOOP(FOREVER)\r\nM(50,50)\r\nW(0.1)\r\nEND_LOOP\r\n", 200
     ) == ["// OK"]
@@ -160,7 +160,7 @@ def test_a_wrong_line_leaves_what_runs_where_there_is_room_for_two(robot: Uno) -
     assert states(robot) == FORWARD
 
 
-def test_an_uno_has_the_texts_that_it_can_say(sketch: Path) -> None:
+def test_an_uno_contains_only_the_texts_that_it_can_print(sketch: Path) -> None:
     """The reasons of a DEF, other levels and discs take no flash."""
     firmware = sketch.read_bytes()
     assert pack_texts(rows("en", is_small=True)).texts in firmware
@@ -172,12 +172,15 @@ def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Pa
     """Built by `tsc firmware`. The other language takes no flash."""
     skip_unless_available()
     project = copy_sketch(tmp_path)
-    for language, answer, other in (("es", "500: 0 a 100", "en"), ("en", "500: 0 to 100", "es")):
+    for language, answer, other_language in (
+        ("es", "500: 0 a 100", "en"),
+        ("en", "500: 0 to 100", "es"),
+    ):
         robot = robots.load("tinibot", "mega").with_language(language)
         (project / building.HEADER_FILE).write_text(building.header(robot), encoding="utf-8")
         pio(project, "run", "-e", "mega").gives(0)
         elf = project / ".pio" / "build" / "mega" / "firmware.elf"
-        for language_code in (language, other):
+        for language_code in (language, other_language):
             assert (pack_texts(rows(language_code)).texts in elf.read_bytes()) == (
                 language_code == language
             )

@@ -31,7 +31,7 @@ from tiniscript.robots.ports import AVRS
 
 @pytest.mark.sampled("name", keep=2)
 @pytest.mark.parametrize("name", sorted(DRIVERS))
-def test_states_of_the_motor_pins(name: str) -> None:
+def test_motor_pins_follow_the_powers(name: str) -> None:
     board = start_board(robot_with_driver(name), MOVES_PROGRAM).run_for(START_MS + OFF_MS + 50)
     states = tuple(board.motors(START_MS + ms) for ms in (FORWARD_MS, BACKWARD_MS, TURN_MS, OFF_MS))
     assert states == DRIVERS[name][1]
@@ -39,7 +39,7 @@ def test_states_of_the_motor_pins(name: str) -> None:
 
 
 @pytest.mark.parametrize(("powers", "pin"), [("80, 0", 0), ("0, 80", 3)])
-def test_one_motor_drives_alone(powers: str, pin: int) -> None:
+def test_a_single_motor_can_run_alone(powers: str, pin: int) -> None:
     board = start_board(robot_with_driver("tb6612"), f"SI|M({powers});W(1)").run_for(START_MS + 60)
     state = board.motors(START_MS + 50)
     assert (state[pin], state[-1]) == ("pwm 204", "high")
@@ -84,7 +84,7 @@ def test_a_button_that_is_down_after_a_reset_starts_nothing() -> None:
 LATE_US = 6  # a pulse ends when no other interrupt is at work
 
 
-def test_servos_turn_and_stand_for_a_second() -> None:
+def test_servo_motors_turn_and_rest_for_a_second() -> None:
     board = start_board(robot_with(SERVOS), "SI|F(0.2, 80);M(0, 100);W(0.2)").run_for(
         START_MS + 2000
     )
@@ -122,12 +122,14 @@ def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -
     board.press(500, 600)
     board.press(700, 800)
     board.run_for(850)
-    off = ("low",) * len(board.motor_pins())
-    assert board.motors(START_MS + 50) != off  # the left one turns round, and may be off just then
+    off_levels = ("low",) * len(board.motor_pins())
+    assert (
+        board.motors(START_MS + 50) != off_levels
+    )  # the left one turns round, and may be off just then
     stop_cycle = [cycle for cycle in board.list_motor_changes() if cycle < 790 * MS][-1] / MS
     assert 0 < (stop_cycle - START_MS - 50.123) * 1000 < STOP_US or stop_cycle < START_MS + 50.123
     for ms in (START_MS + 50.123 + STOP_US / 1000, START_MS + 51, 450, 650, 799):
-        assert board.motors(ms) == off
+        assert board.motors(ms) == off_levels
     assert board.list_motor_changes()[-1] > 800 * MS  # the button releases the latch
 
 
@@ -146,9 +148,9 @@ def test_a_stop_at_any_cycle_stops(chip: str, lamp: str, stop_pin: int, group: i
     changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired_text))
     robot = on_board("tinibot", chip, *changes)
     bit = AVRS[chip].interrupt_by_pin[stop_pin].bit
-    more = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
-    more = more.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
-    board = start_board(robot, STOPPING, more)
+    extra_code = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
+    extra_code = extra_code.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
+    board = start_board(robot, STOPPING, extra_code)
     board.sweep(1, SWEPT_CYCLES, STOP_US, stop_pin)  # before the program drives again
     board.run_for(START_MS + 2)
     edges = [cycle for cycle in board.edges(7) if cycle > (START_MS + 1) * MS]

@@ -40,13 +40,13 @@ def state(it: DebuggedRobot) -> int:
     return it.robot.complete(it.session, it.session.status()).state
 
 
-def test_a_robot_says_that_it_halts() -> None:
+def test_a_robot_announces_that_it_can_halt() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.hello()) == OK
     assert session.robot and session.robot.values.features & BREAKPOINTS
 
 
-def test_a_program_halts_before_an_instruction_and_goes_on() -> None:
+def test_a_program_halts_before_an_instruction_and_continues() -> None:
     it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
     assert it.halt() == Halt(SECOND_MOVE_OFFSET, MAIN_TASK)
     assert it.variables()[:2] == [1000, 0]
@@ -89,13 +89,13 @@ def test_a_step_is_a_statement() -> None:
 def test_an_offset_inside_a_statement_is_not_a_place(text: str) -> None:
     it = DebuggedRobot(text)
     starts = statement_starts(it.image.code)
-    for at in range(len(it.image.code) + 3):
-        assert it.places(at) == (OK if at in starts else BAD_VALUE), at
+    for offset in range(len(it.image.code) + 3):
+        assert it.places(offset) == (OK if offset in starts else BAD_VALUE), offset
     assert it.places(*starts[:4]) == OK
     assert it.places(*starts[:3], 1000) == BAD_VALUE
 
 
-def test_places_are_even_bytes_of_a_program_that_is_there() -> None:
+def test_invalid_breakpoint_requests_are_refused() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.break_at((0,))) == STATUSES["NO_PROGRAM"]
     it = DebuggedRobot(DRIVE_PROGRAM)
@@ -129,7 +129,7 @@ def test_a_start_finds_the_tasks_of_the_program_and_no_others() -> None:
     assert [state for state, _, _ in it.tasks()[:MAIN_TASK]] == [0] * MAIN_TASK
 
 
-def test_whoever_fetches_a_program_that_is_halted_gets_it_as_it_was_sent() -> None:
+def test_a_halted_program_is_fetched_as_it_was_sent() -> None:
     it = debug(DRIVE_PROGRAM, 0, SECOND_MOVE_OFFSET, 5, 7)
     assert it.halt()
     assert fetch_image(it.robot, it.session)[15:] == it.image.code
@@ -147,11 +147,11 @@ def test_a_program_that_is_halted_is_saved_as_it_was_sent() -> None:
     wait_until_saved(robot, session)
     assert robot.complete(session, session.read_tasks()).is_halted
     restarted_robot = switched_on(robot.memory())
-    assert fetch_image(restarted_robot, other := computer(7))[15:] == image.code
-    assert restarted_robot.complete(other, other.status()).program == image.checksum
+    assert fetch_image(restarted_robot, other_session := computer(7))[15:] == image.code
+    assert restarted_robot.complete(other_session, other_session.status()).program == image.checksum
 
 
-def test_a_place_is_told_with_the_programs_checksum() -> None:
+def test_a_place_is_reported_with_the_programs_checksum() -> None:
     it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
     assert it.halt()
     it.session.tells_places = True
@@ -161,7 +161,7 @@ def test_a_place_is_told_with_the_programs_checksum() -> None:
     ]
 
 
-def test_a_fault_is_that_of_the_programs_image() -> None:
+def test_a_fault_is_reported_for_the_original_image() -> None:
     it = debug("SI|N = 0;SHOW(1 / N)", 0, SECOND_MOVE_OFFSET)
     assert it.halt() == Halt(0, MAIN_TASK)
     it.step()
@@ -196,7 +196,7 @@ RUN_ENDS = (
 
 
 @pytest.mark.parametrize("way", RUN_ENDS)
-def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
+def test_whatever_ends_a_run_also_ends_a_halted_one(way: str) -> None:
     it = debug("SI|LOOP(FOREVER);F(0.2, 80);SHOW(1);END_LOOP", 1)
     robot, session = it.robot, it.session
     assert it.halt() == Halt(1, MAIN_TASK)
@@ -243,7 +243,7 @@ def test_what_ends_a_run_ends_a_halted_one(way: str) -> None:
 
 @pytest.mark.parametrize("way", ["stop", "done", "start"])
 @pytest.mark.parametrize("halted_ms", [100, 3000])
-def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: int) -> None:
+def test_a_run_after_a_halted_one_has_its_own_clock(way: str, halted_ms: int) -> None:
     it = debug("SI|W(0.5);SHOW(TIME)", 0)
     assert it.halt() == Halt(0, MAIN_TASK)
     it.talk(halted_ms)
@@ -262,7 +262,7 @@ def test_a_run_after_a_halted_one_has_a_clock_of_its_own(way: str, halted_ms: in
     assert it.robot.now_ms - began_ms < 600
 
 
-def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
+def test_the_button_starts_the_verified_program_which_halts_again() -> None:
     it = debug("SI|F(0.2, 80);SHOW(1)", 0)
     assert it.halt() == Halt(0, MAIN_TASK)
     it.robot.push()
@@ -275,7 +275,7 @@ def test_the_button_starts_what_was_verified_and_it_halts_again() -> None:
     assert it.image.code == it.robot.codes()[-1]
 
 
-def test_another_program_has_no_places_and_the_same_one_again_has_none() -> None:
+def test_uploading_any_program_clears_the_breakpoints() -> None:
     it = debug("SI|W(0.05);SHOW(1)", 0)
     assert it.halt()
     for text in ("SI|W(0.05);SHOW(2)", "SI|W(0.05);SHOW(1)"):
@@ -283,7 +283,7 @@ def test_another_program_has_no_places_and_the_same_one_again_has_none() -> None
         assert it.halt() is None and it.events[-1].name == "DONE"
 
 
-def test_a_new_session_has_no_places() -> None:
+def test_a_new_session_has_no_breakpoints() -> None:
     it = debug("SI|W(0.05);SHOW(1)", 0)
     assert it.halt()
     it.session = computer(99)
@@ -294,7 +294,7 @@ def test_a_new_session_has_no_places() -> None:
 # -- parts that halt and parts that continue -------------------------------------------------------
 
 
-def test_nothing_halts_where_nobody_is_there() -> None:
+def test_nothing_halts_without_a_client() -> None:
     robot = switched_on()
     it = DebuggedRobot("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
     assert it.places(1) == OK
@@ -306,7 +306,7 @@ def test_nothing_halts_where_nobody_is_there() -> None:
     assert not [line for line in robot.did if "FAULTED" in line], "a detached run goes on alone"
 
 
-def test_a_halted_run_is_attached_even_if_it_was_not() -> None:
+def test_a_halted_run_becomes_attached() -> None:
     it = DebuggedRobot("SI|LOOP(FOREVER);F(0.2, 80);W(0.2);END_LOOP")
     assert it.places(1) == OK
     it.start(is_detached=True)
@@ -316,7 +316,7 @@ def test_a_halted_run_is_attached_even_if_it_was_not() -> None:
     assert state(it) == STATE_FAULTED
 
 
-def test_max_run_goes_on_while_it_is_halted() -> None:
+def test_the_longest_run_time_counts_halts() -> None:
     it = DebuggedRobot("SI|W(5);SHOW(1)", switched_on(max_run_ms=3000))
     assert it.places(0) == OK
     it.start(is_detached=True)
@@ -324,7 +324,7 @@ def test_max_run_goes_on_while_it_is_halted() -> None:
     assert it.until(lambda event: event.name == "FAULT") and state(it) == STATE_FAULTED
 
 
-def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -> None:
+def test_a_halt_stops_the_motors_and_a_move_keeps_its_remaining_time() -> None:
     """Another task halts while a move of one second has 600 ms left."""
     it = DebuggedRobot("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
     show = statement_starts(it.image.code)[4]
@@ -347,7 +347,7 @@ def test_motors_stand_while_it_is_halted_and_a_move_has_the_rest_of_its_time() -
     assert shown_values[-1] == 2400, "TIME stands while it is halted"
 
 
-def test_a_way_that_discs_measure_goes_on_with_its_rest() -> None:
+def test_a_measured_move_continues_with_its_rest() -> None:
     distances = []
     for is_halted in (False, True):
         robot = switched_on()
@@ -422,16 +422,16 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
         "SI|N = 0;WHILE(N < 3);N = N + 1;IF(N = 2);BREAK;ENDIF;END_WHILE;W(0.1)",
     ):
         it = DebuggedRobot(text)
-        for at in statement_starts(it.image.code):
+        for offset in statement_starts(it.image.code):
             session = it.session
-            assert it.robot.until(session, session.break_at((at,))) == OK
+            assert it.robot.until(session, session.break_at((offset,))) == OK
             it.start()
             count = 0
             while it.halt() is not None:
                 count += 1
                 assert count < 20
                 it.go()
-            assert count == count_visits(it.image, at), (text, at, count)
+            assert count == count_visits(it.image, offset), (text, offset, count)
 
 
 def test_a_show_without_room_halts_once() -> None:
@@ -447,7 +447,7 @@ def test_a_show_without_room_halts_once() -> None:
     assert count in (5, 6)  # the first may have been before its place was set
 
 
-def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
+def test_a_halt_is_reported_repeatedly_but_a_session_passes_it_on_once() -> None:
     it = debug(DRIVE_PROGRAM, SECOND_MOVE_OFFSET)
     assert it.halt()
     number = bytes((BY_NAME["HALTED"].number | 0x80,))
@@ -463,7 +463,7 @@ def test_a_halt_is_told_again_and_a_session_tells_it_once() -> None:
     assert it.halt() == Halt(5, MAIN_TASK)
 
 
-def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
+def test_breakpoints_may_change_while_running_or_halted() -> None:
     it = debug("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);END_LOOP")
     assert it.halt(300) is None
     _, _, _, add, show, _ = statement_starts(it.image.code)
@@ -479,11 +479,11 @@ def test_places_may_change_while_it_runs_and_while_it_is_halted() -> None:
     assert it.halt(500) is None and state(it) == STATE_RUNNING
 
 
-def test_a_step_stays_in_its_task_and_a_place_of_another_one_ends_it() -> None:
+def test_a_step_stays_in_its_task_unless_another_task_reaches_a_breakpoint() -> None:
     text = "SI|TASK;W(0.1);SHOW(1);W(0.1);SHOW(2);END_TASK;W(0.15);SHOW(8);W(1);SHOW(9)"
     it = DebuggedRobot(text)
     places = statement_starts(it.image.code)
-    main = places.index(next(at for at in places if at >= places[6]))
+    main = places.index(next(offset for offset in places if offset >= places[6]))
     assert it.places(places[1]) == OK
     it.start()
     assert it.halt() == Halt(places[1], 0)
@@ -493,7 +493,7 @@ def test_a_step_stays_in_its_task_and_a_place_of_another_one_ends_it() -> None:
     assert main
 
 
-def test_a_program_that_is_typed_halts_as_well() -> None:
+def test_a_typed_program_also_halts() -> None:
     robot, session = switched_on(), computer()
     robot.wait(200, b"SI|LOOP(FOREVER);W(0.1);SHOW(1);END_LOOP\n")
     assert robot.until(session, session.hello()) == OK
@@ -503,7 +503,7 @@ def test_a_program_that_is_typed_halts_as_well() -> None:
     assert robot.complete(session, session.read_tasks()).is_halted
 
 
-def test_a_session_asks_no_robot_that_cannot_halt() -> None:
+def test_a_session_sets_breakpoints_only_on_robots_that_can_halt() -> None:
     it = DebuggedRobot(DRIVE_PROGRAM)
     assert it.session.robot
     features = it.session.robot.values.features & ~BREAKPOINTS
@@ -512,7 +512,7 @@ def test_a_session_asks_no_robot_that_cannot_halt() -> None:
     assert it.robot.until(it.session, it.session.break_at(())) == OK
 
 
-def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
+def test_a_line_asked_to_halt_does_so_before_its_first_statement() -> None:
     """It has no breakpoint when it runs again, and neither has the stored program."""
     it = DebuggedRobot(DRIVE_PROGRAM)
     code = image_of(DRIVE_PROGRAM).code
@@ -535,7 +535,7 @@ def test_a_line_that_is_to_halt_does_so_before_its_first_statement() -> None:
         "LOOP(2);SHOW(3);END_LOOP",
     ],
 )
-def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
+def test_a_halted_line_does_the_same_as_an_unhalted_one(text: str) -> None:
     variables = []
     for halts in (True, False):
         it = DebuggedRobot(DRIVE_PROGRAM)
@@ -549,10 +549,10 @@ def test_a_line_that_has_halted_does_what_it_does_alone(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "more"),
+    ("name", "extra_bytes"),
     [("PROGRAM", b"\0"), ("BEGIN", bytes((ISA_MAJOR, 0, 0, 16, 0, 0, 1, 0))), ("START", b"")],
 )
-def test_nothing_but_a_line_is_to_halt(name: str, more: bytes) -> None:
+def test_only_a_line_can_be_asked_to_halt(name: str, extra_bytes: bytes) -> None:
     it = DebuggedRobot(DRIVE_PROGRAM)
     mode = HALTS | RUN * (name != "START")
-    assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + more)
+    assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + extra_bytes)

@@ -36,15 +36,17 @@ def switched_on(kit: Kit, seed: int) -> HostFirmware:
     return robot
 
 
-def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
+def run(image: Image, kit: Kit, seed: int, mode: str) -> list[str]:
     """Run a program alone, step by step, or from place to place; return its actions and values,
     without the motor changes of halts, up to the first event after LIMIT_MS of its own time.
     """
     rng = random.Random(seed)
     it = DebuggedRobot(image, switched_on(kit, seed), kit.fingerprint)
     statements = statement_starts(image.code)
-    if how != "alone":
-        some = statements[:1] if how == "steps" else rng.sample(statements, min(4, len(statements)))
+    if mode != "alone":
+        some = (
+            statements[:1] if mode == "steps" else rng.sample(statements, min(4, len(statements)))
+        )
         assert it.places(*some) == OK
     it.talk(RUN_START_MS - it.robot.now_ms)
     event_count = len(it.robot.did)
@@ -63,22 +65,22 @@ def run(image: Image, kit: Kit, seed: int, how: str) -> list[str]:
         for event in halts:
             assert event.at in statements
             halted_in += 1
-            it.go(RESUME_STEP if how == "steps" or rng.random() < 0.3 else RESUME_GO)
+            it.go(RESUME_STEP if mode == "steps" or rng.random() < 0.3 else RESUME_GO)
             lines_there.append("HALT")
-    assert how != "steps" or halted_in
+    assert mode != "steps" or halted_in
     return lines_there
 
 
 def without_halts(lines: list[str], kind: str) -> list[str]:
     """Return the lines of one kind; for MOTORS only those that change the program's setting."""
-    mine = [line for line in lines if line.split()[0] == kind]
+    kind_lines = [line for line in lines if line.split()[0] == kind]
     if kind != "MOTORS":
-        return mine
-    changes, last = list[str](), "MOTORS 0 0"
-    for line in mine:
-        if line not in ("MOTORS 0 0", last):
+        return kind_lines
+    changes, last_change = list[str](), "MOTORS 0 0"
+    for line in kind_lines:
+        if line not in ("MOTORS 0 0", last_change):
             changes.append(line)
-            last = line
+            last_change = line
     return changes
 
 
@@ -90,21 +92,21 @@ def compare(seed: int) -> bool:
     image = image_of(text, kit)
     if image.start != "SI" or not statement_starts(image.code) or "TIME" in text or image.needs & 1:
         return False
-    alone = run(image, kit, seed, "alone")
-    for how in ("steps", "places"):
-        other = run(image, kit, seed, how)
+    unstepped_run = run(image, kit, seed, "alone")
+    for mode in ("steps", "places"):
+        stepped_run = run(image, kit, seed, mode)
         for kind in ("SHOW", "SET", "BEEP", "MOTORS"):
-            first, second = without_halts(alone, kind), without_halts(other, kind)
+            first, second = without_halts(unstepped_run, kind), without_halts(stepped_run, kind)
             count = min(len(first), len(second))
-            assert first[:count] == second[:count], (seed, how, kind, text)
-            ended = "FINISHED" in alone and "FINISHED" in other
-            assert not ended or len(first) == len(second), (seed, how, kind, text)
-        assert not [line for line in other if "CHANGED" in line or "UNVERIFIED" in line]
+            assert first[:count] == second[:count], (seed, mode, kind, text)
+            ended = "FINISHED" in unstepped_run and "FINISHED" in stepped_run
+            assert not ended or len(first) == len(second), (seed, mode, kind, text)
+        assert not [line for line in stepped_run if "CHANGED" in line or "UNVERIFIED" in line]
     return True
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_a_program_that_is_stepped_does_what_it_does_alone(seed: int) -> None:
+def test_a_stepped_program_does_the_same_as_an_unstepped_one(seed: int) -> None:
     compare(seed)
 
 
@@ -130,9 +132,9 @@ def halts_before(it: DebuggedRobot, rng: random.Random) -> None:
         it.start()
         for _ in range(rng.randint(0, 5)):
             it.talk(rng.choice((1, 20, 100, 700)))
-            how = rng.choice((RESUME_GO, RESUME_STEP, RESUME_STEP))
+            resume_mode = rng.choice((RESUME_GO, RESUME_STEP, RESUME_STEP))
             if rng.random() < 0.7:
-                it.go(how)
+                it.go(resume_mode)
         if rng.random() < 0.5:
             # Sent while a stop is on its way.
             it.session.resume(how=rng.choice((RESUME_GO, RESUME_STEP)))
@@ -152,8 +154,8 @@ def list_next_run(it: DebuggedRobot, places: list[int]) -> list[str]:
         is_halted = False
         for event in it.talk(4):
             if event.name in ("SHOW", "HALTED", *END_EVENTS):
-                what = getattr(event, "value", getattr(event, "at", ""))
-                lines.append(f"{event.name} {what}")
+                value = getattr(event, "value", getattr(event, "at", ""))
+                lines.append(f"{event.name} {value}")
                 is_halted = event.name == "HALTED"
         if is_halted:
             halts += 1
@@ -162,7 +164,7 @@ def list_next_run(it: DebuggedRobot, places: list[int]) -> list[str]:
     while actions and not actions[0].endswith("BEEP 31 1"):
         del actions[0]  # the end of the run before
     rows = (line.split(" ", 1) for line in actions)
-    return [*lines, *(f"{int(ms) - began_ms} {what}" for ms, what in rows)]
+    return [*lines, *(f"{int(ms) - began_ms} {value}" for ms, value in rows)]
 
 
 @pytest.mark.parametrize("seed", range(24))

@@ -72,10 +72,10 @@ def run_in_tsc(image: Image) -> Seen:
     rows = [line.split(maxsplit=2) for line in trace.splitlines()]
     end_ms = float(rows[-1][0])
     times = [(float(row[0]), row[2]) for row in rows if row[1] == "MOTORS"]
-    ends = [at for at, _ in times[1:]] + [end_ms]
+    end_times_ms = [at_ms for at_ms, _ in times[1:]] + [end_ms]
     settings = [
-        (end - at, (int(powers.split()[0]), int(powers.split()[1])))
-        for (at, powers), end in zip(times, ends, strict=False)
+        (end - at_ms, (int(powers.split()[0]), int(powers.split()[1])))
+        for (at_ms, powers), end in zip(times, end_times_ms, strict=False)
     ]
     shows = [row[2] for row in rows if row[1] == "SHOW"]
     return Seen(shows, settings, rows[-1][1] in ("DONE", "FAULT"), end_ms)
@@ -89,7 +89,7 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
     starts = statement_starts(image.code)
     assert wired_uno.until(session.break_at(starts[:1])) == OK
     assert wired_uno.until(session.start()) == OK
-    since, shows, halts = uno.cycle, list[str](), 0
+    since_cycle, shows, halts = uno.cycle, list[str](), 0
     own_ms, is_over = 0, False
     while own_ms < OWN_MS + HALT_MS * (halts + 2) and halts < MOST_HALTS and not is_over:
         wired_uno.run(1)
@@ -104,11 +104,11 @@ def step_on_chip(image: Image, uno: Uno) -> Seen:
             is_over = is_over or event.name in ("DONE", "FAULT")
     assert halts, "it halts before its first statement"
     changes = [change.cycle for name in MOTORS for change in uno.pins.history(name)]
-    cycles = sorted({cycle for cycle in changes if cycle > since})
-    ends = [*cycles[1:], uno.cycle]
+    cycles = sorted({cycle for cycle in changes if cycle > since_cycle})
+    end_cycles = [*cycles[1:], uno.cycle]
     settings = [
-        ((end - at) / CYCLES_PER_MS, (power(uno, "left", at), power(uno, "right", at)))
-        for at, end in zip(cycles, ends, strict=False)
+        ((end - cycle) / CYCLES_PER_MS, (power(uno, "left", cycle), power(uno, "right", cycle)))
+        for cycle, end in zip(cycles, end_cycles, strict=False)
     ]
     session.stop(wired_uno.now_ms)
     wired_uno.run(200)
@@ -130,9 +130,9 @@ def sum_durations(steps: Seen) -> dict[Setting, float]:
     return result
 
 
-def is_within(some: list[Setting], more: list[Setting]) -> bool:
-    """Return whether `some` is a subsequence of `more`."""
-    rest = iter(more)
+def is_within(some: list[Setting], longer: list[Setting]) -> bool:
+    """Return whether `some` is a subsequence of `longer`."""
+    rest = iter(longer)
     return all(setting in rest for setting in some)
 
 
@@ -145,9 +145,9 @@ def compare(image: Image, uno: Uno) -> bool:
     assert run.is_over or wanted_observation.end_ms > OWN_MS or run.halts == MOST_HALTS
     if run.is_over:
         assert run.shows == wanted_observation.shows and wanted_observation.is_over
-        theirs, mine = sum_durations(wanted_observation), sum_durations(run)
-        for setting in theirs.keys() | mine.keys():
-            off_ms = abs(theirs.get(setting, 0) - mine.get(setting, 0))
+        expected, actual = sum_durations(wanted_observation), sum_durations(run)
+        for setting in expected.keys() | actual.keys():
+            off_ms = abs(expected.get(setting, 0) - actual.get(setting, 0))
             most_ms = OFF_MS + OFF_HALT_MS * run.halts + OFF_SHOW_MS * len(run.shows)
             assert off_ms <= most_ms, setting
         assert is_within(
@@ -178,7 +178,7 @@ def chip(
 
 @pytest.mark.sampled("first", "chip")
 @pytest.mark.parametrize("first", [0, 100, 200])
-def test_a_program_that_is_stepped_gives_its_trace(chip: Uno, first: int) -> None:
+def test_a_stepped_program_gives_its_trace(chip: Uno, first: int) -> None:
     programs_of = images(first)
     for _ in range(2):
         seed, image = next(programs_of)
@@ -186,7 +186,7 @@ def test_a_program_that_is_stepped_gives_its_trace(chip: Uno, first: int) -> Non
         compare(image, chip)
 
 
-def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> None:
+def test_a_robot_that_can_halt_announces_it_and_reads_no_text_on_an_uno(chip: Uno) -> None:
     wired_uno = computer(chip)
     assert wired_uno.until(wired_uno.session.hello()) == OK
     assert wired_uno.session.robot is not None
@@ -197,7 +197,7 @@ def test_a_robot_that_halts_says_so_and_reads_no_text_on_an_uno(chip: Uno) -> No
 
 @pytest.mark.sampled(of="long ways of a chip")
 @pytest.mark.parametrize(("board", "environment"), [*ENVIRONMENT_WITH_BREAKPOINTS.items()])
-def test_what_halts_leaves_the_stack_its_room(
+def test_a_firmware_with_breakpoints_leaves_enough_stack(
     board: str, environment: str, sketches: Callable[[str], Path]
 ) -> None:
     stack = firmware_stack.measure(sketches(environment), robots.load("tinibot"), board, True)

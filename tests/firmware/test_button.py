@@ -39,7 +39,7 @@ def test_spikes_start_nothing_whatever_their_spacing(count: int) -> None:
 
 
 @pytest.mark.parametrize("turn", TURNS_US)
-def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
+def test_a_press_is_reported_at_once_and_its_release_late(turn: int) -> None:
     chance = random.Random(turn)
     cases = []
     for _ in range(200):
@@ -56,7 +56,7 @@ def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
             assert released_us <= edges[-1] + STEADY_US + 3000
 
 
-def test_a_release_that_does_not_last_does_not_count() -> None:
+def test_a_brief_release_does_not_count() -> None:
     """Spikes while the button is held down, at all spacings."""
     cases = [
         (turn, 0, [0, *(100_000 + us for us in spikes(5, spacing_ms * 1000)), 2_000_000])
@@ -68,7 +68,7 @@ def test_a_release_that_does_not_last_does_not_count() -> None:
         assert events[-1][0] >= 2_000_000 + STEADY_US - 1000
 
 
-def test_a_press_after_a_spike_is_told() -> None:
+def test_a_press_after_a_spike_is_reported() -> None:
     """Its first edge may count as the spike's chatter: then it is reported once it has lasted."""
     cases = [(100, 0, [0, SPIKE_US, gap_us, 500_000]) for gap_us in range(200, 60_000, 700)]
     for (_, _, edges), events in zip(cases, button_events(cases), strict=True):
@@ -86,21 +86,21 @@ def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
     for spacing_ms in (1, 3, 10, 20, 25, *range(28, 36), 60, 100, 200):
         for count in (2, 5):
             for k in range(count):
-                at = uno.cycle + (1 + k * spacing_ms) * CYCLES_PER_MS
-                uno.drive("button", False, at=at)
-                uno.drive("button", None, at=at + SPIKE_US * CYCLES_PER_MS // 1000)
+                cycle = uno.cycle + (1 + k * spacing_ms) * CYCLES_PER_MS
+                uno.drive("button", False, at=cycle)
+                uno.drive("button", None, at=cycle + SPIKE_US * CYCLES_PER_MS // 1000)
             uno.run_ms(count * spacing_ms + 80)
             assert states(uno) == OFF, (spacing_ms, count)
     assert not [change for change in uno.pins.history("left") if change.state == "pwm"]
 
 
-def test_an_uno_that_runs_is_stopped_by_the_first_edge(uno: Uno) -> None:
+def test_the_first_edge_stops_a_running_uno(uno: Uno) -> None:
     wired_uno = computer(uno)
     send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(100)
-    at = uno.cycle + CYCLES_PER_MS
-    uno.drive("button", False, at=at)
+    cycle = uno.cycle + CYCLES_PER_MS
+    uno.drive("button", False, at=cycle)
     uno.run_ms(3)
     assert states(uno) == OFF
     off_cycle = max(uno.pins[name].cycle for name in OFF)
-    assert off_cycle - at < CYCLES_PER_MS
+    assert off_cycle - cycle < CYCLES_PER_MS

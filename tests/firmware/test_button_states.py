@@ -82,7 +82,7 @@ def test_the_document_has_every_state() -> None:
     assert list(read_table()) == list(STATES)
 
 
-def test_the_presses_are_what_they_are_called() -> None:
+def test_presses_match_their_names() -> None:
     letters_by_name = {
         name: "".join(letter for _, letter in row) for name, row in letters().items()
     }
@@ -110,14 +110,14 @@ def press_button(table: Table, press: str) -> None:
 @pytest.mark.sampled("press", keep=3)
 @pytest.mark.parametrize("press", PRESSES)
 @pytest.mark.parametrize("state", STATES)
-def test_the_button(state: str, press: str) -> None:
+def test_the_button_acts_as_documented_in_each_state(state: str, press: str) -> None:
     table = Table()
     STATES[state](table)
     robot, begun_ms = table.robot, table.robot.now_ms
-    was_latched, before = robot.is_latched, len(robot.did)
+    was_latched, count_before = robot.is_latched, len(robot.did)
     press_button(table, press)
-    rows = [row.split(" ", 1) for row in robot.did[before:]]
-    moves = [(int(ms) - begun_ms, what) for ms, what in rows if what.startswith("MOTORS")]
+    rows = [row.split(" ", 1) for row in robot.did[count_before:]]
+    moves = [(int(ms) - begun_ms, action) for ms, action in rows if action.startswith("MOTORS")]
     wanted_texts, columns = read_table()[state], PRESSES[press][1]
     first_ms = letters()[press][0][0]
     stops = wanted_texts[EDGE_COLUMN] == "stops it"
@@ -127,18 +127,18 @@ def test_the_button(state: str, press: str) -> None:
         wanted_texts[event] not in ("-", "stops it") for event in (EDGE_COLUMN, LATE_COLUMN)
     )
     if stops:
-        assert [what for _, what in moves] == ["MOTORS 0 0"]
+        assert [action for _, action in moves] == ["MOTORS 0 0"]
         assert moves[0][0] <= first_ms + 2
         assert robot.is_latched
     elif starts:
-        assert [what for _, what in moves] == [f"MOTORS {table.program} {table.program}"]
+        assert [action for _, action in moves] == [f"MOTORS {table.program} {table.program}"]
         up_ms = letters()[press][-1][0]
         assert up_ms <= moves[0][0]
         assert not robot.is_latched
     else:
         assert moves == []
         assert robot.is_latched
-    beeps = [what for _, what in rows if what.startswith("BEEP 1568")]
+    beeps = [action for _, action in rows if action.startswith("BEEP 1568")]
     is_forgotten = table.is_reset_down and press == HELD_FOR_EVER
     assert len(beeps) == (
         is_forgotten
@@ -148,7 +148,7 @@ def test_the_button(state: str, press: str) -> None:
 
 @pytest.mark.parametrize("has_draft", [True, False])
 @pytest.mark.parametrize("press", PRESSES)
-def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
+def test_only_a_start_discards_text(press: str, has_draft: bool) -> None:
     """An open block continues after presses that start no program."""
     table = Table(has_draft)
     STATES["has an open block of text"](table)
@@ -162,7 +162,7 @@ def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
 
 
 @pytest.mark.parametrize("press", PRESSES)
-def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
+def test_only_a_start_discards_an_upload(press: str) -> None:
     table = Table()
     table.upload_program(SAVED_POWER)
     image = image_of(f"SI|{f'F(1, {OTHER_POWER}); ' * 90}")
@@ -198,9 +198,7 @@ ACTIONS_DURING_PRESS: dict[str, Callable[[Table], object]] = {
 
 @pytest.mark.parametrize("is_sure", [True, False])
 @pytest.mark.parametrize("meanwhile", ACTIONS_DURING_PRESS)
-def test_a_release_starts_nothing_where_something_ran_or_was_stopped_since(
-    meanwhile: str, is_sure: bool
-) -> None:
+def test_a_release_starts_nothing_after_a_run_or_a_stop(meanwhile: str, is_sure: bool) -> None:
     table = Table()
     table.upload_program(SAVED_POWER)
     if "text" in meanwhile:

@@ -40,9 +40,9 @@ CUT_KIND, STOPPED_KIND, STOPPED_TWICE_KIND = KINDS = ("cut", "stopped", "stopped
 
 def largest() -> Image:
     """An image that fills the robot, and drives at once."""
-    begin = image_of("SI|F(9, 80)").code
+    begin_code = image_of("SI|F(9, 80)").code
     show = image_of("SI|SHOW(1)").code
-    code = begin + show * ((ROOM_BYTES - len(begin)) // len(show))
+    code = begin_code + show * ((ROOM_BYTES - len(begin_code)) // len(show))
     return unpack(pack("SI", 0, code))
 
 
@@ -73,13 +73,13 @@ def cut_at(memory: bytes, kind: str, count: int) -> bool:
     robot, session = HostFirmware(KIT, memory), computer()
     robot.wait(200)
     assert robot.until(session, session.hello()) == OK
-    late = sent_until(robot, session, count)
-    if not late:
+    is_late = sent_until(robot, session, count)
+    if not is_late:
         return True
     if kind != CUT_KIND:
         robot.step(STOP)
         robot.did.clear()
-        robot.step(late)  # bytes under way
+        robot.step(is_late)  # bytes under way
         if kind == STOPPED_TWICE_KIND:
             robot.step(STOP)
         robot.wait(300)
@@ -112,11 +112,11 @@ def break_off(kind: str, first: int, stride: int) -> int:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_an_upload_that_is_broken_off(kind: str) -> None:
+def test_a_broken_off_upload_leaves_the_robot_usable(kind: str) -> None:
     assert break_off(kind, 3, STRIDE_BYTES) > 450 // STRIDE_BYTES
 
 
-def test_a_program_that_an_upload_has_cost_is_told_no_more() -> None:
+def test_a_program_overwritten_by_an_upload_is_no_longer_reported() -> None:
     """The robot still says its checksum and its length."""
     robot, session = HostFirmware(KIT), computer()
     robot.wait(200)
@@ -231,8 +231,8 @@ def frames_of(image: Image) -> list[tuple[str, bytes]]:
     body = data[CHECKSUM_OFFSET + 4 :]
     return [
         ("BEGIN", bytes([RUN]) + data[2:CHECKSUM_OFFSET]),
-        *(("DATA", at.to_bytes(2, "little") + body[at : at + PIECE_BYTES])
-          for at in range(0, len(body), PIECE_BYTES)),
+        *(("DATA", offset.to_bytes(2, "little") + body[offset : offset + PIECE_BYTES])
+          for offset in range(0, len(body), PIECE_BYTES)),
         ("COMMIT", data[CHECKSUM_OFFSET : CHECKSUM_OFFSET + 4]),
     ]  # fmt: skip
 
@@ -259,16 +259,16 @@ def memory() -> bytes:
 
 @pytest.mark.parametrize("kind", ROBOT_KINDS)
 @pytest.mark.parametrize("cut", CUTS)
-@pytest.mark.parametrize("what", REQUESTS_THAT_END_UPLOAD)
-def test_an_upload_that_something_has_come_between_is_over(
-    memory: bytes, what: str, cut: str, kind: str
+@pytest.mark.parametrize("request_name", REQUESTS_THAT_END_UPLOAD)
+def test_an_interrupted_upload_is_over(
+    memory: bytes, request_name: str, cut: str, kind: str
 ) -> None:
     """The rest is refused, and the robot acts as without it. The stand-in checks that no byte of
     the running program changes.
     """
-    line, rest = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[what])
-    twin, _ = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[what])
-    if what == "an upload":
+    line, rest = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[request_name])
+    twin, _ = cut_by(kind, memory, cut, REQUESTS_THAT_END_UPLOAD[request_name])
+    if request_name == "an upload":
         # a shorter payload
         rest = rest[1:] if cut == CUT_BEFORE_LAST_PIECE else [("COMMIT", bytes(4))]
     statuses = [line.asks(*frame) for frame in rest]
@@ -282,11 +282,11 @@ def test_an_upload_that_something_has_come_between_is_over(
 
 @pytest.mark.parametrize("kind", ROBOT_KINDS)
 @pytest.mark.parametrize("cut", CUTS)
-@pytest.mark.parametrize("what", REQUESTS_DURING_UPLOAD)
-def test_an_upload_goes_on_beside_what_needs_no_memory(
-    memory: bytes, what: str, cut: str, kind: str
+@pytest.mark.parametrize("request_name", REQUESTS_DURING_UPLOAD)
+def test_an_upload_continues_beside_requests_that_need_no_memory(
+    memory: bytes, request_name: str, cut: str, kind: str
 ) -> None:
-    line, rest = cut_by(kind, memory, cut, REQUESTS_DURING_UPLOAD[what])
+    line, rest = cut_by(kind, memory, cut, REQUESTS_DURING_UPLOAD[request_name])
     assert [line.asks(*frame) for frame in rest] == [OK] * len(rest)
     assert line.robot.codes() == [SECOND_IMAGE.code]
 

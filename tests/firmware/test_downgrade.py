@@ -136,8 +136,12 @@ class Between:
         if frame.number == BY_NAME["PROGRAM"].number:
             payload[:4] = image_of(FOREVER).checksum.to_bytes(4, "little")
         if frame.number == AUTHENTICATE and self.draw.random() < 0.5:
-            wrong = bytes([self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0])
-            return encode_frame(frame._replace(payload=wrong, is_reply=True, is_sealed=False))
+            wrong_payload = bytes(
+                [self.draw.choice((STATUSES["WRONG_KEY"], STATUSES["NOT_OWNER"])), 4, 0]
+            )
+            return encode_frame(
+                frame._replace(payload=wrong_payload, is_reply=True, is_sealed=False)
+            )
         frame = frame._replace(payload=b"\0" + bytes(payload), is_reply=True)
         return encode_frame(frame._replace(is_sealed=False))
 
@@ -281,13 +285,13 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
     return f"{kind}, {how}"
 
 
-def test_a_stranger_with_an_id_of_its_own_is_not_believed() -> None:
+def test_a_stranger_with_its_own_id_is_not_trusted() -> None:
     end, strange = End(), Stranger()
     outcomes = {one_stranger(end, strange, seed) for seed in range(1, TRIAL_COUNT + 1)}
     assert len(outcomes) == 16  # each kind
 
 
-def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
+def test_accepted_robots_and_those_with_a_known_key_are_trusted() -> None:
     end, strange = End(), Stranger()
     keys = end.keys
     session = end.session(1, keys, ROBOT_PLACE)
@@ -296,21 +300,21 @@ def test_who_is_accepted_or_has_a_key_here_is_believed() -> None:
     request = session.hello()
     talk_honestly(strange, session, request)
     assert request.outcome and request.outcome.status == OTHER_ROBOT
-    other = request.outcome.detail
-    keys.accepted_ids.add(other)
+    robot_id = request.outcome.detail
+    keys.accepted_ids.add(robot_id)
     for _ in range(2):
         talk_honestly(strange, session, request := session.hello())
         assert request.outcome and request.outcome.status == 0
-        assert session.robot and session.robot.id == other
+        assert session.robot and session.robot.id == robot_id
     strange.table.claim_session(keys)  # in another slot
     keys.accepted_ids.clear()
     session = strange.session(3, keys, ROBOT_PLACE)
     talk_honestly(strange, session, request := session.hello())
     assert request.outcome and request.outcome.status == 0
-    assert keys.id_by_place[ROBOT_PLACE] == other
+    assert keys.id_by_place[ROBOT_PLACE] == robot_id
 
 
-def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
+def test_an_unknown_robot_is_trusted() -> None:
     """The same holds if the robot of the key does not seal."""
     strange = Stranger()
     for key in ([], [RobotKey(7, KEY_OWNER, bytes(15) + b"\7", NAME.decode())]):
@@ -322,14 +326,14 @@ def test_a_robot_of_which_nothing_is_known_is_believed() -> None:
         assert request.outcome and request.outcome.status == 0
 
 
-def test_nobody_between_takes_the_seals_away() -> None:
+def test_no_relay_can_remove_the_seals() -> None:
     end = End()
     assert len({one_trial(end, seed) for seed in range(1, TRIAL_COUNT + 1)}) == 10  # each kind
 
 
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("is_greeted", [False, True])
-def test_a_stop_that_the_robot_has_heard_is_confirmed(which: int, is_greeted: bool) -> None:
+def test_a_received_stop_is_confirmed(which: int, is_greeted: bool) -> None:
     """A robot that seals says so under the seal, with a teacher's key alone, too."""
     end = End(which)
     start_long_drive(end, random.Random(3))
@@ -342,7 +346,7 @@ def test_a_stop_that_the_robot_has_heard_is_confirmed(which: int, is_greeted: bo
     assert state_of(end) == STATE_STOPPED
 
 
-def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() -> None:
+def test_a_robot_claimed_by_another_computer_stops_without_proof() -> None:
     end = End()
     start_long_drive(end, random.Random(3))
     keys = Keys()
@@ -359,7 +363,7 @@ def test_a_robot_that_was_claimed_by_another_is_stopped_and_does_not_prove_it() 
     assert talk_honestly(end, stranger, None)[-1] == "STOPPED"
 
 
-def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
+def test_seal_support_is_learned_only_from_the_robot_itself() -> None:
     end = End()
     assert [key.uses_seals for key in end.keys.stored_keys] == [True]  # from its claim
     keys = Keys()
@@ -376,8 +380,8 @@ def test_a_key_learns_that_its_robot_seals_from_the_robot_alone() -> None:
 
 def play_either(ends: tuple[End, End, Stranger], seed: int) -> str:
     """Play one of somebody in between, or one of a stranger with an id of its own."""
-    robot, other, strange = ends
-    return one_stranger(other, strange, seed) if seed % 2 else one_trial(robot, seed)
+    robot, other_end, strange = ends
+    return one_stranger(other_end, strange, seed) if seed % 2 else one_trial(robot, seed)
 
 
 if __name__ == "__main__":

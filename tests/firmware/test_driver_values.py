@@ -62,7 +62,7 @@ def names(drivers: list[Driver]) -> list[str]:
 
 
 @pytest.mark.parametrize("motors", MOTORS)
-def test_whatever_drivers_there_are_each_is_wired_to_pins_that_are_simulated(motors: str) -> None:
+def test_every_driver_is_wired_to_simulated_pins(motors: str) -> None:
     """Therefore a new driver leaves the others the pins they need, wherever its name is in the
     list.
     """
@@ -79,7 +79,7 @@ def test_whatever_drivers_there_are_each_is_wired_to_pins_that_are_simulated(mot
 
 @pytest.mark.sampled("driver", keep=2)
 @pytest.mark.parametrize("driver", SENSORS, ids=names(list(SENSORS)))
-def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
+def test_a_sensor_reads_its_simulated_input(driver: Driver) -> None:
     name, wiring = name_and_wiring(driver)
     readings = set()
     for is_much in (False, True):
@@ -93,11 +93,12 @@ def test_what_a_sensor_feels_is_its_reading(driver: Driver) -> None:
 
 @pytest.mark.sampled("driver")
 @pytest.mark.parametrize("driver", ACTUATORS, ids=names(ACTUATORS))
-def test_what_an_actuator_is_set_to_is_at_its_pins(driver: Driver) -> None:
+def test_an_actuators_setting_appears_at_its_pins(driver: Driver) -> None:
     name, wiring = name_and_wiring(driver)
-    less, more = SET_VALUES[driver.used_by.split()[1]]
+    low_value, high_value = SET_VALUES[driver.used_by.split()[1]]
     board = start_board(
-        ROBOT_WITH_ALL_DRIVERS, f"SI|{name}({less});W({SET_MS / 1000});{name}({more});W(1)"
+        ROBOT_WITH_ALL_DRIVERS,
+        f"SI|{name}({low_value});W({SET_MS / 1000});{name}({high_value});W(1)",
     )
     pins = wiring.pins.values()
     for pin in pins:

@@ -68,12 +68,14 @@ def start_drive(broker: Mosquitto, text: str = AWAY_PROGRAM, keys: Keys | None =
     keys = keys or Keys()
     robot, _ = connect_to_broker(broker, keys)
     teacher, owner = broker.connect_client(), remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, teacher), owner)]
-    assert upload_text(robot, ends, owner, text) == "OK"
-    return Drive(robot, teacher, owner, ends)
+    clients: Ends = [(AtBroker(robot, teacher), owner)]
+    assert upload_text(robot, clients, owner, text) == "OK"
+    return Drive(robot, teacher, owner, clients)
 
 
-def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: Mosquitto) -> None:
+def test_lack_of_memory_for_a_broker_is_reported_and_the_connection_retried(
+    broker: Mosquitto,
+) -> None:
     robot, owner = join_network(Keys())
     robot.radio("H", b"\1")
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
@@ -89,33 +91,33 @@ def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: M
 def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
     broker: Mosquitto,
 ) -> None:
-    robot, teacher, owner, ends = start_drive(broker)
+    robot, teacher, owner, clients = start_drive(broker)
     assert list_present_robots(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
-    other = broker.connect_client()
-    other.stop("another")
-    talk(robot, ends, 1500)
+    other_client = broker.connect_client()
+    other_client.stop("another")
+    talk(robot, clients, 1500)
     assert motor_state(robot) == "MOTORS 80 80"
-    other.stop("aula")
-    talk(robot, ends, 100)
+    other_client.stop("aula")
+    talk(robot, clients, 100)
     assert motor_state(robot) == "MOTORS 0 0"
     owner.events()
-    assert upload_text(robot, ends, owner) == "OK"
+    assert upload_text(robot, clients, owner) == "OK"
     assert motor_state(robot) == "MOTORS 80 80"
     owner.stop(robot.now_ms)
-    talk(robot, ends, 60)
+    talk(robot, clients, 60)
     assert motor_state(robot) == "MOTORS 0 0"
     assert any(event.name == "STOPPED" for event in owner.events())
 
 
-def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
+def test_a_long_program_and_its_values_pass_the_broker(broker: Mosquitto) -> None:
     lines = "".join(f"X = {k}; " for k in range(400))
-    robot, _, owner, ends = start_drive(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
-    talk(robot, ends, 300)
+    robot, _, owner, clients = start_drive(broker, f"SI|{lines}SHOW(X); SHOW(X > 1)")
+    talk(robot, clients, 300)
     names = [event.name for event in owner.events()]
     assert names.count("SHOW") == 2 and "DONE" in names
 
 
-def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
+def test_the_broker_is_stored_reported_and_forgotten(broker: Mosquitto) -> None:
     robot, owner = connect_to_broker(broker, Keys())
     assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
     restarted_robot = restart_with_school_in_reach(robot)
@@ -150,24 +152,26 @@ def test_invalid_broker_settings_are_refused(broker: Mosquitto) -> None:
         assert broker_settings_of(robot, owner) == ("STATION", "READY", "aula")
 
 
-def test_a_name_and_a_password_where_the_broker_asks_for_them(
+def test_a_broker_may_require_name_and_password(
     brokers: Callable[..., Mosquitto],
 ) -> None:
     user, password = "robots", "a long password: 40 letters and some more"
-    own = brokers(user, password)
-    robot, owner = connect_to_broker(own, Keys(), own.settings("aula", user, password))
+    own_broker = brokers(user, password)
+    robot, owner = connect_to_broker(
+        own_broker, Keys(), own_broker.settings("aula", user, password)
+    )
     assert b"40 letters" in robot.read_kept().entries[BROKER_KEY], "it has come whole"
-    wrong = own.settings("aula", user, "another one")
-    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    wrong_settings = own_broker.settings("aula", user, "another one")
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong_settings)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "REFUSED")
     for access in (Access(), Access(user, "another one"), Access("who", "x")):
         with pytest.raises(PortError) as failure:
-            own.connect_client(access)
+            own_broker.connect_client(access)
         assert failure.value.reason == errors.REFUSED
-    own.connect_client(Access(user, password)).close()
+    own_broker.connect_client(Access(user, password)).close()
 
 
-def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
+def test_a_driver_keeps_the_robot_while_it_sends_messages(broker: Mosquitto) -> None:
     """Its silence counts from its last message, not from its first."""
     robot, _ = connect_to_broker(broker, Keys())
     teacher, stranger = broker.connect_client(), broker.connect_client()
@@ -179,21 +183,21 @@ def test_who_has_the_robot_keeps_it_while_it_speaks(broker: Mosquitto) -> None:
             stranger.publish(topic + stranger.peer, b"\0")
         robot.step()
         time.sleep(0.0005)
-    end, other = AtBroker(robot, stranger), remote(robot, None, 12)
+    end, other_session = AtBroker(robot, stranger), remote(robot, None, 12)
     end.port._patient_until_s = 0.0
-    other.ping()
-    talk(robot, [(end, other)], 300)
+    other_session.ping()
+    talk(robot, [(end, other_session)], 300)
     assert end.has_ended, "it is told that another one has the robot"
     teacher.publish(topic + teacher.peer, b"")  # this client leaves
     talk(robot, [(end, RawClient())], 100)
-    end, other = AtBroker(robot, stranger), remote(robot, None, 13)
+    end, other_session = AtBroker(robot, stranger), remote(robot, None, 13)
     end.port._patient_until_s = 0.0
-    assert wait_for_outcome(robot, [(end, other)], other.ping()) == "OK"
-    talk(robot, [(end, other)], 500)
+    assert wait_for_outcome(robot, [(end, other_session)], other_session.ping()) == "OK"
+    talk(robot, [(end, other_session)], 500)
     assert not end.has_ended, "it has the robot now, and is not told that again"
 
 
-def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosquitto) -> None:
+def test_setting_the_same_broker_repeatedly_keeps_one_connection(broker: Mosquitto) -> None:
     """Otherwise it would use up all sockets of an ESP32."""
     robot, owner = connect_to_broker(broker, Keys())
     for _ in range(20):
@@ -204,45 +208,45 @@ def test_a_robot_that_is_told_its_broker_often_has_one_connection(broker: Mosqui
 # -- stops --------------------------------------------------------------------------------------
 
 
-def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
-    robot, teacher, owner, ends = start_drive(broker)
-    stranger, other = broker.connect_client(), remote(robot, Keys(50), 11)
+def test_a_stranger_can_only_stop(broker: Mosquitto) -> None:
+    robot, teacher, owner, clients = start_drive(broker)
+    stranger, other_session = broker.connect_client(), remote(robot, Keys(50), 11)
     end = AtBroker(robot, stranger)
     end.port._patient_until_s = 0.0
-    request = other.live(image_of("F(1, 9)").code)
-    talk(robot, [*ends, (end, other)], 300)
+    request = other_session.live(image_of("F(1, 9)").code)
+    talk(robot, [*clients, (end, other_session)], 300)
     assert request.outcome is None and end.has_ended, "it is told that another one has the robot"
     assert motor_state(robot) == "MOTORS 80 80"
     for _ in range(20):  # an unfinished frame would spoil the owner's next one
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", b"\3\2\1")
-        talk(robot, ends, 10)
+        talk(robot, clients, 10)
     pending_request = owner.status()
-    assert wait_for_outcome(robot, ends, pending_request) == "OK" and pending_request.outcome
+    assert wait_for_outcome(robot, clients, pending_request) == "OK" and pending_request.outcome
     assert pending_request.outcome.values.damaged == 0
     topic = f"{ROOT}/aula/{ID}/in/{teacher.peer}"
     for junk in (b"SI|B(9, 90)\n", b"\3\2\1\0" * 50, bytes(range(1, 255)), b"GET / HTTP/1.1\r\n"):
         stranger.publish(topic, junk)
-        talk(robot, ends, 100)
+        talk(robot, clients, 100)
     assert motor_state(robot) == "MOTORS 80 80"
     for name in ("in/x", "in/" + "g" * 8, "in/" + "0" * 9, "in", "stop", f"in/{ID}/more"):
         stranger.publish(f"{ROOT}/aula/{ID}/{name}", bytes(STOP_BYTES))
     stranger.publish(f"{ROOT}/aula/stop", b"stop")
     stranger.publish(f"{ROOT}/aula/stop", bytes(3))
-    talk(robot, ends, 200)
+    talk(robot, clients, 200)
     assert motor_state(robot) == "MOTORS 80 80", "none of these is a stop"
     for length in (513, 20_000):
         stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
-    talk(robot, ends, 500)
+    talk(robot, clients, 500)
     assert motor_state(robot) == "MOTORS 80 80", "nor is what is too long, which is skipped"
-    assert wait_for_outcome(robot, ends, owner.ping()) == "OK"
+    assert wait_for_outcome(robot, clients, owner.ping()) == "OK"
     stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
-    talk(robot, ends, 100)
+    talk(robot, clients, 100)
     assert motor_state(robot) == "MOTORS 0 0"
 
 
-def test_a_typed_stop_of_a_stranger_stops(broker: Mosquitto) -> None:
+def test_a_strangers_typed_stop_works(broker: Mosquitto) -> None:
     """It is a whole line in one message; a frame's code may contain such bytes."""
-    robot, _, owner, ends = start_drive(broker)
+    robot, _, owner, clients = start_drive(broker)
     stranger = broker.connect_client()
     topic = f"{ROOT}/aula/{ID}/in/{stranger.peer}"
     for none in (
@@ -253,17 +257,17 @@ def test_a_typed_stop_of_a_stranger_stops(broker: Mosquitto) -> None:
         encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1Z\nS\n")),
     ):
         stranger.publish(topic, none)
-        talk(robot, ends, 100)
+        talk(robot, clients, 100)
     for stop in (b"S\n", b"F(1,80)\r\n ; stop ;\r", b"Stop", b"SS\n", b"PARA", b"\0S.\n", b"S\0",
                  b"\3", b"FFSSS", b"stop STOP now"):  # fmt: skip
         assert motor_state(robot) == "MOTORS 80 80"
         stranger.publish(topic, stop)
-        talk(robot, ends, 100)
+        talk(robot, clients, 100)
         assert motor_state(robot) == "MOTORS 0 0", stop
-        assert upload_text(robot, ends, owner) == "OK"
+        assert upload_text(robot, clients, owner) == "OK"
 
 
-def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
+def test_retained_messages_count_as_old(broker: Mosquitto) -> None:
     """A retained stop does not prevent driving, and a retained request has no effect."""
     keys = Keys()
     stranger = broker.connect_client()
@@ -292,7 +296,7 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
         stranger.close()
 
 
-def test_what_is_said_again_has_nothing_done(
+def test_replayed_messages_have_no_effect(
     broker: Mosquitto, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All that the owner has said, later, in its order: a whole drive and more."""
@@ -304,10 +308,10 @@ def test_what_is_said_again_has_nothing_done(
         send(end, data)
 
     monkeypatch.setattr(AtBroker, "send", sends)
-    robot, _, _, ends = start_drive(broker, "SI|F(0.2, 80)")
+    robot, _, _, clients = start_drive(broker, "SI|F(0.2, 80)")
     thief = broker.connect_client()
-    talk(robot, ends, 400)
-    end = ends[0][0]
+    talk(robot, clients, 400)
+    end = clients[0][0]
     assert isinstance(end, AtBroker)
     end.leave()
     talk(robot, [], AUTHORITY_MS + 3500)
@@ -328,43 +332,43 @@ def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) ->
     count_before = len(robot.did)
     teacher = broker.connect_client()
     client = remote(robot, None)
-    ends: Ends = [(AtBroker(robot, teacher), client)]
-    assert wait_for_outcome(robot, ends, client.ping()) == "OK"
+    clients: Ends = [(AtBroker(robot, teacher), client)]
+    assert wait_for_outcome(robot, clients, client.ping()) == "OK"
     for acting in (client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY_PROGRAM)),
                    client.name(b"x")):  # fmt: skip
-        assert wait_for_outcome(robot, ends, acting) == "UNOWNED"
+        assert wait_for_outcome(robot, clients, acting) == "UNOWNED"
     assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
 
 
 # -- ends ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled("how")
-@pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
-def test_a_broker_that_is_gone_ends_the_run(brokers: Callable[..., Mosquitto], how: str) -> None:
-    own, keys = brokers(), Keys()
-    robot, _, _, ends = start_drive(own, keys=keys)
-    talk(robot, ends, 500)
+@pytest.mark.sampled("failure")
+@pytest.mark.parametrize("failure", ["dies", "stalls", "is out of reach"])
+def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], failure: str) -> None:
+    own_broker, keys = brokers(), Keys()
+    robot, _, _, clients = start_drive(own_broker, keys=keys)
+    talk(robot, clients, 500)
     assert motor_state(robot) == "MOTORS 80 80"
-    if how == "dies":
-        own.kill()
-    elif how == "stalls":
-        own.stall()
+    if failure == "dies":
+        own_broker.kill()
+    elif failure == "stalls":
+        own_broker.stall()
     else:
         set_network_in_reach(robot, "", "")
     begun_ms = robot.now_ms
-    limit_ms = DEAD_MAN_MS if how == "stalls" else RECONNECT_MS
+    limit_ms = DEAD_MAN_MS if failure == "stalls" else RECONNECT_MS
     while motor_state(robot) != "MOTORS 0 0":
-        talk(robot, ends, 5)
+        talk(robot, clients, 5)
         assert robot.now_ms < begun_ms + limit_ms
-    own.stall(False)
-    if how == "dies":
-        own.start()
+    own_broker.stall(False)
+    if failure == "dies":
+        own_broker.start()
     school_in_reach(robot)
     cable = remote(robot, keys, 20)
     assert wait_for_outcome(robot, [(None, cable)], cable.ping()) == "OK"
     until(robot, lambda: broker_settings_of(robot, cable)[1] == "READY", 15_000)
-    next_client, end = remote(robot, keys, 13), own.connect_client()
+    next_client, end = remote(robot, keys, 13), own_broker.connect_client()
     talk(robot, [], AUTHORITY_MS + 3000)
     assert upload_text(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
     end.close()
@@ -377,17 +381,17 @@ def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosqu
     end.leave()
     until(robot, lambda: motor_state(robot) == "MOTORS 0 0", 200)
     second, next_client = broker.connect_client(), remote(robot, keys, 13)
-    ends: Ends = [(AtBroker(robot, second), next_client)]
+    clients: Ends = [(AtBroker(robot, second), next_client)]
     second.attend()
-    assert upload_text(robot, ends, next_client) == "OK"
+    assert upload_text(robot, clients, next_client) == "OK"
     assert motor_state(robot) == "MOTORS 80 80"
     time.sleep(0.6)
-    talk(robot, ends, 400)
+    talk(robot, clients, 400)
     assert motor_state(robot) == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("is_silent", [False, True])
-def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool) -> None:
+def test_the_last_will_reports_absent_robots(broker: Mosquitto, is_silent: bool) -> None:
     """A connection that ends, and one that falls silent."""
     robot, _ = connect_to_broker(broker, Keys())
     teacher = broker.connect_client()
@@ -397,7 +401,7 @@ def test_the_last_will_says_who_is_not_there(broker: Mosquitto, is_silent: bool)
     in_time(lambda: teacher.list_robots("aula") == gone_robot_presences, "its last will")
 
 
-def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
+def test_announcements_by_strangers_are_bounded(broker: Mosquitto) -> None:
     stranger, teacher = broker.connect_client(), broker.connect_client()
     announcements = {
         "12345678": b"+a/b+#\x1b[2J", "xyz": b"+no id", "1234567": b"+short", "1234567g": b"+no",

@@ -82,35 +82,35 @@ def test_the_owner_drives_over_tls(room: Room) -> None:
     teacher = room.connect()
     assert list_present_robots(robot, teacher) == [RobotPresence(ID, "tini-5678", True)]
     owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    clients: Ends = [(AtBroker(robot, teacher), owner)]
     lines = "".join(f"X = {k}; " for k in range(200))
-    assert upload_text(robot, ends, owner, f"SI|{lines}F(9, 80)") == "OK"
-    talk(robot, ends, 300)
+    assert upload_text(robot, clients, owner, f"SI|{lines}F(9, 80)") == "OK"
+    talk(robot, clients, 300)
     assert motor_state(robot) == "MOTORS 80 80"
     teacher.stop("aula")
-    talk(robot, ends, 100)
+    talk(robot, clients, 100)
     assert motor_state(robot) == "MOTORS 0 0"
 
 
-@pytest.mark.sampled("what", "state", keep=3)
-@pytest.mark.parametrize(("what", "state"), [
+@pytest.mark.sampled("fault", "state", keep=3)
+@pytest.mark.parametrize(("fault", "state"), [
     ("another authority", "UNTRUSTED"), ("no certificate", "UNTRUSTED"),
     ("another name", "OTHER_NAME"), ("the start of the name", "OTHER_NAME"),
     ("it has ended", "EXPIRED"), ("a broker without TLS", "NO_TLS"),
 ])  # fmt: skip
-def test_who_is_not_trusted_gets_nothing(
-    room: Room, tmp_path: Path, brokers: Callable[..., Mosquitto], what: str, state: str
+def test_an_untrusted_broker_gets_no_data(
+    room: Room, tmp_path: Path, brokers: Callable[..., Mosquitto], fault: str, state: str
 ) -> None:
     settings = room.settings()
-    if what == "another authority":
+    if fault == "another authority":
         settings = room.settings(trust=Authority(tmp_path).der)
-    elif what == "no certificate":
+    elif fault == "no certificate":
         settings = room.settings(trust=b"\x30\x82\x01\x00" + bytes(256))
-    elif what == "another name":
+    elif fault == "another name":
         settings = room.settings("localhost")
-    elif what == "the start of the name":
+    elif fault == "the start of the name":
         settings = room.settings(NAME[:-1])
-    elif what == "it has ended":
+    elif fault == "it has ended":
         settings = room.settings(today=LATER)
     else:
         settings = settings._replace(port=brokers().port)
@@ -129,14 +129,12 @@ def test_who_is_not_trusted_gets_nothing(
 
 
 @drawn
-def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
-    room: Room, tmp_path: Path
-) -> None:
+def test_a_newly_set_broker_does_not_inherit_the_previous_error(room: Room, tmp_path: Path) -> None:
     """Its task is looking a name up, for seconds, when the new one comes."""
     robot, owner = join_network(Keys())
     announce_computer(robot, NAME, "127.0.0.1", wait_ms=3000)
-    wrong = room.settings(trust=Authority(tmp_path).der)
-    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    wrong_settings = room.settings(trust=Authority(tmp_path).der)
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(wrong_settings)) == "OK"
     until(robot, lambda: broker_settings_of(robot, owner)[1] == "UNTRUSTED")
     talk(robot, [(None, owner)], 4500)
     assert broker_settings_of(robot, owner)[1] == "UNTRUSTED"
@@ -182,19 +180,20 @@ def test_an_old_tls_is_refused(tmp_path: Path, version: ssl.TLSVersion, state: s
 
 
 @pytest.mark.parametrize("is_chain", [False, True])
-def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
+def test_only_the_brokers_own_certificate_is_accepted_without_its_authority(
     tmp_path: Path, brokers: Callable[..., Mosquitto], is_chain: bool
 ) -> None:
     """The certificate is signed by an unknown authority. Its name and date still count."""
     authority = Authority(tmp_path)
-    own = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
+    own_room = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
     authority.rules("other.aula")
-    trust, other = (der(authority.sign(name)) for name in (NAME, "other.aula"))
+    trust, other_trust = (der(authority.sign(name)) for name in (NAME, "other.aula"))
     robot, owner = join_network(Keys())
     for settings, state in (
-        (own.settings(trust=other), "UNTRUSTED"), (own.settings(trust=trust), "READY"),
-        (own.settings("localhost", trust=trust), "OTHER_NAME"),
-        (own.settings(today=LATER, trust=trust), "EXPIRED"),
+        (own_room.settings(trust=other_trust), "UNTRUSTED"),
+        (own_room.settings(trust=trust), "READY"),
+        (own_room.settings("localhost", trust=trust), "OTHER_NAME"),
+        (own_room.settings(today=LATER, trust=trust), "EXPIRED"),
     ):  # fmt: skip
         assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
         talk(robot, [(None, owner)], 50)
@@ -205,22 +204,22 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
     tmp_path: Path, brokers: Callable[..., Mosquitto]
 ) -> None:
     authority, keys = Authority(tmp_path), Keys()
-    own = Room(brokers(more=authority.rules(NAME)), authority)
-    robot, _ = connect_to_broker(own.broker, keys, own.settings())
+    own_room = Room(brokers(more=authority.rules(NAME)), authority)
+    robot, _ = connect_to_broker(own_room.broker, keys, own_room.settings())
     owner = remote(robot, keys)
-    ends: Ends = [(AtBroker(robot, own.connect()), owner)]
-    assert upload_text(robot, ends, owner) == "OK"
-    talk(robot, ends, 500)
+    clients: Ends = [(AtBroker(robot, own_room.connect()), owner)]
+    assert upload_text(robot, clients, owner) == "OK"
+    talk(robot, clients, 500)
     assert motor_state(robot) == "MOTORS 80 80"
-    own.broker.kill()
+    own_room.broker.kill()
     begun_ms = robot.now_ms
     while motor_state(robot) != "MOTORS 0 0":
-        talk(robot, ends, 5)
+        talk(robot, clients, 5)
         assert robot.now_ms < begun_ms + DEAD_MAN_MS
 
 
 @drawn
-def test_whoever_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
+def test_a_silent_peer_is_given_up_while_the_cable_keeps_working(room: Room) -> None:
     """First a computer accepts the connection and stays silent, then the broker does."""
     keys = Keys()
     robot, owner = join_network(keys)
@@ -249,8 +248,10 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
         until(robot, lambda: broker_settings_of(robot, owner)[1] == "READY")
         assert cuts.bytes_left[:2] == [0, 0] and cuts.bytes_left[2] < 1500
         teacher = room.connect()
-        far = remote(robot, keys)
-        assert upload_text(robot, [(AtBroker(robot, teacher), far)], far) == "OK"
+        remote_session = remote(robot, keys)
+        assert (
+            upload_text(robot, [(AtBroker(robot, teacher), remote_session)], remote_session) == "OK"
+        )
     finally:
         cuts.close()
 
@@ -258,7 +259,7 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
 @pytest.mark.parametrize(("name", "address", "is_found"), [
     (NAME, NOBODY, True), ("nobody.aula", LOCAL_ADDRESS, True), ("nobody.aula", NOBODY, False),
 ])  # fmt: skip
-def test_a_broker_is_found_by_its_name_or_where_it_was(
+def test_a_broker_is_found_by_name_or_at_its_last_address(
     brokers: Callable[..., Mosquitto], name: str, address: bytes, is_found: bool
 ) -> None:
     robot, owner = join_network(Keys())
@@ -288,12 +289,14 @@ def test_invalid_tls_settings_are_refused() -> None:
             wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
         ), settings
         assert broker_settings_of(robot, owner) == ("OFF", "OFF", "")
-    most = PLAIN._replace(name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY))
-    assert most.is_sound
-    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(most)) == "OK"
+    longest_settings = PLAIN._replace(
+        name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY)
+    )
+    assert longest_settings.is_sound
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(longest_settings)) == "OK"
 
 
-def test_it_is_kept_and_used_after_a_reset_also_where_another_finds_no_room(room: Room) -> None:
+def test_the_broker_survives_a_reset_and_a_failed_replacement(room: Room) -> None:
     robot, owner = connect_to_broker(room.broker, Keys(), room.settings())
     robot.fill_nvs()
     assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"

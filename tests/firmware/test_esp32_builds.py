@@ -36,7 +36,7 @@ needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 @pytest.mark.parametrize("standard", ["gnu++11", "gnu++23"])
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))
-def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> None:
+def test_the_sketch_compiles_for_both_cores(chip: str, major: int, standard: str) -> None:
     """The board, file by file: the modules that know no board are compiled elsewhere."""
     for path in CODE:
         assert complaints(path, *flags_of(chip, major), standard=standard) == ""
@@ -44,7 +44,7 @@ def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> Non
 
 @needs_host
 @pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
-def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
+def test_the_used_tls_functions_exist_in_mbedtls() -> None:
     """Debian's headers: in version 12 those of 2.28, as in ESP-IDF 4.4."""
     flags, file = flags_of("esp32dev", 2), STAND_INS_FOLDER / "signatures.cpp"
     command = ["g++", "-std=gnu++11", *flags, "-dM", "-E", str(file)]
@@ -64,13 +64,13 @@ def test_a_chip_with_its_own_usb_uses_it_as_the_port(major: int) -> None:
 @needs_host
 @pytest.mark.parametrize("pin", [18, 19])
 @pytest.mark.parametrize("part", ["Pwm kBuzzer = {{7", "Pin kStartButton = {8"])
-def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_path: Path) -> None:
+def test_a_header_that_occupies_the_port_is_refused(part: str, pin: int, tmp_path: Path) -> None:
     """A header from before `tsc firmware --board` refused these pins."""
     header = firmware.header([robots.load("tinibotc3")], "a test.")
     assert part in header
-    own = tmp_path / "own.h"
-    own.write_text(header.replace(part, f"{part[:-1]}{pin}"), encoding="utf-8")
-    flags = (*flags_of("esp32c3", 2), "-DARDUINO_USB_MODE=1", f'-Dtiniscript_own="{own}"')
+    own_header = tmp_path / "own.h"
+    own_header.write_text(header.replace(part, f"{part[:-1]}{pin}"), encoding="utf-8")
+    flags = (*flags_of("esp32c3", 2), "-DARDUINO_USB_MODE=1", f'-Dtiniscript_own="{own_header}"')
     file = BOARD / "esp32" / "serial.cpp"
     errors = complaints(file, *flags, "-DARDUINO_USB_CDC_ON_BOOT=1")
     assert "error" in errors and "Pins 18 and 19 are the USB of an ESP32-C3" in errors
@@ -78,7 +78,7 @@ def test_a_header_that_takes_the_port_away_is_refused(part: str, pin: int, tmp_p
 
 
 @needs_host
-def test_a_core_with_another_bluetooth_is_told() -> None:
+def test_a_core_with_different_bluetooth_is_refused() -> None:
     """Arduino's core 3.3 has NimBLE on an ESP32-C3, which delivers written data late."""
     flags = (*flags_of("esp32c3", 3), "-DCONFIG_NIMBLE_ENABLED")
     errors = complaints(BOARD / "esp32" / "low_energy.cpp", *flags)
@@ -138,7 +138,7 @@ LIBRARY = re.compile(r"__\w+(si|di|sf|df)[234]?\d*|mem(cpy|set|cmp|move)|__\w*di
 @pytest.mark.sampled("chip", "major")
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("chip", sorted(ESP32S))
-def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_path: Path) -> None:
+def test_the_whole_sketch_links_with_only_the_core(chip: str, major: int, tmp_path: Path) -> None:
     """With compilers for both instruction sets, only names of the core stay unresolved."""
     isa = CHIPS[ISA[chip]]
     if no_compiler(isa):
@@ -149,11 +149,13 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     for path in code:
         objects.append(str(tmp_path / f"{len(objects)}.o"))
         compile_one(isa, path, objects[-1], flags)
-    whole = str(tmp_path / "whole.o")
-    subprocess.run([*isa.linker, "-r", *objects, "-o", whole], check=True)
-    assert ram_of(isa, whole) <= MOST_RAM, "the radios need the rest"
+    object_path = str(tmp_path / "whole.o")
+    subprocess.run([*isa.linker, "-r", *objects, "-o", object_path], check=True)
+    assert ram_of(isa, object_path) <= MOST_RAM, "the radios need the rest"
     names = isa.measurer.replace("-size", "-nm")
-    output = subprocess.run([names, "-u", whole], capture_output=True, text=True, check=True).stdout
+    output = subprocess.run(
+        [names, "-u", object_path], capture_output=True, text=True, check=True
+    ).stdout
     symbols = {line.split()[-1] for line in output.splitlines()}
     serial = {name for name in symbols if "HardwareSerial" in name}
     assert all(any(word in name for word in SERIAL) for name in serial)
@@ -162,7 +164,7 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     assert unknown == CORE | OF_VERSION[major] | {"setup", "loop", "esp_spp_disconnect"} & unknown
 
 
-def test_every_file_says_for_which_chip_it_is() -> None:
+def test_every_file_states_its_chip() -> None:
     """The Arduino IDE compiles all files for any board: those of other families are empty."""
     for folder, condition in (("avr", "__AVR__"), ("esp32", "ARDUINO_ARCH_ESP32")):
         for path in (BOARD / folder).glob("*.cpp"):
@@ -182,7 +184,7 @@ def test_our_macros_come_after_the_headers_of_the_core() -> None:
             assert text.index(f"#define {name}") > text.rindex("#include <"), path.name
 
 
-def test_nothing_waits() -> None:
+def test_the_firmware_never_blocks() -> None:
     """The tasks of radios are the exception: they wait for their radio, and delay no one else."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "vTaskDelay", "new", "malloc", "flush"}
     waiting_calls = {}
@@ -201,7 +203,7 @@ def test_the_settings_need_no_registry_of_libraries() -> None:
     assert "lib_deps" not in text
 
 
-def test_the_menu_of_the_arduino_ide_that_has_room_is_named() -> None:
+def test_the_required_partition_menu_of_the_arduino_ide_is_named() -> None:
     """The IDE takes our partitions, and compares with the size of its menu's."""
     rows = [
         [field.strip() for field in line.split(",")]

@@ -111,7 +111,7 @@ def counting_robot(profile: Robot) -> tuple[Esp32Robot, dict[str, int]]:
 @pytest.mark.sampled("profile", "major")
 @KINDS
 @pytest.mark.parametrize("major", [2, 3])
-def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> None:
+def test_moves_and_turns_have_the_requested_length(profile: Robot, major: int) -> None:
     driven_robot = Driven(profile, (107.5, 92.5), major)
     assert driven_robot.drive("F(20 CM, 60); R(90 DEG, 60)").name == "DONE"
     pose = driven_robot.pose
@@ -120,7 +120,7 @@ def test_it_goes_and_turns_as_far_as_was_said(profile: Robot, major: int) -> Non
 
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", [0, 1])
-def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None:
+def test_an_unplugged_disc_is_reported_as_a_fault_of_its_wheel(number: int) -> None:
     driven_robot = Driven(SLOTTED, (100, 100))
     driven_robot.wheels.wheels[number].has_working_sensor = False
     event = driven_robot.drive("F(20 CM, 60)")
@@ -128,7 +128,7 @@ def test_a_disc_that_is_unplugged_is_the_fault_of_its_wheel(number: int) -> None
     assert not any(wheel.wanted_speed for wheel in driven_robot.wheels.wheels)
 
 
-def test_a_counter_that_is_full_begins_again() -> None:
+def test_a_full_counter_wraps_around() -> None:
     """It does so at its limit, while no one reads it, and in the middle of a move, where the driver
     clears it."""
     driven_robot = Driven(SLOTTED, (100, 100))
@@ -145,7 +145,7 @@ def test_a_counter_that_is_full_begins_again() -> None:
     assert abs(driven_robot.pose.x_cm - 20) <= 1.5
 
 
-def test_each_edge_counts_and_a_glitch_does_not() -> None:
+def test_edges_count_and_glitches_do_not() -> None:
     robot, pins = counting_robot(SLOTTED)
     start_edges = robot.edges()
     robot.edges(*pulses(pins["left"], 10, LONGEST_US), *pulses(pins["right"], 10, 1))
@@ -154,7 +154,7 @@ def test_each_edge_counts_and_a_glitch_does_not() -> None:
     assert [(b - a) % 2**16 for a, b in zip(start_edges, counts, strict=True)] == [20, 6]
 
 
-def test_two_channels_count_back() -> None:
+def test_two_channels_count_backwards() -> None:
     """The cases are those of an Uno in `test_board_discs.py`."""
     robot, pins = counting_robot(TWO_CHANNELS)
     a, b = pins["left"], pins["left_b"]
@@ -175,7 +175,7 @@ def test_two_channels_count_back() -> None:
 
 @pytest.mark.sampled("pins")
 @pytest.mark.parametrize("pins", [{"left": 34, "right": 35}, {"left": 36, "right": 39}])
-def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
+def test_input_only_pins_count_edges(pins: dict[str, int]) -> None:
     """Input-only pins have no pull-up, but the sensor has its own."""
     discs = SLOTTED.board.discs
     assert discs
@@ -191,11 +191,11 @@ def test_pins_that_only_read_count(pins: dict[str, int]) -> None:
 
 @KINDS
 @pytest.mark.parametrize("major", [2, 3])
-def test_it_compiles_for_both_cores(profile: Robot, major: int, tmp_path: Path) -> None:
-    own = tmp_path / "own.h"
-    own.write_text(firmware.header([profile], "a test."), encoding="utf-8")
+def test_the_sketch_compiles_for_both_cores(profile: Robot, major: int, tmp_path: Path) -> None:
+    own_header = tmp_path / "own.h"
+    own_header.write_text(firmware.header([profile], "a test."), encoding="utf-8")
     flags = (
-        f'-Dtiniscript_own="{own}"',
+        f'-Dtiniscript_own="{own_header}"',
         *flags_of("esp32dev", major),
         f"-I{STAND_INS_FOLDER / 'core'}",
     )

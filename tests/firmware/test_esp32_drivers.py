@@ -34,38 +34,40 @@ def pair(is_owned: bool) -> tuple[Esp32Robot, Session, Session]:
 
 @pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
-def test_an_open_page_that_does_nothing_gives_way(is_owned: bool) -> None:
-    robot, page, other = pair(is_owned)
-    ends: Ends = [(None, page), (LowEnergy(robot), other)]
-    assert upload_text(robot, ends, page, SHORT) == "OK"
-    talk(robot, ends, AUTHORITY_MS - 300)
-    assert upload_text(robot, ends, other) == "OTHER_DRIVER", "it may be about to send the next one"
-    talk(robot, ends, 60_000)
-    assert upload_text(robot, ends, other) == "OK"
+def test_an_idle_page_gives_way(is_owned: bool) -> None:
+    robot, page, rival = pair(is_owned)
+    clients: Ends = [(None, page), (LowEnergy(robot), rival)]
+    assert upload_text(robot, clients, page, SHORT) == "OK"
+    talk(robot, clients, AUTHORITY_MS - 300)
+    assert upload_text(robot, clients, rival) == "OTHER_DRIVER", (
+        "it may be about to send the next one"
+    )
+    talk(robot, clients, 60_000)
+    assert upload_text(robot, clients, rival) == "OK"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
-    assert upload_text(robot, ends, page, SHORT) == "OTHER_DRIVER"
-    other.stop(robot.now_ms)
-    talk(robot, ends, AUTHORITY_MS + 300)
-    assert upload_text(robot, ends, page, SHORT) == "OK", "and so does the other one"
+    assert upload_text(robot, clients, page, SHORT) == "OTHER_DRIVER"
+    rival.stop(robot.now_ms)
+    talk(robot, clients, AUTHORITY_MS + 300)
+    assert upload_text(robot, clients, page, SHORT) == "OK", "and so does the other one"
 
 
 @pytest.mark.sampled("is_owned")
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("is_detached", [False, True])
-def test_the_client_whose_program_runs_stays_the_driver_while_it_is_heard(
+def test_a_client_stays_the_driver_while_it_is_heard_and_its_program_runs(
     is_owned: bool, is_detached: bool
 ) -> None:
-    robot, page, other = pair(is_owned)
-    ends: Ends = [(None, page), (LowEnergy(robot), other)]
+    robot, page, rival = pair(is_owned)
+    clients: Ends = [(None, page), (LowEnergy(robot), rival)]
     upload = page.upload(image_of(AWAY_PROGRAM), saves=False, is_detached=is_detached)
-    assert wait_for_outcome(robot, ends, upload) == "OK"
+    assert wait_for_outcome(robot, clients, upload) == "OK"
     for _ in range(5):
-        talk(robot, ends, 5000)
-        assert upload_text(robot, ends, other) == "OTHER_DRIVER"
+        talk(robot, clients, 5000)
+        assert upload_text(robot, clients, rival) == "OTHER_DRIVER"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     page.stop(robot.now_ms)
-    talk(robot, ends, AUTHORITY_MS + 300)
-    assert upload_text(robot, ends, other) == "OK"
+    talk(robot, clients, AUTHORITY_MS + 300)
+    assert upload_text(robot, clients, rival) == "OK"
 
 
 SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
@@ -73,29 +75,29 @@ SHOWS = "SI|F(0.1, 80);LOOP(FOREVER);SHOW(7);W(0.5);END_LOOP"
 
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("starts", ["a client", "a client, and the button"])
-def test_what_runs_alone_is_anybodys_when_its_client_is_not_heard(
+def test_a_detached_run_can_be_taken_over_once_its_client_is_silent(
     starts: str, is_owned: bool
 ) -> None:
     """Its values go to the listener, which may take over."""
-    robot, page, other = pair(is_owned)
-    ends: Ends = [(None, page), (LowEnergy(robot), other)]
+    robot, page, rival = pair(is_owned)
+    clients: Ends = [(None, page), (LowEnergy(robot), rival)]
     upload = page.upload(image_of(SHOWS), saves=False, is_detached=True)
-    assert wait_for_outcome(robot, ends, upload) == "OK"
+    assert wait_for_outcome(robot, clients, upload) == "OK"
     if "button" in starts:  # a stop, and a start
         for _ in range(2):
-            talk(robot, ends, 100, flags=1)
-            talk(robot, ends, 300, flags=2)
-    only = ends[1:]
-    assert wait_for_outcome(robot, only, other.hello()) == "OK"
+            talk(robot, clients, 100, flags=1)
+            talk(robot, clients, 300, flags=2)
+    only = clients[1:]
+    assert wait_for_outcome(robot, only, rival.hello()) == "OK"
     talk(robot, only, LISTEN_MS + 600)
-    other.events()
+    rival.events()
     talk(robot, only, 2000)
-    assert {event.name for event in other.events()} == {"SHOW"}
-    assert upload_text(robot, only, other) == "OK"
+    assert {event.name for event in rival.events()} == {"SHOW"}
+    assert upload_text(robot, only, rival) == "OK"
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
-def test_a_page_gives_way_to_nobody_without_a_key() -> None:
+def test_a_page_gives_way_only_to_clients_with_a_key() -> None:
     robot, page, _ = pair(is_owned=True)
     stranger, typed_bytes = session(5, robot), RawClient()
     end = LowEnergy(robot)
@@ -110,70 +112,70 @@ def test_a_page_gives_way_to_nobody_without_a_key() -> None:
 
 UPLOAD = "an upload"  # an upload with few bytes in each turn
 CHANGES: dict[str, Callable[[Session, int], PendingRequest[Any]]] = {
-    UPLOAD: lambda who, turn: who.upload(
+    UPLOAD: lambda session, turn: session.upload(
         image_of("SB|" + ";".join(["F(1, 80)"] * 1500)), saves=False
     ),
-    "short programs": lambda who, turn: who.upload(image_of(SHORT), saves=False),
-    "lines": lambda who, turn: who.live(image_of(SHORT).code),
-    "names": lambda who, turn: who.name(b"n%d" % turn),
-    "a trim": lambda who, turn: who.trim(bytes((0, turn, 0))),
-    "a latch": lambda who, turn: who.clear(),
+    "short programs": lambda session, turn: session.upload(image_of(SHORT), saves=False),
+    "lines": lambda session, turn: session.live(image_of(SHORT).code),
+    "names": lambda session, turn: session.name(b"n%d" % turn),
+    "a trim": lambda session, turn: session.trim(bytes((0, turn, 0))),
+    "a latch": lambda session, turn: session.clear(),
 }
 
 
-@pytest.mark.sampled("what", "is_owned", keep=3)
+@pytest.mark.sampled("action", "is_owned", keep=3)
 @pytest.mark.parametrize("is_owned", [False, True])
-@pytest.mark.parametrize("what", CHANGES)
-def test_whoever_goes_on_is_not_overtaken(what: str, is_owned: bool) -> None:
+@pytest.mark.parametrize("action", CHANGES)
+def test_an_active_client_is_not_overtaken(action: str, is_owned: bool) -> None:
     """However long it takes: each part that changes something counts. Then the next one drives."""
-    robot, page, other = pair(is_owned)
-    far = LowEnergy(robot)
-    ends: Ends = [(None, page), (far, other)]
+    robot, page, rival = pair(is_owned)
+    far_end = LowEnergy(robot)
+    clients: Ends = [(None, page), (far_end, rival)]
     page._baud = 9600  # a low speed, so that few bytes are sent at once
-    assert upload_text(robot, ends, page, SHORT) == "OK"
-    talk(robot, ends, 300)
+    assert upload_text(robot, clients, page, SHORT) == "OK"
+    talk(robot, clients, 300)
     for turn in range(3 * AUTHORITY_MS // PAUSE_MS + 1):
-        if what != UPLOAD or turn == 0:
-            request = CHANGES[what](page, turn)
-        talk(robot, ends, 3 if what == UPLOAD else 400)
+        if action != UPLOAD or turn == 0:
+            request = CHANGES[action](page, turn)
+        talk(robot, clients, 3 if action == UPLOAD else 400)
         status = None if request.outcome is None else request.outcome.status
-        assert status == (None if what == UPLOAD else OK), turn
-        talk(robot, [(far, other)], PAUSE_MS)
-        assert upload_text(robot, [(far, other)], other, SHORT) == "OTHER_DRIVER", turn
-    talk(robot, [(far, other)], AUTHORITY_MS)
-    assert upload_text(robot, [(far, other)], other) == "OK"
+        assert status == (None if action == UPLOAD else OK), turn
+        talk(robot, [(far_end, rival)], PAUSE_MS)
+        assert upload_text(robot, [(far_end, rival)], rival, SHORT) == "OTHER_DRIVER", turn
+    talk(robot, [(far_end, rival)], AUTHORITY_MS)
+    assert upload_text(robot, [(far_end, rival)], rival) == "OK"
 
 
 # -- the button -------------------------------------------------------------------------------
 
 
-def upload_running(robot: Esp32Robot, ends: Ends, page: Session) -> None:
-    assert upload_text(robot, ends, page) == "OK"
+def upload_running(robot: Esp32Robot, clients: Ends, page: Session) -> None:
+    assert upload_text(robot, clients, page) == "OK"
 
 
-def upload_waiting(robot: Esp32Robot, ends: Ends, page: Session) -> None:
-    assert upload_text(robot, ends, page, "SB|F(60, 80)") == "OK"
+def upload_waiting(robot: Esp32Robot, clients: Ends, page: Session) -> None:
+    assert upload_text(robot, clients, page, "SB|F(60, 80)") == "OK"
 
 
-def upload_stopped(robot: Esp32Robot, ends: Ends, page: Session) -> None:
-    upload_waiting(robot, ends, page)
+def upload_stopped(robot: Esp32Robot, clients: Ends, page: Session) -> None:
+    upload_waiting(robot, clients, page)
     page.stop(robot.now_ms)
-    talk(robot, ends, 100)
+    talk(robot, clients, 100)
 
 
-@pytest.mark.parametrize("before", [upload_running, upload_waiting, upload_stopped])
+@pytest.mark.parametrize("prepare", [upload_running, upload_waiting, upload_stopped])
 @pytest.mark.parametrize("is_owned", [False, True])
 @pytest.mark.parametrize("has_passed", [False, True])
-def test_behind_the_button_anybody_drives(
-    before: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
+def test_anybody_may_drive_after_the_button(
+    prepare: Callable[[Esp32Robot, Ends, Session], None], is_owned: bool, has_passed: bool
 ) -> None:
     """The previous driver, though still heard, has no part in the new run."""
-    robot, page, other = pair(is_owned)
-    ends: Ends = [(None, page), (LowEnergy(robot), other)]
-    before(robot, ends, page)
-    for _ in range(1 + (before is upload_running)):  # the first press is a stop
-        talk(robot, ends, 100, flags=1)
-        talk(robot, ends, 300, flags=2)
+    robot, page, rival = pair(is_owned)
+    clients: Ends = [(None, page), (LowEnergy(robot), rival)]
+    prepare(robot, clients, page)
+    for _ in range(1 + (prepare is upload_running)):  # the first press is a stop
+        talk(robot, clients, 100, flags=1)
+        talk(robot, clients, 300, flags=2)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "the button has started it"
-    talk(robot, ends, AUTHORITY_MS + 300 if has_passed else 1)
-    assert upload_text(robot, ends, other) == "OK"
+    talk(robot, clients, AUTHORITY_MS + 300 if has_passed else 1)
+    assert upload_text(robot, clients, rival) == "OK"

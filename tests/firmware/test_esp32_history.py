@@ -34,19 +34,21 @@ from tiniscript.link.session import Session
 SHORT_PROGRAM = "SI|F(0.1, 80);SHOW(2);B(0.1, 30)"
 LONG_PROGRAM = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
 REQUEST_MAKERS: dict[str, Callable[[Session], PendingRequest[Any]]] = {
-    "hello": lambda who: who.hello(),
-    "ping": lambda who: who.ping(),
-    "clear": lambda who: who.clear(),
-    "trim?": lambda who: who.trim(),
-    "identify": lambda who: who.identify(),
-    "a live line": lambda who: who.live(image_of(SHORT_PROGRAM).code),
-    "a program": lambda who: who.upload(image_of(SHORT_PROGRAM), saves=False),
-    "a long program": lambda who: who.upload(image_of(LONG_PROGRAM), saves=False),
-    "a detached one": lambda who: who.upload(image_of(LONG_PROGRAM), saves=False, is_detached=True),
-    "a network": lambda who: who.wifi(),
-    "a broker": lambda who: who.broker(),
-    "a claim": lambda who: who.claim(0),
-    "text": lambda who: who.allow_text(False),
+    "hello": lambda session: session.hello(),
+    "ping": lambda session: session.ping(),
+    "clear": lambda session: session.clear(),
+    "trim?": lambda session: session.trim(),
+    "identify": lambda session: session.identify(),
+    "a live line": lambda session: session.live(image_of(SHORT_PROGRAM).code),
+    "a program": lambda session: session.upload(image_of(SHORT_PROGRAM), saves=False),
+    "a long program": lambda session: session.upload(image_of(LONG_PROGRAM), saves=False),
+    "a detached one": lambda session: session.upload(
+        image_of(LONG_PROGRAM), saves=False, is_detached=True
+    ),
+    "a network": lambda session: session.wifi(),
+    "a broker": lambda session: session.broker(),
+    "a claim": lambda session: session.claim(0),
+    "text": lambda session: session.allow_text(False),
 }
 LINES = (b"SI|F(0.1, 80);SHOW(3)\n", b"F(0.1, 30)\n", b"FOO(1)\n", b"HELP\n", b"SI|LOOP(2)\n",
          b"SI|F(1", b"S\n", b"PING|CHECK_CONNECTION\n", b"SB|B(0.2, 40)\n")  # fmt: skip
@@ -84,29 +86,29 @@ class Scene:
         self.places = [0]  # slots used so far
         self.nonce = 10
 
-    def new(self, what: str) -> Client:
+    def new(self, role: str) -> Client:
         self.nonce += 1
         keys = Keys()
         keys.stored_keys = [memory_with_network()[1]]
-        if what == "owner":
+        if role == "owner":
             return remote(self.robot, keys, self.nonce)
-        if what == "thief":
+        if role == "thief":
             return remote_with_wrong_key(self.robot, keys, self.nonce)
-        return remote(self.robot, None, self.nonce) if what == "stranger" else RawClient()
+        return remote(self.robot, None, self.nonce) if role == "stranger" else RawClient()
 
-    def connect_guest(self, place: int, what: str) -> Guest | None:
+    def connect_guest(self, place: int, role: str) -> Guest | None:
         """Connect a guest over a radio or the cable, unless the slot is taken."""
         if place != NETWORK and any(guest.place == place for guest in self.guests):
             return None
         make = TRANSPORT_MAKERS[place]
-        guest = Guest(make and make(self.robot), self.new(what), what, place)
+        guest = Guest(make and make(self.robot), self.new(role), role, place)
         self.guests.append(guest)
         self.places.append(place)
         self.talk(3)
         return guest
 
     def talk(self, milliseconds: int, flags: int = 0) -> None:
-        talk(self.robot, [(end, who) for end, who, *_ in self.guests], milliseconds, flags)
+        talk(self.robot, [(end, session) for end, session, *_ in self.guests], milliseconds, flags)
 
     def leave(self, guest: Guest) -> None:
         self.guests.remove(guest)
@@ -125,16 +127,16 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     If the twin arrives soon, no step asks for anything that continues without a client, nor uses
     the cable, where nobody notices that a client has left.
     """
-    what = rng.randrange(8)
-    if what == 0 or not scene.guests:
+    kind = rng.randrange(8)
+    if kind == 0 or not scene.guests:
         scene.connect_guest(rng.randrange(is_soon, 4), rng.choice(GUESTS))
         return
     guest = rng.choice(scene.guests)
-    if what == 1:
+    if kind == 1:
         scene.leave(guest)
-    elif what == 2:
+    elif kind == 2:
         scene.talk(rng.choice((30, 300, 1200)))
-    elif what == 3 and rng.random() < 0.3:
+    elif kind == 3 and rng.random() < 0.3:
         scene.talk(1, rng.choice((1, 2)))
         scene.talk(60)
     elif isinstance(guest.who, RawClient):
@@ -159,20 +161,20 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
         assert guest
         guests.append(guest)
     for _ in range(rng.choice((2, 4))):
-        begun_ms, who = robot.now_ms, rng.choice(guests).who
+        begun_ms, session = robot.now_ms, rng.choice(guests).who
         name, request = "", None
-        if isinstance(who, Session):
+        if isinstance(session, Session):
             name = rng.choice([question for question in REQUEST_MAKERS if question != "a claim"])
-            request = REQUEST_MAKERS[name](who)
-        elif isinstance(who, RawClient):
-            who.to_send = rng.choice(LINES)
+            request = REQUEST_MAKERS[name](session)
+        elif isinstance(session, RawClient):
+            session.to_send = rng.choice(LINES)
         scene.talk(rng.choice((100, 400, 1500)))
         states.append((name, answer_without_counts(request, *MEMORY_FIELDS)))
         for _, client, *_ in guests:
             if isinstance(client, Session):
                 states.append([without_counts(event) for event in client.events()])
         rows = (line.split(" ", 1) for line in robot.did)
-        states.append([(int(ms) - begun_ms, what) for ms, what in rows])
+        states.append([(int(ms) - begun_ms, action) for ms, action in rows])
         robot.did.clear()
     scene.talk(1200)  # a text answer waits after a frame that did not report the stop
     texts = [client.received for _, client, *_ in guests if isinstance(client, RawClient)]
@@ -189,10 +191,10 @@ def check(seed: int) -> str:
     scene.talk(1, 2)
     while scene.guests:
         scene.leave(scene.guests[0])
-    both = [scene, Scene(scene.robot.read_kept())]
+    scenes = [scene, Scene(scene.robot.read_kept())]
     drawn_alike, place = rng.random(), rng.choice(scene.places)
     states_of_both = []
-    for one_scene in both:
+    for one_scene in scenes:
         one_scene.robot.wait(5, bytes(STOP_BYTES))
         one_scene.robot.wait(wait_ms)
         states_of_both.append(observe(one_scene, place, random.Random(drawn_alike)))
@@ -204,7 +206,7 @@ def check(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_a_robot_is_as_its_twin(part: int) -> None:
+def test_a_robot_behaves_like_its_twin_with_another_history(part: int) -> None:
     for seed in range(part * 5, part * 5 + 5):
         check(seed)
 

@@ -19,24 +19,24 @@ JOIN_RETRY_MS = 15_000  # kJoinAgainMs
 
 
 @drawn
-def test_an_address_that_comes_late_is_waited_for() -> None:
+def test_a_late_address_is_waited_for() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
+    clients: Ends = [(None, owner)]
     school_in_reach(robot)
     robot.radio("l", pack("<I", 40_000))
-    assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
-    talk(robot, ends, 39_000)
+    assert wait_for_outcome(robot, clients, owner.join(SCHOOL)) == "OK"
+    talk(robot, clients, 39_000)
     assert state(robot, owner) == ("STATION", "SEARCHING")
-    talk(robot, ends, 2000)
+    talk(robot, clients, 2000)
     assert state(robot, owner) == ("STATION", "READY")
     assert radios(robot).joins == 1, "each try would begin anew"
 
 
 @drawn
-def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
+def test_a_robot_out_of_reach_of_its_network_leaves_the_antenna_to_bluetooth() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
-    assert wait_for_outcome(robot, ends, owner.join(SCHOOL)) == "OK"
+    clients: Ends = [(None, owner)]
+    assert wait_for_outcome(robot, clients, owner.join(SCHOOL)) == "OK"
     robot.wait(20 * JOIN_RETRY_MS)
     assert 20 <= radios(robot).joins <= 21
     school_in_reach(robot)
@@ -45,7 +45,7 @@ def test_a_robot_away_from_school_leaves_the_antenna_to_bluetooth() -> None:
 
 
 @drawn
-def test_a_network_that_comes_back_is_joined() -> None:
+def test_a_returning_network_is_joined() -> None:
     robot, owner = join_network(Keys())
     robot.wait(JOIN_RETRY_MS)
     for away_ms in (50, 1000, 100_000):
@@ -57,7 +57,7 @@ def test_a_network_that_comes_back_is_joined() -> None:
 
 
 @drawn
-def test_a_network_that_sends_the_robot_away_is_joined_again() -> None:
+def test_a_network_that_disconnects_the_robot_is_joined_again() -> None:
     """After an ended authentication the status stays "connected", and `begin` does nothing."""
     robot, owner = join_network(Keys())
     robot.wait(2 * JOIN_RETRY_MS)

@@ -36,7 +36,7 @@ def framing(robot: Esp32Robot) -> int:
 
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", NAMES)
-def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str) -> None:
+def test_a_line_held_low_stops_a_detached_program(name: str) -> None:
     robot = type_line(boot(name))
     assert actions_of(robot) == [FORWARD]
     robot.hold_line()
@@ -56,14 +56,14 @@ def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(name: str)
     assert framing(robot) >= 4
 
 
-def test_a_line_that_stays_low_has_no_sender() -> None:
+def test_a_line_that_stays_low_counts_as_unconnected() -> None:
     """A cable that was pulled out stays as it is, and the robot has its button."""
     robot = boot()
     client = session(1, robot)
-    ends: Ends = [(None, client)]
+    clients: Ends = [(None, client)]
     upload = client.upload(image_of("SB|F(60, 80)"))
-    assert wait_for_outcome(robot, ends, upload) == "OK"
-    talk(robot, ends, 2000)
+    assert wait_for_outcome(robot, clients, upload) == "OK"
+    talk(robot, clients, 2000)
     robot.hold_line()
     robot.wait(1500)
     robot.push()
@@ -91,7 +91,7 @@ def test_a_short_disturbance_stops_no_robot(name: str) -> None:
     assert actions_of(robot) == [FORWARD]
 
 
-def test_each_byte_with_a_framing_error_is_a_zero() -> None:
+def test_each_byte_with_a_framing_error_becomes_a_zero() -> None:
     robot = type_line(boot())
     for spoiled in (3, 4):
         robot.step(b"//\r\n")
@@ -104,7 +104,7 @@ def test_each_byte_with_a_framing_error_is_a_zero() -> None:
 
 
 @pytest.mark.parametrize("pause_ms", [1, 5, FIFO_MS, FIFO_MS + 1, 30, 200])
-def test_each_byte_with_a_framing_error_counts_as_soon_as_the_first_one(pause_ms: int) -> None:
+def test_every_framing_error_counts_as_fast_as_the_first(pause_ms: int) -> None:
     """No byte follows it, and others preceded it."""
     robot = type_line(boot())
     for _ in range(3):
@@ -133,7 +133,7 @@ def test_a_line_with_a_framing_error_in_it_does_nothing(bytes_before: bytes) -> 
         assert actions_of(type_line(robot)) == [FORWARD], "the next line is another one"
 
 
-def test_bytes_after_a_framing_error_are_no_line_that_is_held() -> None:
+def test_bytes_after_a_framing_error_do_not_count_as_a_held_line() -> None:
     robot = type_line(boot())
     robot.spoil_byte()
     for _ in range(100):

@@ -83,15 +83,15 @@ def owner_time_ms(robot: Esp32Robot, make: Make, keys: Keys) -> int:
     """Return the owner's time from a new connection until a program runs."""
     owner = remote(robot, keys, 8)
     began_ms = robot.now_ms
-    ends: Ends = [(make(robot), owner)]
-    assert upload_text(robot, ends, owner, AWAY_PROGRAM) == "OK"
+    clients: Ends = [(make(robot), owner)]
+    assert upload_text(robot, clients, owner, AWAY_PROGRAM) == "OK"
     return robot.now_ms - began_ms
 
 
-@pytest.mark.sampled("make", "wrong", keep=3)
+@pytest.mark.sampled("make", "disturbance", keep=3)
 @pytest.mark.parametrize("make", TRANSPORTS)
-@pytest.mark.parametrize("wrong", DISTURBANCES)
-def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -> None:
+@pytest.mark.parametrize("disturbance", DISTURBANCES)
+def test_errors_of_one_client_do_not_affect_the_next(make: Make, disturbance: str) -> None:
     def connected_place() -> tuple[Esp32Robot, Keys]:
         keys = Keys()
         robot, end, _ = far_owner(keys)
@@ -108,7 +108,7 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
     robot, keys = connected_place()
     for _ in range(3):
         end = make(robot)
-        DISTURBANCES[wrong](robot, end, keys)
+        DISTURBANCES[disturbance](robot, end, keys)
         end.leave()
         talk(robot, [], 5)
     assert owner_time_ms(robot, make, keys) <= usual_ms + 30  # a stop is released first
@@ -117,14 +117,14 @@ def test_what_one_did_wrong_costs_the_next_one_nothing(make: Make, wrong: str) -
 @pytest.mark.sampled("make")
 @pytest.mark.parametrize("make", TRANSPORTS[:2])
 @pytest.mark.parametrize("typed_bytes", [b"OK+CONN", b"\0si|", b"SI|LOOP(2)", b"FOO(1)\n"])
-def test_nobody_is_told_what_another_one_has_typed(make: Make, typed_bytes: bytes) -> None:
+def test_typed_text_is_never_shown_to_other_clients(make: Make, typed_bytes: bytes) -> None:
     robot, _ = make_owned_robot(Keys())
     talk(robot, [], AUTHORITY_MS)
     talk(robot, [(end := make(robot), RawClient(typed_bytes))], 2)
     end.leave()
     talk(robot, [], 1)
-    talk(robot, [(make(robot), other := RawClient(b"\0"))], 4000)
-    assert other.received == b""
+    talk(robot, [(make(robot), listener := RawClient(b"\0"))], 4000)
+    assert listener.received == b""
 
 
 STOPS = (bytes(4), b"S\n", b"stop\r", b"\0S\n", b"\0stop\0", b"\x03\n", b"SSS", b"stop stop",
@@ -150,15 +150,15 @@ CUT_STOPS = [
 @pytest.mark.parametrize("pause_ms", [0, 300])
 def test_bytes_of_two_clients_do_not_form_a_stop(make: Make, pause_ms: int) -> None:
     robot, end, owner = far_owner(Keys())
-    ends: Ends = [(end, owner)]
-    assert upload_text(robot, ends, owner, AWAY_PROGRAM) == "OK"
+    clients: Ends = [(end, owner)]
+    assert upload_text(robot, clients, owner, AWAY_PROGRAM) == "OK"
     for parts in CUT_STOPS:
         for part in parts:
-            talk(robot, [*ends, (other := make(robot), RawClient(part))], 20)
-            other.leave()
-            talk(robot, ends, 5 + pause_ms)
+            talk(robot, [*clients, (other_end := make(robot), RawClient(part))], 20)
+            other_end.leave()
+            talk(robot, clients, 5 + pause_ms)
         assert actions_of(robot)[-1] == "MOTORS 80 80", parts
-    talk(robot, [*ends, (make(robot), RawClient(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
+    talk(robot, [*clients, (make(robot), RawClient(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
     assert actions_of(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
 
 
@@ -167,39 +167,41 @@ def test_bytes_of_two_clients_do_not_form_a_stop(make: Make, pause_ms: int) -> N
 STATUS, PING_SEQ = BY_NAME["STATUS"].number, 77
 
 
-@pytest.mark.sampled("most")
-@pytest.mark.parametrize("most", [0, 1, 7, 30, 1000])
+@pytest.mark.sampled("most_bytes")
+@pytest.mark.parametrize("most_bytes", [0, 1, 7, 30, 1000])
 @pytest.mark.parametrize("requests", [1, 5, 60])
-def test_the_next_client_gets_no_rest_of_what_was_sent_in_part(most: int, requests: int) -> None:
+def test_the_next_client_gets_no_remainder_of_a_partial_message(
+    most_bytes: int, requests: int
+) -> None:
     """The network accepts a few bytes at a time, and the client before may leave at any moment."""
     robot, end, _ = far_owner(Keys())
     end.leave()
     frames = b"".join(encode_frame(Frame(STATUS, seq, 0)) for seq in range(requests))
     rests = 0
     for moment_ms in (1, 2, 3, 5, 9, 100):
-        limit_accepted_bytes(robot, most)
+        limit_accepted_bytes(robot, most_bytes)
         first = RawClient(b"\0" + frames)
         talk(robot, [(end := Network(robot), first)], moment_ms)
         end.leave()
         talk(robot, [], 3)
         limit_accepted_bytes(robot, 1000)
-        other = RawClient(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
-        talk(robot, [(end := Network(robot), other)], 60)
+        next_client = RawClient(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
+        talk(robot, [(end := Network(robot), next_client)], 60)
         end.leave()
         talk(robot, [], 3)
-        answers = [decode_frame(data) for data in other.received.split(b"\0") if data]
+        answers = [decode_frame(data) for data in next_client.received.split(b"\0") if data]
         assert [answer and answer.seq for answer in answers] == [PING_SEQ], moment_ms
-        rests += len(first.received) < len(other.received)
-    assert rests or most == 1000
+        rests += len(first.received) < len(next_client.received)
+    assert rests or most_bytes == 1000
 
 
-def test_the_next_client_gets_no_more_at_once_than_it_has_agreed_to() -> None:
+def test_the_next_client_gets_no_packet_beyond_its_own_mtu() -> None:
     """The agreement of the client before does not matter: a client without one gets 20 bytes."""
     robot, _ = make_owned_robot(Keys())
     for mtu in (LEAST_MTU, 247, LEAST_MTU, 100, 60, 247, LEAST_MTU):
-        end, who = LowEnergy(robot, mtu), session(mtu, robot)
-        assert wait_for_outcome(robot, [(end, who)], who.status()) == "OK"
-        assert wait_for_outcome(robot, [(end, who)], who.hello()) == "OK"
+        end, client = LowEnergy(robot, mtu), session(mtu, robot)
+        assert wait_for_outcome(robot, [(end, client)], client.status()) == "OK"
+        assert wait_for_outcome(robot, [(end, client)], client.hello()) == "OK"
         assert 0 < max(end.lengths) <= mtu - 3
         end.leave()
         talk(robot, [], 5)
@@ -213,21 +215,21 @@ class Late(LowEnergy):
             super().subscribe()
 
 
-def test_the_next_client_hears_its_own_answers_once_it_has_subscribed() -> None:
+def test_the_next_client_gets_only_its_own_answers_after_subscribing() -> None:
     robot, _ = make_owned_robot(Keys())
     talk(robot, [(end := LowEnergy(robot), RawClient(b"\0"))], 20)
     for number in range(3):
         end.leave()
         talk(robot, [], 5)
-        end, who = Late(robot), RawClient()
+        end, client = Late(robot), RawClient()
         for seq in (number, PING_SEQ):
             end.send(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq, 0)))
-            talk(robot, [(end, who)], 30)
-        assert who.received == b"", "nobody would hear it"
+            talk(robot, [(end, client)], 30)
+        assert client.received == b"", "nobody would hear it"
         if number == 1:  # the one before has left without
             end.subscribe(True)
-            talk(robot, [(end, who)], 100)
-            answers = [decode_frame(data) for data in who.received.split(b"\0") if data]
+            talk(robot, [(end, client)], 100)
+            answers = [decode_frame(data) for data in client.received.split(b"\0") if data]
             assert [answer and answer.seq for answer in answers] == [number, PING_SEQ]
 
 
@@ -251,31 +253,31 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
     talk(robot, [(phone, RawClient())], 3 * PLACE_MS)
     assert not phone.has_ended, "while nobody else comes"
     owner = remote(robot, keys, 3)
-    ends: Ends = [(end := LowEnergy(robot), owner)]
+    clients: Ends = [(end := LowEnergy(robot), owner)]
     assert phone.has_ended and not end.has_ended
-    assert upload_text(robot, ends, owner) == "OK"
+    assert upload_text(robot, clients, owner) == "OK"
     phone.send(bytes(STOP_BYTES))
-    talk(robot, ends, 3 * PLACE_MS)
+    talk(robot, clients, 3 * PLACE_MS)
     assert actions_of(robot)[-1] == "MOTORS 80 80", (
         "its session lives, and nothing of the phone does"
     )
     owner.stop(robot.now_ms)
-    talk(robot, ends, 20)
+    talk(robot, clients, 20)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @drawn
-def test_whoever_comes_too_early_costs_nobody_anything() -> None:
+def test_a_client_that_connects_too_early_affects_nobody() -> None:
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     owner = remote(robot, keys, 2)
-    ends: Ends = [(end := LowEnergy(robot, 247), owner)]
-    assert upload_text(robot, ends, owner) == "OK"
+    clients: Ends = [(end := LowEnergy(robot, 247), owner)]
+    assert upload_text(robot, clients, owner) == "OK"
     for _ in range(300):
-        other = LowEnergy(robot, 100)
-        assert other.has_ended and other.take() == b""
-        other.send(b"S\n" + bytes(STOP_BYTES))
-        talk(robot, ends, 100)
+        early_end = LowEnergy(robot, 100)
+        assert early_end.has_ended and early_end.take() == b""
+        early_end.send(b"S\n" + bytes(STOP_BYTES))
+        talk(robot, clients, 100)
     assert not end.has_ended and actions_of(robot)[-1] == "MOTORS 80 80"
     end.leave()
     talk(robot, [], 5)
@@ -286,7 +288,7 @@ def test_whoever_comes_too_early_costs_nobody_anything() -> None:
 
 
 @drawn
-def test_whoever_leaves_while_another_one_comes_is_the_one_who_leaves() -> None:
+def test_a_disconnect_during_another_connect_is_attributed_correctly() -> None:
     robot, _ = make_owned_robot(keys := Keys())
     talk(robot, [], AUTHORITY_MS)
     for _ in range(5):
@@ -318,7 +320,7 @@ FIRST_BYTES = (
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(10))
-def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
+def test_surplus_network_clients_are_disconnected(seed: int) -> None:
     """And whoever has one is told what it asked, whoever had it before."""
     rng = random.Random(seed)
     robot, end, _ = far_owner(keys := Keys())
@@ -335,8 +337,8 @@ def test_whoever_has_no_place_in_a_network_is_hung_up_on(seed: int) -> None:
             owners.append((end, remote(robot, keys if rng.random() < 0.7 else None, 20 + number)))
             guests.append(owners[-1])
         talk(robot, guests, rng.choice((5, 30, 300, 1200)))
-        for end, who in owners:
-            request = who.clear()  # with a key, whoever has one
+        for end, client in owners:
+            request = client.clear()  # with a key, whoever has one
             for _ in range(3000):
                 if request.outcome is None and not end.has_ended:
                     talk(robot, guests, 1)
@@ -379,7 +381,7 @@ def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     SerialPort(robot)
     talk(robot, [], 5)
     assert not has_client(robot)
-    ends: Ends = [(SerialPort(robot), owner)]
-    assert upload_text(robot, ends, owner) == "OK"
-    talk(robot, ends, 2 * PLACE_MS)
+    clients: Ends = [(SerialPort(robot), owner)]
+    assert upload_text(robot, clients, owner) == "OK"
+    talk(robot, clients, 2 * PLACE_MS)
     assert actions_of(robot)[-1] == "MOTORS 80 80"

@@ -21,7 +21,7 @@ def knocked_at() -> Esp32Robot:
 
 
 @pytest.mark.parametrize("name", FOREIGN_GREETINGS)
-def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name: str) -> None:
+def test_requests_of_web_pages_reach_no_robot(knocked_at: Esp32Robot, name: str) -> None:
     """In one piece and byte by byte: the robot disconnects without an answer."""
     robot, data = knocked_at, FOREIGN_GREETINGS[name]
     for size in (len(data), 1 if len(data) < 1000 else 97):
@@ -37,7 +37,7 @@ def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name:
 
 
 @pytest.mark.parametrize("data", [b"S\n", b"SI|F(2,80)\r\n", b"X = 5\n", b"// HTTP/1.1\n", b"\0"])
-def test_what_is_meant_for_a_robot_gets_there(knocked_at: Esp32Robot, data: bytes) -> None:
+def test_robot_messages_pass_the_sniffer(knocked_at: Esp32Robot, data: bytes) -> None:
     end = Network(knocked_at)
     end.send(data + bytes(STOP_BYTES))
     knocked_at.wait(5)
@@ -51,7 +51,7 @@ def sniff(robot: Esp32Robot, data: bytes) -> bool | None:
     return (None, True, False)[robot.ask(b"G", len(data).to_bytes(4, "little") + data)[0]]
 
 
-def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robot) -> None:
+def test_the_robot_classifies_clients_like_a_virtual_one(knocked_at: Esp32Robot) -> None:
     chance = Random(5)
     words = [*(data[:300] for data in FOREIGN_GREETINGS.values()), b"PING|\n", b"POST = 5\n",
              b"GET  /", b"S", b"a\xc3\xb1o = 5\n", b"https://x", b"HTTP/1.1",
@@ -61,8 +61,8 @@ def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robo
         data = b"".join(chance.choice(words) for _ in range(chance.randrange(1, 4)))[:400]
         data = data[: chance.randrange(len(data) + 1)]
         if chance.random() < 0.3 and data:
-            at = chance.randrange(len(data))
-            data = data[:at] + chance.randbytes(1) + data[at + 1 :]
+            cut_index = chance.randrange(len(data))
+            data = data[:cut_index] + chance.randbytes(1) + data[cut_index + 1 :]
         assert sniff(knocked_at, data) is sniff_robot_client(data), data
     for data in FOREIGN_GREETINGS.values():
         for k in range(min(len(data), 400)):

@@ -21,31 +21,32 @@ def readings(client: Session) -> list[ReadingEvent]:
 
 
 @pytest.mark.parametrize("then", ["stays", "asks again", "leaves", "comes anew"])
-def test_whoever_drives_has_all_readings_whatever_another_one_does(then: str) -> None:
+def test_the_driver_gets_all_readings_whatever_other_clients_do(then: str) -> None:
     """The other client gets none: readings go to the same client as values."""
     robot = boot()
-    driver, other = session(1, robot), session(2, robot)
+    driver, other_session = session(1, robot), session(2, robot)
     end = LowEnergy(robot)
-    ends: Ends = [(None, driver), (end, other)]
-    assert wait_for_outcome(robot, ends, other.tell_readings(True)) == "OK"
-    talk(robot, ends, AUTHORITY_MS + 300)  # an idle open page gives way
-    assert wait_for_outcome(robot, ends, driver.tell_readings(True)) == "OK"
+    clients: Ends = [(None, driver), (end, other_session)]
+    assert wait_for_outcome(robot, clients, other_session.tell_readings(True)) == "OK"
+    talk(robot, clients, AUTHORITY_MS + 300)  # an idle open page gives way
+    assert wait_for_outcome(robot, clients, driver.tell_readings(True)) == "OK"
     assert (
-        wait_for_outcome(robot, ends, driver.upload(image_of(READING_PROGRAM), saves=False)) == "OK"
+        wait_for_outcome(robot, clients, driver.upload(image_of(READING_PROGRAM), saves=False))
+        == "OK"
     )
-    talk(robot, ends, 300)
+    talk(robot, clients, 300)
     if then == "asks again":
-        assert wait_for_outcome(robot, ends, other.tell_readings(True)) == "OTHER_DRIVER"
+        assert wait_for_outcome(robot, clients, other_session.tell_readings(True)) == "OTHER_DRIVER"
     elif then == "leaves":
         end.leave()
-        ends = ends[:1]
+        clients = clients[:1]
     elif then == "comes anew":
-        other = session(3, robot)
-        ends = [(None, driver), (end, other)]
-        assert wait_for_outcome(robot, ends, other.hello()) == "OK"
+        other_session = session(3, robot)
+        clients = [(None, driver), (end, other_session)]
+        assert wait_for_outcome(robot, clients, other_session.hello()) == "OK"
     for number in range(1, CHANGE_COUNT + 1):
         robot.analog(LIGHT_PIN, 400 * number)
-        talk(robot, ends, 300)
+        talk(robot, clients, 300)
     values = [event.value for event in readings(driver) if event.sensor == LIGHT]
     assert len(values) >= CHANGE_COUNT and values == sorted(values)
-    assert not readings(other)
+    assert not readings(other_session)

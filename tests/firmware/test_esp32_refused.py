@@ -53,8 +53,8 @@ class StrictBroker:
     def _talk(self, end: socket.socket) -> None:
         data = b""
         try:
-            while more := end.recv(4096):
-                data += more
+            while received := end.recv(4096):
+                data += received
                 while len(data) >= 2 and len(data) >= 2 + data[1]:  # no packet of ours is longer
                     self._answer(end, data[0] & 0xF0, data[2 : 2 + data[1]])
                     data = data[2 + data[1] :]
@@ -93,7 +93,7 @@ def robot_at_broker(
 
 @pytest.mark.sampled("granted_bytes")
 @pytest.mark.parametrize("granted_bytes", [b"\x80\x80", b"\0\x80", b"\x80\0"])
-def test_a_broker_that_refuses_what_the_robot_wants_to_hear_is_not_ready(
+def test_a_broker_that_refuses_the_subscription_is_not_ready(
     granted_bytes: bytes, brokers: list[StrictBroker]
 ) -> None:
     """For example, the broker's access list may omit the class."""
@@ -117,7 +117,7 @@ def test_an_answer_to_another_request_is_ignored(
     assert broker.published == []
 
 
-def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None:
+def test_a_stop_before_the_answer_counts(brokers: list[StrictBroker]) -> None:
     """A broker may send messages before it has confirmed a subscription."""
     topic = b"tiniscript/aula/stop"
     stop = bytes([PUBLISH, 2 + len(topic) + STOP_BYTES, 0, len(topic)]) + topic + bytes(STOP_BYTES)
@@ -134,17 +134,17 @@ def test_a_stop_before_the_answer_is_a_stop(brokers: list[StrictBroker]) -> None
     assert broker.asked == 1, "it was the first answer"
 
 
-def test_an_access_point_that_did_not_begin_is_not_ready_and_tried_again() -> None:
+def test_a_failed_access_point_is_not_ready_and_retried() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
+    clients: Ends = [(None, owner)]
     robot.radio("H", b"\1")
-    assert wait_for_outcome(robot, ends, owner.join(HOTSPOT)) == "OK"
-    talk(robot, ends, 1000)
+    assert wait_for_outcome(robot, clients, owner.join(HOTSPOT)) == "OK"
+    talk(robot, clients, 1000)
     assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
     assert not radios(robot).is_access_point
-    talk(robot, ends, 30_000)
+    talk(robot, clients, 30_000)
     assert state(robot, owner) == ("ACCESS_POINT", "REFUSED")
     robot.radio("H", b"\0")
-    talk(robot, ends, 16_000)
+    talk(robot, clients, 16_000)
     assert state(robot, owner) == ("ACCESS_POINT", "READY")
     assert radios(robot).is_access_point and radios(robot).network.encode() == HOTSPOT.name

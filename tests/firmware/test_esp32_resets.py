@@ -49,20 +49,20 @@ def test_a_deep_sag_while_a_program_runs_is_not_a_power_on() -> None:
     assert cause(restarted_robot.read_kept()) == "POWER", "it is told once"
 
 
-def test_a_power_on_of_a_standing_robot_counts_as_one() -> None:
-    over = running("SI|F(0.1, 80)")
-    assert cause(over.read_kept()) == "POWER"
+def test_a_power_on_of_an_idle_robot_counts_as_one() -> None:
+    running_robot = running("SI|F(0.1, 80)")
+    assert cause(running_robot.read_kept()) == "POWER"
     stopped_robot = running("SI|F(60, 80)")
     stopped_robot.wait(50, bytes(8))
     assert cause(stopped_robot.read_kept()) == "POWER"
 
 
-def test_two_chips_with_the_same_noise_are_two_robots() -> None:
+def test_two_chips_with_the_same_noise_get_different_ids() -> None:
     """Before a radio is on, `esp_random` need not be random."""
     found_ids = set()
-    for last in range(8):
+    for last_byte in range(8):
         for maker in (b"\x24\x0a\xc4", b"\xa0\xb7\x65"):
-            robot = Esp32Robot(mac=maker + bytes((0, 0, last)))
+            robot = Esp32Robot(mac=maker + bytes((0, 0, last_byte)))
             robot.wait(300)
             hello_reply = hello(robot)
             found_ids.add(hello_reply.id)

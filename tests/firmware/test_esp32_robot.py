@@ -92,13 +92,13 @@ right_backward = 33
 """
 
 
-def wire_robot(motors: str, more: str = DEVICES_TEXT) -> Esp32Robot:
+def wire_robot(motors: str, profile_text: str = DEVICES_TEXT) -> Esp32Robot:
     """Return a robot with these motors, and one device of every driver."""
     text = TEXTS["tinibot32"].partition("# ---- Its body")
     head = re.sub(r"\[board\.motors\].*?(?=\n\[board\.sensors)", motors, text[0], flags=re.S)
-    kit = re.sub(r"(?m)^\[board\]", more.partition("[board")[0] + "[board]", head)
+    kit = re.sub(r"(?m)^\[board\]", profile_text.partition("[board")[0] + "[board]", head)
     body = re.sub(r"(?s)# ---- What people call it.*", "", text[2])
-    devices = "[board" + more.partition("[board")[2]
+    devices = "[board" + profile_text.partition("[board")[2]
     return switched_on(Esp32Robot(read(kit + devices + text[1] + body, "mine")))
 
 
@@ -128,9 +128,7 @@ def run_and_list_values(robot: Esp32Robot, text: str) -> list[int]:
 @pytest.mark.sampled("name", "major", draw="ESP32s", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("name", KITS)
-def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
-    name: str, major: int
-) -> None:
+def test_a_program_runs_and_a_panic_turns_the_motors_off(name: str, major: int) -> None:
     robot = switched_on(Esp32Robot(robots.load(name), major=major))
     session, buzzer = computer(), robot.robot.board.buzzer
     assert buzzer is not None
@@ -158,7 +156,7 @@ def test_a_program_drives_and_sounds_and_a_panic_turns_the_motors_off(
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
-def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
+def test_no_note_of_a_tune_follows_a_tone() -> None:
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, "SI|F(0.05, 80)")
     while "TONE 1047" not in actions_of(robot):
@@ -166,7 +164,10 @@ def test_a_tone_has_no_note_of_a_tune_after_it() -> None:
     robot.did.clear()
     send(robot, session, "SI|BEEP(0.2, 440);W(1)")
     robot.talk(session, 900)
-    assert [what for what in actions_of(robot) if "TONE" in what][-2:] == ["TONE 440", "TONE 0"]
+    assert [action for action in actions_of(robot) if "TONE" in action][-2:] == [
+        "TONE 440",
+        "TONE 0",
+    ]
 
 
 def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
@@ -190,9 +191,7 @@ def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
 @pytest.mark.sampled("line", "major", draw="what is shown", keep=2)
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("line", [b"LOOP(FOREVER);SHOW(123456.789);END_LOOP", b"HELP"])
-def test_what_is_sent_faster_than_the_cable_takes_it_makes_nothing_wait(
-    line: bytes, major: int
-) -> None:
+def test_output_faster_than_the_cable_blocks_nothing(line: bytes, major: int) -> None:
     robot = switched_on(Esp32Robot(major=major))
     robot.step(line + b"\r\n")
     robot.wait(300)
@@ -202,7 +201,7 @@ def test_what_is_sent_faster_than_the_cable_takes_it_makes_nothing_wait(
 
 
 @pytest.mark.parametrize("name", KITS)
-def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
+def test_a_stop_does_not_depend_on_ledc(name: str) -> None:
     """All motor pins are low, and LEDC's channels still run: no pin is joined to them."""
     robot = switched_on(Esp32Robot(robots.load(name)))
     session = computer()
@@ -217,7 +216,7 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     assert [robot.output(pin) for pin in pins] == [0] * len(pins)
 
 
-def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -> None:
+def test_a_disconnected_bluetooth_module_ends_an_attached_run() -> None:
     """Its state pin shows that, in addition to the chip's own radios."""
     state = 22
     text = TEXTS["tinibot32"].replace("[board]\n", f"[board]\nbluetooth_state = {state}\n")
@@ -236,7 +235,7 @@ def test_a_bluetooth_module_that_nobody_is_connected_to_ends_an_attached_run() -
 @pytest.mark.parametrize(
     "motors", [SERVOS, TWO_WIRE, ONE_DIRECTION], ids=["servos", "two_wire", "pwm_dir"]
 )
-def test_other_motors(motors: str) -> None:
+def test_other_motor_drivers_are_driven(motors: str) -> None:
     robot = wire_robot(motors, DEVICES_TEXT.replace("pin = 13", "pin = 14"))
     run(robot, "SI|M(-40, 60);W(0.1);F(1, 80)")
     robot.wait(300)
@@ -258,7 +257,7 @@ def test_other_motors(motors: str) -> None:
         assert robot.output(25) == robot.output(26) == 0
 
 
-def test_actuators_and_what_a_stop_makes_of_them() -> None:
+def test_actuators_are_set_and_released_by_a_stop() -> None:
     robot = wire_robot(TWO_WIRE)
     assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
     run(robot, "SI|ARM(90);FAN(50);LED(TRUE);F(60, 80)")
@@ -270,7 +269,7 @@ def test_actuators_and_what_a_stop_makes_of_them() -> None:
     assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
 
 
-def test_sensors() -> None:
+def test_sensors_are_read() -> None:
     robot = wire_robot(TWO_WIRE)
     trigger, echo = 18, 19
     robot.analog(34, 4095)
@@ -287,7 +286,7 @@ def test_sensors() -> None:
     assert others == [1, 1]
 
 
-def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
+def test_an_echo_missed_during_an_erase_is_measured_again() -> None:
     robot, session = switched_on(Esp32Robot()), computer()
     robot.sonar(18, 19, 50)
     robot.erase(150)
@@ -299,7 +298,7 @@ def test_an_echo_that_comes_while_a_page_is_erased_is_asked_for_again() -> None:
     assert all(49_000 < value < 51_000 for value in shown_values), shown_values
 
 
-def test_nvs_is_written_only_while_the_motors_stand() -> None:
+def test_nvs_is_written_only_while_the_motors_are_off() -> None:
     """A write may stop the chip while a page is erased: a stop would come late."""
     robot, session = switched_on(Esp32Robot()), computer()
     send(robot, session, AWAY_PROGRAM)
@@ -314,7 +313,7 @@ def test_nvs_is_written_only_while_the_motors_stand() -> None:
 
 
 @pytest.mark.parametrize("room", range(5))
-def test_a_full_nvs_is_said_and_the_program_before_stays(room: int) -> None:
+def test_a_full_nvs_is_reported_and_the_previous_program_stays(room: int) -> None:
     """The button starts the stored program, and the light says that it can. The last write needs
     the least room.
     """
@@ -345,7 +344,7 @@ def driving_robot(text: str = AWAY_PROGRAM) -> Esp32Robot:
     return robot
 
 
-def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
+def test_a_hanging_main_loop_is_stopped_and_restarted() -> None:
     robot = driving_robot()
     robot.hang(99)
     robot.wait(1)
@@ -391,7 +390,7 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     ("reset", "number"),
     [(1, 1), (EXTERNAL, 2), (BROWN_OUT, 3), (TASK_WATCHDOG, 4), (5, 4), (4, 4), (3, 0)],
 )
-def test_the_cause_of_a_reset(reset: int, number: int) -> None:
+def test_the_cause_of_a_reset_is_reported(reset: int, number: int) -> None:
     robot, session = Esp32Robot(reset=reset), computer()
     robot.wait(200)
     assert robot.complete(session, session.hello()).reset == number
@@ -400,7 +399,7 @@ def test_the_cause_of_a_reset(reset: int, number: int) -> None:
 @pytest.mark.parametrize(
     "take", [lambda kept: EMPTY_MEMORY, lambda kept: kept._replace(noinit=b"")]
 )
-def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
+def test_memory_that_survives_a_reset_may_contain_anything(take: Callable[[Kept], Kept]) -> None:
     robot = driving_robot()
     robot.hang(1200)
     restarted_robot = Esp32Robot(kept_memory=take(robot.read_kept()), reset=1)

@@ -140,19 +140,19 @@ class Life:
 
     def step(self, rng: random.Random) -> None:
         """Something changes: the settings, the place, the memory, the power; or a client comes."""
-        what, network = rng.randrange(10), rng.choice(NETWORKS)
-        if what < 4:
+        kind, network = rng.randrange(10), rng.choice(NETWORKS)
+        if kind < 4:
             self.move_to(rng.choice([*CONNECTION_ENDS]), network)
             self.use(network)
-        elif what == 4:
+        elif kind == 4:
             self.use(rng.choice((network, None)))
-        elif what == 5:
+        elif kind == 5:
             self.move_to(rng.choice([*CONNECTION_ENDS]), network)
-        elif what == 6:
+        elif kind == 6:
             self.robot.radio("H", bytes([rng.randrange(2)]))
-        elif what == 7:
+        elif kind == 7:
             self.robot.radio("X")
-        elif what == 8:
+        elif kind == 8:
             self.restart(rng.choice(RESETS))
         elif port_of(self.robot):
             self.guests.append(Network(self.robot))
@@ -168,8 +168,13 @@ class Life:
         for number in range(count):
             self.robot.wait(began_ms + FIRST_LOOK_MS + number * LOOK_MS - self.robot.now_ms)
             radio_state = radios(self.robot)
-            its = wifi_reply_of(self.robot, [(None, self.owner)], self.owner)
-            told = wifi.MODES[its.mode], wifi.STATES[its.state], its.network, wifi.address(its)
+            wifi_reply = wifi_reply_of(self.robot, [(None, self.owner)], self.owner)
+            told = (
+                wifi.MODES[wifi_reply.mode],
+                wifi.STATES[wifi_reply.state],
+                wifi_reply.network,
+                wifi.address(wifi_reply),
+            )
             radio_state = radio_state._replace(joins=radio_state.joins - joins)
             seen.append((told, radio_state, bool(port_of(self.robot))))
         return seen
@@ -185,28 +190,28 @@ class Life:
 def check_radio(seed: int) -> str:
     rng = random.Random(seed)
     # each one after each
-    before, end = [*CONNECTION_ENDS][seed // 5 % 5], [*CONNECTION_ENDS][seed % 5]
-    old = Life()
+    previous_end, end = [*CONNECTION_ENDS][seed // 5 % 5], [*CONNECTION_ENDS][seed % 5]
+    used_life = Life()
     for _ in range(rng.choice((1, 2, 5))):
-        old.step(rng)
-    old.robot.radio("H", b"\0")
-    old.move_to(before, SCHOOL)
-    old.use(rng.choice((SCHOOL, SCHOOL, HOTSPOT)))
-    old.robot.wait(rng.choice((50, 1000, JOIN_RETRY_MS)))
-    last = rng.choice((SECOND_NETWORK, SECOND_NETWORK, SECOND_NETWORK, HOTSPOT, None))
+        used_life.step(rng)
+    used_life.robot.radio("H", b"\0")
+    used_life.move_to(previous_end, SCHOOL)
+    used_life.use(rng.choice((SCHOOL, SCHOOL, HOTSPOT)))
+    used_life.robot.wait(rng.choice((50, 1000, JOIN_RETRY_MS)))
+    last_network = rng.choice((SECOND_NETWORK, SECOND_NETWORK, SECOND_NETWORK, HOTSPOT, None))
     count = rng.choice((3, 3, 25, 60))  # up to 2 s, 18 s and 44 s
     seen = []
-    for life in (old, Life()):
-        life.move_to(end, last or SCHOOL)
-        life.use(last)
+    for life in (used_life, Life()):
+        life.move_to(end, last_network or SCHOOL)
+        life.use(last_network)
         seen.append([*life.looks(count), life.restarts_until_it_rests()])
     assert seen[0] == seen[1], first_difference(*seen)
-    return end if last and not last.is_access_point else "else"
+    return end if last_network and not last_network.is_access_point else "else"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(10))
-def test_after_any_history_a_radio_does_what_a_fresh_one_does(part: int) -> None:
+def test_a_radio_with_any_history_behaves_like_a_fresh_one(part: int) -> None:
     """It joins, is announced, listens, tries again, and is told, at the same times."""
     for seed in range(part * 5, part * 5 + 5):
         check_radio(seed)
@@ -214,7 +219,7 @@ def test_after_any_history_a_radio_does_what_a_fresh_one_does(part: int) -> None
 
 @pytest.mark.sampled("reason")
 @pytest.mark.parametrize("reason", [15, 202, 203, 204])
-def test_who_is_let_in_at_last_was_not_refused(reason: int) -> None:
+def test_a_network_that_finally_accepts_is_not_reported_as_refusing(reason: int) -> None:
     """With a weak signal, the robot may have joined and be waiting for its address."""
     robot, owner = make_owned_robot(Keys())
     refuse_robot(robot, SCHOOL, reason)
@@ -246,21 +251,21 @@ def stored_settings(robot: Esp32Robot) -> tuple[bytes | None, bytes | None]:
     return entries.get(WIFI_KEY), entries.get(BROKER_KEY)
 
 
-def saving_time_ms(robot: Esp32Robot, owner: Session, what: str) -> int:
+def saving_time_ms(robot: Esp32Robot, owner: Session, request_name: str) -> int:
     """Save a setting; return the time that takes."""
     began_ms = robot.now_ms
-    assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[what](owner)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[request_name](owner)) == "OK"
     return robot.now_ms - began_ms
 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(10))
-@pytest.mark.parametrize("last", REQUEST_MAKERS)
-def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: int) -> None:
+@pytest.mark.parametrize("last_setting", REQUEST_MAKERS)
+def test_partial_settings_do_not_mix_with_complete_ones(last_setting: str, seed: int) -> None:
     """The sender may disconnect at any moment before the last part."""
     rng = random.Random(seed)
     robot, owner = make_owned_robot(Keys())
-    usual_ms = saving_time_ms(robot, owner, last)
+    usual_ms = saving_time_ms(robot, owner, last_setting)
     fresh = stored_settings(robot)
     keys = Keys()
     robot, _ = make_owned_robot(keys)
@@ -268,15 +273,15 @@ def test_of_what_came_in_part_nothing_is_in_what_comes_whole(last: str, seed: in
         talk(robot, [], AUTHORITY_MS + 100)
         first = remote(robot, keys, 20 + nonce)
         assert wait_for_outcome(robot, [(None, first)], first.wifi()) == "OK"
-        request = REQUEST_MAKERS[rng.choice([last, "a network", "a broker", "a broker with TLS"])](
-            first
-        )
+        request = REQUEST_MAKERS[
+            rng.choice([last_setting, "a network", "a broker", "a broker with TLS"])
+        ](first)
         talk(robot, [(None, first)], rng.randint(1, usual_ms))
         if request.outcome is not None or stored_settings(robot) != (None, None):
             return  # the data arrived complete
     talk(robot, [], AUTHORITY_MS + 100)
     owner = remote(robot, keys, 50)
-    assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[last](owner)) == "OK"
+    assert wait_for_outcome(robot, [(None, owner)], REQUEST_MAKERS[last_setting](owner)) == "OK"
     assert stored_settings(robot) == fresh
 
 
@@ -296,37 +301,37 @@ def test_damaged_settings_are_ignored(key: bytes) -> None:
     """No part of them is reported, and new settings are stored as for the first time."""
     keys = Keys()
     robot, owner = join_network(keys)
-    ends: Ends = [(None, owner)]
-    assert wait_for_outcome(robot, ends, owner.use_broker(BROKER)) == "OK"
-    kept_memory, whole = robot.read_kept(), stored_settings(robot)
+    clients: Ends = [(None, owner)]
+    assert wait_for_outcome(robot, clients, owner.use_broker(BROKER)) == "OK"
+    kept_memory, stored = robot.read_kept(), stored_settings(robot)
     for entry in damage_entry(kept_memory.entries[key]):
         restarted_robot = Esp32Robot(kept_memory=Kept(b"", {**kept_memory.entries, key: entry}, 0))
         school_in_reach(restarted_robot)
         restarted_robot.wait(400)
         owner = remote(restarted_robot, keys, 30)
-        ends = [(None, owner)]
+        clients = [(None, owner)]
         pending_request = owner.wifi() if key == WIFI_KEY else owner.broker()
         assert (
-            wait_for_outcome(restarted_robot, ends, pending_request) == "OK"
+            wait_for_outcome(restarted_robot, clients, pending_request) == "OK"
             and pending_request.outcome
         )
         values = pending_request.outcome.values
         settings = wifi.MODES[values.mode], wifi.STATES[values.state], values.network
         assert settings == ("OFF", "OFF", b""), entry
         assert (radios(restarted_robot).joins == 0) == (key == WIFI_KEY)
-        assert wait_for_outcome(restarted_robot, ends, owner.join(SCHOOL)) == "OK"
-        assert wait_for_outcome(restarted_robot, ends, owner.use_broker(BROKER)) == "OK"
-        assert stored_settings(restarted_robot) == whole
+        assert wait_for_outcome(restarted_robot, clients, owner.join(SCHOOL)) == "OK"
+        assert wait_for_outcome(restarted_robot, clients, owner.use_broker(BROKER)) == "OK"
+        assert stored_settings(restarted_robot) == stored
 
 
-@pytest.mark.parametrize("what", ["joins", "forgets", "uses a broker", "uses none"])
-def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
+@pytest.mark.parametrize("action", ["joins", "forgets", "uses a broker", "uses none"])
+def test_no_setting_is_written_while_the_robot_drives(action: str) -> None:
     """Writing stops the chip for a while: it waits until the robot has stopped."""
     robot, owner = join_network(Keys())
-    ends: Ends = [(None, owner)]
-    if what == "uses none":
-        assert wait_for_outcome(robot, ends, owner.use_broker(BROKER)) == "OK"
-    assert upload_text(robot, ends, owner, "SI|F(2, 80);W(60)") == "OK"
+    clients: Ends = [(None, owner)]
+    if action == "uses none":
+        assert wait_for_outcome(robot, clients, owner.use_broker(BROKER)) == "OK"
+    assert upload_text(robot, clients, owner, "SI|F(2, 80);W(60)") == "OK"
     kept_settings_before = stored_settings(robot)
     ways: dict[str, Callable[[], PendingRequest[Any]]] = {
         "joins": partial(owner.join, HOTSPOT),
@@ -334,11 +339,11 @@ def test_no_setting_is_written_while_the_robot_drives(what: str) -> None:
         "uses a broker": partial(owner.use_broker, BROKER),
         "uses none": partial(owner.use_broker, None),
     }
-    request = ways[what]()
-    talk(robot, ends, 1500)
+    request = ways[action]()
+    talk(robot, clients, 1500)
     assert request.outcome is None and stored_settings(robot) == kept_settings_before
     assert (
-        wait_for_outcome(robot, ends, request) == "OK"
+        wait_for_outcome(robot, clients, request) == "OK"
         and stored_settings(robot) != kept_settings_before
     )
 
@@ -456,7 +461,7 @@ ALL_ANSWER_BYTES = len(CONNECT_ANSWER + SUBSCRIBE_ANSWER + STOP_PUBLICATION * 3 
 @pytest.mark.parametrize("rest", [b"", b"\xff" * 9, b"\x30\xff\xff\xff\xff\xff"])
 @pytest.mark.sampled("part", "rest")
 @pytest.mark.parametrize("part", range(6))
-def test_a_connection_that_is_cut_anywhere_is_made_again(
+def test_a_connection_cut_anywhere_is_restored(
     cut_broker: CutBroker, part: int, rest: bytes
 ) -> None:
     """The cut is in each byte of each packet; the next connection begins like the first."""

@@ -65,7 +65,7 @@ def run(
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [3, 389, 8192])
-def test_old_or_new(size: int) -> None:
+def test_an_interrupted_save_leaves_the_old_or_the_new_data(size: int) -> None:
     completed = run(program(), 1, size)
     assert completed.returncode == 0, (completed.stdout + completed.stderr)[-2000:]
     cases, writes = (int(line.split()[1]) for line in completed.stdout.splitlines())

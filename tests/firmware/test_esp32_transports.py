@@ -38,17 +38,17 @@ from tiniscript.link.session import Session
 
 @pytest.mark.parametrize("major", [2, 3])
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_program_over_each_radio(make: Make, major: int) -> None:
+def test_a_program_runs_over_each_radio(make: Make, major: int) -> None:
     robot = boot(major=major)
     client = session(1, robot)
-    ends: Ends = [(make(robot), client)]
-    assert upload_text(robot, ends, client, "SI|SHOW(5);F(0.5, 80)") == "OK"
-    talk(robot, ends, 700)
+    clients: Ends = [(make(robot), client)]
+    assert upload_text(robot, clients, client, "SI|SHOW(5);F(0.5, 80)") == "OK"
+    talk(robot, clients, 700)
     assert actions_of(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
     assert [event.name for event in client.events()] == ["SHOW", "DONE"]
 
 
-def test_a_chip_with_one_core_and_no_serial_port_over_bluetooth() -> None:
+def test_a_single_core_chip_without_serial_port_profile_runs_programs() -> None:
     """Its idle task gets its turn."""
     robot = boot("tinibotc3")
     assert radios(robot)[:2] == ("tini-5678", "")
@@ -60,42 +60,48 @@ def test_a_chip_with_one_core_and_no_serial_port_over_bluetooth() -> None:
     assert two_cores.rests() == 0
 
 
-def test_the_radios_have_the_robots_name() -> None:
+def test_the_radios_show_the_robots_name() -> None:
     robot = boot()
     assert radios(robot)[:2] == ("tini-5678", "tini-5678")
     client = session(1, robot)
-    ends: Ends = [(None, client)]
-    assert wait_for_outcome(robot, ends, client.name("Señal".encode())) == "OK"
+    clients: Ends = [(None, client)]
+    assert wait_for_outcome(robot, clients, client.name("Señal".encode())) == "OK"
     restarted_robot = Esp32Robot(kept_memory=robot.read_kept())
     restarted_robot.wait(300)
     assert radios(restarted_robot)[:2] == ("Señal", "Señal")
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
+def test_one_client_drives_while_others_watch_and_stop(make: Make) -> None:
     robot = boot()
-    driver, other = session(1, robot), session(2, robot)
+    driver, other_session = session(1, robot), session(2, robot)
     end = make(robot)
-    ends: Ends = [(None, driver), (end, other)]
-    assert upload_text(robot, ends, driver) == "OK"
-    for request in (other.hello(), other.ping(), other.status(), other.identify()):
-        assert wait_for_outcome(robot, ends, request) == "OK"
+    clients: Ends = [(None, driver), (end, other_session)]
+    assert upload_text(robot, clients, driver) == "OK"
+    for request in (
+        other_session.hello(),
+        other_session.ping(),
+        other_session.status(),
+        other_session.identify(),
+    ):
+        assert wait_for_outcome(robot, clients, request) == "OK"
     refused_requests = (
-        other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
-        other.upload(image_of(AWAY_PROGRAM)), other.undo(), other.trim(),
+        other_session.live(image_of("F(1, 10)").code), other_session.start(),
+        other_session.name(b"mine"),
+        other_session.upload(image_of(AWAY_PROGRAM)), other_session.undo(), other_session.trim(),
     )  # fmt: skip
     for refused_request in refused_requests:
-        assert wait_for_outcome(robot, ends, refused_request) == "OTHER_DRIVER"
+        assert wait_for_outcome(robot, clients, refused_request) == "OTHER_DRIVER"
     assert actions_of(robot) == ["MOTORS 80 80"]
-    talk(robot, ends, 1500)
+    talk(robot, clients, 1500)
     assert actions_of(robot) == ["MOTORS 80 80"], "the driver's session lives beside the other one"
     end.send(bytes(STOP_BYTES // 2))
     robot.wait(3)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    talk(robot, ends, 200)
+    talk(robot, clients, 200)
     assert [event.name for event in driver.events()] == ["STOPPED"]
-    assert wait_for_outcome(robot, ends, other.start()) == "OTHER_DRIVER"
-    assert upload_text(robot, ends, driver) == "OK", "who drives goes on after it"
+    assert wait_for_outcome(robot, clients, other_session.start()) == "OTHER_DRIVER"
+    assert upload_text(robot, clients, driver) == "OK", "who drives goes on after it"
 
 
 PROGRAM_ENDS: dict[str, tuple[str, str]] = {  # the program, and the events for everyone
@@ -118,39 +124,43 @@ HARMLESS_BYTES = {
 
 
 @pytest.mark.parametrize("driver", range(3))
-@pytest.mark.parametrize("how", PROGRAM_ENDS)
-def test_all_who_listen_are_told_the_same_end_of_a_run(how: str, driver: int) -> None:
+@pytest.mark.parametrize("ending", PROGRAM_ENDS)
+def test_all_listeners_get_the_same_end_of_a_run(ending: str, driver: int) -> None:
     """Each is told once, and their later requests belong to the time after it."""
-    text, name = PROGRAM_ENDS[how]
-    if (how, driver) == ("its client that leaves", 0):
+    text, name = PROGRAM_ENDS[ending]
+    if (ending, driver) == ("its client that leaves", 0):
         driver = 1  # a cable does not leave
     robot = boot()
-    clients = [session(number, robot) for number in (1, 2, 3)]
+    sessions = [session(number, robot) for number in (1, 2, 3)]
     ways: tuple[End | None, ...] = (None, LowEnergy(robot), SerialPort(robot))
-    ends: Ends = list(zip(ways, clients, strict=True))
-    for client in clients:
-        assert wait_for_outcome(robot, ends, client.hello()) == "OK"
-    assert upload_text(robot, ends, clients[driver], text) == "OK"
-    talk(robot, ends, 100)
-    for client in clients:
+    clients: Ends = list(zip(ways, sessions, strict=True))
+    for client in sessions:
+        assert wait_for_outcome(robot, clients, client.hello()) == "OK"
+    assert upload_text(robot, clients, sessions[driver], text) == "OK"
+    talk(robot, clients, 100)
+    for client in sessions:
         client.events()
-    other = 1 if driver == 2 else 2
+    other_number = 1 if driver == 2 else 2
     listening = [0, 1, 2]
-    if how in ("its silent client", "its client that leaves"):
+    if ending in ("its silent client", "its client that leaves"):
         listening.remove(driver)
-        if how == "its client that leaves" and (way := ways[driver]) is not None:
+        if ending == "its client that leaves" and (way := ways[driver]) is not None:
             way.leave()
-    elif how in HARMLESS_BYTES:
-        send_data(robot, ends[driver if how.startswith("its") else other], HARMLESS_BYTES[how])
-    listening_ends = [ends[place] for place in listening]
-    talk(robot, listening_ends, 1, flags=how == "the button")
+    elif ending in HARMLESS_BYTES:
+        send_data(
+            robot,
+            clients[driver if ending.startswith("its") else other_number],
+            HARMLESS_BYTES[ending],
+        )
+    listening_ends = [clients[place] for place in listening]
+    talk(robot, listening_ends, 1, flags=ending == "the button")
     talk(robot, listening_ends, DEAD_MAN_MS + 300)
-    events_by_client = [clients[place].events() for place in listening]
+    events_by_client = [sessions[place].events() for place in listening]
     assert [event.name for event in events_by_client[0]] == [name], events_by_client
     assert all(events == events_by_client[0] for events in events_by_client), events_by_client
     for place in listening:
-        assert wait_for_outcome(robot, listening_ends, clients[place].identify()) == "OK"
-        assert not clients[place].events()
+        assert wait_for_outcome(robot, listening_ends, sessions[place].identify()) == "OK"
+        assert not sessions[place].events()
 
 
 def send_data(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) -> None:
@@ -161,89 +171,90 @@ def send_data(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) ->
         end[0].send(data)
 
 
-def test_the_next_one_drives_when_the_first_is_silent() -> None:
+def test_the_next_client_drives_once_the_first_is_silent() -> None:
     robot = boot()
     first, second = session(1, robot), session(2, robot)
-    ends: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert upload_text(robot, ends, first, "SI|F(0.1, 30)") == "OK"
-    talk(robot, ends, 300)
-    assert upload_text(robot, ends, second) == "OTHER_DRIVER"
-    only: Ends = ends[1:]
+    clients: Ends = [(None, first), (LowEnergy(robot), second)]
+    assert upload_text(robot, clients, first, "SI|F(0.1, 30)") == "OK"
+    talk(robot, clients, 300)
+    assert upload_text(robot, clients, second) == "OTHER_DRIVER"
+    only: Ends = clients[1:]
     talk(robot, only, AUTHORITY_MS + 50)
     assert upload_text(robot, only, second) == "OK"
     talk(robot, only, 1500)
     assert actions_of(robot)[-1] == "MOTORS 80 80", (
         "the dead-man timer of the first ends nothing of his"
     )
-    assert upload_text(robot, ends, first) == "OTHER_DRIVER"
+    assert upload_text(robot, clients, first) == "OTHER_DRIVER"
 
 
-def test_whoever_drives_keeps_the_robot_while_it_asks_something_in_time() -> None:
+def test_a_driver_keeps_the_robot_while_its_requests_are_in_time() -> None:
     """This holds between short runs, too, and for longer than the longest allowed silence."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
-    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    clients: Ends = [(None, first), (LowEnergy(robot), second)]
     for _ in range(4):
-        assert upload_text(robot, ends, first, "SI|F(0.1, 30)") == "OK"
-        talk(robot, ends, AUTHORITY_MS - 500)
-        assert upload_text(robot, ends, second) == "OTHER_DRIVER"
+        assert upload_text(robot, clients, first, "SI|F(0.1, 30)") == "OK"
+        talk(robot, clients, AUTHORITY_MS - 500)
+        assert upload_text(robot, clients, second) == "OTHER_DRIVER"
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_whoever_leaves_ends_his_own_run_and_drives_no_more(make: Make) -> None:
+def test_a_leaving_client_ends_its_run_and_its_turn(make: Make) -> None:
     robot = boot()
-    driver, other = session(1, robot), session(2, robot)
+    driver, other_session = session(1, robot), session(2, robot)
     end = make(robot)
-    ends: Ends = [(end, driver), (None, other)]
-    assert upload_text(robot, ends, driver) == "OK"
+    clients: Ends = [(end, driver), (None, other_session)]
+    assert upload_text(robot, clients, driver) == "OK"
     end.leave()
-    talk(robot, ends[1:], 5)
+    talk(robot, clients[1:], 5)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    assert upload_text(robot, ends[1:], other) == "OK"
+    assert upload_text(robot, clients[1:], other_session) == "OK"
     looking_session, end = session(3, robot), make(robot)
     assert (
-        wait_for_outcome(robot, [(end, looking_session), *ends[1:]], looking_session.ping()) == "OK"
+        wait_for_outcome(robot, [(end, looking_session), *clients[1:]], looking_session.ping())
+        == "OK"
     )
     end.leave()
-    talk(robot, ends[1:], 300)
+    talk(robot, clients[1:], 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80", "nothing of others"
 
 
-def test_whoever_comes_at_once_when_another_one_leaves_is_not_taken_for_that_one() -> None:
+def test_a_client_that_connects_right_after_another_is_not_confused_with_it() -> None:
     """The task of a radio may wait in a write meanwhile."""
     robot = boot()
-    driver, other = session(1, robot), session(2, robot)
+    driver, other_session = session(1, robot), session(2, robot)
     end = SerialPort(robot)
     assert upload_text(robot, [(end, driver)], driver) == "OK"
     end.leave()
-    ends: Ends = [(SerialPort(robot), other)]
-    talk(robot, ends, 5)
+    clients: Ends = [(SerialPort(robot), other_session)]
+    talk(robot, clients, 5)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
-    assert upload_text(robot, ends, other) == "OK"
+    assert upload_text(robot, clients, other_session) == "OK"
 
 
-def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> None:
+def test_an_overtaken_upload_is_not_started() -> None:
     """Its memory is another program's by then."""
     robot = boot()
-    ends: Ends = [
+    clients: Ends = [
         (None, (first := session(1, robot))),
         (LowEnergy(robot), (second := session(2, robot))),
     ]
-    long = image_of("SB|" + ";".join("F(1, 80)" for _ in range(800)))
-    request = first.upload(long)
+    long_image = image_of("SB|" + ";".join("F(1, 80)" for _ in range(800)))
+    request = first.upload(long_image)
     while not request.done_bytes:
         assert request.outcome is None  # the request is too long for one frame
-        talk(robot, ends, 1)
-    talk(robot, ends[1:], AUTHORITY_MS + 50)  # the first one is out of reach
-    assert upload_text(robot, ends[1:], second, "SB|F(1, 10)") == "OK"
-    talk(robot, ends[1:], 20)
-    talk(robot, [(ends[1][0], RawClient())], AUTHORITY_MS + 50)
-    assert wait_for_outcome(robot, ends[:1], request, 20_000) in ("OK", "NOT_BEGUN")
+        talk(robot, clients, 1)
+    talk(robot, clients[1:], AUTHORITY_MS + 50)  # the first one is out of reach
+    assert upload_text(robot, clients[1:], second, "SB|F(1, 10)") == "OK"
+    talk(robot, clients[1:], 20)
+    talk(robot, [(clients[1][0], RawClient())], AUTHORITY_MS + 50)
+    assert wait_for_outcome(robot, clients[:1], request, 20_000) in ("OK", "NOT_BEGUN")
     fetch = first.fetch()
-    assert wait_for_outcome(robot, ends[:1], fetch) == "OK"
+    assert wait_for_outcome(robot, clients[:1], fetch) == "OK"
 
 
-def test_notifications_are_as_long_as_was_agreed() -> None:
+def test_notifications_fit_the_negotiated_mtu() -> None:
     robot = boot()
     for mtu, longest in (
         (23, 20),
@@ -255,8 +266,8 @@ def test_notifications_are_as_long_as_was_agreed() -> None:
         client = session(mtu, robot)
         end = LowEnergy(robot, mtu)
         end.mtu = max(mtu, LEAST_MTU)
-        ends: Ends = [(end, client)]
-        assert wait_for_outcome(robot, ends, client.hello()) == "OK"
+        clients: Ends = [(end, client)]
+        assert wait_for_outcome(robot, clients, client.hello()) == "OK"
         assert max(end.lengths) == longest
         end.leave()
         robot.wait(5)
@@ -264,30 +275,30 @@ def test_notifications_are_as_long_as_was_agreed() -> None:
 
 def test_slow_notifications_delay_nobody_else() -> None:
     robot = boot()
-    driver, slow = session(1, robot), session(2, robot)
-    ends: Ends = [(None, driver), (LowEnergy(robot, look_interval=100), slow)]
-    request = slow.status()
-    assert upload_text(robot, ends, driver) == "OK"
+    driver, slow_session = session(1, robot), session(2, robot)
+    clients: Ends = [(None, driver), (LowEnergy(robot, look_interval=100), slow_session)]
+    request = slow_session.status()
+    assert upload_text(robot, clients, driver) == "OK"
     begun_ms = robot.now_ms
-    assert wait_for_outcome(robot, ends, driver.ping()) == "OK"
+    assert wait_for_outcome(robot, clients, driver.ping()) == "OK"
     assert robot.now_ms - begun_ms < 30
-    assert wait_for_outcome(robot, ends, request, 20_000) == "OK"
-    slow.stop(robot.now_ms)
-    talk(robot, ends, 20)
+    assert wait_for_outcome(robot, clients, request, 20_000) == "OK"
+    slow_session.stop(robot.now_ms)
+    talk(robot, clients, 20)
     assert actions_of(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
 
 
-def test_what_a_congested_stack_does_not_take_comes_later() -> None:
+def test_output_refused_by_a_congested_stack_is_sent_later() -> None:
     robot = boot()
     once = RawClient(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
     end = LowEnergy(robot)
-    ends: Ends = [(end, once)]
+    clients: Ends = [(end, once)]
     robot.radio("k", b"\1")
-    talk(robot, ends, 100)
+    talk(robot, clients, 100)
     assert not once.received
     for is_congested in (b"\0", b"\1") * 20:
         robot.radio("k", is_congested)
-        talk(robot, ends, 3)
+        talk(robot, clients, 3)
     frame = decode_frame(once.received.strip(b"\0"))
     assert frame and len(end.lengths) == 2, "whole, and never asked for again"
     robot.radio("k", b"\1")
@@ -299,13 +310,13 @@ def test_what_a_congested_stack_does_not_take_comes_later() -> None:
     assert not second.lengths, "what waits for one client is not told to the next one"
 
 
-def test_a_client_that_takes_nothing_stops_nobody() -> None:
+def test_a_client_that_reads_nothing_blocks_nobody() -> None:
     """The ring to it is full: its own replies wait, and the robot continues."""
     robot = boot()
     driver, deaf = session(1, robot), session(2, robot)
     end = LowEnergy(robot)
-    ends: Ends = [(None, driver), (end, deaf)]
-    assert upload_text(robot, ends, driver) == "OK"
+    clients: Ends = [(None, driver), (end, deaf)]
+    assert upload_text(robot, clients, driver) == "OK"
     end.subscribe(False)
     talk(
         robot,
@@ -314,24 +325,24 @@ def test_a_client_that_takes_nothing_stops_nobody() -> None:
     )
     assert actions_of(robot) == ["MOTORS 80 80"]
     end.send(bytes(STOP_BYTES))
-    talk(robot, ends[:1], 20)
+    talk(robot, clients[:1], 20)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_whoever_comes_again_begins_anew() -> None:
+def test_a_returning_client_starts_afresh() -> None:
     robot = boot()
     for k in range(5):
         client = session(k + 1, robot)
         end = LowEnergy(robot)
-        ends: Ends = [(end, client)]
-        assert upload_text(robot, ends, client, AWAY_PROGRAM) == "OK"
+        clients: Ends = [(end, client)]
+        assert upload_text(robot, clients, client, AWAY_PROGRAM) == "OK"
         end.send(b"\5\7\7")  # the client disconnects in the middle of a frame
         end.leave()
         talk(robot, [], 5)
         assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
+def test_text_is_accepted_over_a_radio_unless_another_client_drives() -> None:
     robot = boot()
     driver, typed_bytes = session(1, robot), RawClient(b"SI|F(0.2, 50)\n")
     end = SerialPort(robot)
@@ -339,19 +350,19 @@ def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
     assert actions_of(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
     assert b"// OK" in typed_bytes.received
     talk(robot, [], AUTHORITY_MS)
-    ends: Ends = [(None, driver), (end, typed_bytes)]
-    assert upload_text(robot, ends, driver) == "OK"
+    clients: Ends = [(None, driver), (end, typed_bytes)]
+    assert upload_text(robot, clients, driver) == "OK"
     typed_bytes.to_send, typed_bytes.received = b"F(0.2, 20)\n", b""
-    talk(robot, ends, 300)
+    talk(robot, clients, 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     assert b"Not possible here" in typed_bytes.received
     typed_bytes.to_send = b"S\n"
-    talk(robot, ends, 50)
+    talk(robot, clients, 50)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
+def test_line_endings_are_tracked_per_client(make: Make) -> None:
     """An app that ends no lines may follow one that does: its line runs after three seconds all the
     same."""
     robot = boot()
@@ -360,25 +371,25 @@ def test_whether_lines_end_is_known_of_one_client(make: Make) -> None:
     assert b"// OK" in typed_bytes.received
     end.leave()
     talk(robot, [], AUTHORITY_MS)
-    ends: Ends = [(make(robot), RawClient(b"SI|F(60, 50)"))]
-    talk(robot, ends, 2900)
+    clients: Ends = [(make(robot), RawClient(b"SI|F(60, 50)"))]
+    talk(robot, clients, 2900)
     assert "MOTORS 50 50" not in actions_of(robot)
-    talk(robot, ends, 300)
+    talk(robot, clients, 300)
     assert actions_of(robot)[-1] == "MOTORS 50 50"
 
 
-def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
+def test_of_two_simultaneous_typists_the_first_line_is_read() -> None:
     """Both would be read in the same memory: no program is of two."""
     robot = boot()
     first, second = RawClient(b"SI|LOOP(2);"), RawClient()
-    ends: Ends = [(None, first), (SerialPort(robot), second)]
-    talk(robot, ends, 50)
+    clients: Ends = [(None, first), (SerialPort(robot), second)]
+    talk(robot, clients, 50)
     second.to_send = b"SI|F(0.1, "
-    talk(robot, ends, 50)
+    talk(robot, clients, 50)
     first.to_send = b"F(0.1, 44);END_LOOP\n"
-    talk(robot, ends, 20)
+    talk(robot, clients, 20)
     second.to_send = b"33)\n"
-    talk(robot, ends, 400)
+    talk(robot, clients, 400)
     assert [line for line in actions_of(robot) if "MOTORS" in line] == [
         "MOTORS 44 44",
         "MOTORS 0 0",
@@ -389,33 +400,33 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
 @pytest.mark.parametrize(
     "stop", [bytes(STOP_BYTES), b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))]
 )
-def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes) -> None:
+def test_a_stop_of_an_idle_robot_discards_text_typed_elsewhere(stop: bytes) -> None:
     robot = boot()
     first, second = RawClient(bytes(4)), RawClient()
-    ends: Ends = [(None, first), (SerialPort(robot), second)]
-    talk(robot, ends, 1500)
+    clients: Ends = [(None, first), (SerialPort(robot), second)]
+    talk(robot, clients, 1500)
     first.to_send = b"SI|LOOP(2)\n"
-    talk(robot, ends, 1500)
+    talk(robot, clients, 1500)
     assert b"END_LOOP" in first.received
     second.to_send = stop
-    talk(robot, ends, 1500)
+    talk(robot, clients, 1500)
     first.to_send = b"F(0.1, 44)\nEND_LOOP\n"
-    talk(robot, ends, 500)
+    talk(robot, clients, 500)
     assert actions_of(robot) == []
 
 
-def test_the_button_of_two_who_claim_is_nobodys() -> None:
+def test_the_button_confirms_neither_of_two_claims() -> None:
     robot = boot()
     first, second = (Session(k, 115200, robot.robot.kit.fingerprint, keys=Keys(k)) for k in (1, 2))
-    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    clients: Ends = [(None, first), (LowEnergy(robot), second)]
     claims = [first.claim(0), second.claim(0)]
-    talk(robot, ends, 500)
-    talk(robot, ends, 2300, flags=1)
-    talk(robot, ends, 500, flags=2)
+    talk(robot, clients, 500)
+    talk(robot, clients, 2300, flags=1)
+    talk(robot, clients, 500, flags=2)
     assert [claim.outcome for claim in claims] == [None, None]
-    talk(robot, ends[:1], AUTHORITY_MS + 100)  # the second one has left
-    talk(robot, ends[:1], 2300, flags=1)
-    talk(robot, ends[:1], 500, flags=2)
+    talk(robot, clients[:1], AUTHORITY_MS + 100)  # the second one has left
+    talk(robot, clients[:1], 2300, flags=1)
+    talk(robot, clients[:1], 500, flags=2)
     assert claims[0].outcome and claims[0].outcome.status == 0
 
 
@@ -424,13 +435,13 @@ def test_a_teachers_stop_holds_on_every_transport() -> None:
     keys = Keys()
     teacher = Session(1, 115200, robot.robot.kit.fingerprint, keys=keys)
     pupil = session(2, robot)
-    ends: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
-    claim_robot(robot, ends, teacher, kind=1)
-    assert wait_for_outcome(robot, ends, teacher.hold_back()) == "OK"
-    talk(robot, ends[1:], AUTHORITY_MS + 100)
-    assert wait_for_outcome(robot, ends[1:], pupil.clear()) == "HELD_BACK"
-    assert upload_text(robot, ends[1:], pupil) == "HELD_BACK"
-    assert wait_for_outcome(robot, ends, teacher.clear()) == "OK"
+    clients: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
+    claim_robot(robot, clients, teacher, kind=1)
+    assert wait_for_outcome(robot, clients, teacher.hold_back()) == "OK"
+    talk(robot, clients[1:], AUTHORITY_MS + 100)
+    assert wait_for_outcome(robot, clients[1:], pupil.clear()) == "HELD_BACK"
+    assert upload_text(robot, clients[1:], pupil) == "HELD_BACK"
+    assert wait_for_outcome(robot, clients, teacher.clear()) == "OK"
 
 
 def overrun(robot: Esp32Robot) -> int:
@@ -442,7 +453,7 @@ def overrun(robot: Esp32Robot) -> int:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
+def test_overflowing_input_is_counted_and_no_stop_is_lost(make: Make) -> None:
     """A packet of a serial port has up to 990 bytes: the core keeps 512 of them, unless asked."""
     for stop in (bytes(STOP_BYTES), b"\r\nS\r\n"):
         robot = boot()
@@ -458,7 +469,7 @@ def test_what_finds_no_room_is_counted_and_no_stop_is_lost(make: Make) -> None:
         assert overrun(robot) == (2003 - 1022) % 256
 
 
-def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
+def test_a_serial_port_whose_client_reads_nothing_accepts_a_stop() -> None:
     """The core's `write` waits for a second meanwhile."""
     robot = boot()
     end = SerialPort(robot)
@@ -474,11 +485,13 @@ def test_a_serial_port_whose_client_takes_nothing_hears_a_stop() -> None:
 def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
     robot = boot()
     client = session(3, robot)
-    ends: Ends = [(SerialPort(robot), client)]
+    clients: Ends = [(SerialPort(robot), client)]
     text = "SI|" + ";".join(f"SHOW({1000 + k})" for k in range(900))
-    assert wait_for_outcome(robot, ends, client.upload(image_of(text), saves=False), 60_000) == "OK"
+    assert (
+        wait_for_outcome(robot, clients, client.upload(image_of(text), saves=False), 60_000) == "OK"
+    )
     status = client.status()
-    assert wait_for_outcome(robot, ends, status) == "OK" and status.outcome
+    assert wait_for_outcome(robot, clients, status) == "OK" and status.outcome
     assert (status.outcome.values.damaged, status.outcome.values.overrun) == (0, 0)
 
 
@@ -487,11 +500,11 @@ def paste(
 ) -> Callable[[Esp32Robot, End, bytes, RawClient], None]:
     """Return a function that sends a text at a radio's pace: writes of a size, so many at once."""
 
-    def send(robot: Esp32Robot, end: End, text: bytes, who: RawClient) -> None:
-        for at in range(0, len(text), size * burst):
-            for k in range(at, min(at + size * burst, len(text)), size):
+    def send(robot: Esp32Robot, end: End, text: bytes, client: RawClient) -> None:
+        for offset in range(0, len(text), size * burst):
+            for k in range(offset, min(offset + size * burst, len(text)), size):
                 end.send(text[k : k + size])
-            talk(robot, [(end, who)], gap_ms)
+            talk(robot, [(end, client)], gap_ms)
 
     return send
 
@@ -511,24 +524,24 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     lines = b"".join(b"F(0.01, %d)%b\r\n" % (20 + k, comment) for k in range(40))
     text = b"LOOP(1)\r\n" + lines + b"END_LOOP\r\n"
     by_cable = boot()
-    for at in range(0, len(text), 11):
-        by_cable.step(text[at : at + 11])
+    for offset in range(0, len(text), 11):
+        by_cable.step(text[offset : offset + 11])
     by_cable.wait(2500)
     robot = boot()
     make, send = PACES[pace]
-    end, who = make(robot), RawClient()
-    send(robot, end, text, who)
-    talk(robot, [(end, who)], 2500)
-    assert who.received == b"// OK\r\n// DONE\r\n"
+    end, client = make(robot), RawClient()
+    send(robot, end, text, client)
+    talk(robot, [(end, client)], 2500)
+    assert client.received == b"// OK\r\n// DONE\r\n"
     assert actions_of(robot) == actions_of(by_cable) and len(actions_of(robot)) > 30
     assert overrun(robot) == 0
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> None:
+def test_lines_wait_while_their_answers_are_not_read(make: Make) -> None:
     """Each has an answer, which a client reads late; earlier lines are not lost either."""
     robot = boot()
-    end, who = make(robot), RawClient()
+    end, client = make(robot), RawClient()
     if isinstance(end, LowEnergy):
         robot.radio("k", b"\1")
     else:
@@ -539,41 +552,41 @@ def test_lines_wait_while_what_they_are_answered_is_not_taken(make: Make) -> Non
         robot.radio("k", b"\0")
     else:
         robot.radio("Z", b"\0")
-    talk(robot, [(end, who)], 9000)
-    assert b"lost" not in who.received and who.received.rstrip().endswith(b"// DONE")
+    talk(robot, [(end, client)], 9000)
+    assert b"lost" not in client.received and client.received.rstrip().endswith(b"// DONE")
     assert overrun(robot) == 0
 
 
-def press_keys(robot: Esp32Robot, ends: Ends, who: Session, keys: int = 1) -> str:
-    return wait_for_outcome(robot, ends, who.press(keys))
+def press_keys(robot: Esp32Robot, clients: Ends, session: Session, keys: int = 1) -> str:
+    return wait_for_outcome(robot, clients, session.press(keys))
 
 
-def test_keys_come_from_who_drives_or_from_anybody_where_nobody_does() -> None:
+def test_keys_come_from_the_driver_or_from_anybody_without_one() -> None:
     """Keys do not make their sender the driver."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
-    ends: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert press_keys(robot, ends, first) == "OK"
-    assert press_keys(robot, ends, second, 2) == "OK"
-    assert upload_text(robot, ends, first) == "OK", "nobody was the driver"
-    assert press_keys(robot, ends, second) == "OTHER_DRIVER"
-    assert press_keys(robot, ends, first, 4) == "OK"
+    clients: Ends = [(None, first), (LowEnergy(robot), second)]
+    assert press_keys(robot, clients, first) == "OK"
+    assert press_keys(robot, clients, second, 2) == "OK"
+    assert upload_text(robot, clients, first) == "OK", "nobody was the driver"
+    assert press_keys(robot, clients, second) == "OTHER_DRIVER"
+    assert press_keys(robot, clients, first, 4) == "OK"
     first.stop(robot.now_ms)
-    talk(robot, ends, AUTHORITY_MS + 500)
-    assert press_keys(robot, ends, second) == "OK"
-    assert upload_text(robot, ends, first) == "OK", "nor is he who has pressed last"
+    talk(robot, clients, AUTHORITY_MS + 500)
+    assert press_keys(robot, clients, second) == "OK"
+    assert upload_text(robot, clients, first) == "OK", "nor is he who has pressed last"
 
 
-def test_keys_end_no_upload_of_somebody_else() -> None:
+def test_keys_do_not_end_another_clients_upload() -> None:
     robot = boot()
     first, second = session(1, robot), session(2, robot)
-    ends: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert wait_for_outcome(robot, ends, second.hello()) == "OK"
-    long = first.upload(image_of("SI|" + "F(0.01, 80);" * 2500), saves=False)
+    clients: Ends = [(None, first), (LowEnergy(robot), second)]
+    assert wait_for_outcome(robot, clients, second.hello()) == "OK"
+    long_image_upload = first.upload(image_of("SI|" + "F(0.01, 80);" * 2500), saves=False)
     press_count = 0
-    while long.outcome is None:
-        press_count += wait_for_outcome(robot, ends, second.press(1 + press_count % 2)) in (
+    while long_image_upload.outcome is None:
+        press_count += wait_for_outcome(robot, clients, second.press(1 + press_count % 2)) in (
             "OK",
             "OTHER_DRIVER",
         )
-    assert long.outcome.status == 0 and press_count > 0
+    assert long_image_upload.outcome.status == 0 and press_count > 0

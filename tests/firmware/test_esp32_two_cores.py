@@ -54,6 +54,6 @@ def run(sources: Path = SOURCES, seconds: int = 2) -> subprocess.CompletedProces
 
 
 @pytest.mark.long
-def test_no_two_cores_touch_the_same_at_once() -> None:
+def test_two_cores_never_access_the_same_data_at_once() -> None:
     completed = run()
     assert completed.returncode == 0, (completed.stdout + completed.stderr)[-4000:]

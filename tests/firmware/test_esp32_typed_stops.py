@@ -30,26 +30,28 @@ WHOLE = encode_frame(Frame(BY_NAME["STATUS"].number, 9, 0))
 
 def start_drive(robot: Esp32Robot, driver: Session, end: End | None = None) -> Ends:
     """Make a robot drive, by its cable or over a transport."""
-    ends: Ends = [(end, driver)]
-    assert upload_text(robot, ends, driver) == "OK"
-    talk(robot, ends, 10)
+    clients: Ends = [(end, driver)]
+    assert upload_text(robot, clients, driver) == "OK"
+    talk(robot, clients, 10)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
-    return ends
+    return clients
 
 
 def has_stopped(robot: Esp32Robot) -> bool:
     return actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def check_stop(robot: Esp32Robot, end: End | None, ends: Ends, data: bytes, what: str) -> None:
+def check_stop(
+    robot: Esp32Robot, end: End | None, clients: Ends, data: bytes, description: str
+) -> None:
     """Send bytes that end with a stop. From then on, the robot does not drive."""
-    typed: Ends = [*ends, (end, RawClient(data))]
+    typed: Ends = [*clients, (end, RawClient(data))]
     talk(robot, typed, LATE_MS)
     if not has_stopped(robot):
         talk(robot, typed, SHORTEST_STOP_MS)  # inside a started frame
-    assert has_stopped(robot), what
-    talk(robot, [*ends, (end, RawClient(b"SI|F(1,80)\n"))], 50)  # before a second of silence
-    assert has_stopped(robot), what
+    assert has_stopped(robot), description
+    talk(robot, [*clients, (end, RawClient(b"SI|F(1,80)\n"))], 50)  # before a second of silence
+    assert has_stopped(robot), description
 
 
 def stops_after_every_prefix(
@@ -58,17 +60,17 @@ def stops_after_every_prefix(
     for k, (name, prefix) in enumerate(ALL_PREFIXES.items()):
         spellings = spellings_after(name)
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
-            ends = start_drive(robot, driver, driver_end)
-            check_stop(robot, end, ends, prefix + spelling, f"{name} {spelling!r}")
+            clients = start_drive(robot, driver, driver_end)
+            check_stop(robot, end, clients, prefix + spelling, f"{name} {spelling!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_typed_stop_over_a_radio_while_the_cable_drives(make: Make) -> None:
+def test_a_typed_stop_over_a_radio_stops_a_run_of_the_cable(make: Make) -> None:
     robot = boot()
     stops_after_every_prefix(robot, session(1, robot), None, make(robot))
 
 
-def test_a_typed_stop_over_a_network() -> None:
+def test_a_typed_stop_over_a_network_works() -> None:
     """Typed lines do not drive there, but a typed stop works."""
     robot, owner = join_network(Keys())
     end = Network(robot)
@@ -84,96 +86,96 @@ def test_silence_ends_a_typed_stop_of_a_stranger(word: bytes) -> None:
     end = Network(robot)
     end.send(word)
     talk(robot, [(None, owner)], SILENCE_MS + 100)  # no program runs
-    ends = start_drive(robot, owner)
-    talk(robot, ends, SILENCE_MS + 100)
+    clients = start_drive(robot, owner)
+    talk(robot, clients, SILENCE_MS + 100)
     assert not has_stopped(robot)
-    other = Network(robot)
-    other.send(word)
-    talk(robot, ends, SILENCE_MS - 50)
+    stranger_end = Network(robot)
+    stranger_end.send(word)
+    talk(robot, clients, SILENCE_MS - 50)
     assert not has_stopped(robot)
-    talk(robot, ends, 50 + LATE_MS)
+    talk(robot, clients, 50 + LATE_MS)
     assert has_stopped(robot)
     page = b"S / HTTP/1.1\r\n"
-    other.send(page)
-    talk(robot, ends, LATE_MS)
-    other.take()
-    assert other.has_ended == (sniff_robot_client(word + page) is False)
+    stranger_end.send(page)
+    talk(robot, clients, LATE_MS)
+    stranger_end.take()
+    assert stranger_end.has_ended == (sniff_robot_client(word + page) is False)
     check_stop(robot, end, start_drive(robot, owner), b"S\n", "after one that has stopped nothing")
     end.leave()
-    other.leave()
+    stranger_end.leave()
 
 
 @pytest.mark.parametrize("words", [[b"SSS"], [b"S", b"s", b"S"], [b"STOP ", b"STOP"]])
 def test_a_stranger_who_sends_no_line_end_stops(words: list[bytes]) -> None:
     """A request has no line end before its target, and the stop admits no one."""
     robot, owner = join_network(Keys())
-    ends = start_drive(robot, owner)
+    clients = start_drive(robot, owner)
     end = Network(robot)
     for word in words:
         assert not has_stopped(robot)
         end.send(word)
-        talk(robot, ends, LATE_MS)
+        talk(robot, clients, LATE_MS)
     assert has_stopped(robot)
     end.leave()
 
 
-def test_a_typed_stop_over_the_cable_while_a_radio_drives() -> None:
+def test_a_typed_stop_over_the_cable_stops_a_run_of_a_radio() -> None:
     robot = boot()
     stops_after_every_prefix(robot, session(1, robot), RADIOS[0](robot), None)
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_whoever_comes_next_begins_a_line(make: Make) -> None:
+def test_the_next_client_begins_a_new_line(make: Make) -> None:
     """Unfinished text of the previous client ends with its connection."""
     robot = boot()
     driver = session(1, robot)
-    ends = start_drive(robot, driver)
+    clients = start_drive(robot, driver)
     end = make(robot)
     end.send(b"F(1,")
-    talk(robot, ends, 2)
+    talk(robot, clients, 2)
     end.leave()
-    talk(robot, ends, 2)
+    talk(robot, clients, 2)
     make(robot).send(b"S\n")
-    talk(robot, ends, LATE_MS)
+    talk(robot, clients, LATE_MS)
     assert has_stopped(robot)
 
 
 @pytest.mark.parametrize("make", RADIOS)
 @pytest.mark.parametrize("stop", [b"S\n", b" stop ;\r", bytes(4), b"Stop.\n", b"SSS", b"\0S\0"])
-def test_a_stop_that_finds_no_room_is_seen(make: Make, stop: bytes) -> None:
+def test_a_stop_is_recognized_even_if_the_buffer_is_full(make: Make, stop: bytes) -> None:
     """This holds wherever the ring ends within it, and if the robot reads before the rest
     arrives."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
     line = b"F(1,80)\n"
     for bytes_left in range(-1, len(stop) + 1):  # bytes of the stop that find room
-        ends = start_drive(robot, driver)
+        clients = start_drive(robot, driver)
         line_before = (line * ROOM)[: ROOM - bytes_left - 1] + b"\n"
-        check_stop(robot, end, ends, line_before + stop, f"{bytes_left} of {stop!r}")
+        check_stop(robot, end, clients, line_before + stop, f"{bytes_left} of {stop!r}")
     for lost in range(len(stop)):
-        ends = start_drive(robot, driver)
+        clients = start_drive(robot, driver)
         end.send(b"(" * ROOM + b"\n" + stop[:lost])
-        talk(robot, ends, 20)
-        check_stop(robot, end, ends, stop[lost:], f"the rest after {lost} of {stop!r}")
+        talk(robot, clients, 20)
+        check_stop(robot, end, clients, stop[lost:], f"the rest after {lost} of {stop!r}")
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_what_is_lost_stops_nobody(make: Make) -> None:
+def test_lost_bytes_cause_no_stop(make: Make) -> None:
     """Nor does a frame that contains a line S and arrives whole after the lost bytes."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
-    ends = start_drive(robot, driver)
+    clients = start_drive(robot, driver)
     client = session(2, robot)
     code = b"Z\n\nS\n\xcc\x03"
     for bytes_before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
         end.send(bytes_before)
-        talk(robot, [*ends, (end, RawClient())], 2500)  # until the waiting lines are answered
+        talk(robot, [*clients, (end, RawClient())], 2500)  # until the waiting lines are answered
         frame = encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
-        talk(robot, ends, SHORTEST_STOP_MS + 20)
+        talk(robot, clients, SHORTEST_STOP_MS + 20)
         assert not has_stopped(robot)
-    assert wait_for_outcome(robot, [*ends, (end, client)], client.status()) == "OK"
+    assert wait_for_outcome(robot, [*clients, (end, client)], client.status()) == "OK"
 
 
 def motor_actions(robot: Esp32Robot) -> list[str]:
@@ -190,43 +192,43 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
     """Earlier lines never start afterwards, and later ones count again."""
     robot = boot()
     driver, end = session(1, robot), make(robot)
-    ends = start_drive(robot, driver)
-    few, many = LINES[: 8 * 40], LINES[: 8 * 100]
-    for bytes_before in (few, many, many + b"LOOP(2)\n", b"\0" + many):
-        who = RawClient()
+    clients = start_drive(robot, driver)
+    few_lines, many_lines = LINES[: 8 * 40], LINES[: 8 * 100]
+    for bytes_before in (few_lines, many_lines, many_lines + b"LOOP(2)\n", b"\0" + many_lines):
+        client = RawClient()
         end.send(bytes_before + stop)
         robot.wait(1)
         assert has_stopped(robot), (bytes_before[-20:], stop)
-        talk(robot, [*ends, (end, who)], 500)
-        talk(robot, [(end, who)], 3000)  # the driver has left
+        talk(robot, [*clients, (end, client)], 500)
+        talk(robot, [(end, client)], 3000)  # the driver has left
         assert has_stopped(robot), (bytes_before[-20:], stop)
-        who.to_send = b"\r\nSI|F(0.1,33)\n"
-        talk(robot, [(end, who)], 1500)
+        client.to_send = b"\r\nSI|F(0.1,33)\n"
+        talk(robot, [(end, client)], 1500)
         assert motor_actions(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (
             bytes_before[-20:],
-            who.received,
+            client.received,
         )
-        talk(robot, ends, 1500)
-        ends = start_drive(robot, driver)
+        talk(robot, clients, 1500)
+        clients = start_drive(robot, driver)
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_stop_in_an_open_block_that_waits_is_a_line_of_it(make: Make) -> None:
+def test_a_stop_inside_a_waiting_open_block_belongs_to_the_block(make: Make) -> None:
     """As over a cable, it ends the running program at once and also becomes part of the line."""
     robot = boot()
-    end, who = make(robot), RawClient()
+    end, client = make(robot), RawClient()
     talk(robot, [(end, RawClient(b"SI|F(60, 80)\n"))], 100)
     lines = b"".join(b"F(0.01,%d) // one of twenty\n" % (20 + k) for k in range(20))
     end.send(b"LOOP(1)\n" + lines + b"S\nF(0.01,80)\nEND_LOOP\n")
     robot.wait(1)
     assert motor_actions(robot)[-1] == "MOTORS 0 0"
-    talk(robot, [(end, who)], 2000)
+    talk(robot, [(end, client)], 2000)
     assert motor_actions(robot)[-3:] == ["MOTORS 39 39", "MOTORS 80 80", "MOTORS 0 0"]
-    assert who.received.endswith(b"// OK\r\n// DONE\r\n")
+    assert client.received.endswith(b"// OK\r\n// DONE\r\n")
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
+def test_a_frame_before_a_waiting_stop_has_no_effect(make: Make) -> None:
     robot = boot()
     end = make(robot)
     live = b"\0" + encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, image_of("F(60, 80)").code))
@@ -236,7 +238,7 @@ def test_a_frame_before_a_stop_that_waits_does_nothing(make: Make) -> None:
 
 
 @pytest.mark.parametrize("make", RADIOS)
-def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
+def test_a_stop_counts_even_if_its_client_leaves_at_once(make: Make) -> None:
     """In every state of the receiver: the client's other data is discarded, but not a complete
     stop.
     """
@@ -248,16 +250,16 @@ def test_a_stop_stays_one_where_its_client_leaves_at_once(make: Make) -> None:
         for spelling in (spellings[k % len(spellings)], spellings[-1 - k % len(spellings)]):
             stops = []
             for leaves in (False, True):
-                ends, end = start_drive(robot, driver), make(robot)
+                clients, end = start_drive(robot, driver), make(robot)
                 driver.events()
                 end.send(prefix + spelling)
                 if leaves:
                     end.leave()
-                talk(robot, ends, LATE_MS)
+                talk(robot, clients, LATE_MS)
                 events = [event.name for event in driver.events()]
                 stops.append(has_stopped(robot) and "STOPPED" in events)
                 end.leave()
-                talk(robot, ends, LATE_MS)
+                talk(robot, clients, LATE_MS)
             assert stops[1] or not stops[0], f"{name} {spelling!r}"
             count += stops[0]
     assert count > len(ALL_PREFIXES)

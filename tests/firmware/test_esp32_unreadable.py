@@ -26,9 +26,9 @@ FAULTS = pytest.mark.parametrize("fault", [NVS_CLOSED, NVS_NUMBERS_FAIL, NVS_BLO
 
 def claimed_with_program(keys: Keys) -> Kept:
     robot, owner = make_owned_robot(keys)
-    ends: Ends = [(None, owner)]
-    assert wait_for_outcome(robot, ends, owner.upload(image_of("SB|F(60, 80)"))) == "OK"
-    talk(robot, ends, 3000)
+    clients: Ends = [(None, owner)]
+    assert wait_for_outcome(robot, clients, owner.upload(image_of("SB|F(60, 80)"))) == "OK"
+    talk(robot, clients, 3000)
     return robot.read_kept()
 
 
@@ -38,9 +38,9 @@ def boot(kept_memory: Kept, fault: int) -> Esp32Robot:
     return robot
 
 
-def read_saved_state(robot: Esp32Robot, who: Session) -> str:
-    request = who.status()
-    assert wait_for_outcome(robot, [(None, who)], request) == "OK"
+def read_saved_state(robot: Esp32Robot, session: Session) -> str:
+    request = session.status()
+    assert wait_for_outcome(robot, [(None, session)], request) == "OK"
     assert request.outcome
     return SAVED_STATES[request.outcome.values.saved][0]
 
@@ -49,14 +49,14 @@ def read_saved_state(robot: Esp32Robot, who: Session) -> str:
 def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     robot = boot(claimed_with_program(Keys()), fault)
     stranger, typed_bytes = session(2, robot), RawClient(b"SI|F(60, 80)\n")
-    ends: Ends = [(None, stranger)]
+    clients: Ends = [(None, stranger)]
     assert read_saved_state(robot, stranger) == "UNREADABLE"
     for request in (
         stranger.upload(image_of(AWAY_PROGRAM)), stranger.live(image_of("F(1, 10)").code),
         stranger.start(),
         stranger.name(b"mine"), stranger.fetch(), stranger.undo(),
     ):  # fmt: skip
-        assert wait_for_outcome(robot, ends, request) == "NOT_OWNER"
+        assert wait_for_outcome(robot, clients, request) == "NOT_OWNER"
     thief = remote(robot, Keys(80), 4)
     assert wait_for_outcome(robot, [(None, thief)], thief.claim(0)) == "UNREADABLE"
     talk(robot, [(LowEnergy(robot), typed_bytes)], 1500)
@@ -69,7 +69,7 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
 
 
 @FAULTS
-def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
+def test_an_owner_of_an_unreadable_robot_gets_the_reason_and_keeps_the_key(fault: int) -> None:
     kept_memory = claimed_with_program(keys := Keys())
     robot = boot(kept_memory, fault)
     owner = remote(robot, keys, 4)
@@ -84,7 +84,7 @@ def test_its_owner_is_told_why_and_keeps_the_key(fault: int) -> None:
 
 
 @pytest.mark.parametrize("fault", [NVS_CLOSED, NVS_NUMBERS_FAIL])  # a new chip has no blobs to read
-def test_a_new_robot_is_nobodys_until_its_memory_can_be_read(fault: int) -> None:
+def test_an_unreadable_new_robot_has_no_owner(fault: int) -> None:
     robot = boot(EMPTY_MEMORY, fault)
     anybody = session(2, robot)
     assert upload_text(robot, [(None, anybody)], anybody) == "NOT_OWNER"

@@ -69,7 +69,7 @@ def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
     assert radio_state.service == "_tiniscript._tcp 8473"
 
 
-def test_without_memory_the_announcement_comes_later() -> None:
+def test_lack_of_memory_delays_the_announcement() -> None:
     robot, _ = join_network(Keys())
     rebooted_robot = Esp32Robot(kept_memory=robot.read_kept())
     rebooted_robot.wait(100)
@@ -82,13 +82,13 @@ def test_without_memory_the_announcement_comes_later() -> None:
     assert radios(rebooted_robot).service == "_tiniscript._tcp 8473"
 
 
-def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
+def test_a_network_survives_a_reset_until_it_is_forgotten() -> None:
     robot, owner = join_network(Keys())
     rebooted_robot = restart_with_school_in_reach(robot)
     assert port_of(rebooted_robot)
-    ends: Ends = [(None, owner)]
-    assert wait_for_outcome(robot, ends, owner.forget_wifi()) == "OK"
-    talk(robot, ends, 50)
+    clients: Ends = [(None, owner)]
+    assert wait_for_outcome(robot, clients, owner.forget_wifi()) == "OK"
+    talk(robot, clients, 50)
     assert state(robot, owner) == ("OFF", "OFF")
     assert radios(robot).network == "" and radios(robot).service == ""
     third = Esp32Robot(kept_memory=robot.read_kept())
@@ -97,12 +97,12 @@ def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
 
 
 def overhear(
-    robot: Esp32Robot, end: LowEnergy | None, who: Session, request: PendingRequest[Any]
+    robot: Esp32Robot, end: LowEnergy | None, client: Session, request: PendingRequest[Any]
 ) -> tuple[bytes, bytes]:
     """Let a client talk until a request is over; return all bytes in both directions."""
     sent_bytes = replies = b""
     while request.outcome is None:
-        data = who.poll(robot.now_ms)
+        data = client.poll(robot.now_ms)
         sent_bytes += data
         if end is None:
             reply = robot.step(data)
@@ -111,7 +111,7 @@ def overhear(
             robot.step()
             reply = end.take()
         replies += reply
-        who.receive(reply, robot.now_ms)
+        client.receive(reply, robot.now_ms)
     return sent_bytes, replies
 
 
@@ -121,16 +121,16 @@ def test_the_password_is_not_readable_on_the_line() -> None:
     keys = Keys()
     robot, _ = make_owned_robot(keys)
     talk(robot, [], 2500)
-    over = remote(robot, keys)
-    request = over.join(SCHOOL)
-    sent_bytes, replies = overhear(robot, LowEnergy(robot), over, request)
+    remote_session = remote(robot, keys)
+    request = remote_session.join(SCHOOL)
+    sent_bytes, replies = overhear(robot, LowEnergy(robot), remote_session, request)
     assert request.outcome and request.outcome.status == 0
     assert radios(robot).password.encode() == SCHOOL.password
     for text, heard_bytes in ((SCHOOL.name, sent_bytes), (SCHOOL.password, sent_bytes + replies)):
         assert all(text[k : k + 4] not in heard_bytes for k in range(len(text) - 3))
 
 
-def test_a_robot_without_an_owner_takes_none() -> None:
+def test_a_robot_without_an_owner_accepts_no_network() -> None:
     robot = boot()
     client = session(1, robot)
     for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
@@ -141,12 +141,12 @@ def test_a_robot_without_an_owner_takes_none() -> None:
     assert wait_for_outcome(robot, [(None, client)], client.ping()) == "OK"
 
 
-def test_a_stranger_takes_none_away() -> None:
+def test_a_stranger_cannot_remove_the_network() -> None:
     robot, _ = join_network(Keys())
     stranger = remote(robot, Keys(50))
-    ends: Ends = [(LowEnergy(robot), stranger)]
+    clients: Ends = [(LowEnergy(robot), stranger)]
     for request in (stranger.join(HOTSPOT), stranger.forget_wifi(), stranger.wifi()):
-        assert wait_for_outcome(robot, ends, request) == "NOT_OWNER"
+        assert wait_for_outcome(robot, clients, request) == "NOT_OWNER"
     assert radios(robot).network.encode() == SCHOOL.name
 
 
@@ -160,20 +160,20 @@ def test_invalid_network_settings_are_refused() -> None:
         assert state(robot, owner) == ("OFF", "OFF")
 
 
-def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
+def test_a_network_is_stored_atomically_while_the_motors_are_off() -> None:
     robot, owner = make_owned_robot(Keys())
-    ends: Ends = [(None, owner)]
-    assert upload_text(robot, ends, owner, "SI|F(1.5, 40)") == "OK"
+    clients: Ends = [(None, owner)]
+    assert upload_text(robot, clients, owner, "SI|F(1.5, 40)") == "OK"
     request = owner.join(SCHOOL)
-    talk(robot, ends, 800)
+    talk(robot, clients, 800)
     assert request.outcome is None and WIFI_KEY not in robot.read_kept().entries
-    assert wait_for_outcome(robot, ends, request) == "OK"
+    assert wait_for_outcome(robot, clients, request) == "OK"
     assert WIFI_KEY in robot.read_kept().entries
     entries_before = robot.read_kept().entries[WIFI_KEY]
     robot.fill_nvs()
-    assert wait_for_outcome(robot, ends, owner.join(HOTSPOT)) == "NOT_KEPT"
+    assert wait_for_outcome(robot, clients, owner.join(HOTSPOT)) == "NOT_KEPT"
     assert robot.read_kept().entries[WIFI_KEY] == entries_before
-    assert wifi_reply_of(robot, ends, owner).network == SCHOOL.name
+    assert wifi_reply_of(robot, clients, owner).network == SCHOOL.name
     kept_memory = robot.read_kept()
     for entry in (b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97):
         rebooted_robot = Esp32Robot(
@@ -183,37 +183,37 @@ def test_it_is_kept_when_the_motors_stand_and_whole_or_not_at_all() -> None:
         assert radios(rebooted_robot).joins == 0, entry
 
 
-def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
+def test_a_wrong_password_and_an_unreachable_network_are_reported() -> None:
     """The core says "disconnected" of a wrong password; its event has the reason."""
     robot, owner = join_network(Keys())
-    ends: Ends = [(None, owner)]
+    clients: Ends = [(None, owner)]
     for reason, expected in (
         (8, "SEARCHING"), (15, "REFUSED"), (202, "REFUSED"), (203, "REFUSED"), (204, "REFUSED"),
     ):  # fmt: skip
         robot.radio("x", bytes([reason]))  # 8: it was only left
         set_network_in_reach(robot, SCHOOL.name.decode(), "another one")
-        talk(robot, ends, 20)
+        talk(robot, clients, 20)
         assert state(robot, owner) == ("STATION", expected), reason
         set_network_in_reach(robot, "", "")
-        talk(robot, ends, 20)
+        talk(robot, clients, 20)
         assert state(robot, owner) == ("STATION", "SEARCHING")
     joins = radios(robot).joins
-    talk(robot, ends, 16_000)
+    talk(robot, clients, 16_000)
     assert radios(robot).joins == joins + 1
     school_in_reach(robot)
-    talk(robot, ends, 20)
+    talk(robot, clients, 20)
     assert state(robot, owner) == ("STATION", "READY")
 
 
 def test_a_revoked_key_ends_its_other_sessions() -> None:
     keys = Keys()
     robot, owner = make_owned_robot(keys)
-    over = remote(robot, keys)
-    ends: Ends = [(None, owner), (LowEnergy(robot), over)]
-    assert wait_for_outcome(robot, ends, over.wifi()) == "OK"
-    assert wait_for_outcome(robot, ends, owner.disown(0)) == "OK"
+    remote_session = remote(robot, keys)
+    clients: Ends = [(None, owner), (LowEnergy(robot), remote_session)]
+    assert wait_for_outcome(robot, clients, remote_session.wifi()) == "OK"
+    assert wait_for_outcome(robot, clients, owner.disown(0)) == "OK"
     keys.stored_keys.append(RobotKey(0x12345678, 0, bytes([1] * 16)))  # a key from another computer
-    assert wait_for_outcome(robot, ends, over.name(b"mine")) == "WRONG_KEY"
+    assert wait_for_outcome(robot, clients, remote_session.name(b"mine")) == "WRONG_KEY"
 
 
 def test_no_two_transports_have_the_same_challenge() -> None:
@@ -224,74 +224,74 @@ def test_no_two_transports_have_the_same_challenge() -> None:
     hello = encode_payload(BY_NAME["HELLO"].request, {
         "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
-    asks = b"\0" + encode_frame(Frame(1, 1, 0, hello))
-    first, second = RawClient(asks), RawClient(asks)
-    ends: Ends = [(None, first), (LowEnergy(rebooted_robot), second)]
-    talk(rebooted_robot, ends, 60)
+    request_bytes = b"\0" + encode_frame(Frame(1, 1, 0, hello))
+    first, second = RawClient(request_bytes), RawClient(request_bytes)
+    clients: Ends = [(None, first), (LowEnergy(rebooted_robot), second)]
+    talk(rebooted_robot, clients, 60)
     frames = [decode_frame(client.received.strip(b"\0")) for client in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
     first.to_send = second.to_send = encode_frame(Frame(17, 2, epoch, b"\0"))
     first.received = second.received = b""
-    talk(rebooted_robot, ends, 60)
+    talk(rebooted_robot, clients, 60)
     assert len(first.received) == 20 and first.received != second.received
 
 
 # -- over TCP -----------------------------------------------------------------------------------
 
 
-def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
+def test_over_wifi_the_owner_drives_and_a_stranger_watches_and_stops() -> None:
     robot, end, owner = far_owner(Keys())
     stranger = remote(robot, Keys(50), 11)
-    ends: Ends = [(end, owner), (Network(robot), stranger)]
-    assert upload_text(robot, ends, owner) == "OK"
+    clients: Ends = [(end, owner), (Network(robot), stranger)]
+    assert upload_text(robot, clients, owner) == "OK"
     for request in (stranger.hello(), stranger.ping(), stranger.status(), stranger.identify()):
-        assert wait_for_outcome(robot, ends, request) == "OK"
+        assert wait_for_outcome(robot, clients, request) == "OK"
     for acting in (stranger.start(), stranger.fetch(), stranger.live(image_of("F(1, 9)").code)):
-        assert wait_for_outcome(robot, ends, acting) == "NOT_OWNER"
-    talk(robot, ends, 1500)
+        assert wait_for_outcome(robot, clients, acting) == "NOT_OWNER"
+    talk(robot, clients, 1500)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     stranger.stop(robot.now_ms)
-    talk(robot, ends, 50)
+    talk(robot, clients, 50)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
+def test_a_robot_without_its_former_owner_does_not_move_over_wifi() -> None:
     keys = Keys()
     robot, owner = join_network(keys)
     assert wait_for_outcome(robot, [(None, owner)], owner.disown(0)) == "OK"
     talk(robot, [], AUTHORITY_MS + 100)
     count_before = len(robot.did)
     client, typed_bytes = remote(robot, None), RawClient(b"SI|F(1, 80)\n")
-    ends: Ends = [(Network(robot), client), (Network(robot), typed_bytes)]
+    clients: Ends = [(Network(robot), client), (Network(robot), typed_bytes)]
     for request in (client.hello(), client.ping(), client.status(), client.identify()):
-        assert wait_for_outcome(robot, ends, request) == "OK"
+        assert wait_for_outcome(robot, clients, request) == "OK"
     for acting in (
         client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY_PROGRAM)),
         client.fetch(),
         client.name(b"x"), client.undo(), client.clear(),
     ):  # fmt: skip
-        assert wait_for_outcome(robot, ends, acting) == "UNOWNED"
+        assert wait_for_outcome(robot, clients, acting) == "UNOWNED"
     assert "Not possible here" in typed_bytes.received.decode()
     assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
     cable = session(3, robot)
     assert upload_text(robot, [(None, cable)], cable) == "OK"
     typed_bytes.to_send = b"S\n"
-    talk(robot, [(None, cable), *ends], 100)
+    talk(robot, [(None, cable), *clients], 100)
     assert [line for line in actions_of(robot) if "MOTORS" in line][-2:] == [
         "MOTORS 80 80", "MOTORS 0 0"]  # fmt: skip
 
 
-def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
+def test_a_lost_network_ends_the_run_and_the_cable_keeps_working() -> None:
     keys = Keys()
     robot, end, owner = far_owner(keys)
     cable = session(12, robot)
-    ends: Ends = [(end, owner), (None, cable)]
-    assert upload_text(robot, ends, owner) == "OK"
+    clients: Ends = [(end, owner), (None, cable)]
+    assert upload_text(robot, clients, owner) == "OK"
     set_network_in_reach(robot, "", "")
-    talk(robot, ends, 10)
+    talk(robot, clients, 10)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
     assert end.has_ended
-    assert wait_for_outcome(robot, ends[1:], cable.ping()) == "OK"
+    assert wait_for_outcome(robot, clients[1:], cable.ping()) == "OK"
     school_in_reach(robot)
     talk(robot, [], 20)
     next_client, end = remote(robot, keys, 13), Network(robot)
@@ -302,25 +302,25 @@ def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
     assert actions_of(robot)[-1] == "MOTORS 0 0", "a client that leaves ends its run at once"
 
 
-def test_strangers_who_trickle_bytes_keep_no_stop_out() -> None:
+def test_strangers_who_trickle_bytes_block_no_stop() -> None:
     """Two have both places, and say a letter of a line now and then; an owner's keeps his."""
     robot, end, owner = far_owner(Keys())
-    ends: Ends = [(end, owner)]
-    assert upload_text(robot, ends, owner) == "OK"
+    clients: Ends = [(end, owner)]
+    assert upload_text(robot, clients, owner) == "OK"
     for _ in range(3):  # the place of one makes room for the next
         stranger = Network(robot)
         for _ in range(20):
             stranger.send(b"X")
-            talk(robot, ends, 50)
+            talk(robot, clients, 50)
         assert not end.has_ended and not stranger.has_ended
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     stopper = Network(robot)
     stopper.send(bytes(4))
-    talk(robot, ends, 10)
+    talk(robot, clients, 10)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
+def test_two_strangers_give_way_to_a_later_client() -> None:
     robot, owner = join_network(Keys())
     waiting, looking = Network(robot), remote(robot, None)
     looking_ends: Ends = [(Network(robot), looking)]
@@ -338,28 +338,28 @@ def test_two_strangers_are_not_kept_before_who_comes_later() -> None:
 
 def test_a_client_whose_first_bytes_stay_unclear_is_disconnected() -> None:
     robot, _ = join_network(Keys())
-    slow = Network(robot)
+    slow_end = Network(robot)
     for _ in range(99):
-        slow.send(b"X")
+        slow_end.send(b"X")
         robot.wait(100)
-    slow.take()
-    assert not slow.has_ended
-    slow.send(b"X")
+    slow_end.take()
+    assert not slow_end.has_ended
+    slow_end.send(b"X")
     robot.wait(200)
-    slow.take()
-    assert slow.has_ended, "ten seconds after it came, whatever it says"
+    slow_end.take()
+    assert slow_end.has_ended, "ten seconds after it came, whatever it says"
 
 
-def test_a_client_that_takes_nothing_stops_nobody() -> None:
+def test_a_client_that_reads_nothing_blocks_nobody() -> None:
     robot, owner = join_network(Keys())
     deaf = Network(robot)
     deaf.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
-    ends: Ends = [(None, owner)]
-    assert upload_text(robot, ends, owner) == "OK"
+    clients: Ends = [(None, owner)]
+    assert upload_text(robot, clients, owner) == "OK"
     for _ in range(300):
         deaf.send(b"\0\2\3\3\0")  # damaged, and then a stop of two zeros less
         deaf.send(b"PING|check_connection\n" * 3)
-        talk(robot, ends, 5)
+        talk(robot, clients, 5)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
@@ -380,8 +380,8 @@ def restart(robot: Esp32Robot, reset: int, lived_ms: int) -> Esp32Robot:
 def is_wifi_off(robot: Esp32Robot) -> bool:
     """Return whether its WiFi is off, as HELLO says as well."""
     client = session(40, robot)
-    ends: Ends = [(None, client)]
-    assert wait_for_outcome(robot, ends, client.hello()) == "OK"
+    clients: Ends = [(None, client)]
+    assert wait_for_outcome(robot, clients, client.hello()) == "OK"
     assert client.robot
     says_so = bool(client.robot.values.features & WIFI_RESTS)
     assert says_so == (radios(robot).joins == 0)
@@ -390,7 +390,7 @@ def is_wifi_off(robot: Esp32Robot) -> bool:
 
 @pytest.mark.sampled("reset")
 @pytest.mark.parametrize("reset", [PANIC, TASK_WATCHDOG, BROWN_OUT])
-def test_after_three_restarts_wifi_rests_and_the_cable_brings_it_back(reset: int) -> None:
+def test_after_three_restarts_wifi_is_off_until_the_cable_enables_it(reset: int) -> None:
     keys = Keys()
     robot, _ = join_network(keys)
     for is_third in (False, False, True):
@@ -419,7 +419,7 @@ ROW = (PANIC, 1000)  # a reset, and how long after the one before
     [(EXTERNAL, 1000)] * 4 + [ROW, (EXTERNAL, 1000), ROW, (EXTERNAL, 1000)],
     [ROW, ROW, (PANIC, 20_000), ROW, ROW, (PANIC, 20_000)],
 ], ids=["power-on", "external", "20 seconds"])  # fmt: skip
-def test_an_invalid_row_of_restarts_is_ignored(row: list[tuple[int, int]]) -> None:
+def test_an_invalid_restart_counter_is_ignored(row: list[tuple[int, int]]) -> None:
     robot, _ = join_network(Keys())
     for reset, lived_ms in row:
         robot = restart(robot, reset, lived_ms)
@@ -428,7 +428,7 @@ def test_an_invalid_row_of_restarts_is_ignored(row: list[tuple[int, int]]) -> No
         assert is_wifi_off(restart(robot, PANIC, 1000))
 
 
-def test_wifi_rests_where_nvs_is_full_and_without_wifi_nothing_counts() -> None:
+def test_wifi_is_off_if_nvs_is_full_and_restarts_without_wifi_do_not_count() -> None:
     keys = Keys()
     robot, owner = join_network(keys)
     for _ in range(2):

@@ -154,18 +154,18 @@ class Scene:
         self.is_saved = True  # the program that it holds
         self.observed: list[object] = []  # all that can be seen
 
-    def next_session(self, who: str = "owner") -> Session:
+    def next_session(self, role: str = "owner") -> Session:
         """Start the session of another computer: with the owner's key, a wrong one, or none."""
         self.nonce += 1
-        ring = self.rings.get(who, Keys())
+        ring = self.rings.get(role, Keys())
         self.session = Session(self.nonce, 9600, KIT.fingerprint, keys=ring)
         return self.session
 
-    def note(self, what: str, begun_ms: int, data: bytes = b"") -> None:
+    def note(self, action: str, begun_ms: int, data: bytes = b"") -> None:
         """Record the results of a step; times count from its beginning."""
         self.has_faulted |= any(line.endswith("FAULTED") for line in self.robot.did)
         rows = (line.split(" ", 1) for line in self.robot.did)
-        self.observed.append((what, [(int(ms) - begun_ms, event) for ms, event in rows]))
+        self.observed.append((action, [(int(ms) - begun_ms, event) for ms, event in rows]))
         lines = re.findall(rb"// [^\r\n]*\r\n", data)
         lines = [line for line in lines if line != NO_ZERO_LINE]  # this line may be late
         self.observed += [line for line in lines if self.is_saved or line != LOST_PROGRAM_LINE]
@@ -210,20 +210,20 @@ class Scene:
 # -- before -------------------------------------------------------------------------------------
 
 
-def send_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_request(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """Ask for something; mostly wait for its end."""
-    name = rng.choice([*asks])
+    name = rng.choice([*requests])
     if rng.random() < 0.3:
         scene.next_session()
-    scene.ask(name, asks[name], rng, rng.choice((1, 4, 15, 50, 5000, 5000)))
+    scene.ask(name, requests[name], rng, rng.choice((1, 4, 15, 50, 5000, 5000)))
     scene.robot.talk(scene.session, rng.choice((0, 1, 30, 300)))
 
 
-def send_half_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_half_request(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """The line breaks within a frame, usually near its end; another client continues."""
-    name = rng.choice([*asks])
+    name = rng.choice([*requests])
     robot, session = scene.robot, scene.session
-    asks[name](session, rng)
+    requests[name](session, rng)
     for _ in range(rng.choice((1, 2, 3, 4, 9))):
         data = session.poll(robot.now_ms)
         if data:
@@ -234,7 +234,7 @@ def send_half_request(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -
     scene.observed.append(f"half of {name}")
 
 
-def send_lines(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_lines(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     for _ in range(rng.choice((1, 1, 3))):
         text = rng.choice(LINES)
         if rng.random() < 0.2:
@@ -242,17 +242,17 @@ def send_lines(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
         scene.say((text + rng.choice(LINE_ENDS)).encode(), rng.choice((0, 20, 300, 1100, 2500)))
 
 
-def send_harmless_line(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_harmless_line(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     data = b"".join(rng.choices(HARMLESS_BYTES, k=rng.choice((1, 1, 2, 3))))
     scene.say(data + rng.choice((b"\n", b"\r", b"\r\n")), 20)
     scene.say(rng.choice((b"", b"\0")) + b"//\n", 300)  # no frame has begun
 
 
-def send_pieces(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_pieces(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     scene.say(b"".join(rng.choices(TEXT, k=rng.randint(1, 4))), rng.choice((0, 5, 300, 1100)))
 
 
-def send_noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_noise(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     data = b"".join(rng.choices(PIECES, k=rng.randint(1, 4)))
     if rng.random() < 0.3:
         frame = encode_frame(Frame(rng.randrange(1, 25), rng.randrange(256), 0, rng.randbytes(9)))
@@ -260,7 +260,7 @@ def send_noise(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
     scene.say(data, rng.choice((0, 5, 300, 1100)))
 
 
-def toggle_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def toggle_button(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """Press or release the button."""
     scene.is_down = not scene.is_down
     scene.robot.talk(scene.session, 1, BUTTON_PRESSED if scene.is_down else BUTTON_RELEASED)
@@ -270,7 +270,7 @@ def toggle_button(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> No
     scene.robot.talk(scene.session, rng.choice((0, 40, 300, 1200)))
 
 
-def lower_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def lower_supply(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """Lower the supply for a while, in which something may be saved."""
     scene.robot.supply(True)
     for _ in range(rng.choice((1, 2))):
@@ -280,28 +280,28 @@ def lower_supply(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> Non
         scene.robot.supply(False)
 
 
-def disturb(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def disturb(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """A stall, a cable, a stop, silence."""
-    what = rng.randrange(4)
-    if what < 2:
-        scene.robot.step(flags=(LINE_STALLED, CABLE_UNPLUGGED)[what])
-    elif what == 2:
+    kind = rng.randrange(4)
+    if kind < 2:
+        scene.robot.step(flags=(LINE_STALLED, CABLE_UNPLUGGED)[kind])
+    elif kind == 2:
         scene.session.stop(scene.robot.now_ms)
         scene.robot.talk(scene.session, rng.choice((1, 5, 100)))
     else:
         scene.robot.wait(rng.choice((30, 1100, SILENCE_MS)))
 
 
-def send_owner_requests(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def send_owner_requests(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """A client connects with a key, a wrong one, or none."""
     scene.next_session(rng.choice(CLIENT_KINDS))
     for _ in range(rng.choice((1, 1, 2, 4))):
-        name = rng.choice([*asks])
-        scene.ask(name, asks[name], rng, rng.choice((1, 4, 15, 50, 2000)))
+        name = rng.choice([*requests])
+        scene.ask(name, requests[name], rng, rng.choice((1, 4, 15, 50, 2000)))
         scene.robot.talk(scene.session, rng.choice((0, 1, 30, 300)))
 
 
-def press_long(scene: Scene, rng: random.Random, asks: dict[str, Asks]) -> None:
+def press_long(scene: Scene, rng: random.Random, requests: dict[str, Asks]) -> None:
     """Two seconds of the button let text drive, or confirm a claim that was asked for."""
     robot, session = scene.robot, scene.session
     if rng.random() < 0.5:
@@ -341,7 +341,7 @@ PREVIOUS_HISTORIES = {
 }  # fmt: skip
 
 
-def settle(scene: Scene, saves: bool, rng: random.Random) -> bytes:
+def settle(scene: Scene, is_saved: bool, rng: random.Random) -> bytes:
     """Release everything, and wait until all data is stored; return the memory."""
     robot = scene.robot
     if scene.rings:  # releasing the button ends the teacher's rights, and text drives no more
@@ -353,11 +353,11 @@ def settle(scene: Scene, saves: bool, rng: random.Random) -> bytes:
     if scene.is_down:
         robot.step(flags=BUTTON_RELEASED)
         scene.is_down = False
-    if saves:
+    if is_saved:
         robot.wait(2, bytes(4))
         robot.wait(IDENTIFY_MS)
     memory = robot.memory()
-    while saves and robot.now_ms < START_UPTIME_MS + 200_000:
+    while is_saved and robot.now_ms < START_UPTIME_MS + 200_000:
         robot.wait(800)
         if robot.memory() == memory:
             break
@@ -381,9 +381,9 @@ class Behind(NamedTuple):
 
 def drawn_stop(rng: random.Random, text_before: str) -> Behind:
     """Return a way to stop the robot. A person types only when no client is heard any more."""
-    how = drawn_behind(rng, text_before)
+    stop = drawn_behind(rng, text_before)
     # Only the owner gets the program of a claimed robot.
-    return how._replace(is_cut=False) if text_before == "owners" else how
+    return stop._replace(is_cut=False) if text_before == "owners" else stop
 
 
 def drawn_behind(rng: random.Random, text_before: str) -> Behind:
@@ -403,21 +403,21 @@ def drawn_behind(rng: random.Random, text_before: str) -> Behind:
     return Behind(rng.choice(stops), rng.choice(waits), is_cut, rng.choice((1, 2, 3, 5)), is_typed)
 
 
-def stop_both(scene: Scene, how: Behind) -> None:
+def stop_both(scene: Scene, stop: Behind) -> None:
     """Stop the robot and its twin in the same way."""
     robot = scene.robot
-    scene.is_saved = how.is_cut
-    if how.is_cut:
+    scene.is_saved = stop.is_cut
+    if stop.is_cut:
         scene.nonce = 500
         session = scene.next_session()
         session.upload(image_of(LONG_PROGRAM, KIT))
         robot.talk(session, 12)
-    if not how.is_going_on:
-        robot.wait(2, how.stop)
-        robot.wait(how.wait_ms)
+    if not stop.is_going_on:
+        robot.wait(2, stop.stop)
+        robot.wait(stop.wait_ms)
     elif not scene.observed:
         robot.wait(300, b"//\n")
-    if how.is_typed and how.stop not in (b"", TYPED_STOP) and how.wait_ms < LINE_END_MEMORY_MS:
+    if stop.is_typed and stop.stop not in (b"", TYPED_STOP) and stop.wait_ms < LINE_END_MEMORY_MS:
         robot.wait(1200, b"\n")  # shows the robot that lines end with \n
     robot.did.clear()
     scene.observed.clear()
@@ -425,36 +425,36 @@ def stop_both(scene: Scene, how: Behind) -> None:
     scene.next_session()
 
 
-def observe(scene: Scene, how: Behind, rng: random.Random) -> list[object]:
+def observe(scene: Scene, stop: Behind, rng: random.Random) -> list[object]:
     """Ask for things; return all that can be seen."""
-    asks = {
+    requests = {
         **HARMLESS_REQUESTS,
         **CHANGING_REQUESTS,
-        **(PROGRAM_REQUESTS if how.is_cut else {}),
+        **(PROGRAM_REQUESTS if stop.is_cut else {}),
         **(OWNER_REQUESTS if scene.rings else {}),
     }
-    if not how.is_cut:
+    if not stop.is_cut:
         for name in ("undo", "status", "hello"):
-            del asks[name]
-    for count in range(how.steps):
-        if how.is_typed:
-            text = rng.choice(LINES_WITH_SETUP if how.is_going_on and count == 0 else LINES)
+            del requests[name]
+    for count in range(stop.steps):
+        if stop.is_typed:
+            text = rng.choice(LINES_WITH_SETUP if stop.is_going_on and count == 0 else LINES)
             scene.say(
                 (text + rng.choice(LINE_ENDS)).encode(), rng.choice((0, 30, RUN_MS, 2600, 5200))
             )
-        elif how.is_cut and rng.random() < 0.2:
+        elif stop.is_cut and rng.random() < 0.2:
             scene.press(rng.choice((40, 300)))
         else:
-            name = rng.choice([*asks])
+            name = rng.choice([*requests])
             if scene.rings and rng.random() < 0.5:
                 scene.next_session(rng.choice(CLIENT_KINDS))
                 scene.robot.until(scene.session, scene.session.hello())
-            scene.ask(name, asks[name], rng)
+            scene.ask(name, requests[name], rng)
             scene.talk(RUN_MS)
-    return [*scene.observed, *stored_data_at_end(scene, how)]
+    return [*scene.observed, *stored_data_at_end(scene, stop)]
 
 
-def stored_data_at_end(scene: Scene, how: Behind) -> list[object]:
+def stored_data_at_end(scene: Scene, stop: Behind) -> list[object]:
     """Stop the robot; return its identity, and its stored data."""
     robot, session = scene.robot, scene.next_session()
     robot.supply(False)
@@ -465,7 +465,7 @@ def stored_data_at_end(scene: Scene, how: Behind) -> list[object]:
     trim = session.trim()  # a claim that was confirmed may have given it another key
     robot.until(session, trim)
     robot.talk(session, 1500)
-    kept_bytes = robot.memory() if how.is_cut else b""
+    kept_bytes = robot.memory() if stop.is_cut else b""
     return [(values.id, values.name, values.features, answer_without_counts(trim)), kept_bytes]
 
 
@@ -487,9 +487,11 @@ def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
     owner_key, teacher_key = keys.stored_keys
     wrong_key = owner_key._replace(key=bytes(range(16)))
     key_by_name = {"owner": owner_key, "teacher": teacher_key, "thief": wrong_key}
-    rings = {who: Keys(first_number=10 * k) for k, who in enumerate(("stranger", *key_by_name), 1)}
-    for who, key in key_by_name.items():
-        rings[who].stored_keys = [key]
+    rings = {
+        role: Keys(first_number=10 * k) for k, role in enumerate(("stranger", *key_by_name), 1)
+    }
+    for role, key in key_by_name.items():
+        rings[role].stored_keys = [key]
     return table.robot.memory(), rings
 
 
@@ -513,33 +515,37 @@ def check(seed: int, kind: str, text_before: str) -> int:
             scene, rng, PREVIOUS_HISTORIES[text_before].asks
         )
     scene.talk(0)
-    saves = PREVIOUS_HISTORIES[text_before].saves or scene.has_faulted
-    memory = settle(scene, saves, rng)
-    assert saves or memory == new_memory()
+    is_saved = PREVIOUS_HISTORIES[text_before].saves or scene.has_faulted
+    memory = settle(scene, is_saved, rng)
+    assert is_saved or memory == new_memory()
     history = scene.observed[:]
-    how = drawn_stop(rng, text_before)
+    stop = drawn_stop(rng, text_before)
     twin = Scene(KINDS[kind], memory, write_ms, clock(rng), deepcopy(scene.rings))
     drawn_alike = rng.random()
     states_of_both = []
     for one_scene in (scene, twin):
-        stop_both(one_scene, how)
-        states_of_both.append(observe(one_scene, how, random.Random(drawn_alike)))
+        stop_both(one_scene, stop)
+        states_of_both.append(observe(one_scene, stop, random.Random(drawn_alike)))
     # If a cut program is still being saved, a request is repeated until that is over.
-    assert are_alike(states_of_both[0], states_of_both[1], RETRY_MS if how.is_cut else 0), (
-        f"{history}\n{how}\n{first_difference(*states_of_both)}"
+    assert are_alike(states_of_both[0], states_of_both[1], RETRY_MS if stop.is_cut else 0), (
+        f"{history}\n{stop}\n{first_difference(*states_of_both)}"
     )
     return len(states_of_both[0])
 
 
-def are_alike(one: object, other: object, apart_ms: int) -> bool:
+def are_alike(first: object, second: object, apart_ms: int) -> bool:
     """Return whether both observations are the same, at times that differ by at most this much."""
-    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
-        if len(one) == len(other) == 2 and isinstance(one[0], int) and isinstance(one[1], str):
-            is_near = isinstance(other[0], int) and abs(one[0] - other[0]) <= apart_ms
-            return is_near and one[1] == other[1]
-        pairs = zip(one, other, strict=False)
-        return len(one) == len(other) and all(are_alike(a, b, apart_ms) for a, b in pairs)
-    return one == other
+    if isinstance(first, (list, tuple)) and isinstance(second, (list, tuple)):
+        if (
+            len(first) == len(second) == 2
+            and isinstance(first[0], int)
+            and isinstance(first[1], str)
+        ):
+            is_near = isinstance(second[0], int) and abs(first[0] - second[0]) <= apart_ms
+            return is_near and first[1] == second[1]
+        pairs = zip(first, second, strict=False)
+        return len(first) == len(second) and all(are_alike(a, b, apart_ms) for a, b in pairs)
+    return first == second
 
 
 KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallRobot}
@@ -549,7 +555,9 @@ KINDS: dict[str, type[HostFirmware]] = {"a mega": HostFirmware, "an uno": SmallR
 @pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("text_before", PREVIOUS_HISTORIES)
-def test_a_robot_is_as_its_twin(text_before: str, kind: str, part: int) -> None:
+def test_a_robot_behaves_like_its_twin_with_another_history(
+    text_before: str, kind: str, part: int
+) -> None:
     counts = [check(seed, kind, text_before) for seed in range(part * 10, part * 10 + 10)]
     assert sum(counts) > 20 and min(counts) > 0, counts
 

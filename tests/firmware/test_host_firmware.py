@@ -43,20 +43,20 @@ def test_a_program_in_one_frame_drives_at_once() -> None:
     send(robot, session, "SI|F(1, 80)")
     robot.talk(session, 1200)
     assert actions_of(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
-    first, last = (int(line.split()[0]) for line in robot.did[:2])
-    assert last - first == 1000
+    first_ms, last_ms = (int(line.split()[0]) for line in robot.did[:2])
+    assert last_ms - first_ms == 1000
     assert [event.name for event in session.events()] == ["DONE"]
     assert robot.is_latched
 
 
-@pytest.mark.parametrize("more", ["", "\nTASK\nW(1); S\nEND_TASK"])
-def test_code_in_one_frame_is_the_program_that_was_compiled(more: str) -> None:
+@pytest.mark.parametrize("extra_text", ["", "\nTASK\nW(1); S\nEND_TASK"])
+def test_code_in_one_frame_is_the_program_that_was_compiled(extra_text: str) -> None:
     """The robot makes its image, which lists its needs."""
-    robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){more}")
+    robot, session, image = switched_on(), computer(), image_of(f"SI|F(9, 80){extra_text}")
     assert robot.complete(session, session.live(image.code)).program == image.checksum
 
 
-def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
+def test_after_power_on_nothing_moves_and_the_button_starts_the_stored_program() -> None:
     assert not switched_on().is_lit
     robot, _ = robot_with_saved_program("SI|F(0.5, 80)")
     restarted_robot = switched_on(robot.memory())
@@ -68,7 +68,7 @@ def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> 
     assert actions_of(restarted_robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
-def test_without_frames_the_motors_go_off_in_time() -> None:
+def test_without_frames_the_motors_are_turned_off_in_time() -> None:
     robot, session = driving_robot(700)
     silent_ms = robot.now_ms
     robot.wait(2000)
@@ -79,7 +79,7 @@ def test_without_frames_the_motors_go_off_in_time() -> None:
 
 
 @pytest.mark.parametrize("starts", [1, 256])
-def test_no_run_of_the_button_is_attached(starts: int) -> None:
+def test_a_run_started_by_the_button_is_never_attached(starts: int) -> None:
     """However often it starts: runs are counted in one byte, and one of them was attached."""
     robot, session = driving_robot(100)
     assert not robot.is_lit
@@ -100,7 +100,7 @@ def test_no_run_of_the_button_is_attached(starts: int) -> None:
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
-def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
+def test_a_long_press_stops_a_run_begun_meanwhile() -> None:
     """Its first edge came before the start, as after a spike on the wire."""
     robot, session = switched_on(), computer()
     robot.step(flags=1)
@@ -113,7 +113,7 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
+def test_a_power_cut_leaves_one_program_or_the_other(seed: int) -> None:
     """Whenever it is pulled: while it arrives, while it drives, while it is saved."""
     rng = random.Random(seed)
     memory = robot_with_saved_program()[0].memory()
@@ -145,7 +145,7 @@ def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_prog
 
 
 @pytest.mark.parametrize("is_live", [False, True])
-def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
+def test_an_immediate_fault_names_the_program(is_live: bool) -> None:
     """A program in one frame starts before its checksum is known."""
     robot, session = switched_on(), computer()
     image = image_of("SI|X = 1 / 0")
@@ -160,7 +160,7 @@ def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
 
 
 @pytest.mark.parametrize("text", ["SB|F(0.1, 50)", LONG_PROGRAM.replace("SI|", "SB|")])
-def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> None:
+def test_a_robot_reports_its_program_before_it_is_saved(text: str) -> None:
     """In one frame, and in several."""
     robot, session = robot_with_saved_program()
     send(robot, session, text)
@@ -178,7 +178,7 @@ def test_a_program_of_one_frame_may_use_every_sensor_of_the_kit() -> None:
 
 
 @pytest.mark.parametrize("noise", [0, 0xFFFF0000, 0x12345678])
-def test_random_numbers_are_others_at_another_time(noise: int) -> None:
+def test_random_numbers_differ_at_different_times(noise: int) -> None:
     """Also where the noise of a board is always the same."""
     values = set()
     for wait_ms in range(300, 320):
@@ -197,7 +197,7 @@ RUNS = "SI|X = 3; W(0.02); X = 4; LOOP(FOREVER); F(0.2, 40); SHOW(X); END_LOOP"
 
 
 @pytest.mark.parametrize("is_line", [False, True])
-def test_a_line_that_replaces_a_run_begins_at_its_own_beginning(is_line: bool) -> None:
+def test_a_line_that_replaces_a_run_starts_from_its_own_beginning(is_line: bool) -> None:
     robot, session = switched_on(), computer()
     (live if is_line else send)(robot, session, RUNS)
     robot.talk(session, 100)
@@ -211,8 +211,8 @@ def test_a_line_that_replaces_a_run_begins_at_its_own_beginning(is_line: bool) -
     assert shown_values == [1, 5000]
 
 
-@pytest.mark.parametrize("at", range(-5, 0))
-def test_a_damaged_line_changes_nothing_of_the_one_that_runs(at: int) -> None:
+@pytest.mark.parametrize("position", range(-5, 0))
+def test_a_damaged_line_does_not_affect_the_running_one(position: int) -> None:
     """Code is made ready while its frame arrives: not where the code lies that runs."""
     robot, session = switched_on(), computer()
     live(robot, session, "SI|F(0.2, 40); F(0.2, 50); SHOW(7)")
@@ -221,9 +221,9 @@ def test_a_damaged_line_changes_nothing_of_the_one_that_runs(at: int) -> None:
     payload = bytes([RUN]) + image_of("SI|F(0.2, 90); F(0.2, 90); SHOW(9)").code
     frame = Frame(BY_NAME["LIVE"].number, (session._seq + 1) & 0xFF, session._epoch, payload)
     wire = bytearray(encode_frame(frame))
-    if at < -1:
-        wire[at] ^= 0x11
-    for byte in wire if at < -1 else wire[:-1]:  # a sequence cut before its end
+    if position < -1:
+        wire[position] ^= 0x11
+    for byte in wire if position < -1 else wire[:-1]:  # a sequence cut before its end
         robot.step(bytes([byte]))
     robot.talk(session, 600)
     moves = [line for line in actions_of(robot) if line.startswith("MOTORS")]

@@ -103,10 +103,10 @@ class Client:
             (*(message.number for message in REQUESTS[1:]), rng.choice(UNKNOWN_NUMBERS), 0)
         )
         fields = BY_NUMBER[number].request if number in BY_NUMBER else ()
-        least, most = sizes(fields)
-        most = min(most, payload_bytes(LARGEST_NUMBER))
+        least_bytes, most_bytes = sizes(fields)
+        most_bytes = min(most_bytes, payload_bytes(LARGEST_NUMBER))
         payload = rng.randbytes(
-            rng.choice((least, most, rng.randrange(most + 1), rng.randrange(57)))
+            rng.choice((least_bytes, most_bytes, rng.randrange(most_bytes + 1), rng.randrange(57)))
         )
         payload = payload[: MOST_RETIRED if number in RETIRED_NUMBERS else None]
         if fields and fields[0].name == "mode" and payload:
@@ -116,16 +116,16 @@ class Client:
         epoch = rng.choice((self.epoch, self.epoch, self.epoch ^ rng.randrange(1, 256)))
         is_stale = epoch != self.epoch
         self.robot.did.clear()
-        before = self.robot.is_latched
+        was_latched = self.robot.is_latched
         status = self.ask(number, payload, epoch)[0]
         is_known = number in BY_NUMBER and BY_NUMBER[number].name not in RADIO_MESSAGES
         if not is_known:
             assert status == STATUSES["UNKNOWN_MESSAGE"]
-        elif not least <= len(payload) <= most:
+        elif not least_bytes <= len(payload) <= most_bytes:
             assert status == STATUSES["BAD_LENGTH"]
         elif is_stale and number >= FIRST_ACTING:
             assert status == STATUS_STALE
-        if status in REJECTING_STATUSES and before:
+        if status in REJECTING_STATUSES and was_latched:
             assert not [line for line in self.robot.did if " MOTORS " in line]
 
     def repeat_frame(self) -> None:
@@ -148,31 +148,31 @@ class Client:
         image = pack("SI", 0, code)
         mode = bytes([rng.choice((0x00, 0x20, 0x30))])
         reply = self.ask_by_name("BEGIN", mode + image[2:10])
-        body, at = image[14:], 0
+        body, offset = image[14:], 0
         if len(code) > ROOM_BYTES and reply[0] != STATUS_STALE:
             assert reply[0] != STATUS_OK
-        while reply[0] == STATUS_OK and at < len(body):
+        while reply[0] == STATUS_OK and offset < len(body):
             if rng.random() < 0.1:
                 rng.choice((self.hello, self.zeros, self.line, self.request))()
-            piece = body[at : at + rng.choice((1, 20, 53))]
-            reply = self.ask_by_name("DATA", at.to_bytes(2, "little") + piece)
+            piece = body[offset : offset + rng.choice((1, 20, 53))]
+            reply = self.ask_by_name("DATA", offset.to_bytes(2, "little") + piece)
             if reply[0] == STATUS_OK:
-                at = int.from_bytes(reply[1:3], "little")
-                assert at <= len(body)
+                offset = int.from_bytes(reply[1:3], "little")
+                assert offset <= len(body)
         if self.ask_by_name("COMMIT", image[10:14])[0] == STATUS_OK:
             assert self.fetch_image() == image
             assert code != b"\xff" * 9
 
     def fetch_image(self) -> bytes:
         """Return the image that the robot holds."""
-        image, whole = b"", HEADER_BYTES
-        while len(image) < whole:
+        image, total_bytes = b"", HEADER_BYTES
+        while len(image) < total_bytes:
             reply = self.ask_by_name("FETCH", len(image).to_bytes(2, "little"))
             if reply[0] == STATUS_BUSY:
                 self.put(b"", 50)
                 continue
             assert reply[0] == STATUS_OK
-            whole = int.from_bytes(reply[1:3], "little")
+            total_bytes = int.from_bytes(reply[1:3], "little")
             image += reply[3:]
         return image
 
@@ -220,7 +220,7 @@ def play(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))
-def test_a_hostile_client_is_answered_and_the_robot_lives(seed: int) -> None:
+def test_a_hostile_client_is_answered_and_the_robot_keeps_working(seed: int) -> None:
     play(seed)
 
 

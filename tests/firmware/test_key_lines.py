@@ -45,7 +45,7 @@ EMPTY_LINES = (*LINE_ENDS, " \n", "\t\r\n")  # lines of nothing
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
 @pytest.mark.parametrize(("line", "held_state"), STATE_BY_LINE)
-def test_a_line_holds_what_it_says_for_half_a_second(
+def test_a_key_line_holds_its_keys_for_half_a_second(
     line: str, held_state: RemoteState, kind: type[HostFirmware]
 ) -> None:
     robot = boot(kind)
@@ -59,7 +59,7 @@ def test_a_line_holds_what_it_says_for_half_a_second(
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
-def test_any_blanks_around_its_words_and_any_line_ends_make_the_same_line(
+def test_blanks_and_line_ends_do_not_change_a_key_line(
     kind: type[HostFirmware],
 ) -> None:
     rng = random.Random(1)
@@ -95,7 +95,7 @@ def test_any_other_line_is_read_as_before(line: str) -> None:
     assert robot.remote() == RELEASED_READINGS
 
 
-def test_whoever_presses_is_told_once_that_no_program_reads_it() -> None:
+def test_unread_keys_are_reported_once() -> None:
     robot = boot()
     assert type_text(robot, "KEY_UP\n", 1500) == [UNREAD_KEYS_LINE]
     assert type_text(robot, "KEY_UP\n" * 3, 1500) == []
@@ -107,7 +107,7 @@ def test_whoever_presses_is_told_once_that_no_program_reads_it() -> None:
     assert type_text(robot, "KEY_UP\n", 1500) == [UNREAD_KEYS_LINE]
 
 
-def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None:
+def test_a_key_repeated_every_300_ms_at_9600_baud_stays_held() -> None:
     robot = boot()
     line = b"KEY_UP\r\n"
     robot.latched_while(20, line, is_spread=True)
@@ -118,7 +118,7 @@ def test_a_key_that_is_said_every_300_ms_at_9600_baud_does_not_flicker() -> None
         robot.latched_while(20, line, is_spread=True)
 
 
-def test_they_end_nothing_start_nothing_and_work_beside_a_live() -> None:
+def test_key_lines_end_and_start_nothing_and_work_beside_live() -> None:
     for kind in (HostFirmware, SmallRobot):
         robot, session = kind(KIT), computer()
         robot.wait(100)
@@ -132,21 +132,21 @@ def test_they_end_nothing_start_nothing_and_work_beside_a_live() -> None:
         assert robot.did == [] and session.is_running
 
 
-def test_in_an_open_block_the_line_is_the_programs() -> None:
+def test_in_an_open_block_a_key_line_belongs_to_the_program() -> None:
     robot = boot()
     assert type_text(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == RELEASED_READINGS
     assert robot.remote() == RELEASED_READINGS
 
 
-@pytest.mark.parametrize("how", ["text", "zeros", "button"])
-def test_after_a_stop_they_count_as_silence_and_release_nothing(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["text", "zeros", "button"])
+def test_after_a_stop_key_lines_count_as_silence(stop_kind: str) -> None:
     """A person who keeps holding a key can type a program a second later."""
     robot = boot()
     type_text(robot, DRIVE_PROGRAM + "\n", 100)
     assert "MOTORS 50 50" in robot.did[-1]
-    if how == "text":
+    if stop_kind == "text":
         type_text(robot, "S\n", 20)
-    elif how == "zeros":
+    elif stop_kind == "zeros":
         robot.wait(20, bytes(4))
         robot.wait(1500)  # from here on the robot reads text again
         type_text(robot, "KEY_UP\n", 20)
@@ -160,7 +160,7 @@ def test_after_a_stop_they_count_as_silence_and_release_nothing(how: str) -> Non
     assert any("MOTORS 30 30" in line for line in robot.did)
 
 
-def test_a_wrong_line_costs_no_more_while_a_key_is_held() -> None:
+def test_a_wrong_line_has_the_same_effect_while_a_key_is_held() -> None:
     """The rest of the program is ignored until a second of silence, and keys count as silence."""
     robot = boot()
     type_text(robot, "SI|FOO\n", 10)
@@ -170,7 +170,7 @@ def test_a_wrong_line_costs_no_more_while_a_key_is_held() -> None:
     assert any("MOTORS 30 30" in line for line in robot.did)
 
 
-def test_text_that_may_not_drive_presses_nothing() -> None:
+def test_text_without_permission_to_drive_presses_no_keys() -> None:
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     table.robot.wait(3000)
@@ -178,7 +178,7 @@ def test_text_that_may_not_drive_presses_nothing() -> None:
     assert table.robot.remote() == RELEASED_READINGS
 
 
-def test_a_thousand_lines_in_a_burst() -> None:
+def test_a_burst_of_a_thousand_key_lines_is_handled() -> None:
     robot = boot()
     robot.wait(10, b"KEY_B\n" * 1000)
     robot.wait(1000)

@@ -39,7 +39,7 @@ def open_session(memory: bytes) -> tuple[HostFirmware, Session]:
 
 @pytest.mark.parametrize("place", [FIRST_SLOT, SECOND_SLOT])
 @pytest.mark.parametrize("length", [0, 3, 389])
-def test_a_robot_says_that_its_program_is_of_another_version(place: int, length: int) -> None:
+def test_a_program_of_another_version_is_reported(place: int, length: int) -> None:
     memory = eeprom_with((place, 7, later_version_image(random.Random(length).randbytes(length))))
     robot, session = open_session(memory)
     assert read_saved_state(robot, session) == "OTHER_VERSION"
@@ -71,21 +71,21 @@ def test_the_next_program_replaces_it() -> None:
 
 
 @pytest.mark.parametrize("place", [FIRST_SLOT, SECOND_SLOT])
-def test_a_program_of_version_1_does_not_count(place: int) -> None:
+def test_a_program_of_version_1_is_ignored(place: int) -> None:
     robot, session = open_session(eeprom_with((place, 7, VERSION_1)))
     assert read_saved_state(robot, session) == "NOTHING"
     assert robot.memory()[place : place + 2] == b"\xff\xff", "the slot is empty"
 
 
-def test_one_of_this_version_before_it_counts() -> None:
-    mine = bytes_of("SB|F(0.1, 60)")
+def test_an_older_program_of_this_version_is_used() -> None:
+    own_image = bytes_of("SB|F(0.1, 60)")
     robot, session = open_session(
-        eeprom_with((FIRST_SLOT, 3, mine), (SECOND_SLOT, 4, LATER_VERSION_IMAGE))
+        eeprom_with((FIRST_SLOT, 3, own_image), (SECOND_SLOT, 4, LATER_VERSION_IMAGE))
     )
     assert read_saved_state(robot, session) == "STORED"
-    later = with_checksum(mine[:3] + b"\2" + mine[4:])  # a later minor version
+    later_image = with_checksum(own_image[:3] + b"\2" + own_image[4:])  # a later minor version
     robot, session = open_session(
-        eeprom_with((FIRST_SLOT, 3, later), (SECOND_SLOT, 2, LATER_VERSION_IMAGE))
+        eeprom_with((FIRST_SLOT, 3, later_image), (SECOND_SLOT, 2, LATER_VERSION_IMAGE))
     )
     assert read_saved_state(robot, session) == "OTHER_VERSION"
 
@@ -101,7 +101,7 @@ def test_a_program_with_a_longer_header_is_run() -> None:
     assert actions_of(robot)[:2] == ["MOTORS 60 60", "MOTORS 0 0"]
 
 
-def test_name_and_trim_outlive_an_update() -> None:
+def test_name_and_trim_survive_an_update() -> None:
     """Their places do not depend on the program's version."""
     robot, session = open_session(eeprom_with((FIRST_SLOT, 0, LATER_VERSION_IMAGE)))
     assert robot.until(session, session.name(b"Ada")) == OK

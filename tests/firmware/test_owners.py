@@ -49,9 +49,9 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == OWNED_BY_YOU
     assert table.tries(session) == "OK"
-    later = OwnedRobot(table.robot.memory(), seed=7)
-    assert owner_of(later, later.session()) == OWNED_BY_OTHER
-    assert owner_of(later, later.session(keys, nonce=2)) == OWNED_BY_YOU
+    restarted = OwnedRobot(table.robot.memory(), seed=7)
+    assert owner_of(restarted, restarted.session()) == OWNED_BY_OTHER
+    assert owner_of(restarted, restarted.session(keys, nonce=2)) == OWNED_BY_YOU
 
 
 def a_shorter_press(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
@@ -76,11 +76,13 @@ def spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[An
     return request
 
 
-@pytest.mark.parametrize("what", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
-def test_what_confirms_no_claim(what: Callable[[OwnedRobot, Session], PendingRequest[Any]]) -> None:
+@pytest.mark.parametrize("act", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
+def test_other_button_actions_confirm_no_claim(
+    act: Callable[[OwnedRobot, Session], PendingRequest[Any]],
+) -> None:
     table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
-    assert table.outcome(session, what(table, session)) == "HOLD_BUTTON"
+    assert table.outcome(session, act(table, session)) == "HOLD_BUTTON"
     assert keys.stored_keys == []
     assert owner_of(table, session) == FREE
 
@@ -120,8 +122,8 @@ CLAIM_CASES = ["nothing", "cut", "cut, later not", "held", "held and cut", "take
 
 @pytest.mark.sampled("late_ms")
 @pytest.mark.parametrize("late_ms", [0, 40, 300, 700])
-@pytest.mark.parametrize("what", CLAIM_CASES)
-def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None:
+@pytest.mark.parametrize("ending", CLAIM_CASES)
+def test_a_claim_ends_within_the_documented_time(late_ms: int, ending: str) -> None:
     """However long answers take, and whatever the result of the press. A key that the robot may
     have taken is kept: it is shown the next time."""
     table, keys = OwnedRobot(), Keys()
@@ -129,42 +131,42 @@ def test_a_claim_ends_within_what_is_said_of_it(late_ms: int, what: str) -> None
     line = Late(table, session, late_ms)
     began_ms = table.robot.now_ms
     request = session.claim(KEY_OWNER)
-    line.is_cut = what.startswith("cut")
+    line.is_cut = ending.startswith("cut")
     line.pass_time(WAIT_LIMIT_MS - 6000)
-    line.is_cut = what == "cut"
-    if what[:4] in ("held", "take"):
+    line.is_cut = ending == "cut"
+    if ending[:4] in ("held", "take"):
         line.pass_time(1, BUTTON_PRESSED)
         line.pass_time(30)
         line.pass_time(1970, BUTTON_HELD)
-        line.is_cut = what == "held and cut"
+        line.is_cut = ending == "held and cut"
         while (
-            what == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
+            ending == "taken and cut" and keys.stored_keys[0].is_pending and request.outcome is None
         ):
             line.pass_time(LINE_STEP_MS)
-        line.is_cut |= what == "taken and cut"
+        line.is_cut |= ending == "taken and cut"
     line.until(request)
     assert table.robot.now_ms <= began_ms + WAIT_LIMIT_MS + 2 * LINE_STEP_MS
     table.robot.step(flags=BUTTON_RELEASED)
     is_taken = owner_of(table, table.session(nonce=8)) != FREE
-    assert is_taken or what not in ("held", "taken and cut")
+    assert is_taken or ending not in ("held", "taken and cut")
     assert owner_of(table, table.session(keys, nonce=7)) == (OWNED_BY_YOU if is_taken else FREE)
 
 
-def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() -> None:
+def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
     table = OwnedRobot()
     first, second = Keys(1), Keys(50)
-    early, late = table.session(first, nonce=1), table.session(second, nonce=2)
-    early.claim(KEY_OWNER)
-    table.pass_time(early, 300)
+    early_session, late_session = table.session(first, nonce=1), table.session(second, nonce=2)
+    early_session.claim(KEY_OWNER)
+    table.pass_time(early_session, 300)
     table.pass_time(None, 2100)  # out of reach
     table.hold(None, 2500)
     assert owner_of(table, table.session(nonce=5)) == FREE
-    early.claim(KEY_OWNER)
-    table.pass_time(early, 300)
-    request = late.claim(KEY_OWNER)  # its session is alive
-    table.pass_time(late, 300)
-    table.hold(late, 2200)
-    assert table.outcome(late, request) == "OK"
+    early_session.claim(KEY_OWNER)
+    table.pass_time(early_session, 300)
+    request = late_session.claim(KEY_OWNER)  # its session is alive
+    table.pass_time(late_session, 300)
+    table.hold(late_session, 2200)
+    assert table.outcome(late_session, request) == "OK"
     next_session = table.session(first, nonce=3)
     assert table.outcome(next_session, next_session.claim(KEY_OWNER)) in ("NOT_OWNER", "WRONG_KEY")
     assert table.tries(table.session(first, nonce=4)) != "OK"
@@ -176,7 +178,7 @@ def test_a_claim_expires_where_no_frame_comes_and_the_next_one_gets_the_robot() 
 
 @pytest.mark.sampled("cut_ms", keep=9)
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
-def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
+def test_a_power_cut_leaves_the_old_or_the_new_key(cut_ms: int) -> None:
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     session.claim(KEY_OWNER)
@@ -185,20 +187,20 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     table.pass_time(session, 31)
     table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, cut_ms)
-    later = OwnedRobot(table.robot.memory(), seed=cut_ms)
+    restarted = OwnedRobot(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
-    assert owner_of(later, later.session(keys, nonce=77)) == OWNED_BY_YOU
+    assert owner_of(restarted, restarted.session(keys, nonce=77)) == OWNED_BY_YOU
 
 
-def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None:
+def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
     table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     for _ in range(7):  # claims that were left before the button was held
         session.claim(KEY_OWNER)
         table.pass_time(session, 300)
         session = table.session(keys, nonce=len(keys.stored_keys) + 1)
-    left = list(keys.stored_keys)
-    assert len(left) == 7
+    keys_left = list(keys.stored_keys)
+    assert len(keys_left) == 7
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     table.pass_time(session, 1, BUTTON_PRESSED)
@@ -206,17 +208,17 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, 400)
     table.robot.step(flags=BUTTON_RELEASED)
-    keys.stored_keys = [left[0], keys.stored_keys[-1]._replace(is_pending=True)]
-    later = table.session(keys, nonce=99)
-    assert owner_of(table, later) == OWNED_BY_YOU
+    keys.stored_keys = [keys_left[0], keys.stored_keys[-1]._replace(is_pending=True)]
+    later_session = table.session(keys, nonce=99)
+    assert owner_of(table, later_session) == OWNED_BY_YOU
     assert [(key.key[0], key.is_pending) for key in keys.stored_keys] == [(8, False)]
     stale = Keys()
-    stale.stored_keys = left[:2]
+    stale.stored_keys = keys_left[:2]
     assert owner_of(table, table.session(stale, nonce=100)) == OWNED_BY_OTHER
     assert [(key.is_pending, key.is_stale) for key in stale.stored_keys] == [(True, True)] * 2
 
 
-def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
+def test_a_key_that_one_side_cannot_store_grants_nothing() -> None:
     table, keys = OwnedRobot(), Keys()
     keys.is_full = True
     session = table.session(keys)
@@ -229,7 +231,7 @@ def test_a_key_that_one_of_both_cannot_keep_is_nobodys() -> None:
     assert owner_of(table, session) == FREE
 
 
-def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> None:
+def test_a_claim_is_stored_despite_an_unsaved_name_that_stays_reported() -> None:
     table, keys = OwnedRobot(), Keys()
     for place in (4, 4 + 31):  # both slots of the name
         table.robot.wear_out(place + 12)  # the first letter of its name
@@ -242,7 +244,7 @@ def test_a_claim_is_kept_beside_a_name_that_is_not_and_leaves_that_told() -> Non
     assert owner_of(restarted_robot, restarted_robot.session()) == OWNED_BY_OTHER
 
 
-def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
+def test_a_name_is_stored_despite_an_unsaved_key() -> None:
     table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     assert table.outcome(session, session.name(b"NEW")) == "OK"
@@ -255,7 +257,7 @@ def test_a_name_is_kept_beside_a_key_that_is_not() -> None:
 @pytest.mark.parametrize("second", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("first", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])
-def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> None:
+def test_each_claim_needs_its_own_press(first: int, second: int, by: str) -> None:
     """A confirmed claim does not confirm the next one, whatever its number of requests."""
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys, first)
@@ -274,7 +276,7 @@ def test_each_claim_has_a_press_of_its_own(first: int, second: int, by: str) -> 
 @pytest.mark.parametrize("silent_ms", [0, AUTHORITY_MS + 100])
 @pytest.mark.parametrize("has_pressed", [False, True])
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
-def test_a_press_for_who_has_gone_confirms_nobody_else(
+def test_a_press_for_an_absent_claimant_confirms_nobody_else(
     which: int, has_pressed: bool, silent_ms: int
 ) -> None:
     """Nor does that client's request turn the next press into another client's."""
@@ -298,21 +300,21 @@ def test_a_press_for_who_has_gone_confirms_nobody_else(
     assert table.outcome(session, request) == "OK"
 
 
-def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
-    table, teacher_session, other = OwnedRobot(), Keys(), Keys(70)
+def test_a_stale_key_is_tried_at_most_once_at_hello() -> None:
+    table, teacher_session, other_keys = OwnedRobot(), Keys(), Keys(70)
     table.claim_session(teacher_session)
     session = table.session(teacher_session, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
     assert session.robot
     teacher_session.stored_keys = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
-    table.claim_session(other)
+    table.claim_session(other_keys)
     for nonce in range(10, 30):  # more often than it may be tried
         assert owner_of(table, table.session(teacher_session, nonce=nonce)) == OWNED_BY_OTHER
         assert [key.is_stale for key in teacher_session.stored_keys] == [True]
-    assert owner_of(table, table.session(other, nonce=40)) == OWNED_BY_YOU
+    assert owner_of(table, table.session(other_keys, nonce=40)) == OWNED_BY_YOU
 
 
-def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
+def test_a_stale_key_that_works_is_no_longer_stale() -> None:
     """Another session may come between challenge and tag."""
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
@@ -327,7 +329,7 @@ def test_a_stale_key_that_is_right_after_all_is_not_stale() -> None:
 # -- the teacher ----------------------------------------------------------------------------------
 
 
-def test_a_teachers_key_drives_and_gives_a_robot_back() -> None:
+def test_a_teachers_key_drives_and_releases_a_robot() -> None:
     table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     session = table.session(teacher, nonce=2)
     assert table.claim(session, KEY_TEACHER) == "OK"
@@ -372,7 +374,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_robot_is_held_back_from_a_teachers_stop_until_it_is_released(seed: int) -> None:
+def test_a_robot_stays_blocked_by_a_teachers_stop_until_released(seed: int) -> None:
     """This holds for any number of stops, and for any stops, starts and presses in between."""
     rng, table, pupil, teacher = Random(seed), OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
@@ -428,11 +430,11 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
             assert table.outcome(session, session.hello()) == str(UNPROVEN)
             session = table.session()
         assert owner_of(table, session) == owner
-    other = table.session(Keys(200), nonce=3)
-    assert table.claim(other, KEY_TEACHER) == "OK"
+    other_session = table.session(Keys(200), nonce=3)
+    assert table.claim(other_session, KEY_TEACHER) == "OK"
 
 
-def test_text_drives_an_owned_robot_only_where_it_may() -> None:
+def test_text_drives_an_owned_robot_only_with_permission() -> None:
     """The owner may allow text, or a press of two seconds does until power-off."""
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
@@ -457,7 +459,7 @@ def test_text_drives_an_owned_robot_only_where_it_may() -> None:
     assert b"tsc set text on" in answer()
 
 
-def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None:
+def test_a_robot_identifies_itself_but_leaves_the_buzzer_to_a_program() -> None:
     table = OwnedRobot()
     session = table.session()
     assert table.outcome(session, session.identify()) == "OK"
@@ -477,18 +479,18 @@ STEP_MS, STEPS = 250, 12  # pattern of the light
 HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what it runs": FOREVER}
 
 
-@pytest.mark.parametrize("holds", HELD_PROGRAMS)
-def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds: str) -> None:
+@pytest.mark.parametrize("held_program", HELD_PROGRAMS)
+def test_each_identify_request_shows_the_robot_for_three_seconds(held_program: str) -> None:
     """Also while it still shows itself, or has just done so. Then its light shows the result."""
     table = OwnedRobot()
     robot, session = table.robot, table.session()
     assert table.outcome(session, session.hello()) == "OK"
-    if text := HELD_PROGRAMS[holds]:
+    if text := HELD_PROGRAMS[held_program]:
         upload = session.upload(image_of(text), saves=False, is_detached=True)
         assert table.outcome(session, upload) == "OK"
     robot.wait(100)
-    says, number = robot.is_lit, session.robot.id if session.robot else 0
-    runs = holds == "what it runs"
+    was_lit_before, number = robot.is_lit, session.robot.id if session.robot else 0
+    runs = held_program == "what it runs"
     tune = [] if runs else [131 * (4 + (number >> 3 * k) % 8) for k in range(3)]
     for seq, before_ms in enumerate((1, 249, 251, 700, 2999, 3500)):
         for is_second in (False, True):
@@ -501,7 +503,7 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
             for _ in range((before_ms if not is_second else STEPS * STEP_MS + 500) - 1):
                 robot.step()
                 was_lit.append(robot.is_lit)
-        expected = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [says] * 500
+        expected = [k // STEP_MS % 2 == 0 for k in range(STEPS * STEP_MS)] + [was_lit_before] * 500
         assert was_lit == expected, before_ms
         beeps = [line.split() for line in robot.did if "BEEP" in line]
         assert beeps == [
@@ -509,7 +511,7 @@ def test_a_robot_can_be_seen_for_three_seconds_each_time_that_it_is_asked(holds:
         ]
 
 
-def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
+def test_a_storm_of_identify_requests_affects_no_run_or_stop() -> None:
     """A stranger may ask as often as the line carries it."""
     table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
@@ -526,7 +528,7 @@ def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
 
 
 @pytest.mark.sampled(of="other builds of the firmware")
-def test_a_firmware_without_owners_says_so_and_is_free() -> None:
+def test_firmware_without_owner_support_announces_this_and_is_free() -> None:
     table = OwnedRobot(defines=("tiniscript_without_owners",))
     session = table.session(Keys())
     assert table.claim(session) == "UNKNOWN_MESSAGE"

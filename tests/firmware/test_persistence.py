@@ -50,7 +50,7 @@ def marks(robot: HostFirmware) -> list[str]:
 # -- motors ---------------------------------------------------------------------------------------
 
 
-def test_what_stands_is_saved_while_it_runs() -> None:
+def test_a_stationary_program_is_saved_while_it_runs() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, WAITS)
     assert read_saved_state(robot, session) == "SAVING"
@@ -87,7 +87,7 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_a_program_that_stands_is_stored_in_the_end_whatever_was_before(seed: int) -> None:
+def test_a_stationary_program_is_finally_stored_after_any_history(seed: int) -> None:
     """Sent again, after another one, after a power-off, or with a supply that was low."""
     chance, texts = Random(seed), [f"SI|SHOW({number})" for number in range(3)]
     robot, session = switched_on(), computer()
@@ -109,7 +109,7 @@ def test_a_program_that_stands_is_stored_in_the_end_whatever_was_before(seed: in
 # -- names and trims ------------------------------------------------------------------------------
 
 
-def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives() -> None:
+def test_a_name_is_confirmed_once_stored_and_deferred_while_driving() -> None:
     """The plug is pulled as soon as the robot has said OK."""
     robot, session = switched_on(), computer()
     for name in (b"TINI", b"TIN", b"ANA"):
@@ -129,7 +129,7 @@ def test_a_name_is_ok_when_it_is_kept_and_told_to_be_kept_later_while_it_drives(
 
 
 @pytest.mark.parametrize("cut_ms", range(1, 240, 17))
-def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) -> None:
+def test_an_unconfirmed_name_is_the_old_or_the_new_one(cut_ms: int) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.name(b"OLD")) == OK
     request = session.name(b"NEW")
@@ -139,18 +139,18 @@ def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) ->
     assert request.outcome is None or name == "NEW"
 
 
-def test_a_trim_is_ok_when_it_is_kept() -> None:
+def test_a_trim_is_confirmed_once_stored() -> None:
     robot, session = switched_on(), computer()
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
-        restarted_robot, other = switched_on(robot.memory()), computer(2)
-        values = restarted_robot.complete(other, other.trim())
+        restarted_robot, other_session = switched_on(robot.memory()), computer(2)
+        values = restarted_robot.complete(other_session, other_session.trim())
         assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVE_PROGRAM, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
 
 
-def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
+def test_a_power_cut_while_storing_a_pace_leaves_a_whole_one() -> None:
     """It is the old or the new one, whatever the trim next to it; both are new once the robot has
     answered OK."""
     robot, session = switched_on(), computer()
@@ -172,11 +172,11 @@ def test_a_plug_pulled_while_a_pace_is_kept_leaves_a_whole_one() -> None:
 
 
 def trim_after_power_off(robot: HostFirmware) -> Trim:
-    restarted_robot, other = switched_on(robot.memory()), computer(2)
-    return trim_from_reply(restarted_robot.complete(other, other.trim()))
+    restarted_robot, other_session = switched_on(robot.memory()), computer(2)
+    return trim_from_reply(restarted_robot.complete(other_session, other_session.trim()))
 
 
-def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
+def test_a_name_that_fits_a_worn_byte_is_stored_after_one_that_did_not() -> None:
     """The byte of the first letter stays an O. A name that did not fit has no effect."""
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
@@ -202,26 +202,28 @@ KEPT: dict[str, tuple[Callable[[Session], PendingRequest[Any]], Callable[[HostFi
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("what", KEPT)
-def test_what_could_not_be_kept_is_kept_when_it_is_asked_for_again(what: str) -> None:
+@pytest.mark.parametrize("request_name", KEPT)
+def test_a_failed_save_succeeds_on_a_later_request(request_name: str) -> None:
     """The memory accepts no writes for a while, as if the supply failed in each write. The first
     answer afterwards may still be about the last time.
     """
     robot, session = robot_with_saved_program()
-    asks, is_kept = KEPT[what]
+    make_request, is_kept = KEPT[request_name]
     for place in range(len(robot.memory())):
         robot.wear_out(place)
-    is_program = what == "a program"  # programs are answered at once
-    assert robot.until(session, asks(session)) == (OK if is_program else STATUSES["NOT_KEPT"])
+    is_program = request_name == "a program"  # programs are answered at once
+    assert robot.until(session, make_request(session)) == (
+        OK if is_program else STATUSES["NOT_KEPT"]
+    )
     robot.talk(session, 3000)
     assert not is_kept(robot)
     robot.mend()
-    answers = {robot.until(session, asks(session)) for _ in "12"}
+    answers = {robot.until(session, make_request(session)) for _ in "12"}
     robot.talk(session, 3000)
     assert OK in answers and is_kept(robot)
 
 
-def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:
+def test_a_name_is_stored_after_a_program_that_hit_a_worn_byte() -> None:
     """Each save begins with its first byte, wherever the one before has ended."""
     robot, session = switched_on(), computer()
     for power in (20, 30):
@@ -235,7 +237,7 @@ def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:
     assert name_after_power_off(robot) == "NEW"
 
 
-def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
+def test_data_with_a_worn_last_byte_reads_as_empty() -> None:
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
         assert robot.until(session, session.name(name)) == OK
@@ -249,7 +251,7 @@ def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
 # -- the supply -----------------------------------------------------------------------------------
 
 
-def test_a_low_supply_is_told_and_waited_for() -> None:
+def test_a_low_supply_is_reported_and_waited_for() -> None:
     robot, session = switched_on(), computer()
     robot.supply(is_low=True)
     send(robot, session, "SI|SHOW(1)")
@@ -266,7 +268,7 @@ def test_a_low_supply_is_told_and_waited_for() -> None:
     assert name_after_power_off(robot) == "NEW"
 
 
-def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
+def test_with_a_low_supply_another_program_can_still_run() -> None:
     """The earlier program is kept, and the pending one is given up for the new one."""
     robot, session = robot_with_saved_program()
     robot.supply(is_low=True)
@@ -287,7 +289,7 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
 
 @pytest.mark.sampled("seed", keep=12)
 @pytest.mark.parametrize("seed", range(30))
-def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) -> None:
+def test_a_low_supply_at_any_time_keeps_the_last_program_intact(seed: int) -> None:
     """Uploads arrive at any moment of a save, and the program in memory at a power loss is always
     whole."""
     chance = Random(seed)
@@ -316,7 +318,7 @@ def test_whenever_the_supply_is_low_the_last_program_is_kept_whole(seed: int) ->
     assert program_after_power_off(robot) == programs[-1]
 
 
-def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
+def test_a_low_supply_after_an_interrupted_save_is_reported() -> None:
     """Repairs after a cut need enough voltage; until then, the result is unknown."""
     robot, session = robot_with_saved_program()
     memory = bytearray(robot.memory())
@@ -344,11 +346,11 @@ def session_while_name_is_written(
 ) -> Session:
     """Return another session of a robot with a stored program that writes its name."""
     broken_upload(robot, session)
-    other = computer(3)
-    assert robot.until(other, other.hello()) == OK
-    other.name(name)
-    robot.talk(other, 5)
-    return other
+    other_session = computer(3)
+    assert robot.until(other_session, other_session.hello()) == OK
+    other_session.name(name)
+    robot.talk(other_session, 5)
+    return other_session
 
 
 def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> None:
@@ -358,30 +360,34 @@ def test_a_program_is_fetched_whole_and_started_while_a_name_is_written() -> Non
     another = computer(4)
     assert robot.complete(another, another.fetch()).image == bytes_of(text)
     robot.talk(another, 1000)
-    other = session_while_name_is_written(robot, another, b"ANOTHER ONE")
+    other_session = session_while_name_is_written(robot, another, b"ANOTHER ONE")
     robot.push(1)
-    robot.talk(other, 7000)
+    robot.talk(other_session, 7000)
     assert actions_of(robot)[0] == "MOTORS 80 80" and actions_of(robot)[-1] == "FINISHED"
 
 
-def test_a_robot_that_writes_says_busy_to_fetch() -> None:
+def test_a_robot_that_is_saving_answers_busy_to_fetch() -> None:
     robot, session = robot_with_saved_program()
     broken_upload(robot, session)
-    other = computer(3)
-    assert robot.until(other, other.hello()) == OK
+    other_session = computer(3)
+    assert robot.until(other_session, other_session.hello()) == OK
 
-    naming = other._queue_exchange(send_single(Request("NAME", {"name": b"NEW"}), EmptyReply))
-    assert robot.until(other, naming) == STATUSES["SAVING"]
-    request = other._queue_exchange(send_single(Request("FETCH", {"offset": 0}), FetchReply))
-    assert robot.until(other, request) == STATUSES["BUSY"]
+    naming = other_session._queue_exchange(
+        send_single(Request("NAME", {"name": b"NEW"}), EmptyReply)
+    )
+    assert robot.until(other_session, naming) == STATUSES["SAVING"]
+    request = other_session._queue_exchange(
+        send_single(Request("FETCH", {"offset": 0}), FetchReply)
+    )
+    assert robot.until(other_session, request) == STATUSES["BUSY"]
 
 
 def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
     robot, session = switched_on(write_ms=12), computer()
     send(robot, session, "SB|F(0.2, 80)")
     robot.talk(session, 2000)
-    other = session_while_name_is_written(robot, session)
+    other_session = session_while_name_is_written(robot, session)
     robot.push(1)
-    other.stop(robot.now_ms)
-    robot.talk(other, 2000)
+    other_session.stop(robot.now_ms)
+    robot.talk(other_session, 2000)
     assert [line for line in actions_of(robot) if line.startswith("MOTORS")] == []

@@ -52,7 +52,7 @@ def places(image: Image, begun_ms: int, sensed: int) -> Iterator[int]:
 
 
 @pytest.mark.parametrize("text", PROGRAMS)
-def test_a_place_is_that_of_the_machine_in_python(text: str) -> None:
+def test_reported_places_match_the_python_machine(text: str) -> None:
     robot, session = switched_on(), computer()
     robot.sense(*[30_000] * len(KIT.sensors))
     assert robot.until(session, session.hello()) == OK
@@ -89,7 +89,7 @@ def place_events_of(events: list[Event]) -> list[PlaceEvent]:
     return [event for event in events if isinstance(event, PlaceEvent)]
 
 
-def test_a_session_that_wants_it_hears_each_place_of_each_run_once() -> None:
+def test_a_subscribed_session_gets_each_place_of_each_run_once() -> None:
     robot, session = switched_on(), computer()
     image = image_of(DRIVE)
     assert robot.until(session, session.upload(image, saves=False)) == OK
@@ -114,7 +114,7 @@ def test_a_session_that_wants_it_hears_each_place_of_each_run_once() -> None:
         )
 
 
-def test_what_the_button_starts_and_a_line_have_places_too() -> None:
+def test_runs_started_by_the_button_and_lines_also_report_places() -> None:
     robot, session = switched_on(), listener()
     waits = image_of("SB" + DRIVE[2:])
     assert robot.until(session, session.upload(waits, saves=False)) == OK
@@ -126,7 +126,7 @@ def test_what_the_button_starts_and_a_line_have_places_too() -> None:
     assert place_events_of(events_after(robot, session, 500))[0].program == line.checksum
 
 
-def test_a_sealed_session_hears_places_sealed() -> None:
+def test_a_sealed_session_gets_sealed_places() -> None:
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     session = table.session(keys, nonce=4)

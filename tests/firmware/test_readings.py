@@ -28,47 +28,56 @@ READING = BY_NAME["READING"]
 
 @pytest.mark.sampled("seed", keep=10)
 @pytest.mark.parametrize("seed", range(100))
-def test_pins_do_the_same_at_the_same_times_while_readings_are_told(seed: int) -> None:
+def test_reporting_readings_does_not_change_the_timing_of_pins(seed: int) -> None:
     """The programs' times do not depend on a line that is 5 % slower or faster: in others, a
     waiting SHOW changes everything after it.
     """
     text = program(random.Random(seed))
-    alone, reporting = (sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True))
-    apart = largest_difference_ms(alone.did, reporting.did)
+    silent_run, reporting_run = (
+        sensed_run(text, seed, is_told, BYTE_TICKS) for is_told in (False, True)
+    )
+    apart = largest_difference_ms(silent_run.did, reporting_run.did)
     assert apart < inf, f"all do the same in the same order: {text}"
     assert apart <= LARGEST_DELAY_MS or not is_steady(text, seed), text
     shown_events = [
-        [event for event in run.events if event.name == "SHOW"] for run in (alone, reporting)
+        [event for event in run.events if event.name == "SHOW"]
+        for run in (silent_run, reporting_run)
     ]
     assert abs(len(shown_events[0]) - len(shown_events[1])) <= max(2, len(shown_events[0]) // 20)
-    assert not alone.readings
+    assert not silent_run.readings
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_what_is_not_told_is_said_of_its_sensor(seed: int) -> None:
+def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
     """A line without delay reports all readings; a slow one the same, or that some are missing."""
     text = program(random.Random(seed)).replace("SHOW(", "W(0.001) // ")
     every_ms = 5 if seed % 2 else 30
-    whole, limited_sensed_run = (
+    full_run, limited_run = (
         sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
     )
-    assert not [event for event in whole.readings if event.sensor & UNTOLD]
+    assert not [event for event in full_run.readings if event.sensor & UNTOLD]
     for sensor in range(len(KIT.sensors)):
-        all_of_it = [event for event in whole.readings if event.sensor == sensor]
-        at = 0
-        for event in limited_sensed_run.readings:
+        all_of_it = [event for event in full_run.readings if event.sensor == sensor]
+        position = 0
+        for event in limited_run.readings:
             if event.sensor & ~UNTOLD != sensor:
                 continue
             if not event.sensor & UNTOLD:
-                assert event == all_of_it[at], "nothing is left out before it"
-                at += 1
+                assert event == all_of_it[position], "nothing is left out before it"
+                position += 1
             else:  # the value is the last reading
-                before = [k for k, reading in enumerate(all_of_it) if reading.ms <= event.ms]
-                assert before and before[-1] >= at and all_of_it[before[-1]].value == event.value
-                at = before[-1] + 1
+                earlier_indices = [
+                    k for k, reading in enumerate(all_of_it) if reading.ms <= event.ms
+                ]
+                assert (
+                    earlier_indices
+                    and earlier_indices[-1] >= position
+                    and all_of_it[earlier_indices[-1]].value == event.value
+                )
+                position = earlier_indices[-1] + 1
 
 
-def test_a_line_that_is_too_slow_says_so() -> None:
+def test_a_too_slow_line_is_reported() -> None:
     text = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
     run = sensed_run(text, 1, True, BYTE_TICKS, most_ms=5)
     assert [event for event in run.readings if event.sensor & UNTOLD]
@@ -76,14 +85,14 @@ def test_a_line_that_is_too_slow_says_so() -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("wait_s", [0.001, 0.005, 0.01])
-def test_the_end_of_a_run_is_told_after_its_readings(seed: int, wait_s: float) -> None:
+def test_the_end_of_a_run_is_reported_after_its_readings(seed: int, wait_s: float) -> None:
     """However many of them the line had no room for."""
     text = f"SI|LOOP(40);X = LIGHT_L + LIGHT_R + DISTANCE;W({wait_s});END_LOOP"
     names = [event.name for event in sensed_run(text, seed, True, BYTE_TICKS, most_ms=5).events]
     assert names.count("DONE") == 1 and names[-1] == "DONE" and "READING" in names
 
 
-def test_no_reading_takes_more_of_a_line_than_a_value() -> None:
+def test_a_reading_message_is_no_longer_than_a_value_message() -> None:
     rng = random.Random(1)
     for _ in range(2000):
         value, ms = rng.randrange(-1 << 31, 1 << 31), rng.randrange(1 << 16)
@@ -94,7 +103,7 @@ def test_no_reading_takes_more_of_a_line_than_a_value() -> None:
         assert len(wire) <= MOST_BYTES
 
 
-def test_another_session_is_told_nothing() -> None:
+def test_other_sessions_get_no_readings() -> None:
     robot = DebuggedRobot("SI|LOOP(FOREVER);X = DISTANCE;W(0.05);END_LOOP")
     assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
     robot.session = Session(2, 9600, KIT.fingerprint)
@@ -103,7 +112,7 @@ def test_another_session_is_told_nothing() -> None:
     assert not [event for event in robot.talk(500) if isinstance(event, ReadingEvent)]
 
 
-def test_a_robot_that_cannot_is_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_robots_without_reading_reports_are_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     robot = DebuggedRobot("SI|SHOW(1)")
     assert robot.session.robot is not None
     assert robot.session.robot.values.features & READINGS

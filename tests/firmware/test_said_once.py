@@ -155,14 +155,14 @@ class Client:
         begun_programs = [self.programs[code] for code in self.robot.codes()]
         actions = [line.split()[1] for line in self.robot.did]
         self.robot.did.clear()
-        for what, end in (("FINISHED", DONE), ("FAULTED", FAULT)):
-            if what in actions:
+        for event_name, end in (("FINISHED", DONE), ("FAULTED", FAULT)):
+            if event_name in actions:
                 if end == FAULT:
                     self.begin(begun_programs)
                 self.runs[-1].ended = end
                 self.runs[-1].ended_ms, self.runs[-1].ended_epoch = self.robot.now_ms, self.epoch
                 self.runs[-1].is_ended = True
-                self.log.append((self.robot.now_ms, what))
+                self.log.append((self.robot.now_ms, event_name))
         self.begin(begun_programs)
         if self.runs and self.robot.is_latched:
             self.runs[-1].is_ended = True
@@ -330,7 +330,7 @@ class Client:
         assert not [stop for stop in self.stops if stop.must], "a stop that nobody is told of"
         for number, run in enumerate(self.runs, 1):
             # The button may start the next one while the line is busy.
-            begins_ms = [later.begun_ms for later in self.runs[number : number + 1]]
+            begins_ms = [later_run.begun_ms for later_run in self.runs[number : number + 1]]
             is_overtaken = begins_ms and begins_ms[0] - run.ended_ms < LONGEST_OUTPUT_MS
             assert run.ended in (0, *run.reported_ends) or is_overtaken, f"no end of {number}"
             if run.ended == DONE:
@@ -356,7 +356,7 @@ def check(seed: int, kind: str) -> Counter[str]:
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(5))
 @pytest.mark.parametrize("kind", KINDS)
-def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
+def test_each_event_is_reported_once(kind: str, part: int) -> None:
     event_counts: Counter[str] = Counter()
     for seed in range(part * 20, part * 20 + 20):
         event_counts += check(seed, kind)
@@ -365,7 +365,7 @@ def test_all_that_happens_is_told_once(kind: str, part: int) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("is_fault_first", [False, True])
-def test_an_end_is_told_of_its_own_run_though_another_waits_for_the_line(
+def test_an_end_is_reported_for_its_own_run_though_another_waits(
     is_fault_first: bool, kind: str
 ) -> None:
     finished_text, fault = "SI|X = 1;W(0.002)", "SI|X = 1;SHOW(1 / (X - X))"

@@ -66,7 +66,7 @@ def open_sealed_session(*defines: str) -> tuple[OwnedRobot, Session, Keys]:
     return table, session, keys
 
 
-def test_a_firmware_without_seals_does_as_before() -> None:
+def test_firmware_without_seals_works_as_before() -> None:
     table, session, _ = open_sealed_session("tiniscript_without_seals")
     assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
     sent_bytes, _ = upload_and_capture(table, session, SHORT)
@@ -76,7 +76,7 @@ def test_a_firmware_without_seals_does_as_before() -> None:
     assert reply and reply.payload[0] == STATUSES["NOT_SEALED"]
 
 
-def test_what_is_not_sealed_has_no_authority() -> None:
+def test_unsealed_frames_have_no_authority() -> None:
     """The attacker writes into the owner's line, in its epoch, with the next number."""
     table, session, _ = open_sealed_session()
     upload_and_capture(table, session, FOREVER)
@@ -95,7 +95,7 @@ def test_what_is_not_sealed_has_no_authority() -> None:
     assert state_of(table, session) == STATE_RUNNING
 
 
-def test_an_answer_is_told_again_to_nobody_else() -> None:
+def test_an_answer_is_repeated_only_to_its_client() -> None:
     """The same number without a seal gets neither a receipt nor the program's bytes."""
     table, session, _ = open_sealed_session()
     upload_and_capture(table, session, SHORT)
@@ -123,7 +123,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
         assert frame and frame.payload[1] == STATE_FAULTED
 
 
-def test_a_relay_cannot_say_that_it_worked() -> None:
+def test_a_relay_cannot_fake_success() -> None:
     """No frame reaches the robot, and its answers are forged in every way that works without the
     key."""
     chance = random.Random(1)
@@ -180,7 +180,7 @@ def refused_by_a_stranger(table: OwnedRobot, session: Session, is_cut: bool) -> 
 
 @pytest.mark.parametrize("is_cut", [False, True])
 @pytest.mark.parametrize("is_pending", [False, True])
-def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) -> None:
+def test_no_refusal_by_a_stranger_removes_a_key(is_pending: bool, is_cut: bool) -> None:
     """A refusal has no seal: the robot's own answer, which has one, is waited for. An attacker who
     cuts the line may refuse a key forever; without that, the robot opens again."""
     table, _, keys = open_sealed_session()
@@ -196,7 +196,7 @@ def test_no_refusal_of_a_stranger_takes_a_key(is_pending: bool, is_cut: bool) ->
     assert [(key.is_pending, key.is_stale) for key in keys.stored_keys] == [(False, False)]
 
 
-def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
+def test_only_a_sealed_answer_confirms_a_stop() -> None:
     table, session, _ = open_sealed_session()
     upload_and_capture(table, session, FOREVER)
     session.events()
@@ -219,7 +219,7 @@ def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
 
 
 @pytest.mark.parametrize("payload", [b"", bytes(12), bytes(13), bytes(40)])
-def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
+def test_a_stop_with_a_wrong_seal_still_stops(payload: bytes) -> None:
     for is_claimed in (False, True):
         table, session, _ = open_sealed_session()
         if not is_claimed:
@@ -243,7 +243,7 @@ def test_a_teachers_stop_needs_the_teachers_seal() -> None:
     assert table.tries(teacher_session) == "OK"
 
 
-def test_a_counter_at_its_end_begins_another_seal() -> None:
+def test_an_exhausted_counter_starts_a_new_seal() -> None:
     table, session, _ = open_sealed_session()
     seal = session._sealing.seal
     assert seal
@@ -255,7 +255,7 @@ def test_a_counter_at_its_end_begins_another_seal() -> None:
     assert session._sealing.seal and session._sealing.seal.sent_counter < 10
 
 
-def test_a_seal_that_has_expired_is_made_again_for_the_same_request() -> None:
+def test_an_expired_seal_is_renewed_for_the_same_request() -> None:
     """After more requests than numbers: AUTHENTICATE has one after those of the sealed ones."""
     table, session, _ = open_sealed_session()
     seal_before = session._sealing.seal
@@ -285,7 +285,7 @@ def spend_number(table: OwnedRobot, session: Session) -> None:
 
 @pytest.mark.parametrize("loses", [unplug_cable, spend_number])
 @pytest.mark.parametrize("pieces", PIECES)
-def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
+def test_a_seal_lost_during_an_upload_loses_no_piece(
     pieces: int, loses: Callable[[OwnedRobot, Session], None]
 ) -> None:
     """It costs no time either: the computer waits for no piece that was under way."""
@@ -305,30 +305,30 @@ def test_a_seal_that_is_lost_at_any_moment_of_an_upload_costs_no_piece_of_it(
         assert table.robot.codes() == [image.code], moment_ms
 
 
-def test_a_sealed_session_opens_anew_with_a_robot_that_was_reset() -> None:
+def test_a_sealed_session_is_renewed_with_a_reset_robot() -> None:
     """This holds whatever the first request is, including one that needs no HELLO."""
     table, session, _ = open_sealed_session()
-    later = OwnedRobot(table.robot.memory(), seed=7)
-    later.robot.now_ms = table.robot.now_ms
-    assert later.outcome(session, session.status()) == "OK"
+    restarted = OwnedRobot(table.robot.memory(), seed=7)
+    restarted.robot.now_ms = table.robot.now_ms
+    assert restarted.outcome(session, session.status()) == "OK"
     assert session._sealing.seal
 
 
-def test_another_session_with_the_same_numbers_is_another_seal() -> None:
+def test_sessions_with_the_same_numbers_have_different_seals() -> None:
     table, session, keys = open_sealed_session()
     sent_bytes, _ = upload_and_capture(table, session, SHORT)
     table.pass_time(None, 3000)
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
-        later = OwnedRobot(memory, seed=seed)
-        assert owner_of(later, later.session(keys, nonce=4)) == OWNED_BY_YOU
+        restarted = OwnedRobot(memory, seed=seed)
+        assert owner_of(restarted, restarted.session(keys, nonce=4)) == OWNED_BY_YOU
         for data in sent_bytes * 3:
-            later.robot.wait(5, b"\0" + data + b"\0")
-        assert not [line for line in later.robot.did if "MOTORS" in line]
+            restarted.robot.wait(5, b"\0" + data + b"\0")
+        assert not [line for line in restarted.robot.did if "MOTORS" in line]
 
 
-def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
+def test_a_stranger_gets_all_public_messages_beside_a_seal() -> None:
     table, session, _ = open_sealed_session()
     for name, payload in (("PING", b""), ("STATUS", b""), ("IDENTIFY", b"")):
         frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
@@ -339,7 +339,7 @@ def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
     assert owner_of(table, stranger) == OWNED_BY_OTHER
 
 
-def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:
+def test_captured_frames_grant_nothing(frames: int = 2500) -> None:
     """`python -m tests.firmware.test_sealed_robot 100000` sends more of them."""
     counts = attack(frames, 1)
     assert counts["accepted"] == 0 and counts["stops"] > 1
@@ -355,9 +355,9 @@ def attack(frames: int, seed: int) -> Counter[str]:
     chance = random.Random(seed)
     table, session, _keys = open_sealed_session()
     recorded_frames, _ = upload_and_capture(table, session, SHORT)
-    old = recorded_frames[-1:]
+    recorded = recorded_frames[-1:]
     robot = table.robot
-    thief = Thief(chance, old)
+    thief = Thief(chance, recorded)
     counts: Counter[str] = Counter(accepted=0)
     memory = robot.memory()
     for count in range(frames):
@@ -376,8 +376,8 @@ def attack(frames: int, seed: int) -> Counter[str]:
             robot.did.clear()
         if count % 200 == 100:  # the seal lives on
             assert table.outcome(session, session.status()) == "OK", f"seed {seed}, frame {count}"
-        how, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
-        counts[how] += 1
+        kind, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
+        counts[kind] += 1
         sent_bytes = robot.wait(2, b"\0" + data + b"\0")
         packets = [part for part in sent_bytes.split(b"\0") if part]
         counts["accepted"] += sum(grants_key_request(data) or _is_sealed(data) for data in packets)

@@ -236,7 +236,9 @@ def run_second(scene: Scene, tale: Story) -> tuple[list[str], list[str]]:
         )  # the line is too long for this robot, or another tone covers the mark
     begin_ms = int(robot.did[marks[-1]].split()[0])
     lines = (line.split(" ", 1) for line in robot.did[marks[-1] :])
-    actions = [f"{int(ms) - begin_ms} {what}" for ms, what in lines if int(ms) <= begin_ms + RUN_MS]
+    actions = [
+        f"{int(ms) - begin_ms} {action}" for ms, action in lines if int(ms) <= begin_ms + RUN_MS
+    ]
     return actions, heard_lines
 
 
@@ -333,12 +335,12 @@ PARTS = 20
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("starts", START_ACTIONS)
-def test_the_second_program_is_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
+def test_the_second_program_runs_as_on_a_fresh_robot(starts: str, kind: str, part: int) -> None:
     if (kind, starts) == ("an esp32", "pushes"):
         starts = "uploads"  # the button takes longer here; `test_button` covers it
-    many = CASES_PER_PART[kind]
-    counts = Counter(check(seed, starts, kind) for seed in range(part * many, (part + 1) * many))
-    assert counts["it says why not"] <= many / 2, counts
+    count = CASES_PER_PART[kind]
+    counts = Counter(check(seed, starts, kind) for seed in range(part * count, (part + 1) * count))
+    assert counts["it says why not"] <= count / 2, counts
 
 
 # -- a start that waits for the memory --------------------------------------------------------
@@ -365,7 +367,7 @@ def waiting_start() -> tuple[Scene, bytes]:
     return scene, image.code
 
 
-def test_what_the_button_has_asked_for_begins_once() -> None:
+def test_a_start_by_the_button_happens_once() -> None:
     scene, code = waiting_start()
     robot = scene.robot
     robot.step(flags=2)
@@ -377,26 +379,26 @@ def test_what_the_button_has_asked_for_begins_once() -> None:
     assert robot.codes() == []
 
 
-@pytest.mark.parametrize("ends", STOPPING_ENDS)
-def test_what_the_button_has_asked_for_begins_not_after_a_stop(ends: str) -> None:
+@pytest.mark.parametrize("ending", STOPPING_ENDS)
+def test_a_pending_button_start_is_cancelled_by_a_stop(ending: str) -> None:
     scene, _ = waiting_start()
     scene.robot.step(flags=2)
-    END_ACTIONS[ends](scene)
+    END_ACTIONS[ending](scene)
     scene.robot.wait(500)
     assert scene.robot.codes() == [] and scene.robot.is_latched
 
 
-def test_what_the_button_has_asked_for_begins_not_after_another_program() -> None:
+def test_a_pending_button_start_is_cancelled_by_another_program() -> None:
     scene, _ = waiting_start()
     robot = scene.robot
-    other = image_of("SI|B(60, 40)", KIT).code
+    other_code = image_of("SI|B(60, 40)", KIT).code
     scene.next_computer()
     scene.open_session()
-    request = scene.session.live(other)
+    request = scene.session.live(other_code)
     robot.talk(scene.session, 1, flags=2)
     assert robot.until(scene.session, request) == OK
     robot.talk(scene.session, 500)
-    assert robot.codes() == [other] and not robot.is_latched
+    assert robot.codes() == [other_code] and not robot.is_latched
 
 
 # -- with discs -------------------------------------------------------------------------------
@@ -412,10 +414,10 @@ def with_discs() -> Scene:
     return scene
 
 
-def ways(rng: random.Random, most: int) -> str:
+def ways(rng: random.Random, most_ways: int) -> str:
     """Return moves by centimetres and degrees, which do the same at any position of the discs."""
     moves = [f"{rng.choice('FB')}({rng.choice((5, 12, 30, 60))} CM, {rng.choice((40, 60, 100))})"
-             for _ in range(rng.randint(1, most))]  # fmt: skip
+             for _ in range(rng.randint(1, most_ways))]  # fmt: skip
     moves.insert(rng.randrange(len(moves) + 1), f"R({rng.choice((45, 90))} DEG, 60)")
     return MARK + ";".join(moves)
 
@@ -441,7 +443,7 @@ def drive(scene: Scene, starts: str, text: str) -> tuple[list[str], int, float, 
     run_and_listen(scene, starts, 700)  # until its wheels stop
     took_ms = int(rows[-1][0]) - int(rows[0][0])
     its_left, its_right = robot.wheel_edges()
-    return [what for _, what in rows], took_ms, its_left - left, its_right - right
+    return [action for _, action in rows], took_ms, its_left - left, its_right - right
 
 
 def is_standing(robot: HostFirmware) -> bool:
@@ -465,18 +467,20 @@ def check_ways(seed: int) -> str:
     scene = robot_after_first(tale, with_discs())
     is_over, stood = scene.robot.is_latched, is_standing(scene.robot)
     actions, took_ms, *distances_cm = drive(scene, tale.starts, tale.second)
-    want, its_ms, *far = drive(with_discs(), tale.starts, tale.second)
-    explanation = f"{tale}\n{actions} {took_ms} {distances_cm}\nnot\n{want} {its_ms} {far}"
-    assert actions == want and abs(took_ms - its_ms) < TIME_TOLERANCE_MS * len(want), explanation
+    want, end_ms, *distances = drive(with_discs(), tale.starts, tale.second)
+    explanation = f"{tale}\n{actions} {took_ms} {distances_cm}\nnot\n{want} {end_ms} {distances}"
+    assert actions == want and abs(took_ms - end_ms) < TIME_TOLERANCE_MS * len(want), explanation
     if is_over:
-        near = EDGE_TOLERANCE if stood else ROLLING_EDGE_TOLERANCE
-        assert all(abs(a - b) < near for a, b in zip(distances_cm, far, strict=True)), explanation
+        tolerance = EDGE_TOLERANCE if stood else ROLLING_EDGE_TOLERANCE
+        assert all(abs(a - b) < tolerance for a, b in zip(distances_cm, distances, strict=True)), (
+            explanation
+        )
     return "from a run" if not is_over else "from where it stood" if stood else "from a move"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(PARTS))
-def test_ways_after_anything_are_as_on_a_fresh_robot(part: int) -> None:
+def test_measured_moves_after_any_history_are_as_on_a_fresh_robot(part: int) -> None:
     counts = Counter(check_ways(seed) for seed in range(part * 60, (part + 1) * 60))
     assert counts["from where it stood"] > 20 and counts["from a move"] > 0, counts
 
@@ -495,7 +499,7 @@ def most_ahead(scene: Scene) -> float:
 
 
 @pytest.mark.parametrize("wheels", [1, 2])
-def test_what_a_held_wheel_was_behind_is_not_made_up_for_by_the_next_program(wheels: int) -> None:
+def test_the_next_program_does_not_make_up_for_a_held_wheel(wheels: int) -> None:
     assert most_ahead(with_discs()) < 0.01
     scene = with_discs()
     uploads(scene, "F(60 CM, 60)")
@@ -527,23 +531,24 @@ def ends_of_move(scene: Scene, wheels: int, from_edges: float) -> tuple[float, .
     robot.hold(0)
     robot.talk(scene.session, 700)
     return tuple(
-        now - then for now, then in zip(robot.wheel_edges(), wheel_edges_before, strict=True)
+        after - earlier
+        for after, earlier in zip(robot.wheel_edges(), wheel_edges_before, strict=True)
     )
 
 
 @pytest.mark.parametrize("wheels", [1, 2, 3])
-def test_each_move_is_corrected_however_many_were_corrected_before(wheels: int) -> None:
+def test_each_move_is_corrected_after_any_number_of_corrections(wheels: int) -> None:
     way, _ = ends_of_move(with_discs(), 0, 0)
     scene = with_discs()
     for _ in range(6):
-        ends = ends_of_move(scene, wheels, way - 2)
-        assert all(abs(end - way) < 1.5 for end in ends), ends
+        end_distances = ends_of_move(scene, wheels, way - 2)
+        assert all(abs(end - way) < 1.5 for end in end_distances), end_distances
         scene.robot.wait(300)
 
 
 @pytest.mark.parametrize("is_typed", [True, False])
 @pytest.mark.parametrize("first", ["W(0.05)", "F(60, 40)"])
-def test_what_goes_on_alone_does_so_after_what_does_not(first: str, is_typed: bool) -> None:
+def test_a_detached_run_continues_after_an_attached_one(first: str, is_typed: bool) -> None:
     scene = Scene("a mega")
     robot = scene.robot
     uploads(scene, first)

@@ -39,7 +39,7 @@ def send_waiting_program(robot: HostFirmware, session: Session) -> None:
 
 
 def run_to_end(
-    robot: HostFirmware, session: Session, text: str, last: str, milliseconds: int
+    robot: HostFirmware, session: Session, text: str, last_action: str, milliseconds: int
 ) -> None:
     """Run a line to its end, without a computer if that end is a lost link."""
     live(robot, session, text)
@@ -47,7 +47,7 @@ def run_to_end(
         robot.wait(milliseconds)
     else:
         robot.talk(session, milliseconds)
-    assert actions_of(robot)[-1] == last
+    assert actions_of(robot)[-1] == last_action
 
 
 def leave_live(robot: HostFirmware, session: Session) -> None:
@@ -70,7 +70,7 @@ INTERVENING_STOPS: dict[str, Callable[[HostFirmware, Session], object]] = {
 
 
 @pytest.mark.parametrize("intervening_stop", INTERVENING_STOPS)
-def test_a_button_that_was_down_meanwhile_starts_nothing(intervening_stop: str) -> None:
+def test_a_button_pressed_meanwhile_starts_nothing(intervening_stop: str) -> None:
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
     robot.talk(session, 1, flags=1)
@@ -85,7 +85,7 @@ def test_a_button_that_was_down_meanwhile_starts_nothing(intervening_stop: str) 
     assert actions_of(robot)[-1] == "MOTORS 80 80"
 
 
-def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> None:
+def test_a_button_released_at_the_moment_of_a_stop_starts_nothing() -> None:
     """The stop has arrived in an interrupt; the main loop sees the button first."""
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
@@ -97,7 +97,7 @@ def test_a_button_that_goes_up_in_the_same_moment_as_a_stop_starts_nothing() -> 
     assert robot.is_latched
 
 
-def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -> None:
+def test_a_stopping_push_starts_nothing_but_the_next_push_does() -> None:
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
     for _ in range(3):
@@ -112,12 +112,16 @@ def test_a_push_that_stops_starts_nothing_and_the_next_one_does_after_a_stop() -
         assert actions_of(robot)[-1] == "MOTORS 0 0"
 
 
-@pytest.mark.parametrize("how", ["zeros", "STOP"])
-def test_a_stop_works_every_time(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["zeros", "STOP"])
+def test_a_stop_works_every_time(stop_kind: str) -> None:
     """Stop, button, stop, button: the sender repeats the stop as if no answer had arrived."""
     robot, session = switched_on(), computer()
     send_waiting_program(robot, session)
-    stop = bytes(8) if how == "zeros" else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
+    stop = (
+        bytes(8)
+        if stop_kind == "zeros"
+        else b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 7, 0))
+    )
     for _ in range(300):  # more often than an 8-bit counter can count
         robot.push(2)
         assert actions_of(robot)[-1] == "MOTORS 80 80"
@@ -129,7 +133,7 @@ def test_a_stop_works_every_time(how: str) -> None:
 
 @pytest.mark.parametrize("line", [b"", b"HELLO\n", b"SI|LOOP(2)\n", b"S\n"])
 @pytest.mark.parametrize("stops", [1, 2])
-def test_whoever_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before(
+def test_a_stop_of_zeros_is_answered_with_a_frame_whatever_was_typed_before(
     line: bytes, stops: int
 ) -> None:
     robot = switched_on()
@@ -180,7 +184,7 @@ def after_power_off(table: Table) -> HostFirmware:
 
 
 @pytest.mark.parametrize(("state", "way"), PAIRS)
-def test_a_stop_in_every_state(state: str, way: str) -> None:
+def test_a_stop_works_in_every_state(state: str, way: str) -> None:
     table = table_in_state(state)
     robot = table.robot
     was_running = not robot.is_latched
@@ -190,8 +194,8 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
     assert robot.is_latched
     count_before = len(robot.did)
     table.talk(1500)
-    later = [line for line in actions_of(robot)[count_before:] if line.startswith("MOTORS")]
-    assert set(later) <= {"MOTORS 0 0"}, "nothing begins by itself"
+    later_moves = [line for line in actions_of(robot)[count_before:] if line.startswith("MOTORS")]
+    assert set(later_moves) <= {"MOTORS 0 0"}, "nothing begins by itself"
     if state == "is saving its program":
         restarted_robot = after_power_off(table)
         restarted_robot.push()
@@ -207,22 +211,22 @@ def test_a_stop_in_every_state(state: str, way: str) -> None:
 
 @pytest.mark.parametrize("after_ms", [0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89])
 @pytest.mark.parametrize("state", [save_typed, store_trim])
-def test_a_stop_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: int) -> None:
+def test_a_stop_works_at_any_time_of_a_save(state: Callable[[Table], None], after_ms: int) -> None:
     table = Table()
     state(table)
     table.talk(after_ms)
     table.robot.step(ZEROS)
     assert table.robot.is_latched
     table.robot.wait(1500)
-    later = after_power_off(table)
+    image_after = after_power_off(table)
     session = computer(7)
     if state is store_trim:
         request = session.trim()
-        assert later.until(session, request) == OK
+        assert image_after.until(session, request) == OK
         assert request.outcome and request.outcome.values.least in (0, 1)
-    later.push()
-    later.talk(session, 50)
-    assert actions_of(later)[-1] == f"MOTORS {table.program} {table.program}"
+    image_after.push()
+    image_after.talk(session, 50)
+    assert actions_of(image_after)[-1] == f"MOTORS {table.program} {table.program}"
 
 
 def drives(robot: HostFirmware) -> bool:
@@ -230,7 +234,7 @@ def drives(robot: HostFirmware) -> bool:
 
 
 @pytest.mark.parametrize("is_asked", ["search", "upload", "nothing"])
-def test_a_robot_that_is_not_heard_any_more_is_not_kept_driving_by_who_looks_for_it(
+def test_searching_for_a_lost_robot_does_not_keep_it_driving(
     is_asked: str,
 ) -> None:
     """The robot hears everything, so its program ends by itself, like that of a lost robot."""

@@ -69,11 +69,11 @@ def run(program: Path, seed: int, sample: tuple[str, ...]) -> Found:
 
 @pytest.mark.sampled(of="layouts of the store", keep=2)
 @pytest.mark.parametrize("sample", SAMPLES)
-def test_old_or_new(sample: tuple[str, ...]) -> None:
+def test_an_interrupted_save_leaves_the_old_or_the_new_data(sample: tuple[str, ...]) -> None:
     assert run(compile_program(parts(SOURCES), FLAGS), 1, sample).cases > 10_000
 
 
-def test_with_the_plug_in() -> None:
+def test_an_uninterrupted_save_stores_the_new_data() -> None:
     assert run(compile_program(parts(SOURCES), FLAGS), 1, ()).cases == 0
 
 
@@ -86,7 +86,7 @@ def test_no_byte_is_erased_twice_by_a_save() -> None:
 
 
 @pytest.mark.sampled(of="layouts of the store", keep=2)
-def test_the_layout_of_a_mega() -> None:
+def test_the_layout_of_a_mega_is_as_documented() -> None:
     assert run(compile_program(parts(SOURCES), (*FLAGS, MEGA)), 1, ("3", "9")).cases > 10_000
 
 
@@ -94,7 +94,7 @@ def test_the_layout_of_a_mega() -> None:
 
 
 @pytest.mark.parametrize(("column", "flags"), [(1, ()), (2, (MEGA,))])
-def test_the_document_says_where_everything_lies(column: int, flags: tuple[str, ...]) -> None:
+def test_the_document_states_the_memory_layout(column: int, flags: tuple[str, ...]) -> None:
     text = (ROOT / "docs" / "develop" / "store.md").read_text(encoding="utf-8")
     rows = [row.split("|") for row in text.splitlines() if re.match(r"\| \d[\d, ]* \| \d", row)]
     places = [int(word) for row in rows[:6] for word in re.findall(r"\d+", row[column])]
@@ -123,7 +123,7 @@ def expected_lines(image: bytes) -> list[str]:
 
 @needs_chip
 @pytest.mark.parametrize(("size", "ticks"), [(3, 0), (24, 20), (CODE_BYTES, 700)])
-def test_on_a_chip(size: int, ticks: int) -> None:
+def test_the_store_works_on_a_chip(size: int, ticks: int) -> None:
     """The registers of a simulated ATmega328P: saved, left in the middle of a save, saved."""
     dice = random.Random(size)
     first, second = (pack("SI", 0, dice.randbytes(size)) for _ in range(2))

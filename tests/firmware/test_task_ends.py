@@ -37,7 +37,7 @@ def count_shows(session: Session) -> int:
 @pytest.mark.sampled("end", keep=3)
 @pytest.mark.parametrize("end", END_ACTIONS)
 @pytest.mark.parametrize("state", STATES)
-def test_all_tasks_end(state: str, end: str) -> None:
+def test_all_ways_to_end_a_run_end_all_tasks(state: str, end: str) -> None:
     """No task continues, even in the next program."""
     robot = Esp32Robot(read(MAX_RUN, "mine"))
     robot.wait(200)

@@ -97,7 +97,7 @@ ANSWERS = (
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_every_sentence_in_its_language(language: str) -> None:
+def test_every_message_is_in_its_language(language: str) -> None:
     robot = HostFirmware(robots.load("tinibot").kit, language=language)
     robot.wait(1000)  # a new robot stores its identity
     for line, english, spanish in ANSWERS:
@@ -116,7 +116,7 @@ STOP_ACTIONS = {
 
 
 @pytest.mark.parametrize("stop", STOP_ACTIONS)
-def test_text_after_a_stop_does_not_continue_the_text_before_it(stop: str) -> None:
+def test_text_after_a_stop_does_not_continue_earlier_text(stop: str) -> None:
     """The stop comes at any moment of an answer."""
     robot, fresh = switched_on(), switched_on()
     rng = random.Random(stop)
@@ -153,21 +153,23 @@ def test_a_line_that_is_ignored_after_a_stop_leaves_nothing(ignored_text: str) -
 
 @pytest.mark.sampled(of="other builds of the firmware")
 @pytest.mark.parametrize(
-    "language, says",
+    "language, message",
     [
         ("en", "Needs tsc, or a Mega or ESP32"),
         ("es", "Usa tsc, un Mega o un ESP32"),
         ("pt", "Use tsc, um Mega ou um ESP32"),
     ],
 )
-def test_an_uno_says_what_tasks_ways_and_defs_need(language: str, says: str) -> None:
+def test_an_uno_reports_the_board_that_tasks_ways_and_defs_need(
+    language: str, message: str
+) -> None:
     defines = ("tiniscript_no_defs",)
     robot = HostFirmware(robots.load("tinibot").kit, language=language, defines=defines)
     robot.wait(1000)
     lines = {"F(20 CM, 60)": 6, "r(90 deg, 60)": 6, "TASK": 1, "SI|WHEN(TRUE)": 4, "S;END_TASK": 3,
              "EndWhen": 1, "ENDTASK = 5": 1, "DEF A": 1}  # fmt: skip
     for line, column in lines.items():
-        assert type_text(robot, line + "\n", 1100) == [f"// {column}: {says}"], line
+        assert type_text(robot, line + "\n", 1100) == [f"// {column}: {message}"], line
         robot.wait(4000)
 
 
@@ -190,18 +192,18 @@ def test_typed_tasks_and_ways_run() -> None:
         ("F(0.2, // seconds", "50)"), ("F(0.2,", "50", ")"),
     ],
 )  # fmt: skip
-def test_a_line_that_is_open_goes_on_with_any_sign(
+def test_an_open_line_may_continue_with_any_character(
     lines: tuple[str, ...], pause_ms: int, end: str
 ) -> None:
     """Digits and signs begin frames, too, but not where a line waits for its end."""
     robot = switched_on()
     type_text(robot, "W(0)\n", 100)
-    *before, last = lines
-    for line in before:
+    *first_lines, last_line = lines
+    for line in first_lines:
         assert set(type_text(robot, line + end, pause_ms)) <= {
             "// Waiting for )", "// Waiting for END_LOOP",
         }  # fmt: skip
-    assert type_text(robot, last + end, 400)[-2:] == ["// OK", "// DONE"]
+    assert type_text(robot, last_line + end, 400)[-2:] == ["// OK", "// DONE"]
     assert actions_of(robot)[1:] == LINE
 
 
@@ -214,7 +216,7 @@ def test_backspace_edits_what_is_typed() -> None:
 
 @pytest.mark.parametrize("begun_text", ["\x1b", "\x1b[", "\x1bO", "\x1b[1", "\x1b[1;", "\x1b[1;5"])
 @pytest.mark.parametrize("stop", ["S", "STOP", "s;", "ALTO"])
-def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun_text: str, stop: str) -> None:
+def test_after_a_second_a_partial_key_is_forgotten(begun_text: str, stop: str) -> None:
     """A terminal has sent a part of a cursor key; a stop typed then is obeyed."""
     robot = switched_on()
     assert type_text(robot, "F(60, 80)\n", 100) == ["// OK"]
@@ -224,7 +226,7 @@ def test_after_a_second_nothing_belongs_to_a_key_that_has_begun(begun_text: str,
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_whoever_makes_many_mistakes_is_told_that_once(language: str) -> None:
+def test_many_mistakes_are_summarized_once(language: str) -> None:
     """After a pause they are answered again."""
     robot = HostFirmware(robots.load("tinibot").kit, language=language)
     robot.wait(1000)
@@ -248,12 +250,12 @@ def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200)
 # -- a line, and the program that the robot holds -------------------------------------------------
 
 
-def test_a_line_moves_and_its_end_is_told() -> None:
+def test_a_line_runs_and_its_end_is_reported() -> None:
     robot = switched_on()
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
     assert actions_of(robot) == LINE
-    first, last = (int(line.split()[0]) for line in robot.did[:2])
-    assert last - first == 200
+    first_ms, last_ms = (int(line.split()[0]) for line in robot.did[:2])
+    assert last_ms - first_ms == 200
     assert done_after(robot, "f ( 0.2 , 50 )\r") == LINE
 
 
@@ -279,18 +281,18 @@ def test_a_wrong_line_changes_nothing(line: str) -> None:
     assert fetch_image(robot, session) == bytes_before
 
 
-@pytest.mark.parametrize("saves", [True, False])
-def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
+@pytest.mark.parametrize("is_saved", [True, False])
+def test_typed_lines_leave_the_stored_program(is_saved: bool) -> None:
     """Also one that is in memory only: there is room for two programs."""
-    robot, session, bytes_before = read_back(saves)
+    robot, session, bytes_before = read_back(is_saved)
     assert type_text(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
     assert fetch_image(robot, session) == bytes_before
-    assert status(robot, session).saved == (SAVED_STORED if saves else SAVED_MEMORY)
+    assert status(robot, session).saved == (SAVED_STORED if is_saved else SAVED_MEMORY)
     robot.wait(4000)
     assert push_button(robot) == HOLDING_ACTIONS
 
 
-def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
+def test_a_typed_sb_program_waits_for_the_button_and_is_lost_at_power_off() -> None:
     robot, session, bytes_before = read_back()
     assert type_text(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
     assert robot.did == [] and robot.is_lit
@@ -316,22 +318,22 @@ def test_a_program_of_frames_replaces_sb() -> None:
 # -- ends of a run that text has started -----------------------------------------------------------
 
 
-@pytest.mark.parametrize("how", ["s\n", "STOP", "zeros", "button"])
-def test_what_stops_it_latches(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", ["s\n", "STOP", "zeros", "button"])
+def test_a_stop_of_a_typed_program_latches(stop_kind: str) -> None:
     """Text within a second after it may have been under way, even if the line was silent before the
     stop.
     """
     robot, _ = robot_with_program()
     type_text(robot, "SI|F(30,50)\n", 3000)
     assert actions_of(robot) == ["MOTORS 50 50"]
-    if how == "button":
+    if stop_kind == "button":
         robot.push()
-    elif how == "zeros":
+    elif stop_kind == "zeros":
         robot.wait(50, bytes(8))
     else:
-        assert type_text(robot, how, 1100 if how == "STOP" else 60) == ["// STOPPED"]
+        assert type_text(robot, stop_kind, 1100 if stop_kind == "STOP" else 60) == ["// STOPPED"]
     robot.wait(100)
-    for _ in range({"STOP": 0, "s\n": 1}.get(how, 4)):  # typed here: lines soon count again
+    for _ in range({"STOP": 0, "s\n": 1}.get(stop_kind, 4)):  # typed here: lines soon count again
         type_text(robot, "SI|F(1,50)\n", 700)
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     robot.wait(1500)
@@ -343,7 +345,7 @@ def test_what_stops_it_latches(how: str) -> None:
 
 @pytest.mark.parametrize("is_stopped_before", [False, True])
 @pytest.mark.parametrize("stop", [bytes(4), STOP_MESSAGE])
-def test_a_stop_ends_a_block_that_is_open_also_where_the_robot_stands(
+def test_a_stop_discards_an_open_block_even_on_an_idle_robot(
     stop: bytes, is_stopped_before: bool
 ) -> None:
     """Its SETUP word is from before the stop, and does not release the robot after it."""
@@ -369,7 +371,7 @@ def test_a_line_is_silent_after_a_stop_when_nothing_at_all_arrives(noise: bytes)
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
-def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
+def test_a_typed_run_has_a_longest_time_but_no_dead_man_timer() -> None:
     robot = switched_on(max_run_ms=5000)
     type_text(robot, "SI|F(30,50)\n", 4900)
     assert actions_of(robot) == ["MOTORS 50 50"]
@@ -379,7 +381,7 @@ def test_it_has_no_dead_man_timer_and_a_longest_time() -> None:
     assert actions_of(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
 
 
-def test_a_fault_is_told_recorded_and_kept() -> None:
+def test_a_fault_is_reported_recorded_and_stored() -> None:
     robot, session = robot_with_program()
     program_checksum = status(robot, session).program
     robot.wait(4000)
@@ -404,7 +406,7 @@ ENDLESS_PROGRAM = "SI|LOOP(FOREVER);M(50,50);W(9);END_LOOP\n"
 
 
 @pytest.mark.parametrize("text", ["S", "stop", "S;", "\t STOP ;"])
-def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text: str) -> None:
+def test_s_in_an_open_block_ends_a_run_even_without_a_line_end(text: str) -> None:
     """It does not latch, and belongs to the program, whose line may continue."""
     robot = switched_on()
     type_text(robot, ENDLESS_PROGRAM, 300)
@@ -429,12 +431,12 @@ def test_a_word_that_begins_like_s_in_an_open_block_may_be_typed_slowly(
     assert type_text(robot, "\nEND_LOOP\n", 300)[-1] == "// DONE"
 
 
-def test_a_program_that_is_cut_or_comes_late_is_told() -> None:
+def test_a_truncated_or_late_program_is_reported() -> None:
     robot = switched_on()
-    for how in (b"\0", b"\x01\x02\0"):
+    for garbage in (b"\0", b"\x01\x02\0"):
         type_text(robot, "SI|LOOP(2)\n")
         type_text(robot, "F(0.1")
-        assert type_text(robot, how, 600) == ["// Lines end with Enter, not with 0"], how
+        assert type_text(robot, garbage, 600) == ["// Lines end with Enter, not with 0"], garbage
         robot.wait(1500)
     type_text(robot, "SI|LOOP(2)\n", 1100)
     assert robot.wait(60_000) == b"// Too late. Begin again.\r\n"
@@ -443,7 +445,7 @@ def test_a_program_that_is_cut_or_comes_late_is_told() -> None:
 # -- frames and text ------------------------------------------------------------------------------
 
 
-def test_frames_during_and_after_text() -> None:
+def test_frames_work_during_and_after_text() -> None:
     robot, session = switched_on(), computer()
     type_text(robot, "SI|F(30,50)\n", 100)
     assert status(robot, session).state == 1
@@ -464,7 +466,7 @@ def test_frames_during_and_after_text() -> None:
 
 @pytest.mark.parametrize("burst", [True, False])
 @pytest.mark.parametrize("less", range(1, 12))
-def test_a_live_line_right_after_text_is_what_its_frame_says(less: int, burst: bool) -> None:
+def test_a_live_line_right_after_text_runs_its_own_frame(less: int, burst: bool) -> None:
     """Its image is made before its frame ends: text that comes between must not be run for it."""
     robot, session = switched_on(), computer()
     robot.until(session, session.hello())
@@ -500,7 +502,7 @@ def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> Non
 
 
 @pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])
-def test_an_upload_while_text_arrives(line: str) -> None:
+def test_an_upload_works_while_text_arrives(line: str) -> None:
     """It is complete, or refused without replacing the previous program."""
     robot, session = robot_with_program()
     bytes_before = fetch_image(robot, session)
@@ -520,7 +522,7 @@ def test_an_upload_while_text_arrives(line: str) -> None:
 
 
 @pytest.mark.parametrize("start", ["SI", "SB"])
-def test_text_while_a_program_is_being_saved(start: str) -> None:
+def test_text_works_while_a_program_is_being_saved(start: str) -> None:
     robot, session = switched_on(), computer()
     send(robot, session, LONG_PROGRAM.replace("SI", "SB"))
     robot.wait(300)
@@ -557,7 +559,7 @@ CODE_BYTES = 255
 # -- limits ---------------------------------------------------------------------------------------
 
 
-def test_a_program_of_255_bytes_and_one_more() -> None:
+def test_a_program_of_255_bytes_runs_and_a_longer_one_is_refused() -> None:
     robot = switched_on()
     text = "SI|F(0.1,50)" + ";S" * (CODE_BYTES - 4)
     assert type_text(robot, text + "\n", 300) == ["// OK", "// DONE"]
@@ -568,7 +570,7 @@ def test_a_program_of_255_bytes_and_one_more() -> None:
     assert done_after(robot, "F(0.2,50)\n") == LINE
 
 
-def test_many_long_names_until_it_is_full() -> None:
+def test_long_names_are_accepted_until_the_memory_is_full() -> None:
     robot = switched_on()
     names = [f"NAME{chr(65 + k)}" + "X" * 40 for k in range(26)]
     answers = []
@@ -581,12 +583,12 @@ def test_many_long_names_until_it_is_full() -> None:
     assert done_after(robot, "F(0.2,50)\n") == LINE
 
 
-@pytest.mark.parametrize("what", ["F(1,50);", "A", " ", "(", "9", "\x01", "~", "é", "/", "SI|"])
-def test_a_line_of_10000_bytes(what: str) -> None:
+@pytest.mark.parametrize("pattern", ["F(1,50);", "A", " ", "(", "9", "\x01", "~", "é", "/", "SI|"])
+def test_a_line_of_10000_bytes_is_discarded(pattern: str) -> None:
     robot = switched_on()
-    data = (what * 10_000).encode()[:10_000]
-    for at in range(0, len(data), 20):  # one step for each turn
-        robot.step(data[at : at + 20])
+    data = (pattern * 10_000).encode()[:10_000]
+    for offset in range(0, len(data), 20):  # one step for each turn
+        robot.step(data[offset : offset + 20])
     robot.step(b"\n")
     assert robot.did == []
     robot.wait(1100)
@@ -594,7 +596,7 @@ def test_a_line_of_10000_bytes(what: str) -> None:
 
 
 @pytest.mark.parametrize("letters", [1, 24, 25, 59, 60, 61, 255, 1000])
-def test_help_with_a_device_of_a_long_name(letters: int) -> None:
+def test_help_lists_a_device_with_a_long_name(letters: int) -> None:
     """An answer is never longer than a line; a word that is longer is cut."""
     distance = Device("DISTANCE", NUMBER, "cm", 0, 400_000)
     kit = Kit((distance, Device("A" * letters, NUMBER, "", 0, 1)), ())
@@ -603,12 +605,12 @@ def test_help_with_a_device_of_a_long_name(letters: int) -> None:
     answers = type_text(robot, "HELP\n", 2000)
     assert max(map(len, answers)) <= LINE_LETTERS
     words = [word for answer in answers for word in answer.removeprefix("// ").split()]
-    own = ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
-    assert words[-10:] == [*own, *(device.name for device in REMOTE)]
+    device_names = ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
+    assert words[-10:] == [*device_names, *(device.name for device in REMOTE)]
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_robot_says_its_number_or_a_name_which_cannot_end_its_line(seed: int) -> None:
+def test_a_robot_prints_its_number_or_a_name_without_line_ends(seed: int) -> None:
     """Otherwise an echo of it would be a program."""
     robot, session = HostFirmware(KIT, EMPTY_EEPROM, seed=0x9F0FFE8D + seed), computer()
     robot.wait(200)
@@ -624,7 +626,7 @@ def test_a_robot_says_its_number_or_a_name_which_cannot_end_its_line(seed: int) 
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
-def test_the_obstacle_program_in_lines(end: str) -> None:
+def test_the_obstacle_program_runs_line_by_line(end: str) -> None:
     robot = switched_on()
     lines = ["SI|LOOP(FOREVER);", "  F(1, 80);", "  DISTANCE;", "  IF(DISTANCE < 10);",
              "    STOP;", "    R(1, 60);", "  ENDIF;", "END_LOOP"]  # fmt: skip
@@ -668,7 +670,7 @@ def answer_to(robot: HostFirmware, line: str) -> bytes:
 @pytest.mark.sampled("cut")
 @pytest.mark.parametrize("cut", INTERRUPTIONS)
 @pytest.mark.parametrize("line", ANSWERED_LINES)
-def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
+def test_a_truncated_answer_is_repeated_from_its_beginning(line: str, cut: str) -> None:
     """The cut may come at any moment of the answer: the rest is not sent, and the next answer is
     that of a fresh robot.
     """
@@ -686,7 +688,7 @@ def test_an_answer_that_was_cut_begins_anew(line: str, cut: str) -> None:
         assert answer_to(robot, line) == wanted_answer, begun_ms
 
 
-def test_text_at_once_after_power_on() -> None:
+def test_text_is_accepted_right_after_power_on() -> None:
     robot = HostFirmware(KIT, robot_with_program()[0].memory())
     robot.step(b"SI|F(0.2,50)\n", flags=16, ticks=0)
     assert robot.step(ticks=3) == b"// Still saving. Send it again.\r\n"
@@ -722,7 +724,7 @@ def test_a_program_too_long_for_the_buffer_is_not_run_in_part(seed: int) -> None
 
 
 @pytest.mark.parametrize("intervening_bytes", ["zero", "frame", "button", "two tabs"])
-def test_the_rest_of_a_program_that_was_lost_is_not_run(intervening_bytes: str) -> None:
+def test_the_rest_of_a_lost_program_is_not_run(intervening_bytes: str) -> None:
     """Its lines are whole, and have another meaning on their own."""
     robot, session = switched_on(), computer()
     type_text(robot, "SI|LOOP(2)\n")
@@ -762,7 +764,7 @@ def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
         ("DEF A\nF(1,", "END_DEF"),
     ],
 )  # fmt: skip
-def test_what_an_open_block_waits_for_is_told(text: str, awaited_text: str) -> None:
+def test_the_end_that_an_open_block_awaits_is_reported(text: str, awaited_text: str) -> None:
     """This holds in the middle of a line, too, whose stored beginning is no block."""
     assert type_text(switched_on(), text, 1100) == [f"// Waiting for {awaited_text}"]
 

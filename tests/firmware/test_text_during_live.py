@@ -39,7 +39,7 @@ def type_line(robot: HostFirmware, session: Session, text: str, milliseconds: in
 
 @pytest.mark.parametrize("after_ms", [1, 130, 500])
 @pytest.mark.parametrize("text", TYPED)
-def test_what_is_typed_drives_a_robot_with_room_for_it(text: str, after_ms: int) -> None:
+def test_typed_text_drives_a_robot_with_enough_room(text: str, after_ms: int) -> None:
     robot, session = running(HostFirmware, after_ms)
     actions = type_line(robot, session, text, 1500)
     assert actions == ["MOTORS 0 0", "MOTORS 30 30", "MOTORS 0 0", "FINISHED"]
@@ -48,7 +48,7 @@ def test_what_is_typed_drives_a_robot_with_room_for_it(text: str, after_ms: int)
 
 @pytest.mark.parametrize("after_ms", [1, 130, 500])
 @pytest.mark.parametrize("text", TYPED)
-def test_a_robot_without_that_room_goes_on_with_its_live_line(text: str, after_ms: int) -> None:
+def test_a_robot_without_enough_room_continues_its_live_line(text: str, after_ms: int) -> None:
     robot, session = running(SmallRobot, after_ms)
     assert type_line(robot, session, text, 1500) == ["MOTORS 0 0", "FINISHED"]
     assert [event.name for event in session.events()] == ["DONE"]
@@ -59,7 +59,7 @@ def test_a_robot_without_that_room_goes_on_with_its_live_line(text: str, after_m
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
 @pytest.mark.parametrize("text", ["S", "STOP", "s"])
-def test_a_stop_that_is_typed_stops_either(kind: type[HostFirmware], text: str) -> None:
+def test_a_typed_stop_stops_both_kinds_of_robot(kind: type[HostFirmware], text: str) -> None:
     robot, session = running(kind, 130)
     assert type_line(robot, session, text, 300)[0] == "MOTORS 0 0"
     assert robot.is_latched

@@ -14,5 +14,5 @@ SEEDS = 24  # seeds of the tests; a campaign runs more
 
 
 @pytest.mark.parametrize("seed", range(SEEDS))
-def test_anything_and_then_a_line(seed: int) -> None:
+def test_a_line_runs_after_any_input(seed: int) -> None:
     run(seed)

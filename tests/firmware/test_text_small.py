@@ -35,8 +35,8 @@ from tiniscript.link.requests import OK
 
 LOST = "// The old program is lost."
 OTHERWISE = {  # tests of robots that have room for two programs
-    "test_the_program_that_it_holds_is_untouched",
-    "test_sb_waits_for_the_button_and_is_gone_with_the_power",
+    "test_typed_lines_leave_the_stored_program",
+    "test_a_typed_sb_program_waits_for_the_button_and_is_lost_at_power_off",
 }
 
 assert vars(test_text).keys() >= OTHERWISE
@@ -63,7 +63,7 @@ def test_a_stored_program_comes_back_with_the_button() -> None:
 
 
 @pytest.mark.parametrize("has_stored", [True, False])
-def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> None:
+def test_the_loss_of_an_unsaved_program_is_reported(has_stored: bool) -> None:
     robot, session = robot_with_program() if has_stored else (switched_on(), computer())
     send(robot, session, "SB|L(0.1, 40)", saves=False)
     assert status(robot, session).saved == SAVED_MEMORY
@@ -91,7 +91,7 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
 # -- a running program, and a new line -------------------------------------------------------------
 
 
-def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
+def test_a_complete_line_ends_the_running_program() -> None:
     """It also ends it when it needs the running program's memory."""
     robot, session = robot_with_program()
     send(robot, session, "SI|F(30, 60)", saves=False, is_detached=True)
@@ -110,10 +110,10 @@ def test_a_new_line_ends_what_runs_when_it_is_whole() -> None:
     "X" * 50, "SI|" + "F(0.1,50);W(0.2);" * 8 + "hola", "SI|X=" + "1.2345+" * 12 + "hola",
     "SI|" + "F(0.1,50);W(0.2);" * 8 + "\0",
 ])  # fmt: skip
-def test_a_wrong_line_that_needed_the_room_tells_what_is_lost(line: str) -> None:
+def test_a_wrong_line_that_needed_the_room_reports_the_lost_program(line: str) -> None:
     robot, session = robot_with_program("SB|B(30, 60)", saves=False)
-    first, *more = type_text(robot, line + "\n", 1500)
-    assert first.startswith("// ") and more.count(LOST) == 1
+    first, *other_answers = type_text(robot, line + "\n", 1500)
+    assert first.startswith("// ") and other_answers.count(LOST) == 1
     assert status(robot, session).saved == SAVED_NOTHING
     robot.wait(4000)
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
@@ -133,7 +133,7 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
 
 @pytest.mark.sampled("at_ms", keep=3)
 @pytest.mark.parametrize("at_ms", range(0, 60, 7))
-def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: int) -> None:
+def test_a_power_cut_while_text_is_read_loses_nothing_stored(at_ms: int) -> None:
     robot, _, bytes_before = read_back()
     type_text(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
     restarted_robot = switched_on(robot.memory())
@@ -142,7 +142,7 @@ def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: 
 
 
 @pytest.mark.parametrize("has_draft", [True, False])
-def test_a_line_while_a_program_is_saved_leaves_what_runs(
+def test_a_line_during_a_save_does_not_end_the_run(
     has_draft: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A program is saved when the motors are off: until then it is the one that runs."""
@@ -159,7 +159,7 @@ def test_a_line_while_a_program_is_saved_leaves_what_runs(
     assert image.endswith(image_of("SI|F(5, 60)").code)
 
 
-def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
+def test_a_line_during_a_save_is_answered_even_after_a_stop() -> None:
     robot, session = switched_on(write_ms=12.0), computer()
     send(robot, session, "SB|" + "X=RANDOM(1,1000)/7;" * 40, saves=True)
     robot.wait(1900)
@@ -177,7 +177,7 @@ def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
     ],
     ids=lambda value: repr(value)[1:-1],
 )  # fmt: skip
-def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
+def test_s_alone_stops_a_live_line(line: str, stops: bool) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
     assert actions_of(robot) == ["MOTORS 60 60"]
@@ -188,7 +188,7 @@ def test_s_alone_stops_what_tsc_live_runs(line: str, stops: bool) -> None:
     assert (status(robot, session).state == STATE_STOPPED) == stops
 
 
-def test_texts_and_frames_in_any_order() -> None:
+def test_texts_and_frames_work_in_any_order() -> None:
     """Whatever was typed, the stored program does not change."""
     robot, session = robot_with_program()
     bytes_before = fetch_image(robot, session)

@@ -49,15 +49,15 @@ def robot() -> HostFirmware:
     return HostFirmware(robots.load("tinibot").kit)
 
 
-def test_every_level_of_every_trim(robot: HostFirmware) -> None:
+def test_every_trim_gives_the_expected_level_for_every_power(robot: HostFirmware) -> None:
     assert level_of(100) == 255
     for balance, least in product(range(-MOST, MOST + 1), (0, 1, 19, MOST)):
         wheels = (balance + least) % 8
-        ours = (True, levels(wheels, balance, least))
-        assert robot.levels(trim_of(wheels, balance, least)) == ours, (wheels, balance, least)
+        expected = (True, levels(wheels, balance, least))
+        assert robot.levels(trim_of(wheels, balance, least)) == expected, (wheels, balance, least)
 
 
-def test_what_is_beyond_its_numbers_is_not_sound(robot: HostFirmware) -> None:
+def test_out_of_range_trims_are_invalid(robot: HostFirmware) -> None:
     for balance in range(-128, 128):
         assert robot.levels(trim_of(0, balance, 0))[0] == (abs(balance) <= MOST), balance
     for number in range(256):

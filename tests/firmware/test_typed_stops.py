@@ -80,8 +80,8 @@ def started_uno(sketch: Path, baud: int) -> Uno:
     return uno
 
 
-def answer_lines(uno: Uno, since: int) -> str:
-    return bytes(byte.value for byte in uno.sent_bytes[since:]).decode("latin-1")
+def answer_lines(uno: Uno, start: int) -> str:
+    return bytes(byte.value for byte in uno.sent_bytes[start:]).decode("latin-1")
 
 
 def drive(uno: Uno) -> None:
@@ -111,24 +111,24 @@ def stop_after(uno: Uno, baud: int, prefix: bytes, spelling: bytes, is_busy: boo
     )
     line_end = uno.received_bytes[end + 1]  # the CR of a CR LF
     off_cycle = max(uno.pins[name].cycle for name in ("left", "right"))
-    what = f"{prefix!r} {spelling!r}"
-    assert states(uno) == OFF, what
+    description = f"{prefix!r} {spelling!r}"
+    assert states(uno) == OFF, description
     late_ms = (off_cycle - line_end.cycle) / CYCLES_PER_MS
     behind_ms = (off_cycle - uno.received_bytes[-1].cycle) / CYCLES_PER_MS
     is_held = behind_ms < SHORTEST_STOP_MS + (BUSY_TURN_MS if is_busy else TURN_MS)
     if not is_busy:
         is_held = is_held and behind_ms > SHORTEST_STOP_MS - TURN_MS
-    assert late_ms < MOST_MS or is_held, f"{what}: {late_ms} ms"
+    assert late_ms < MOST_MS or is_held, f"{description}: {late_ms} ms"
     changes = len(uno.pins.history("left"))
     uno.send(b"F(1,80)\n")  # before a second of silence
     uno.run_ms(150)
-    assert states(uno) == OFF and len(uno.pins.history("left")) == changes, what
+    assert states(uno) == OFF and len(uno.pins.history("left")) == changes, description
     return late_ms
 
 
 @pytest.mark.sampled("name", keep=6)
 @pytest.mark.parametrize("name", ALL_PREFIXES)
-def test_a_typed_stop_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
+def test_a_typed_stop_works_in_every_state(driving_at: tuple[Uno, int], name: str) -> None:
     """Half of the spellings are typed at one rate, the others at the other one; the receiver
     alone gets each of them after any prefix in `tests/link`. After the last one the robot is asked
     whether it is latched."""
@@ -166,7 +166,9 @@ def stop_time_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
     "data", [b"SSS", b"s s\tS", b"FFFFSSS", b"SI|F(1,80)SSS", b"STOPSTOP", b"stop stop", b"\0xSSS",
              b"F(1,stop STOP", b"S" * 40],
 )  # fmt: skip
-def test_whoever_sends_no_line_end_stops(driving_at: tuple[Uno, int], data: bytes) -> None:
+def test_a_stop_without_line_ends_stops_when_repeated(
+    driving_at: tuple[Uno, int], data: bytes
+) -> None:
     """A held button's row of S, and a second STOP."""
     uno, baud = driving_at
     with uno.try_out():
@@ -184,7 +186,7 @@ def test_a_row_of_s_without_line_ends_stops_at_the_third(driving_at: tuple[Uno, 
 
 
 @pytest.mark.parametrize("data", [b"S", b"STOP", b"alto", b"S.", b"Stop now"])
-def test_one_without_a_line_end_stops_after_a_second(
+def test_an_unterminated_stop_stops_after_a_second(
     driving_at: tuple[Uno, int], data: bytes
 ) -> None:
     uno, baud = driving_at
@@ -218,11 +220,11 @@ def test_ctrl_c_alone_stops_after_silence(
         late_ms = stop_time_after_silence_ms(uno, prefix + data, 10_000 / baud)
         assert SHORTEST_STOP_MS - TURN_MS < late_ms < SHORTEST_STOP_MS + BUSY_TURN_MS
         check_latched(uno)
-    for other in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
+    for data_with_rest in (b"x" + data, b"\0" + data, data + b"x", b" " + data):
         with uno.try_out():
-            uno.send(other)
+            uno.send(data_with_rest)
             uno.run_ms(3 * SHORTEST_STOP_MS)
-            assert states(uno) == FORWARD, other
+            assert states(uno) == FORWARD, data_with_rest
 
 
 def stop_time_after_silence_ms(uno: Uno, data: bytes, byte_ms: float) -> float:
@@ -331,7 +333,7 @@ def test_a_line_in_a_block_belongs_to_the_program(uno_at: tuple[Uno, int]) -> No
     assert states(uno) == FORWARD and answer_lines(uno, count_before) == "// OK\r\n"
 
 
-def test_a_mistake_that_waits_to_be_said_is_forgotten_by_the_next_line(
+def test_a_pending_mistake_message_is_dropped_by_the_next_line(
     uno_at: tuple[Uno, int],
 ) -> None:
     """A stop after them is looked for before the wire is free; here it belongs to a block."""
@@ -370,8 +372,10 @@ def test_code_that_holds_a_typed_stop_runs(uno_at: tuple[Uno, int], way: str) ->
 
 def random_prefix(draw: random.Random) -> bytes:
     parts = [draw.choice(list(ALL_PREFIXES.values())) for _ in range(draw.randrange(3))]
-    odd = bytes(draw.choice(b"\0\x01S\n s;T\r\x1b[OPp\t5(") for _ in range(draw.randrange(20)))
-    parts += [odd, draw.randbytes(draw.randrange(30))]
+    odd_bytes = bytes(
+        draw.choice(b"\0\x01S\n s;T\r\x1b[OPp\t5(") for _ in range(draw.randrange(20))
+    )
+    parts += [odd_bytes, draw.randbytes(draw.randrange(30))]
     draw.shuffle(parts)
     end = draw.choice((b"\n", b"\r\n", b"\0"))  # a line begins, in frames too
     return b"".join(parts).replace(b"\0\0\0", b"\0") + end
@@ -417,32 +421,32 @@ def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
 
 def lines_said(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
-    before, sent_count = len(uno.sent_bytes), -1
+    start_index, sent_count = len(uno.sent_bytes), -1
     uno.send(data)
     while sent_count != len(uno.sent_bytes):
         sent_count = len(uno.sent_bytes)
         uno.run_ms(QUIET_MS)
-    return answer_lines(uno, before).splitlines()
+    return answer_lines(uno, start_index).splitlines()
 
 
 @pytest.mark.sampled("line")
 @pytest.mark.parametrize("line", LINES, ids=lambda line: line[:20])
-def test_a_pasted_line_that_is_lost_is_told(quick_uno: Uno, line: str) -> None:
+def test_a_lost_pasted_line_is_reported(quick_uno: Uno, line: str) -> None:
     """An Uno keeps 62 bytes of text that waits. At 115200 baud, lines arrive faster than it reads
     them, and while it answers it reads none."""
     uno, data = quick_uno, line.encode() + b"\r\n"
     with uno.try_out():
-        one = [
+        first_lines = [
             line
             for line in lines_said(uno, data)
             if line not in ("// DONE", "// 1", LOST_BYTES_LINE)
         ]
         for count in (MISTAKE_LIMIT // 2, MISTAKE_LIMIT):
             with uno.try_out():
-                many = lines_said(uno, data * count)
-                answers = sum(line in one for line in many)
-                is_told = LOST_BYTES_LINE in many or TOO_MANY_LINE in many
-                assert is_told or answers == len(one) * count, many
+                all_lines = lines_said(uno, data * count)
+                answers = sum(line in first_lines for line in all_lines)
+                is_told = LOST_BYTES_LINE in all_lines or TOO_MANY_LINE in all_lines
+                assert is_told or answers == len(first_lines) * count, all_lines
                 assert is_told or count < MISTAKE_LIMIT, "as twenty lines are, some are lost"
                 count_before = len(uno.sent_bytes)
                 uno.send(b"SI|SHOW(7)\n")

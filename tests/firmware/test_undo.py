@@ -66,9 +66,9 @@ def undo(robot: HostFirmware, session: Session) -> int:
 # -- refused --------------------------------------------------------------------------------------
 
 
-def with_byte(text: str, at: int, value: int) -> bytes:
+def with_byte(text: str, index: int, value: int) -> bytes:
     image = bytearray(bytes_of(text))
-    image[at] = value
+    image[index] = value
     return bytes(image)
 
 
@@ -86,7 +86,7 @@ UNRUNNABLE_IMAGES = {
 
 @pytest.mark.parametrize("image", UNRUNNABLE_IMAGES.values(), ids=UNRUNNABLE_IMAGES)
 @pytest.mark.parametrize("is_first", [True, False])
-def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> None:
+def test_undo_does_not_restore_an_unrunnable_program(image: bytes, is_first: bool) -> None:
     good = bytes_of(PROGRAM_A)
     places = (FIRST_SLOT, SECOND_SLOT) if is_first else (SECOND_SLOT, FIRST_SLOT)
     robot = HostFirmware(KIT, eeprom_with((places[0], 7, good), (places[1], 6, image)))
@@ -109,13 +109,11 @@ def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> 
 
 @pytest.mark.parametrize("image", [OTHER_KIT_IMAGE, INVALID_IMAGE], ids=["kit", "verifier"])
 @pytest.mark.parametrize("has_good", [True, False])
-def test_a_robot_begins_with_the_newest_program_that_it_can_run(
-    image: bytes, has_good: bool
-) -> None:
+def test_a_robot_starts_with_the_newest_runnable_program(image: bytes, has_good: bool) -> None:
     """Its checksum is right, so that only the verifier or the kit says no."""
     good = bytes_of(PROGRAM_A)
-    before = [(SECOND_SLOT, 6, good)] if has_good else []
-    robot, session = HostFirmware(KIT, eeprom_with(*before, (FIRST_SLOT, 7, image))), computer()
+    good_slots = [(SECOND_SLOT, 6, good)] if has_good else []
+    robot, session = HostFirmware(KIT, eeprom_with(*good_slots, (FIRST_SLOT, 7, image))), computer()
     robot.wait(400)
     assert read_saved_state(robot, session) == ("STORED" if has_good else "NOTHING")
     assert robot.is_lit == has_good
@@ -130,7 +128,7 @@ def test_a_robot_begins_with_the_newest_program_that_it_can_run(
 # -- programs in RAM only --------------------------------------------------------------------------
 
 
-def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
+def test_undo_replaces_an_unsaved_program_with_the_saved_one() -> None:
     robot, session = robot_with_two_programs()
     send(robot, session, PROGRAM_C, saves=False)
     robot.talk(session, 500)
@@ -143,7 +141,7 @@ def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
     assert fetch_image(robot, session) == bytes_of(PROGRAM_A)
 
 
-def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
+def test_undo_keeps_an_unsaved_program_if_nothing_is_saved() -> None:
     robot, session = switched_on(), computer()
     assert undo(robot, session) == NO_PREVIOUS
     assert read_saved_state(robot, session) == "NOTHING"
@@ -173,7 +171,7 @@ STEP_SEQUENCES = [
 
 @pytest.mark.sampled("steps", keep=20)
 @pytest.mark.parametrize("steps", STEP_SEQUENCES, ids=", ".join)
-def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
+def test_a_save_delayed_by_a_low_supply_follows_the_last_request(
     steps: tuple[str, ...],
 ) -> None:
     """A program that another one has followed since is not saved, nor is one in its place."""
@@ -205,7 +203,7 @@ def test_what_a_low_supply_has_kept_waiting_is_done_as_it_was_asked_for_last(
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) -> None:
+def test_with_a_low_supply_undo_changes_nothing(count: int) -> None:
     robot, session = robot_with_two_programs()
     robot.supply(is_low=True)
     memory = robot.memory()
@@ -219,15 +217,15 @@ def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost(count: int) ->
     robot.supply(is_low=False)
     robot.talk(session, 1500)
     assert read_saved_state(robot, session) == "STORED"
-    for now in (text, PROGRAM_B if text == PROGRAM_A else PROGRAM_A):
-        assert fetch_image(robot, session) == bytes_of(now)
-        assert program_after_power_off(robot) == bytes_of(now)
-        if now == text:
+    for current_text in (text, PROGRAM_B if text == PROGRAM_A else PROGRAM_A):
+        assert fetch_image(robot, session) == bytes_of(current_text)
+        assert program_after_power_off(robot) == bytes_of(current_text)
+        if current_text == text:
             assert undo(robot, session) == OK
             wait_until_saved(robot, session)
 
 
-def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
+def test_a_driving_program_does_not_lose_the_previous_one() -> None:
     """The restore waits until the motors are off before its first byte."""
     robot, session = robot_with_two_programs(DRIVE_PROGRAM, PROGRAM_A)
     memory = robot.memory()
@@ -244,15 +242,15 @@ def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
 
 @pytest.mark.sampled("cut_ms", keep=18)
 @pytest.mark.parametrize("cut_ms", range(0, 160, 3))
-def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
+def test_a_power_cut_during_undo_leaves_one_of_the_programs(cut_ms: int) -> None:
     robot, session = robot_with_two_programs()
     request = session.undo()
     robot.talk(session, cut_ms)
     memory = robot.memory()
     programs = []
     for nonce in (5, 6):
-        restarted_robot, other = switched_on(memory), computer(nonce)
-        programs.append(fetch_image(restarted_robot, other))
+        restarted_robot, other_session = switched_on(memory), computer(nonce)
+        programs.append(fetch_image(restarted_robot, other_session))
         memory = restarted_robot.memory()
     assert programs[0] == programs[1]
     assert programs[0] in (bytes_of(PROGRAM_A), bytes_of(PROGRAM_B))
@@ -262,7 +260,7 @@ def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
     assert is_answered or cut_ms < 100
 
 
-def test_a_request_that_comes_twice_is_done_once() -> None:
+def test_a_duplicate_request_is_executed_once() -> None:
     """The answer was lost, so the same bytes come again, also when it has long been saved."""
     robot, session = robot_with_two_programs()
     request = session.undo()
@@ -275,29 +273,29 @@ def test_a_request_that_comes_twice_is_done_once() -> None:
     assert fetch_image(robot, computer(9)) == bytes_of(PROGRAM_A)
 
 
-def test_any_order_of_programs_undos_and_power_offs() -> None:
+def test_programs_undos_and_power_offs_work_in_any_order() -> None:
     """The model has two variables: the current program and the previous one."""
     draw = random.Random(11)
     texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [PROGRAM_B]
     robot, session = switched_on(), computer()
-    now, text_before = "", ""
+    current_text, text_before = "", ""
     for step in range(120):
-        what = draw.choice(("send", "undo", "undo", "off"))
-        if what == "send":
+        action = draw.choice(("send", "undo", "undo", "off"))
+        if action == "send":
             text = draw.choice(texts)
             send(robot, session, text)
             wait_until_saved(robot, session)
-            if text != now:
-                now, text_before = text, now
-        elif what == "undo":
+            if text != current_text:
+                current_text, text_before = text, current_text
+        elif action == "undo":
             assert undo(robot, session) == (OK if text_before else NO_PREVIOUS), step
             if text_before:
                 wait_until_saved(robot, session, 500)  # eight bytes, and not the program
-                now, text_before = text_before, now
+                current_text, text_before = text_before, current_text
         else:
             robot, session = switched_on(robot.memory()), computer(step)
-        if now:
-            assert fetch_image(robot, session) == bytes_of(now), step
+        if current_text:
+            assert fetch_image(robot, session) == bytes_of(current_text), step
 
 
 # -- in every state of the firmware ---------------------------------------------------------------
@@ -328,8 +326,8 @@ def after_power_off(table: Table) -> bytes:
     memory, programs = table.robot.memory(), []
     for nonce in (31, 32):
         robot = switched_on(memory, seed=nonce)
-        asks = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
-        programs.append(fetch_image(robot, asks))
+        session_after = Session(nonce, 9600, KIT.fingerprint, keys=table.keys)
+        programs.append(fetch_image(robot, session_after))
         memory = robot.memory()
     assert programs[0] == programs[1]
     return programs[0]
@@ -351,7 +349,7 @@ def power_after_undo(state: str) -> int:
 @pytest.mark.sampled("has_draft")
 @pytest.mark.parametrize("has_draft", [True, False])
 @pytest.mark.parametrize("state", STATES)
-def test_undo_in_every_state(state: str, has_draft: bool) -> None:
+def test_undo_works_in_every_state(state: str, has_draft: bool) -> None:
     table, session = robot_in_state(state, has_draft)
     robot, previous = table.robot, power_after_undo(state)
     assert robot.has_draft == has_draft
@@ -359,23 +357,23 @@ def test_undo_in_every_state(state: str, has_draft: bool) -> None:
     robot.did.clear()
     status = undo(robot, session)
     assert status == (OK if previous else NO_PREVIOUS)
-    now = program_of(previous or EARLIER_POWER)
-    assert fetch_image(robot, session) == now
+    current_program = program_of(previous or EARLIER_POWER)
+    assert fetch_image(robot, session) == current_program
     assert robot.is_latched, "what runs ends"
     robot.talk(session, 1500)
     moves = {line for line in actions_of(robot) if line.startswith("MOTORS")}
     assert moves == ({"MOTORS 0 0"} if was_running else set()), "nothing starts"
     wait_until_saved(robot, session)
-    assert after_power_off(table) == now
+    assert after_power_off(table) == current_program
     assert undo(robot, session) == (OK if previous else NO_PREVIOUS)
     wait_until_saved(robot, session)
-    other = fetch_image(robot, session)
-    assert after_power_off(table) == other
-    assert (other != now) == bool(previous), "a second one brings another"
+    fetched_image = fetch_image(robot, session)
+    assert after_power_off(table) == fetched_image
+    assert (fetched_image != current_program) == bool(previous), "a second one brings another"
 
 
 @pytest.mark.parametrize("state", STATES)
-def test_two_at_once_are_two(state: str) -> None:
+def test_two_undos_at_once_count_as_two(state: str) -> None:
     """The second request is on its way before the first is answered."""
     table, session = robot_in_state(state)
     robot, previous = table.robot, power_after_undo(state)
@@ -391,7 +389,7 @@ def test_two_at_once_are_two(state: str) -> None:
 @pytest.mark.sampled("cut_ms", keep=1)
 @pytest.mark.parametrize("cut_ms", [0, 10, 20, 30, 60, 140])
 @pytest.mark.parametrize("state", STATES)
-def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_ms: int) -> None:
+def test_a_power_cut_during_undo_leaves_an_existing_program(state: str, cut_ms: int) -> None:
     table, session = robot_in_state(state)
     robot = table.robot
     programs_there = {after_power_off(table), program_of(EARLIER_POWER), program_of(SAVED_POWER)}
@@ -403,7 +401,7 @@ def test_a_plug_that_is_pulled_leaves_a_program_that_was_there(state: str, cut_m
     assert after_power_off(table) in programs_there
 
 
-def test_a_stranger_brings_nothing_back() -> None:
+def test_a_stranger_cannot_undo() -> None:
     table, _ = robot_in_state("has an owner")
     bytes_before = after_power_off(table)
     stranger = computer(9)

@@ -54,7 +54,7 @@ def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
     assert (dropped_count, framing, overrun) == (0, 1, 0)
 
 
-def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
+def test_unread_bytes_damage_a_message(tmp_path: Path) -> None:
     """Interrupts are off for 10 ms, which no part of the firmware does."""
     elf = build_hanging_firmware(tmp_path, BUSY_CODE)
     with Uno(elf, names=NAMES, baud=BAUD) as uno:
@@ -78,13 +78,13 @@ def driving_uno(uno: Uno) -> Wired:
     return wired_uno
 
 
-def frames_since(uno: Uno, since: int) -> list[Frame]:
+def frames_since(uno: Uno, since_cycle: int) -> list[Frame]:
     """Return the frames that the robot has sent since a cycle."""
-    sent_bytes = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since)
+    sent_bytes = bytes(byte.value for byte in uno.sent_bytes if byte.cycle > since_cycle)
     return [frame for part in sent_bytes.split(b"\0") if (frame := decode_frame(part)) is not None]
 
 
-def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) -> None:
+def test_a_line_held_low_stops_a_detached_program(uno: Uno) -> None:
     wired_uno = driving_uno(uno)
     start_cycle = uno.cycle
     uno.hold(False, 2 * BAUD)
@@ -133,7 +133,7 @@ def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
     assert states(uno) == OFF
 
 
-def test_bytes_after_a_framing_error_are_no_line_that_is_held(uno: Uno) -> None:
+def test_bytes_after_a_framing_error_do_not_count_as_a_held_line(uno: Uno) -> None:
     driving_uno(uno)
     uno.send(b"\x10", stop_bits_fail=True)
     uno.send(b"\x01\x02\x04\x08" * 200)
@@ -141,9 +141,7 @@ def test_bytes_after_a_framing_error_are_no_line_that_is_held(uno: Uno) -> None:
     assert states(uno) == FORWARD
 
 
-def test_a_line_that_nobody_has_ever_pulled_up_keeps_no_button_from_starting(
-    sketch: Path, memory: Path
-) -> None:
+def test_a_line_that_was_never_high_does_not_block_the_button(sketch: Path, memory: Path) -> None:
     """A Nano on batteries: its USB chip has no power, and holds the line low from the beginning."""
     with switched_on(sketch, memory) as first:
         wired_uno = computer(first)
@@ -158,13 +156,13 @@ def test_a_line_that_nobody_has_ever_pulled_up_keeps_no_button_from_starting(
         assert states(uno) == FORWARD
 
 
-def test_a_message_is_heard_wherever_the_main_loop_is(uno: Uno) -> None:
+def test_a_message_is_received_wherever_the_main_loop_is(uno: Uno) -> None:
     wired_uno = computer(uno)
     assert wired_uno.until(wired_uno.session.hello()) == OK
     wired_uno.run(100)
     for turn in range(PHASES):
         uno.run_to(uno.cycle + turn % 2 + 1)
         # A request of another length.
-        other = wired_uno.session.hello if turn % 2 else wired_uno.session.ping
-        assert wired_uno.until(other()) == OK
+        make_request = wired_uno.session.hello if turn % 2 else wired_uno.session.ping
+        assert wired_uno.until(make_request()) == OK
     assert read_counters(wired_uno) == (0, 0, 0, 0)

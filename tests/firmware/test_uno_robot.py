@@ -76,7 +76,7 @@ def test_an_undo_writes_eight_bytes(uno: Uno) -> None:
     assert states(uno) == FORWARD
 
 
-def test_a_measured_robot_keeps_how_fast_it_is(sketch: Path, memory: Path) -> None:
+def test_a_measured_robot_keeps_its_speed(sketch: Path, memory: Path) -> None:
     uno = switched_on(sketch, memory)
     assert drive_ms(uno, "SI|F(20 CM, 60)") == pytest.approx(741, abs=2)
     wired_uno = computer(uno)  # current ones: this session ignores answers to the earlier one
@@ -117,7 +117,7 @@ def test_a_stop_silences_the_buzzer(uno: Uno) -> None:
     assert not [change for change in uno.pins.history(buzzer) if change.cycle > silent]
 
 
-def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
+def test_a_live_line_reaches_the_motors_at_once(uno: Uno) -> None:
     """This holds wherever the main loop is when the frame ends, and no frame is mistaken for a
     damaged one."""
     wired_uno = computer(uno)
@@ -146,12 +146,12 @@ def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
 
 def disconnect_for(uno: Uno, ms: float) -> None:
     """Disconnect for so long, according to the HC-05's STATE pin."""
-    at = uno.cycle + CYCLES_PER_MS
-    uno.drive("radio", False, at=at)
-    uno.drive("radio", True, at=at + round(ms * CYCLES_PER_MS))
+    cycle = uno.cycle + CYCLES_PER_MS
+    uno.drive("radio", False, at=cycle)
+    uno.drive("radio", True, at=cycle + round(ms * CYCLES_PER_MS))
 
 
-def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: Uno) -> None:
+def test_a_radio_that_loses_its_client_ends_an_attached_run(uno: Uno) -> None:
     """Glitches, single or repeated, do not count: the level must last for 50 ms."""
     uno.drive("radio", True)
     wired_uno = computer(uno)
@@ -185,7 +185,7 @@ def test_a_radio_that_nobody_is_connected_to_any_more_ends_an_attached_run(uno: 
     assert states(uno) == OFF
 
 
-def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno: Uno) -> None:
+def test_a_missing_radio_ends_nothing_but_a_second_of_silence_does(uno: Uno) -> None:
     """The pin is unconnected, or belongs to a radio without a client."""
     assert uno.pins["radio"].state == "pullup"
     wired_uno = computer(uno)
@@ -200,14 +200,14 @@ def test_a_radio_that_is_not_there_ends_nothing_and_a_second_of_silence_does(uno
     send(wired_uno, AWAY_PROGRAM)
     wired_uno.run(300)
     assert states(uno) == FORWARD
-    last = max(byte.cycle for byte in uno.received_bytes)
+    last_cycle = max(byte.cycle for byte in uno.received_bytes)
     uno.run_ms(1500)
     assert states(uno) == OFF
-    assert max(uno.pins[name].cycle for name in MOTORS) - last <= 1050 * CYCLES_PER_MS
+    assert max(uno.pins[name].cycle for name in MOTORS) - last_cycle <= 1050 * CYCLES_PER_MS
 
 
 @pytest.mark.parametrize("starts", ["detached", "button"])
-def test_a_run_without_a_dead_man_timer_needs_nobody(uno: Uno, starts: str) -> None:
+def test_a_run_without_a_dead_man_timer_needs_no_client(uno: Uno, starts: str) -> None:
     uno.drive("radio", True)
     wired_uno = computer(uno)
     if starts == "detached":
@@ -226,7 +226,7 @@ def test_a_run_without_a_dead_man_timer_needs_nobody(uno: Uno, starts: str) -> N
     assert states(uno) == FORWARD
 
 
-def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None:
+def test_a_tag_takes_milliseconds_and_a_claim_survives_a_reset(uno: Uno) -> None:
     """A key that is shown takes the main loop some milliseconds, and no more."""
     keys = Keys()
 
@@ -251,7 +251,7 @@ def test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset(uno: Uno) -> None
     assert read_ownership(None, 4) == OWNED_BY_OTHER
 
 
-def test_what_tasks_show_is_of_their_own_shows(uno: Uno) -> None:
+def test_values_of_tasks_belong_to_their_own_shows(uno: Uno) -> None:
     """All of them wait for the wire, which takes 18 ms for each value."""
     compilation = compile_text(SHOWS, KIT)
     places, wired_uno = source_map.map_of_compiled(compilation), computer(uno)

@@ -33,7 +33,7 @@ SEED = 12
     ("mega_grabber", "grabber", 60),
     ("mega_tinibot2", "tinibot2", 60),
 ])  # fmt: skip
-def test_a_stop_is_at_the_pins_in_12_us(
+def test_a_stop_reaches_the_pins_in_12_us(
     environment: str,
     name: str,
     more_cycles: int,

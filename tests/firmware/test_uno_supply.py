@@ -34,25 +34,25 @@ def wait_until_saved(wired_uno: Wired, limit_ms: int = 4000) -> int:
 @pytest.mark.parametrize(
     ("volts", "millivolts"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)]
 )
-def test_it_saves_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
+def test_saving_works_from_four_volts_on(robot: Uno, volts: float, millivolts: int) -> None:
     wired_uno = computer(robot)
     robot.supply(volts)
     send(wired_uno, SAVES)
     assert wait_until_saved(wired_uno) == millivolts
 
 
-def marks(uno: Uno, since: int) -> list[int]:
+def marks(uno: Uno, since_cycle: int) -> list[int]:
     """Return the times at which validating bytes of the program's first slots were written."""
     places = (129, 130, 131, 577, 578, 579)
     return [
         event.cycle
         for event in uno.events
         if event.kind == "eeprom" and event["address"] in places and event["value"] not in (0, 255)
-        if event.cycle >= since
+        if event.cycle >= since_cycle
     ]
 
 
-def test_a_supply_that_falls_between_two_marks_is_noticed(uno: Uno) -> None:
+def test_a_supply_drop_between_two_checks_is_noticed(uno: Uno) -> None:
     """The voltage is measured before each of the three."""
     wired_uno = computer(uno)
     start_cycle = uno.cycle
@@ -87,7 +87,7 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
                   if event.name == "SHOW"]  # fmt: skip
     assert len(shown_values) > 50
     assert set(shown_values) == {200_000, 800_000}
-    assert all(one != other for one, other in pairwise(shown_values))
+    assert all(first != second for first, second in pairwise(shown_values))
     assert wait_until_saved(wired_uno) == (STORED if volts > 4 else LOW)
 
 
@@ -115,8 +115,8 @@ def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> 
         pin_changes_before = [change for change in driving if change.cycle <= cycle]
         assert pin_changes_before[-1].state == "low"
         # 3.4 ms from the beginning of the write, with the event in the middle.
-        after = [change.cycle for change in driving if change.cycle > cycle]
-        assert not after or after[0] - cycle >= 1.5 * CYCLES_PER_MS
+        later_cycles = [change.cycle for change in driving if change.cycle > cycle]
+        assert not later_cycles or later_cycles[0] - cycle >= 1.5 * CYCLES_PER_MS
     assert wired_uno.session.is_running
 
 
@@ -161,7 +161,7 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
     distances = [value for value in shown_values if value not in (200_000, 800_000)]
     assert len(distances) > 10
     # an edge waits for up to two other interrupts: 20 us, and for a step of the robot's clock
-    wrong = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
-    assert not wrong
+    wrong_values = [value for value in distances if abs(value - 1000 * distance_cm) > 6 * STEP]
+    assert not wrong_values
     assert {200_000, 800_000} < set(shown_values)
     assert min(b - a for a, b in pairwise(outputs) if a > start_cycle) >= 30 * CYCLES_PER_MS

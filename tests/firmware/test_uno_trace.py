@@ -43,6 +43,6 @@ def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> N
         ]
     times = [(cycle - began) / CYCLES_PER_MS for cycle in changes]
     assert len(times) == 1002  # 500 changes on and off, and one at the end
-    assert all(abs(after - before - 60) < 2 for before, after in pairwise(times[:-1]))
+    assert all(abs(later_ms - earlier_ms - 60) < 2 for earlier_ms, later_ms in pairwise(times[:-1]))
     assert max(abs(time_ms - 60 * k) for k, time_ms in enumerate(times[:-1])) < OFF_MS
     assert abs(times[-2] - 60_000) < OFF_MS

@@ -53,7 +53,7 @@ def hello_of(wired_uno: Wired) -> HelloReply:
         ),
     ],
 )
-def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: Path) -> None:
+def test_a_hanging_main_loop_is_reset(hang: str, limit_ms: int, board: str, tmp_path: Path) -> None:
     """The program becomes the last fault, even after a power-off. A second hang has the same
     effect, and no other data is lost.
     """
@@ -80,8 +80,8 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
             assert states(uno) == OFF
             hello_reply = hello_of(computer(uno, 3 + 2 * number))
             assert hello_reply.reset == WATCHDOG
-            what = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
-            assert what == (STALL, image_of(text).checksum, MOVE_AT[text])
+            fault_facts = (hello_reply.fault, hello_reply.fault_program, hello_reply.fault_at)
+            assert fault_facts == (STALL, image_of(text).checksum, MOVE_AT[text])
             uno.run_ms(500)
             assert states(uno) == OFF
             uno.reset()
@@ -97,7 +97,7 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
 
 
 @pytest.mark.sampled(of="hangs of an Uno")
-def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_path: Path) -> None:
+def test_a_main_loop_that_stalled_briefly_runs_the_next_program(tmp_path: Path) -> None:
     pauses = "for (uint8_t k = 0; k < 112; k++) {\n __builtin_avr_delay_cycles(16000);\n }"
     with Uno(build_hanging_firmware(tmp_path, pauses), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
@@ -116,19 +116,19 @@ def test_a_main_loop_that_stood_still_for_a_moment_runs_the_next_program(tmp_pat
 
 
 @pytest.mark.sampled(of="hangs of an Uno")
-def test_a_hang_without_a_program_is_not_a_fault_of_a_program(tmp_path: Path) -> None:
+def test_a_hang_without_a_program_is_not_a_program_fault(tmp_path: Path) -> None:
     with Uno(build_hanging_firmware(tmp_path, HANGING_LOOP), names=NAMES, baud=BAUD) as uno:
         uno.run_ms(300)
         uno.press("button")
         uno.run_ms(600)
         hello_reply = hello_of(computer(uno))
-        what = (
+        fault_facts = (
             hello_reply.reset,
             hello_reply.fault,
             hello_reply.fault_program,
             hello_reply.fault_at,
         )
-        assert what == (WATCHDOG, STALL, 0, 0)
+        assert fault_facts == (WATCHDOG, STALL, 0, 0)
 
 
 def test_a_reset_without_a_hang_is_not_a_fault(uno: Uno) -> None:

@@ -120,18 +120,18 @@ class Trials:
 
     def frames(self, image: bytes) -> list[bytes]:
         """Return a program as a line of live, in one frame, or in pieces."""
-        how, mode = self.rng.randrange(4), RUN | self.rng.choice((0, 0, SAVE))
+        kind, mode = self.rng.randrange(4), RUN | self.rng.choice((0, 0, SAVE))
         code, body = image[HEADER_BYTES:], image[BODY_OFFSET:]
-        if how < 2:
+        if kind < 2:
             return [self.frame("LIVE", bytes([RUN]) + code)]
-        if how == 2:
+        if kind == 2:
             return [self.frame("PROGRAM", bytes([mode]) + code)]
         pieces = [
-            self.frame("DATA", at.to_bytes(2, "little") + body[at : at + 9])
-            for at in range(0, len(body), 9)
+            self.frame("DATA", offset.to_bytes(2, "little") + body[offset : offset + 9])
+            for offset in range(0, len(body), 9)
         ]
-        begin = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
-        return [begin, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]
+        begin_frame = self.frame("BEGIN", bytes([mode]) + image[2:CHECKSUM_OFFSET])
+        return [begin_frame, *pieces, self.frame("COMMIT", image[CHECKSUM_OFFSET:BODY_OFFSET])]
 
     def trial(self) -> None:
         rng = self.rng
@@ -144,13 +144,13 @@ class Trials:
         for frame in self.frames(image):
             is_quiet = rng.random() < SILENCE_PROBABILITY
             bytes_before, codes = self.text(is_quiet)
-            later_text, more = self.text()
-            may_run.update(codes + more)
+            later_text, more_text = self.text()
+            may_run.update(codes + more_text)
             data = bytes_before + frame
-            most = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
+            most_bytes = rng.choice((3, min(12, len(frame))))  # a LIVE is made before its last ones
             if is_quiet:
                 self.put(b"", 1100)  # from here on the robot reads text again
-            cut = len(data) - rng.choice((rng.randrange(1, most), rng.randrange(len(frame))))
+            cut = len(data) - rng.choice((rng.randrange(1, most_bytes), rng.randrange(len(frame))))
             self.put(data[:cut], rng.choice((0, 0, 1, 20 * is_quiet)))
             self.put(data[cut:] + rng.choice((b"", later_text)), rng.choice((1, 4, 20)))
             if rng.random() < REPEAT_PROBABILITY:
@@ -164,7 +164,7 @@ class Trials:
         self.ran += image[HEADER_BYTES:] in ran_counter
 
 
-def test_what_runs_is_what_was_verified() -> None:
+def test_the_verified_code_is_what_runs() -> None:
     trials = Trials(7)
     for _ in range(TRIALS):
         trials.trial()
@@ -172,7 +172,7 @@ def test_what_runs_is_what_was_verified() -> None:
 
 
 @pytest.mark.parametrize("text", [b"X\0", b"t\0", b"D\0", b"a\n\0"])
-def test_one_letter_makes_no_move_of_a_number(text: bytes) -> None:
+def test_a_typed_letter_does_not_turn_a_number_into_a_move(text: bytes) -> None:
     robot, session = new_robot(), computer()
     assert robot.until(session, session.hello()) == OK
     request = session.live(image_of(HIDDEN_MOVE_PROGRAM).code)

@@ -37,8 +37,8 @@ class Known:
     def __init__(self, first: object) -> None:
         self.may_be = [first]
 
-    def note_request(self, what: object, is_kept: bool) -> None:
-        self.may_be = [what] if is_kept else [*self.may_be, what]
+    def note_request(self, value: object, is_kept: bool) -> None:
+        self.may_be = [value] if is_kept else [*self.may_be, value]
 
 
 def count_worn_slots(worn_bytes: set[int], slots: Sequence[tuple[int, int]]) -> int:
@@ -56,14 +56,14 @@ def check(seed: int) -> str:
     owner = Known(FREE)
     outcome = "all is kept"
     for _ in range(rng.randint(4, 14)):
-        what = rng.choice((*["worn"] * 5, "name", "name", "trim", "program", "claim", "fault"))
-        if what == "worn":
+        kind = rng.choice((*["worn"] * 5, "name", "name", "trim", "program", "claim", "fault"))
+        if kind == "worn":
             low, high = rng.choice(SLOTS)
             place = low + rng.randrange(4) if rng.random() < 0.5 else rng.randrange(low, high)
             robot.wear_out(place)
             worn_bytes.add(place)
             continue
-        if what == "program":
+        if kind == "program":
             text = f"SB|F(1, {rng.randint(10, 99)})" + ";B(0.1, 60)" * rng.choice((0, 30))
             status = table.outcome(session, session.upload(image_of(text)))
             assert status == "OK", f"{seed} {status}"
@@ -71,53 +71,53 @@ def check(seed: int) -> str:
             saved = robot.complete(session, session.status()).saved
             is_kept = saved == SAVED_STORED
             program.note_request(bytes_of(text), is_kept)
-        elif what == "claim":
+        elif kind == "claim":
             if owner.may_be != [FREE]:
                 continue
             status = table.claim(session)
             is_kept = status == "OK"
             owner.note_request(OWNED_BY_YOU, is_kept)
-        elif what == "fault":
+        elif kind == "fault":
             robot.until(session, session.upload(image_of("SI|X = 0;SHOW(1 / X)"), saves=False))
             robot.talk(session, 600)
             continue
         else:
-            asked_bytes = rng.choice(NAMES if what == "name" else TRIMS)
-            request = session.name(asked_bytes) if what == "name" else session.trim(asked_bytes)
+            asked_bytes = rng.choice(NAMES if kind == "name" else TRIMS)
+            request = session.name(asked_bytes) if kind == "name" else session.trim(asked_bytes)
             status = table.outcome(session, request)
             is_kept = status == "OK"
-            if what == "name":
+            if kind == "name":
                 name.note_request(asked_bytes, is_kept)
             else:
                 trim.note_request(asked_bytes[:3], is_kept)
                 pace.note_request(asked_bytes[3:], is_kept)
-        slots = {"program": PROGRAM, "claim": KEYS}.get(what, (*IDENTITY, *FAULT))
+        slots = {"program": PROGRAM, "claim": KEYS}.get(kind, (*IDENTITY, *FAULT))
         if not is_kept:
             outcome = "it says what is not kept"
-            assert count_worn_slots(worn_bytes, slots), f"{seed} {what} {worn_bytes}"
+            assert count_worn_slots(worn_bytes, slots), f"{seed} {kind} {worn_bytes}"
     robot.talk(session, 1000)
     restarted_robot = OwnedRobot(robot.memory())
-    later = restarted_robot.session(keys, nonce=9)
-    whose = owner_of(restarted_robot, later)
+    later_session = restarted_robot.session(keys, nonce=9)
+    whose = owner_of(restarted_robot, later_session)
     # A robot that cannot store its identity has no keys.
     assert whose in owner.may_be or count_worn_slots(worn_bytes, IDENTITY) == 2, (
         f"{seed} {worn_bytes}"
     )
-    assert later.robot and later.robot.name.encode() in name.may_be, (
-        f"{seed} {worn_bytes} {later.robot}"
+    assert later_session.robot and later_session.robot.name.encode() in name.may_be, (
+        f"{seed} {worn_bytes} {later_session.robot}"
     )
-    trim_reply = restarted_robot.robot.complete(later, later.trim())
+    trim_reply = restarted_robot.robot.complete(later_session, later_session.trim())
     assert trim_reply.pace in pace.may_be, f"{seed} {worn_bytes}"
     assert pack("<BbB", *trim_reply[:3]) in trim.may_be, f"{seed} {worn_bytes}"
-    has_program = restarted_robot.robot.complete(later, later.status()).length != 0
-    image = fetch_image(restarted_robot.robot, later) if has_program else b""
+    has_program = restarted_robot.robot.complete(later_session, later_session.status()).length != 0
+    image = fetch_image(restarted_robot.robot, later_session) if has_program else b""
     assert image in program.may_be, f"{seed} {worn_bytes}"
     return outcome
 
 
 @pytest.mark.sampled("part", keep=2)
 @pytest.mark.parametrize("part", range(10))
-def test_what_is_said_of_what_is_kept_is_true(part: int) -> None:
+def test_reports_about_stored_data_are_true(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 30, part * 30 + 30))
     assert counts["it says what is not kept"] > 1 and counts["all is kept"] > 1, counts
 

@@ -125,7 +125,7 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
         assert states(uno) == OFF
 
 
-def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
+def test_optiboot_lets_a_hung_robot_continue(tmp_path: Path) -> None:
     """Optiboot recognizes the watchdog's reset, does not wait for a sketch, and hides the cause.
 
     With interrupts off, only the cause would show it, and that is unknown then.
@@ -151,7 +151,7 @@ def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
         assert states(uno) == OFF
 
 
-def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
+def test_an_old_nano_continues_without_its_bootloader(tmp_path: Path) -> None:
     """The old bootloader would leave the watchdog on, so the robot restarts without it."""
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
@@ -163,7 +163,7 @@ def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
         assert states(uno) == OFF
 
 
-def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
+def test_an_old_nano_that_hangs_permanently_stays_off_until_a_power_cycle(tmp_path: Path) -> None:
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
         hang(uno, watchdog_ms=WATCHDOG_MS)
@@ -201,7 +201,7 @@ def read_reset_report(uno: Uno) -> tuple[object, ...]:
     return robot.values.reset, robot.values.fault, robot.values.fault_program
 
 
-def test_a_mega_that_was_reset_is_waited_for(
+def test_a_reset_mega_is_waited_for(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """Early bytes keep it in its bootloader, and its profile is that of an Uno."""

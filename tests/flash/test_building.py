@@ -61,7 +61,7 @@ def robot_file(tmp_path: Path) -> Path:
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-def test_a_robot_of_ones_own_is_built_and_written(clone: Path, robot_file: Path) -> None:
+def test_a_custom_robot_is_built_and_written(clone: Path, robot_file: Path) -> None:
     """It is built once and stays ready until one of its sources changes."""
     skip_unless_available()
     variables, reason = prepare()
@@ -94,7 +94,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, robot_file: Path)
 # -- outdated files are not written
 
 
-def test_sources_robot_and_board_make_the_digest(clone: Path, robot_file: Path) -> None:
+def test_the_digest_covers_sources_robot_and_board(clone: Path, robot_file: Path) -> None:
     sources = building.sources()
     assert sources is not None
     digests = {
@@ -117,7 +117,7 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, robot_file: Path) 
     assert len(digests) == 3 + 2 * len(sources.files) > 100
 
 
-def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_out(
+def test_breakpoints_change_the_firmware_only_if_they_replace_a_feature(
     clone: Path,
 ) -> None:
     """For each robot on each board: it is built, refused, or included anyway."""
@@ -139,7 +139,7 @@ def test_a_firmware_with_breakpoints_is_another_one_where_it_leaves_something_ou
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-def test_a_firmware_with_breakpoints_is_kept_beside_the_other_one(clone: Path) -> None:
+def test_firmware_with_breakpoints_is_cached_beside_that_without(clone: Path) -> None:
     """The omitted features are printed before, even if it is ready, and files are never
     confused.
     """
@@ -168,16 +168,14 @@ def test_breakpoints_that_leave_nothing_out_or_have_no_room_are_refused(
     assert (result.code, result.out) == (2, "") and message in result.err
 
 
-def test_the_header_that_somebody_has_made_is_not_the_robot(
-    clone: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_hand_made_header_is_ignored(clone: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(building, "SOURCE_FOLDERS", [clone.parent / "vm_arduino"])
     sources_before = building.sources()
     (clone.parent / "vm_arduino" / building.HEADER_FILE).write_text("#error", encoding="utf-8")
     assert sources_before and building.sources() == sources_before
 
 
-def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
+def test_an_outdated_packaged_file_is_not_used(clone: Path) -> None:
     """`ready` is a folder of the clone, and a pull changes the sources next to it."""
     folder = clone / "tiniscript" / "flash" / "ready"
     folder.mkdir()
@@ -194,7 +192,7 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     (["liner"], "liner", "liner"),  # an answer in another language is better than no robot
     (["tinibot"], None, None),
 ])  # fmt: skip
-def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
+def test_a_package_without_sources_uses_the_file_in_the_robots_language(
     monkeypatch: pytest.MonkeyPatch, titles: list[str], spanish: str | None, english: str | None
 ) -> None:
     files = [ready.ReadyFile(title, "nano", "1", Path(title)) for title in titles]
@@ -229,7 +227,7 @@ ROW = ":0400000001020304F2\n"
     (ROW + ":0000", False),
     ("<p>no file</p>", False),
 ])  # fmt: skip
-def test_a_file_that_is_not_whole_is_built_anew(text: str, is_whole: bool) -> None:
+def test_an_incomplete_file_is_rebuilt(text: str, is_whole: bool) -> None:
     folder = ready.firmware_cache()
     folder.mkdir(parents=True)
     (folder / ready.file_name_of("mine", "uno", "12")).write_text(text)
@@ -281,7 +279,7 @@ def build_firmware(clone: Path, variables: dict[str, str], *words: str) -> Comma
 OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); sys.exit(1)'
 
 
-def test_offline_it_says_what_to_do(clone: Path, tmp_path: Path) -> None:
+def test_an_offline_build_names_the_next_step(clone: Path, tmp_path: Path) -> None:
     result = build_firmware(clone, fake_platformio(tmp_path, OFFLINE), "--lang", "es")
     result.gives(2, "¿Tiene internet esta computadora?", "(HTTPClientError)", out="")
     log = Path(result.err.split()[-1])
@@ -303,7 +301,7 @@ def test_a_build_that_fails_has_its_reason(
     assert "\x1b" not in result.err
 
 
-def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written(
+def test_firmware_too_large_for_the_board_is_refused_before_writing(
     clone: Path, tmp_path: Path
 ) -> None:
     result = build_firmware(clone, fake_platformio(tmp_path, TOO_LARGE))
@@ -315,7 +313,7 @@ def test_a_firmware_that_the_board_does_not_hold_is_refused_before_it_is_written
 @pytest.mark.parametrize(
     ("chip", "missing_text"), [("uno", "sin TASK ni WHEN"), ("nano", "sin control remoto")]
 )
-def test_a_firmware_that_is_too_large_is_built_with_less_and_says_so(
+def test_oversized_firmware_is_built_with_fewer_features_and_a_notice(
     chip: str, missing_text: str, clone: Path, tmp_path: Path
 ) -> None:
     body = f"""
@@ -331,7 +329,7 @@ make(name, ":00000001FF\\n")
     assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 
-def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
+def test_a_partial_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
     body = f'{BUILD_CODE}\nmake("uno", ":0400")'
     build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
@@ -339,16 +337,14 @@ def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) ->
 
 @pytest.mark.sampled("end", keep=2)
 @pytest.mark.parametrize("end", CHILD_ENDS)
-def test_a_build_that_does_not_end_well_has_made_nothing(
-    end: str, clone: Path, tmp_path: Path
-) -> None:
+def test_a_failed_build_leaves_nothing(end: str, clone: Path, tmp_path: Path) -> None:
     """Files that it leaves do not count."""
     body = f'import signal\n{BUILD_CODE}\nmake("uno", ":00000001FF\\n")\n{end}'
     build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
 
-def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
+def test_custom_settings_do_not_affect_the_build(clone: Path, tmp_path: Path) -> None:
     """Settings for a project of the person's own would change the build or its place."""
     body = 'print("Compiling", *sorted(n for n in os.environ if "PLATFORMIO" in n)); sys.exit(1)'
     variables = fake_platformio(tmp_path, body)
@@ -361,7 +357,7 @@ def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
     assert not [name for name in lines if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
 
 
-def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Path) -> None:
+def test_a_pupils_files_are_not_mistaken_for_platformios(clone: Path, tmp_path: Path) -> None:
     """A folder with programs may have a `serial.py` of the pupil's own."""
     own_folder = tmp_path / "mine"
     own_folder.mkdir()
@@ -378,14 +374,14 @@ def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Pat
     assert "my own" not in log and "serial" in log
 
 
-def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
+def test_an_unwritable_cache_is_reported(clone: Path, tmp_path: Path) -> None:
     body = f'{BUILD_CODE}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
     result = build_firmware(clone, fake_platformio(tmp_path, body))
     result.gives(2, "make room there", str(tmp_path / "cache"))
 
 
-def test_a_file_that_cannot_be_removed_yet_fails_no_build(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_undeletable_file_fails_no_build(monkeypatch: pytest.MonkeyPatch) -> None:
     """A virus scanner on Windows may still hold it."""
 
     def raise_busy(path: object, **_: object) -> None:
@@ -415,7 +411,7 @@ time.sleep(600)
 # -- missing parts
 
 
-def test_without_platformio_it_says_how_to_get_it(
+def test_a_missing_platformio_is_reported_with_its_installation(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Here pip may not install; `tests/cli/test_fetching.py` covers the rest."""
@@ -441,7 +437,7 @@ def test_the_platformio_of_the_editor_is_found(
     assert building.platformio() == [str(tmp_path / place)]
 
 
-def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
+def test_a_package_without_sources_names_their_origin(tmp_path: Path) -> None:
     tsc(copy_package(tmp_path), "--build").gives(2, 'pip install ".[firmware]"')
 
 
@@ -458,11 +454,13 @@ def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
     ("Building in release mode\nCompiling a\nCompiling b\n", StepProgress(COMPILING, 20)),
     ("Compiling a\n" * 50, StepProgress(COMPILING, 99)),
 ])  # fmt: skip
-def test_how_far_it_is(expected: str, progress: StepProgress | None) -> None:
+def test_progress_is_parsed_from_the_output(expected: str, progress: StepProgress | None) -> None:
     assert building.parse_progress(expected, 10) == progress
 
 
-def test_all_sources_alone_are_not_enough(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_build_needs_more_than_the_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Arduino's own files follow."""
     script = tmp_path / "pretends.py"
     script.write_text(
@@ -517,9 +515,9 @@ def test_an_esp32_is_built_and_written_in_one_command(clone: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("code", [1, -9])
-def test_an_esp32_that_is_not_written_is_told(clone: Path, tmp_path: Path, code: int) -> None:
+def test_a_failed_write_of_an_esp32_is_reported(clone: Path, tmp_path: Path, code: int) -> None:
     write_firmware(clone, tmp_path, "--lang", "es", code=code).gives(2, "botón BOOT", out="")
 
 
-def test_an_esp32_is_only_built_where_that_is_asked(clone: Path, tmp_path: Path) -> None:
+def test_an_esp32_is_only_built_on_request(clone: Path, tmp_path: Path) -> None:
     write_firmware(clone, tmp_path, "--build", code=1).gives(0, out="the firmware is built.")

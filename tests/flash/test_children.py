@@ -89,7 +89,7 @@ REFUSALS = (FileNotFoundError, PermissionError, MemoryError, ValueError)
 
 @pytest.mark.parametrize("is_pressed", [False, True], ids=["", "Ctrl-C meanwhile"])
 @pytest.mark.parametrize("refusal", REFUSALS)
-def test_ctrl_c_is_heard_where_nothing_could_be_started(
+def test_ctrl_c_works_if_no_process_could_be_started(
     monkeypatch: pytest.MonkeyPatch, refusal: type[Exception], is_pressed: bool
 ) -> None:
     def refuse(*_: object, **__: object) -> None:

@@ -41,13 +41,13 @@ def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProg
 
 
 @pytest.mark.parametrize("message", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
-def test_one_that_writes_for_ever(tmp_path: Path, message: str) -> None:
+def test_an_avrdude_that_writes_for_ever_is_ended(tmp_path: Path, message: str) -> None:
     assert (
         write_and_watch(tmp_path, WRITING_CODE.format(said=message))[0].outcome == avrdude.ENDLESS
     )
 
 
-def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
+def test_progress_is_reported_until_avrdude_is_ended(tmp_path: Path) -> None:
     wait_code = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
     body = (
         f'print("{HALF_OUTPUT}", flush=True)\n' + wait_code + WRITING_CODE.format(said=" waiting\n")
@@ -57,20 +57,24 @@ def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
     assert StepProgress(avrdude.WRITING, 50) in steps
 
 
-def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_avrdude_that_prints_for_ever_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Though it is never silent, it times out."""
     monkeypatch.setattr(avrdude, "RUN_TIMEOUT_S", 1.0)
     body = 'import time\nwhile True: print(".", flush=True); time.sleep(0.02)\n'
     assert write_and_watch(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
-def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_avrdude_that_closes_its_output_but_stays_is_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(avrdude, "EXIT_TIMEOUT_S", 0.1)
     body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
     assert write_and_watch(tmp_path, body)[0].outcome == avrdude.ENDLESS
 
 
-def test_a_slow_reader_takes_nothing_of_the_file_that_is_opened_next(
+def test_a_slow_reader_reads_nothing_of_the_next_opened_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A number of a file that is closed is the next one's: that is the port."""
@@ -109,7 +113,7 @@ def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")
 @pytest.mark.parametrize("parent_code", [WRITING_CODE.format(said="x"), "sys.exit(1)"])
-def test_its_children_end_with_it(tmp_path: Path, parent_code: str) -> None:
+def test_children_of_avrdude_end_with_it(tmp_path: Path, parent_code: str) -> None:
     note = tmp_path / "child"
     sleep = f"[{sys.executable!r}, '-c', 'import time; time.sleep(600)']"
     body = (
@@ -121,12 +125,12 @@ def test_its_children_end_with_it(tmp_path: Path, parent_code: str) -> None:
     until(partial(has_ended, note.read_text()), "its child has ended")
 
 
-def test_the_sentence_says_what_to_do() -> None:
+def test_the_message_names_the_next_step() -> None:
     for sentence in texts_in_all_languages("flash_endless"):
         assert "avrdude" in sentence and "{port}" in sentence
 
 
-def test_ctrl_c_while_one_is_started_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_during_the_start_of_avrdude_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """The signal is heard before anybody knows the program."""
     processes: list[subprocess.Popen[bytes]] = []
     real_popen = subprocess.Popen

@@ -83,7 +83,7 @@ def test_a_new_board_becomes_a_robot(
         assert second_line.startswith(f"{robot} on {uno.pty}, id ")
 
 
-def test_a_board_without_a_bootloader_stays_as_it_is(
+def test_a_board_without_a_bootloader_is_not_changed(
     package: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """The robot's own firmware does not answer avrdude."""
@@ -108,7 +108,7 @@ def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
         assert f"la placa en {uno.pty} no es un uno" in result.err
 
 
-def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
+def test_a_faulty_flash_memory_is_noticed(package: Path, tmp_path: Path) -> None:
     loader = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
     with new_board(loader) as uno:
         tsc(package, "--port", uno.pty).gives(
@@ -116,7 +116,7 @@ def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -
         )
 
 
-def test_a_port_in_use_is_said(package: Path) -> None:
+def test_a_port_in_use_is_reported(package: Path) -> None:
     with new_board(bootloader("uno")) as uno, serial.Serial(uno.pty, exclusive=True):
         tsc(package, "--port", uno.pty).gives(3, "another program is using the port")
 
@@ -160,12 +160,12 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
     assert (tmp_path / "bauds").read_text() == "115200 57600 "
 
 
-def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> None:
+def test_a_partial_firmware_is_reported(package: Path, board: Uno, tmp_path: Path) -> None:
     body = f'{PROGRESS_CODE}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
     tsc(package, "--port", board.pty, **fake(tmp_path, body)).gives(3, "its firmware is incomplete")
 
 
-def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
+def test_ctrl_c_during_a_write_reports_the_state_of_the_board(
     package: Path, board: Uno, tmp_path: Path
 ) -> None:
     marker = tmp_path / "told"
@@ -182,7 +182,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
 
 
 @pytest.mark.parametrize("count", range(4))
-def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
+def test_ctrl_c_reports_a_partial_firmware_from_the_first_byte_on(
     count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before the first byte there is no such warning, because the board is unchanged."""
@@ -201,7 +201,7 @@ def test_ctrl_c_says_half_a_firmware_from_the_first_byte_on(
     assert getattr(exception_info.value, "key", None) == ("flash_stopped" if count else None)
 
 
-def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
+def test_a_missing_avrdude_is_reported_with_its_source(package: Path, tmp_path: Path) -> None:
     result = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
     assert result.code == 2
     assert "avrdude" in result.err and firmware_command.INSTALLS[sys.platform] in result.err
@@ -252,12 +252,12 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, "avrdude: cannot find its settings"),
     (avrdude.FAILED, ""),
 ])  # fmt: skip
-def test_what_avrdude_says_has_a_name(outcome: str, name: str) -> None:
+def test_messages_of_avrdude_map_to_outcomes(outcome: str, name: str) -> None:
     for code in (1, 255, -9, -15):  # including exits by a signal from outside
         assert avrdude.result_of(code, name).outcome == outcome
 
 
-def test_every_end_has_its_sentence() -> None:
+def test_every_outcome_has_its_message() -> None:
     for outcome in avrdude.OUTCOMES:
         assert has_text(f"flash_{outcome}")
 
@@ -271,7 +271,7 @@ def test_every_end_has_its_sentence() -> None:
      ("reading", 2)),
     ("Writing 15630 bytes flash | #####", ("writing", 10)),
 ])  # fmt: skip
-def test_how_far_it_is(expected: str, progress: object) -> None:
+def test_progress_is_parsed_from_the_output(expected: str, progress: object) -> None:
     assert avrdude.parse_progress(expected) == progress
 
 
@@ -301,7 +301,7 @@ def test_a_firmware_is_the_same_however_it_is_built(
     assert words == other_words
 
 
-def test_every_board_of_the_option_is_one_that_is_built() -> None:
+def test_every_board_of_the_option_is_built() -> None:
     built = {name.partition("_")[0] for name in firmware_size.environments()}
     assert {board for board, _ in BOARDS.values()} == built
     brought = {
@@ -315,7 +315,7 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
     }
 
 
-def test_breakpoints_are_built_where_they_take_the_place_of_the_reader_of_text() -> None:
+def test_breakpoints_are_built_only_if_they_replace_the_text_reader() -> None:
     """For each robot on each board that lacks one of the two."""
     for robot in firmware_files.shipped_robots():
         halting_boards = [
@@ -334,7 +334,7 @@ def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
     assert "https://github.com/arduino/ArduinoCore-avr" in firmware_files.NOTICE_TEXT
 
 
-def test_what_came_with_the_package_is_listed(package: Path) -> None:
+def test_packaged_firmware_is_listed(package: Path) -> None:
     result = tsc(package, "--list").gives(0)
     files = ready.files(package / "tiniscript" / "flash" / "ready")
     assert [(file.title, file.board) for file in files] == [
@@ -355,7 +355,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
     (["--build", "--robot", "nobody"], "nobody"),
 ])  # fmt: skip
-def test_wrong_use_is_said(words: list[str], message: str, tsc: Tsc) -> None:
+def test_wrong_use_is_reported(words: list[str], message: str, tsc: Tsc) -> None:
     is_told_without = "--chip" in words or "--robot" in words
     need("" if is_told_without or shutil.which("avrdude") else "no avrdude on this computer")
     result = tsc("firmware", "--yes", *words)

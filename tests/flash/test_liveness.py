@@ -72,7 +72,7 @@ def watch_parts(
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_what_goes_on_is_waited_for(clock: Clock, seed: int) -> None:
+def test_a_write_that_progresses_is_waited_for(clock: Clock, seed: int) -> None:
     """A Mega, and one that is as slow as may be, with pauses that are nearly too long."""
     rng = random.Random(seed)
     parts = output(rng, rng.choice((10, MEGA_S, 200)), NO_ANSWER_TIMEOUT_S - 1)
@@ -80,7 +80,7 @@ def test_what_goes_on_is_waited_for(clock: Clock, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_what_stands_still_ends(clock: Clock, seed: int) -> None:
+def test_a_write_without_progress_is_ended(clock: Clock, seed: int) -> None:
     rng = random.Random(seed)
     parts = output(rng, MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
     first_parts = parts[: rng.randrange(len(parts) - 1)]
@@ -107,7 +107,7 @@ def test_a_bootloader_that_misses_the_first_try_is_waited_for(clock: Clock, fail
     assert failed < 2 or end_s < 5.0 * 2 + 2 * LOOK_S
 
 
-def test_what_only_says_something_ends(clock: Clock) -> None:
+def test_output_without_progress_does_not_prevent_the_timeout(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
     result, end_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
     assert result == WriteResult(avrdude.ENDLESS) and end_s < RUN_TIMEOUT_S + 2 * LOOK_S

@@ -61,7 +61,7 @@ def names_stand_in_if_used(log: str) -> bool:
 # -- the tests in C++ ---------------------------------------------------------------------------
 
 
-def test_tests_pass(native: Path) -> None:
+def test_firmware_tests_pass(native: Path) -> None:
     log = pio(native, "test", "-e", "native").gives(0).out
     count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
     files = "".join(path.read_text(encoding="utf-8") for path in native.glob("test/*.cpp"))
@@ -80,12 +80,12 @@ def test_a_failing_test_case_is_reported_by_name(native: Path) -> None:
     assert f"{len(names)} failed, " in log.splitlines()[-1] + log.splitlines()[-2], log
 
 
-def test_no_test_case_fails(native: Path) -> None:
+def test_cpp_test_cases_pass(native: Path) -> None:
     result = pio(native, "test", "-e", "native", "-a", "--test-case=no such case")
     result.gives(1, out="no test case has run")
 
 
-def test_early_end_fails(native: Path) -> None:
+def test_an_early_end_of_the_tests_fails(native: Path) -> None:
     """A run that stops in the middle is a failure, whatever its exit code."""
     broken_path = native / "test" / "test_cases.cpp"
     with change_file(
@@ -96,7 +96,7 @@ def test_early_end_fails(native: Path) -> None:
         pio(native, "test", "-e", "native").gives(1, out="have ended before their end")
 
 
-def test_tests_are_for_a_computer(native: Path) -> None:
+def test_firmware_tests_are_built_for_the_computer(native: Path) -> None:
     pio(native, "test", "-e", "uno").gives(1, out="pio test -e native")
 
 
@@ -135,7 +135,7 @@ def test_every_robot_has_a_sketch_for_its_board() -> None:
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 @pytest.mark.parametrize("name", SKETCHES)
-def test_sketch_builds(project: Path, name: str) -> None:
+def test_the_sketch_builds(project: Path, name: str) -> None:
     log = pio(project, "run", "-e", name).gives(0).out
     assert names_stand_in_if_used(log)
     assert "warning" not in log, log
@@ -146,7 +146,7 @@ def test_sketch_builds(project: Path, name: str) -> None:
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-def test_a_sketch_that_the_board_does_not_hold_is_refused(project: Path) -> None:
+def test_an_oversized_sketch_is_refused(project: Path) -> None:
     with change_file(
         project / "platformio.ini",
         ("= nanoatmega328\n", "= nanoatmega328\nboard_upload.maximum_size = 20000\n"),
@@ -165,7 +165,7 @@ def test_an_interrupt_without_a_vector_is_refused(project: Path) -> None:
 
 
 @pytest.mark.parametrize(("board", "arduino"), ARDUINO_BOARDS.items())
-def test_a_board_holds_what_its_fuses_leave(board: str, arduino: str) -> None:
+def test_the_capacity_of_a_board_follows_its_fuses(board: str, arduino: str) -> None:
     """The size of the bootloader's section follows from the high fuse, not from the bootloader's
     size."""
     path = ARDUINO / "boards.txt"
@@ -198,7 +198,7 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
+def test_the_sketch_of_a_custom_robot_builds(project: Path) -> None:
     """`tsc firmware --board` writes its header, and from then on the sketch is for it."""
     kit_header = project / "src" / "boards" / "kits" / "own.h"
     pio(project, "run", "-e", "uno").gives(0)
@@ -242,7 +242,7 @@ def run_offline(*words: str, **variables: str) -> CommandResult:
     return CommandResult(completed.returncode, completed.stdout, completed.stderr)
 
 
-def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
+def test_the_users_platformio_is_left_alone(project: Path, tmp_path: Path) -> None:
     manifest = tmp_path / "platforms" / "native" / "platform.json"
     manifest.parent.mkdir(parents=True)
     manifest.write_text("{}")
@@ -251,7 +251,7 @@ def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
 
 
-def test_every_platform_has_its_version_and_another_one_is_refused(
+def test_every_platform_is_pinned_and_other_versions_are_refused(
     project: Path, tmp_path: Path
 ) -> None:
     settings = (project / "platformio.ini").read_text(encoding="utf-8")
@@ -262,5 +262,5 @@ def test_every_platform_has_its_version_and_another_one_is_refused(
     result.gives(2, "wants atmelavr @ 5.0.0, the stand-in is one for 5.1.0", out="")
 
 
-def test_command_runs_in_the_project(project: Path) -> None:
+def test_the_command_runs_in_the_project(project: Path) -> None:
     run_offline("--project", str(project), "pio", "project", "config").gives(0, out="env:native")

@@ -72,8 +72,10 @@ def harness(name: str) -> Path:
     for pattern in PARTS[name]:
         code += sorted(SOURCES.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(SOURCES.glob(pattern))]
-    own = DEFINES_BY_HARNESS.get(name, ()) + (() if name == "machine" else (NO_TRACE_CMP_FLAG,))
-    return build_with(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
+    own_defines = DEFINES_BY_HARNESS.get(name, ()) + (
+        () if name == "machine" else (NO_TRACE_CMP_FLAG,)
+    )
+    return build_with(COMPILER, [*code, *headers], (*FLAGS, *own_defines, *WARNINGS))
 
 
 class Found(NamedTuple):
@@ -98,9 +100,9 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
         count = DONE_LINE.search(output)
         assert count, output[-2000:]
         return Found(int(count[1]), "", b"")
-    wrong = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", output)
+    errors = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", output)
     data = crash.read_bytes() if crash.exists() else b""
-    return Found(0, "; ".join(wrong[:3]) or output[-2000:], data)
+    return Found(0, "; ".join(errors[:3]) or output[-2000:], data)
 
 
 # -- the first inputs -----------------------------------------------------------------------------
@@ -176,9 +178,9 @@ def main() -> int:
     parser.add_argument("runs", type=int)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    why = missing()
-    if why:
-        print(why)
+    reason = missing()
+    if reason:
+        print(reason)
         return 2
     with tempfile.TemporaryDirectory() as folder:
         inputs = first_inputs(options.name, Path(folder))

@@ -33,7 +33,7 @@ FOUND_INPUTS: dict[str, tuple[str, ...]] = {
 
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", NAMES)
-def test_nothing_is_wrong(name: str, tmp_path: Path) -> None:
+def test_fuzzing_finds_no_error(name: str, tmp_path: Path) -> None:
     inputs = first_inputs(name, tmp_path)
     for number, text in enumerate(FOUND_INPUTS.get(name, ())):
         (inputs / f"found-{number}").write_bytes(bytes.fromhex(text))

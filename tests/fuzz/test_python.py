@@ -58,15 +58,15 @@ def changed_texts(pattern: str) -> SearchStrategy[str]:
 
     def change(text: str, edits: list[tuple[float, int, str]]) -> str:
         for where, removed_count, piece in edits:
-            at = int(where * len(text))
-            text = text[:at] + piece + text[at + removed_count :]
+            index = int(where * len(text))
+            text = text[:index] + piece + text[index + removed_count :]
         return text
 
     edit = st.tuples(
         st.floats(0, 1), st.integers(0, 40), st.one_of(st.sampled_from(PIECES), st.text(max_size=9))
     )
-    near = st.builds(change, st.sampled_from(_texts(pattern)), st.lists(edit, max_size=6))
-    return st.one_of(near, st.text(max_size=300))
+    changed = st.builds(change, st.sampled_from(_texts(pattern)), st.lists(edit, max_size=6))
+    return st.one_of(changed, st.text(max_size=300))
 
 
 # -- laws ------------------------------------------------------------------------------------------
@@ -211,7 +211,7 @@ def make(kind: str, count: int, number: int) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_anything_is_taken_or_refused(kind: str) -> None:
+def test_any_input_is_accepted_or_refused(kind: str) -> None:
     make(kind, EXAMPLES, 1)
 
 

@@ -44,36 +44,38 @@ def test_a_catalogue_has_the_gaps_and_the_keys_of_the_english_one(language: str,
     catalogue = languages.merged_catalogue(name, language)
     assert catalogue.problems == []
     assert [
-        at for at, entry in catalogue.entries.items() if entry.translation and entry.is_stale
+        key for key, entry in catalogue.entries.items() if entry.translation and entry.is_stale
     ] == []
     assert [
-        at for at, entry in catalogue.entries.items() if entry.seen_hash == UNKNOWN_HASH
+        key for key, entry in catalogue.entries.items() if entry.seen_hash == UNKNOWN_HASH
     ] == [], f"python -m tools.languages --seen {language}"
     if read_language(FOLDER / language / ABOUT_FILE).is_complete:
-        wanted_keys = {at for at, entry in SOURCES[name].entries.items() if not entry.is_same}
-        translated = {at for at, entry in catalogue.entries.items() if entry.is_translated}
+        wanted_keys = {key for key, entry in SOURCES[name].entries.items() if not entry.is_same}
+        translated = {key for key, entry in catalogue.entries.items() if entry.is_translated}
         assert wanted_keys <= translated
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
-def test_a_language_is_in_step(language: str, tmp_path: Path) -> None:
+def test_a_language_is_up_to_date(language: str, tmp_path: Path) -> None:
     """The tool would write the same files."""
-    own = Translation(language, sources())
-    bytes_before = {path.name: path.read_bytes() for path in own.folder.iterdir() if path.is_file()}
-    assert [path for path, problems in own.problems() if problems] == []
-    assert [*own.follow_moved_texts()] == []
-    own.folder = tmp_path
-    own.write()
+    translation = Translation(language, sources())
+    bytes_before = {
+        path.name: path.read_bytes() for path in translation.folder.iterdir() if path.is_file()
+    }
+    assert [path for path, problems in translation.problems() if problems] == []
+    assert [*translation.follow_moved_texts()] == []
+    translation.folder = tmp_path
+    translation.write()
     for path in tmp_path.iterdir():
         assert path.read_bytes() == bytes_before[path.name], "python -m tools.languages"
 
 
 @pytest.mark.parametrize("language", ["es", "pt"])
-def test_a_whole_language_promises_to_be_complete(language: str) -> None:
+def test_a_complete_language_is_declared_complete(language: str) -> None:
     assert read_language(FOLDER / language / ABOUT_FILE).is_complete
 
 
-def test_what_messages_call_the_values_of_words_is_a_term() -> None:
+def test_names_of_word_values_in_messages_are_terms() -> None:
     """Otherwise a message in another language would contain an English name; a letter is the same
     in each language."""
     values = [argument for word in WORDS.values() for argument in word.arguments]
@@ -96,15 +98,15 @@ def test_the_names_in_toml_files_are_translated() -> None:
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
-def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_path: Path) -> None:
+def test_no_language_depends_on_another(language: str, tmp_path: Path) -> None:
     """No file outside its folder names it, so no row becomes unknown."""
     package = tmp_path / "tiniscript"
     link_copy(FOLDER.parent, package, "*.texts", "__pycache__", "page", "ready")
     shutil.rmtree(package / "languages" / language)
-    others = [code for code in languages.languages() if code != language]
+    other_languages = [code for code in languages.languages() if code != language]
     commands = [
-        [*words, "--lang", other]
-        for other in others
+        [*words, "--lang", other_language]
+        for other_language in other_languages
         for words in (
             ("check", "-e", "F(2 80)"), ("check", "--explain", "TS017"), ("lesson",), ("complie",),
             ("lesson", "show", "1", "--teacher"), ("firmware", "--wiring", "--robot", "liner"),
@@ -114,7 +116,7 @@ def test_a_language_that_is_deleted_is_missed_by_no_other(language: str, tmp_pat
     commands.append(["check", "-e", "W(1)", "--lang", language])
     *outputs, (code, refused_text) = _outputs_of_package(tmp_path, commands)
     assert outputs == _outputs_of_package(FOLDER.parent.parent, commands)[:-1]
-    assert code == 2 and all(other in refused_text for other in others)
+    assert code == 2 and all(other_language in refused_text for other_language in other_languages)
 
 
 def _outputs_of_package(place: Path, commands: list[list[str]]) -> list[tuple[int, str]]:
@@ -139,7 +141,7 @@ def _outputs_of_package(place: Path, commands: list[list[str]]) -> list[tuple[in
 
 
 @pytest.mark.parametrize("language", languages.languages())
-def test_each_robot_can_say_its_texts_and_each_row_of_a_lexicon_is_known(language: str) -> None:
+def test_robot_texts_fit_and_lexicon_rows_are_known(language: str) -> None:
     assert [*check_robot(languages.merged_catalogue("robot", language))] == []
     assert [*check_lexicon(language)] == []
 
@@ -153,7 +155,7 @@ def test_a_locale_has_a_language_or_english(name: str, language: str) -> None:
     assert languages.find_language(name) == language
 
 
-def test_the_variables_of_a_locale_count_as_everywhere() -> None:
+def test_locale_variables_have_the_usual_precedence() -> None:
     assert language_of([], {"LC_ALL": "C", "LANG": "es_PE.UTF-8"}) == "en"
     assert language_of([], {"LC_ALL": "", "LANG": "es_PE.UTF-8"}) == "es"
     assert language_of(["--lang", "xx"], {"LANG": "es_PE.UTF-8"}) == "es"
@@ -201,7 +203,7 @@ SAID = (
 
 
 @pytest.mark.parametrize("words", SAID, ids=" ".join)
-def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
+def test_sentences_are_wrapped_for_a_terminal_but_not_for_a_pipe(
     longer: str, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("LC_ALL", longer)
@@ -230,7 +232,7 @@ def test_a_terminal_has_sentences_in_its_width_and_a_pipe_each_in_one_row(
     ("  seen: a port that is", ["  seen: a port that", "  is"]),
     ("one\n\nhttp://long.example/a/page", ["one", "", "http://long.example/a/page"]),
 ])  # fmt: skip
-def test_a_command_stays_in_one_row_where_there_is_room(text: str, rows: list[str]) -> None:
+def test_a_command_stays_in_one_row_if_it_fits(text: str, rows: list[str]) -> None:
     assert wrap(text, 20) == "\n".join(rows)
 
 
@@ -248,10 +250,12 @@ def test_texts_that_are_longer_keep_to_80_columns(
             monkeypatch.setenv("LC_ALL", language)
             rows[language] = tsc(*words).out.splitlines()
         assert [row for row in rows[longer] if len(row) > 80] == [], words
-        same = {
+        equal_texts = {
             row for row in {*rows[SOURCE_LANGUAGE]} & {*rows[longer]} if "$(" not in row
         }  # no code
-        assert [row for row in same if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], words
+        assert [row for row in equal_texts if re.search(r"^ *\w.*[a-z]{3} [a-z]{3}", row)] == [], (
+            words
+        )
 
 
 # Phrases that no native speaker uses: brackets that keep, a DEF or a part that is "made", a task
@@ -264,7 +268,7 @@ UNSAID = {
 
 
 @pytest.mark.parametrize("language", UNSAID)
-def test_a_message_says_nothing_that_nobody_says(language: str) -> None:
+def test_no_message_is_unused(language: str) -> None:
     texts = [
         text
         for key, texts in messages_of(language).items()

@@ -24,7 +24,7 @@ from tiniscript.recovery.rewrites import cells
 SPECIAL = re.compile(r"""(?:==|===|!=) ?["'](?:es|en|pt)["']|["'](?:es|en|pt)["'] (?:==|===)""")
 
 
-def test_no_code_asks_for_one_language() -> None:
+def test_no_code_checks_for_a_particular_language() -> None:
     folders = ("compiler/tiniscript", "tools", "vm_arduino")
     counts = {}
     for path in sorted(path for folder in folders for path in (ROOT / folder).rglob("*")):
@@ -55,14 +55,14 @@ def _words(language: str) -> set[str]:
 
 def test_words_of_a_language_are_in_its_folder() -> None:
     """Patterns of characters have some that are said for signs: `punto y coma`."""
-    theirs = set().union(*map(_words, languages())) - _words(SOURCE_LANGUAGE) - {*WORDS}
+    foreign_words = set().union(*map(_words, languages())) - _words(SOURCE_LANGUAGE) - {*WORDS}
     words_in_code = set()
     for path in sorted((ROOT / "compiler/tiniscript").rglob("*.py")):
         if "page" in path.parts:
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                words_here = theirs.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
+                words_here = foreign_words.intersection(re.findall(r"\b[A-Z_]{4,}\b", node.value))
                 if " " not in node.value.strip() or node.value.isupper():
                     words_in_code |= {f"{path.name}: {word}" for word in words_here}
     assert words_in_code == set()
@@ -73,7 +73,7 @@ def test_words_of_a_language_are_in_its_folder() -> None:
 WRITTEN = {"X", "TONE", "TO", "A", "FL", "LF", "FR", "RF", "UN", "TIL", "TSC"}
 
 
-def test_rows_name_no_word_of_a_language() -> None:
+def test_rows_contain_no_word_of_a_language() -> None:
     pieces = [*rows.PARTS.values(), *suggestion_rows.PARTS.values()]
     patterns = [
         row[0] for table in (rows.TOKENS, suggestion_rows.SUGGESTIONS) for row in cells(table)
@@ -90,7 +90,7 @@ def test_rows_name_no_word_of_a_language() -> None:
         if read_language(FOLDER / language / ABOUT_FILE).is_complete
     ],
 )
-def test_each_language_says_how_much_and_what_pupils_call_things(language: str) -> None:
+def test_each_language_has_words_for_amounts_and_things(language: str) -> None:
     """A word's meaning in one language, `poco`, is also in the others, `pouco`."""
     kinds = {meaning.split()[0] for meaning, words in _rows(language) if words}
     wanted_text = (

@@ -76,10 +76,12 @@ def text_of(key: str, language: str = "xx") -> str | dict[str, str]:
     return languages.texts("some", language)[key]
 
 
-def open_translation(place: Path, own: str | None = None, is_seen: bool = False) -> Translation:
+def open_translation(
+    place: Path, own_text: str | None = None, is_seen: bool = False
+) -> Translation:
     """Return the translation `xx` as the tool sees it; `is_seen`: of the current English texts."""
-    if own is not None:
-        write(place / "xx" / "some.toml", own)
+    if own_text is not None:
+        write(place / "xx" / "some.toml", own_text)
     english = {"some": catalogue_source.load_catalogue(place / SOURCE_LANGUAGE / "some.toml")}
     translation = Translation("xx", english)
     if is_seen:
@@ -95,7 +97,7 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
 # -- mistakes
 
 
-@pytest.mark.parametrize(("row", "line", "why"), [
+@pytest.mark.parametrize(("row", "line", "reason"), [
     ('a = "Lee {fila}."', 2, "a: {file} is missing"),
     ('a = "Lee {file} {x}."', 2, "a: {x} is no gap of the English text"),
     ('a = "Lee {file}}."', 2, "a: a brace { or } has no other half"),
@@ -120,27 +122,27 @@ def problems(translation: Translation) -> list[tuple[str, int, str]]:
     ('n.one = "{n} byte"\nn.one = "{n} bytes"', 3, "n: it is there twice"),
     ('n.one = "{n} byte"\nn.other = "{m} bytes"', 2, "n: {n} is missing"),
 ])  # fmt: skip
-def test_what_is_wrong_costs_its_row_and_is_said_with_its_line(
-    row: str, line: int, why: str, place: Path
+def test_an_invalid_row_is_dropped_and_reported_with_its_line(
+    row: str, line: int, reason: str, place: Path
 ) -> None:
     rows = problems(open_translation(place, f"{OWN}{row}\nmore = ['', 'Quítalo.']\n"))
-    assert rows[0][:2] == ("some.toml", line) and rows[0][2].startswith(why)
+    assert rows[0][:2] == ("some.toml", line) and rows[0][2].startswith(reason)
     assert text_of("b") == "Alto." and text_of("more/2") == "Quítalo."
     if not row.startswith(("b", 'a = "Lee {file}."\n', 'a = ["Lee {file}.", "Mi')):
         assert text_of("a") == "Read {file}."
-    before = (place / "xx" / "some.toml").read_text().splitlines()
+    rows_before = (place / "xx" / "some.toml").read_text().splitlines()
     reopened_translation = open_translation(place)
     assert [*reopened_translation.follow_moved_texts()] == []
     reopened_translation.write()
-    after = (place / "xx" / "some.toml").read_text().splitlines()
-    assert sorted(after) == sorted(before), "it keeps what somebody must mend"
+    rows_after = (place / "xx" / "some.toml").read_text().splitlines()
+    assert sorted(rows_after) == sorted(rows_before), "it keeps what somebody must mend"
 
 
 @pytest.mark.parametrize(("data", "line"), [
     (OWN.encode() + 'a = "Lée {file}."\n'.encode("latin-1"), 2),
     (OWN.encode() + b"\xff\n", 2),
 ])  # fmt: skip
-def test_a_row_that_is_not_in_utf_8_is_said_in_english(data: bytes, line: int, place: Path) -> None:
+def test_a_row_not_in_utf_8_falls_back_to_english(data: bytes, line: int, place: Path) -> None:
     (place / "xx" / "some.toml").write_bytes(data)
     assert ("some.toml", line, "this is no UTF-8: save the file as UTF-8") in problems(
         open_translation(place)
@@ -164,23 +166,23 @@ def test_changes_that_an_editor_makes_to_a_file_are_allowed(place: Path) -> None
     assert text_of("b") == "Alto." and text_of("a") == "Lee\n{file}."
 
 
-@pytest.mark.parametrize(("row", "line", "why"), [
+@pytest.mark.parametrize(("row", "line", "reason"), [
     ("some b", 1, "this is no file, key and hash: some b"),
     ("some b 123", 1, "this is no file, key and hash: some b 123"),
     ("# note\n\nsome b 00000000\nsome b 00000000", 4, "some b is there twice"),
 ])  # fmt: skip
-def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
-    row: str, line: int, why: str, place: Path
+def test_an_invalid_hash_is_reported_with_its_line_and_kept(
+    row: str, line: int, reason: str, place: Path
 ) -> None:
     write(place / "xx" / SEEN_FILE, row)
-    own = open_translation(place, OWN)
-    assert problems(own) == [(SEEN_FILE, line, why)]
-    own.note_seen(["*"])
-    own.write()
+    translation = open_translation(place, OWN)
+    assert problems(translation) == [(SEEN_FILE, line, reason)]
+    translation.note_seen(["*"])
+    translation.write()
     assert (place / "xx" / SEEN_FILE).read_text() == row
 
 
-@pytest.mark.parametrize(("row", "line", "why"), [
+@pytest.mark.parametrize(("row", "line", "reason"), [
     ('name = 5', 1, "name: it is no text"),
     ('\nforms = "one"', 2, "forms: it is no list"),
     ('forms = ["one", "some"]', 1, "forms: it is no list of some of zero, one, two, few, many, "),
@@ -194,12 +196,12 @@ def test_what_is_wrong_in_the_hashes_is_said_with_its_line_and_kept(
     ('name = "X"\nname = "Y"', 2, "name: it is there twice"),
     ('name = "X', 1, "this is no TOML: Illegal character"),
 ])  # fmt: skip
-def test_what_a_language_cannot_say_of_itself_is_as_in_english(
-    row: str, line: int, why: str, place: Path
+def test_invalid_language_settings_fall_back_to_english(
+    row: str, line: int, reason: str, place: Path
 ) -> None:
     write(place / "xx" / ABOUT_FILE, row + "\n")
-    ((name, at, problem),) = problems(open_translation(place, OWN))
-    assert (name, at) == (ABOUT_FILE, line) and problem.startswith(why)
+    ((name, line_number, problem),) = problems(open_translation(place, OWN))
+    assert (name, line_number) == (ABOUT_FILE, line) and problem.startswith(reason)
     languages.forget_languages()
     assert languages.language_info("xx").forms == ("one", "other")
     assert text_of("b") == "Alto."
@@ -225,17 +227,19 @@ def test_no_bytes_in_a_file_stop_a_command(data: bytes) -> None:
         )
 
 
-def test_what_cannot_be_read_is_wrong_and_costs_the_file(
+def test_an_unreadable_file_is_reported_and_dropped(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own = place / "xx" / "some.toml"
-    write(own, OWN)
+    own_path = place / "xx" / "some.toml"
+    write(own_path, OWN)
 
     def refuse_access(path: Path) -> bytes:
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "read_bytes", refuse_access)
-    assert read_translation_file(own).problems == [(1, "this cannot be read: Permission denied")]
+    assert read_translation_file(own_path).problems == [
+        (1, "this cannot be read: Permission denied")
+    ]
 
 
 # -- contents of a language
@@ -274,17 +278,19 @@ def test_a_form_that_no_number_has_may_be_missing(place: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(("language", "many", "one"), [
+@pytest.mark.parametrize(("language", "plural_text", "singular_text"), [
     ("en", "{n} checks", "1 check"), ("es", "{n} pruebas", "1 prueba"),
 ])  # fmt: skip
-def test_a_sentence_has_the_form_of_its_number(language: str, many: str, one: str) -> None:
-    sentence = Sentence(many)
+def test_a_sentence_has_the_form_of_its_number(
+    language: str, plural_text: str, singular_text: str
+) -> None:
+    sentence = Sentence(plural_text)
     sentence.language = language
-    assert sentence.format(n="1") == one
-    assert sentence.format(n=0) != f"0 {one[2:]}"
+    assert sentence.format(n="1") == singular_text
+    assert sentence.format(n=0) != f"0 {singular_text[2:]}"
 
 
-def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
+def test_a_stale_text_is_shown_in_english_until_reviewed(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     open_translation(place, OWN + 'a = "Lee {file}."\n')
@@ -292,8 +298,8 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     open_translation(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     assert text_of("b") == "Stop now." and text_of("a") == "Lee {file}."
-    own = open_translation(place)
-    assert tool.report(own) == 0
+    translation = open_translation(place)
+    assert tool.report(translation) == 0
     out = capsys.readouterr().out
     assert "some.toml:2: b: its English text has changed, and so it is said in English: St" in out
     assert "xx: 1 texts are stale." in out and "xx: 1 of 5 texts are translated" in out
@@ -301,25 +307,23 @@ def test_a_stale_text_is_said_in_english_until_somebody_has_looked_at_it(
     assert tool.report(open_translation(place)) == 4, "a whole language says all, and as it is now"
     open_translation(place, is_seen=True)
     assert text_of("b") == "Stop now.", "somebody has run the tool for others"
-    assert own.note_seen(["x*", "b"]) == ["x*"]
-    own.write()
+    assert translation.note_seen(["x*", "b"]) == ["x*"]
+    translation.write()
     assert text_of("b") == "Alto."
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH)
     assert text_of("b") == "Stop.", "of the text before it is none now"
 
 
 @pytest.mark.parametrize("has_run", [False, True])
-def test_a_text_in_front_of_others_moves_and_loses_no_translation(
-    place: Path, has_run: bool
-) -> None:
+def test_a_text_inserted_in_front_loses_no_translation(place: Path, has_run: bool) -> None:
     open_translation(place, 'more = ["", "Quítalo.", "Ponlo."]\n', is_seen=True)
     moved_text = ENGLISH.replace('["{fix}", "Take it out.", "Put it in."]',
                             '["New.", "Put it in.", "{fix}", "Take it out."]')  # fmt: skip
     write(place / SOURCE_LANGUAGE / "some.toml", moved_text)
     if has_run:
-        own = open_translation(place)
-        assert [*own.follow_moved_texts()] == []
-        own.write()
+        translation = open_translation(place)
+        assert [*translation.follow_moved_texts()] == []
+        translation.write()
         assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
             'more = ["", "Ponlo.", "", "Quítalo."]\n'
         )
@@ -333,26 +337,26 @@ def test_a_text_in_front_of_others_moves_and_loses_no_translation(
     assert text_of("more") == ("Nuevo." if has_run else "New.")
 
 
-def test_a_new_text_of_a_list_whose_english_has_moved_is_none_of_another_text(place: Path) -> None:
+def test_a_new_list_item_does_not_take_a_moved_translation(place: Path) -> None:
     open_translation(place, 'more = ["", "Quítalo."]\n', is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace('"{fix}", ', '"{fix}", "New.", '))
-    ((_, line, why),) = problems(open_translation(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
-    assert line == 1 and why.startswith("more: its English texts have other places now")
+    ((_, line, reason),) = problems(open_translation(place, 'more = ["", "Nuevo.", "Quítalo."]\n'))
+    assert line == 1 and reason.startswith("more: its English texts have other places now")
     assert text_of("more/2") == "New."
 
 
-def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(place: Path) -> None:
+def test_a_translation_and_its_note_follow_the_english_text(place: Path) -> None:
     """Deleted texts are removed; a mistyped key stays, and is reported."""
     notes = '# who\n[x]\nb = "Alto."  # short\n# why\na = "Lee {file}."\ngoes = "Se va."\n# end\n'
     open_translation(place, notes)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH + 'goes = "It goes."\n')
     open_translation(place, is_seen=True)
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("b =", "moved ="))
-    own = open_translation(
+    translation = open_translation(
         place, (place / "xx" / "some.toml").read_text("utf-8") + 'mistyped = "Ay."\n'
     )
-    assert [*own.follow_moved_texts()] == ["some.toml: goes"]
-    own.write()
+    assert [*translation.follow_moved_texts()] == ["some.toml: goes"]
+    translation.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == (
         '# why\na = "Lee {file}."\n# who\n[x]\nmoved = "Alto."\n# end\nmistyped = "Ay."\n'
     )
@@ -371,19 +375,19 @@ def test_a_translation_goes_where_its_english_text_is_now_and_with_it_its_note(p
     assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8") == seen_file
 
 
-def test_a_mistake_in_a_file_costs_nothing_that_is_noted(place: Path) -> None:
+def test_a_mistake_in_a_file_loses_no_recorded_review(place: Path) -> None:
     open_translation(place, OWN + 'more = ["", "Quítalo."]\n', is_seen=True)
     seen_file = (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     write(place / SOURCE_LANGUAGE / "some.toml", ENGLISH.replace("Stop.", "Stop now."))
     for spoilt in ('b = "Alto.\n', 'more = ["", "a", "b", "c"]\n' + OWN, OWN + "b = 'x'\n"):
-        own = open_translation(place, spoilt, is_seen=True)
-        assert [*own.follow_moved_texts()] == []
-        own.write()
+        translation = open_translation(place, spoilt, is_seen=True)
+        assert [*translation.follow_moved_texts()] == []
+        translation.write()
         assert (place / "xx" / SEEN_FILE).read_text(encoding="utf-8").startswith(seen_file[:60])
         file_text = (place / "xx" / "some.toml").read_text(encoding="utf-8")
         assert sorted(file_text.splitlines()) == sorted(spoilt.splitlines())
     (place / "xx" / "some.toml").write_bytes(OWN.encode("utf-16"))
-    own = open_translation(place, is_seen=True)
+    translation = open_translation(place, is_seen=True)
     assert "some b" in (place / "xx" / SEEN_FILE).read_text(encoding="utf-8")
     open_translation(place, OWN)
     assert text_of("b") == "Stop now.", "it is stale still"
@@ -397,8 +401,8 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
         place / SOURCE_LANGUAGE / "some.toml",
         '[verb]\na = "Open"\nb = ["Shut", "Open"]\n[door]\ndoor.own = "Open"\n[menu]\nd = "Open"\n',
     )
-    own = open_translation(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
-    entries = [entry for entry in own.merge("some").entries.values() if not entry.is_same]
+    translation = open_translation(place, 'a = "Abrir"\nb = ["Cierra"]\ndoor = "Abierta"\n')
+    entries = [entry for entry in translation.merge("some").entries.values() if not entry.is_same]
     assert [(it.key, it.english, it.notes, it.translation[""]) for it in entries] == [
         ("a", "Open", ["verb", "menu"], "Abrir"), ("b", "Shut", ["verb"], "Cierra"),
         ("door", "Open", [], "Abierta"),
@@ -411,12 +415,12 @@ def test_a_text_under_several_keys_is_translated_once_unless_it_means_something_
     assert text_of("b/2") == "Abre"
 
 
-def test_a_program_is_for_no_translator_and_may_have_a_lone_brace(place: Path) -> None:
+def test_a_program_is_not_translated_and_may_contain_a_lone_brace(place: Path) -> None:
     write(place / SOURCE_LANGUAGE / "some.toml", 'a = "A."\n"b/wrong".same = "LOOP(3) {"\n')
-    own = open_translation(place)
-    assert problems(own) == []
-    own.put_all("some", pseudo(own.english["some"]))
-    own.write()
+    translation = open_translation(place)
+    assert problems(translation) == []
+    translation.put_all("some", pseudo(translation.english["some"]))
+    translation.write()
     assert (place / "xx" / "some.toml").read_text(encoding="utf-8") == 'a = "À. ñandú"\n'
     assert text_of("b/wrong") == "LOOP(3) {"
 
@@ -426,12 +430,12 @@ TEXTS = st.text(st.characters(codec="utf-8", exclude_characters="\0"))
 
 @settings(deadline=None)
 @given(TEXTS, st.lists(TEXTS, min_size=2))
-def test_what_is_written_is_what_is_read(key: str, texts: list[str]) -> None:
+def test_written_rows_are_read_back_unchanged(key: str, texts: list[str]) -> None:
     forms = [{"": text} if text else {} for text in texts]
     rows = format_rows(key, forms, True) + format_rows(f"{key}.", [{"": texts[0] or "x"}], False)
     plural = format_rows(f"{key}..", [{"one": texts[0], "few": texts[1]}], False)
-    parsed_rows, _, wrong = catalogue_source.parse_rows(rows + plural)
-    assert wrong == []
+    parsed_rows, _, parse_errors = catalogue_source.parse_rows(rows + plural)
+    assert parse_errors == []
     assert {row.key: row.value for row in parsed_rows} == {
         key: texts, f"{key}.": texts[0] or "x", f"{key}..": {"one": texts[0], "few": texts[1]},
     }  # fmt: skip
@@ -445,12 +449,12 @@ def test_a_text_is_written_as_a_person_would(text: str, row: str) -> None:
     assert quote(text) == row
 
 
-def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
+def test_texts_too_long_for_a_robot_and_unknown_lexicon_rows_are_reported(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     entries = [Entry("a", "Stop.", "", {"": text}) for text in ("x" * 41, "Arrêt", "Halte")]
-    own = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
-    assert [why for _, why in check_robot(own)] == [
+    catalogue = Catalogue({(str(k), entry.key): entry for k, entry in enumerate(entries)})
+    assert [reason for _, reason in check_robot(catalogue)] == [
         f"a robot says at most 40 signs, in ASCII: {entry.translation['']}" for entry in entries[:2]
     ]
     rows = ["F | AVANCE", "F AVANCE", "QQ | RECULE", "B | recule", "B | RECULÉ", "number 2 | DEUX"]
@@ -464,7 +468,7 @@ def test_what_a_robot_cannot_say_and_a_lexicon_does_not_know_is_said(
 
 
 @pytest.fixture
-def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
+def prepare_language(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """The tool, with all English texts and no language."""
     shutil.rmtree(place)
     shutil.copytree(FOLDER / SOURCE_LANGUAGE, place / SOURCE_LANGUAGE)
@@ -486,11 +490,11 @@ def whole(place: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     ("ja", "日本語", "Japanese", "other", "00000"),
     ("tlh", "tlh", "tlh", "one other", "01111"),
 ])  # fmt: skip
-def test_a_new_language_begins_with_what_unicode_knows_of_it(
+def test_a_new_language_starts_with_unicode_data(
     code: str, name: str, english_name: str, forms: str, of_1_0_2_5_11: str, place: Path,
-    whole: Callable[..., int], capsys: pytest.CaptureFixture[str],
+    prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    assert whole(code) == 0
+    assert prepare_language(code) == 0
     language = read_language(place / code / ABOUT_FILE)
     assert language.problems == []
     assert (language.name, language.english_name, " ".join(language.forms)) == (
@@ -501,16 +505,16 @@ def test_a_new_language_begins_with_what_unicode_knows_of_it(
     assert "".join(language.form_digits[number] for number in (1, 0, 2, 5, 11)) == of_1_0_2_5_11
     assert f"{code}: 0 of " in capsys.readouterr().out
     files_before = {path: path.read_bytes() for path in (place / code).iterdir()}
-    assert whole() == 0
+    assert prepare_language() == 0
     assert {path: path.read_bytes() for path in (place / code).iterdir()} == files_before
 
 
 def test_a_stranger_adds_a_language_text_by_text(
-    place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    place: Path, prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole("fr")
-    own = place / "fr" / "command.toml"
-    write(own, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
+    prepare_language("fr")
+    own_path = place / "fr" / "command.toml"
+    write(own_path, 'no_verb = "tsc : la commande {found} n\'existe pas. Essaie :  tsc --help"\n')
     languages.forget_languages()
     assert (
         languages.find_language("fr_CA.UTF-8")
@@ -519,50 +523,50 @@ def test_a_stranger_adds_a_language_text_by_text(
     )
     assert languages.text("command", "no_verb", "fr").startswith("tsc : la commande")
     capsys.readouterr()
-    assert whole("--check") == 0
+    assert prepare_language("--check") == 0
     out = capsys.readouterr().out
     assert "fr: 1 texts are new. Note of which English texts they are:" in out
-    assert whole("--seen", "fr") == 0
+    assert prepare_language("--seen", "fr") == 0
     assert "fr: 1 of " in (out := capsys.readouterr().out) and "new" not in out
     (row,) = (place / "fr" / SEEN_FILE).read_text(encoding="utf-8").splitlines()[1:]
     assert row.startswith("command no_verb ")
-    write(own, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
-    assert whole("--check") == whole() == 1
+    write(own_path, 'no_verb = "tsc : la commande {fond} n\'existe pas."\nno_verbe = "x"\n')
+    assert prepare_language("--check") == prepare_language() == 1
     out = capsys.readouterr().out
     assert "languages/fr/command.toml:1: no_verb: {found} is missing\n" in out
     assert "languages/fr/command.toml:2: no_verbe: there is no such English text\n" in out
 
 
-def test_what_is_missing_is_named_with_the_line_that_it_goes_after() -> None:
+def test_missing_texts_are_named_with_the_line_to_insert_after() -> None:
     """The line is that of the previous English text, whatever the order of the file."""
     translated = {"": "x"}
     rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
             Entry("c", "C", line=99), Entry("d", "D", translation=translated, line=3),
             Entry("e", "E")]  # fmt: skip
-    missing = [(line, what.partition(" ")[0]) for line, what in tool.missing_rows(rows)]
+    missing = [(line, row_text.partition(" ")[0]) for line, row_text in tool.missing_rows(rows)]
     assert missing == [(1, "a"), (7, "c"), (3, "e")]
 
 
 @pytest.mark.parametrize("name", ["messages", "robot", "command"])
 def test_a_file_that_is_missing_is_named(
-    name: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    name: str, place: Path, prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole("fr")
+    prepare_language("fr")
     write(place / "fr" / f"{name}.toml", "")
     (place / SOURCE_LANGUAGE / f"{name}.toml").unlink()
     (place / "fr" / ABOUT_FILE).unlink()
     capsys.readouterr()
-    assert whole("--check") == 1
+    assert prepare_language("--check") == 1
     out = capsys.readouterr().out
     assert f"languages/fr/{name}.toml:1: there is no en/{name}.toml\n" in out
     assert "languages/fr/language.toml:1: this cannot be read: No such file" in out
 
 
 def test_an_unknown_language_is_not_created(
-    place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    place: Path, prepare_language: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     for words in (["../x"], ["X"], ["--check", "fr"], ["--seen", "fr"], ["--po", "fr"]):
-        assert whole(*words) == 1
+        assert prepare_language(*words) == 1
     assert [path.name for path in place.iterdir()] == [SOURCE_LANGUAGE]
     out = capsys.readouterr().out
     assert out.count("no such language. Try:  python -m tools.languages fr") == 3
@@ -570,15 +574,18 @@ def test_an_unknown_language_is_not_created(
 
 @pytest.mark.parametrize("spoilt", ["x = ", 'x = "{"', f'x = "{"y" * 41}"'])
 def test_a_wrong_english_text_goes_into_no_language(
-    spoilt: str, place: Path, whole: Callable[..., int], capsys: pytest.CaptureFixture[str]
+    spoilt: str,
+    place: Path,
+    prepare_language: Callable[..., int],
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    whole("fr")
+    prepare_language("fr")
     write(place / "fr" / "robot.toml", 'gone = "Ô"\n')
     write(place / "fr" / SEEN_FILE, "robot gone 00000000\n")
     source = place / SOURCE_LANGUAGE / "robot.toml"
     write(source, f"{spoilt}\n{source.read_text(encoding='utf-8')}")
     capsys.readouterr()
-    assert whole() == 1
+    assert prepare_language() == 1
     assert capsys.readouterr().out.startswith("languages/en/robot.toml:1: ")
     assert (place / "fr" / "robot.toml").is_file()
 
@@ -586,20 +593,20 @@ def test_a_wrong_english_text_goes_into_no_language(
 # -- results
 
 
-def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
+def test_a_clone_regenerates_stale_files_even_if_read_only(
     place: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    own, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.CACHE_ENDING}"
+    own_path, path = place / "xx" / "some.toml", place / "xx" / f"some{languages.CACHE_ENDING}"
 
     def stop() -> str:
         languages.forget_languages()
         return languages.text("some", "b", "xx")
 
-    write(own, OWN)
+    write(own_path, OWN)
     assert stop() == "Alto."
     path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
     assert stop() == "Paro.", "it is read as it is while nothing is newer"
-    for source in (own, place / "xx" / SEEN_FILE, place / "xx" / ABOUT_FILE,
+    for source in (own_path, place / "xx" / SEEN_FILE, place / "xx" / ABOUT_FILE,
                    place / SOURCE_LANGUAGE / "some.toml"):  # fmt: skip
         path.write_bytes(path.read_bytes().replace(b"Alto.", b"Paro."))
         source.touch()
@@ -609,15 +616,15 @@ def test_a_clone_makes_what_is_stale_and_needs_no_folder_to_write_to(
     for half in (b"", path.read_bytes()[:20], b"\xff", b"[]"):
         path.write_bytes(half)
         assert stop() == "Alto.", half
-    own.unlink()
+    own_path.unlink()
     assert stop() == "Stop.", "what was made of it is no translation"
-    write(own, OWN)
+    write(own_path, OWN)
     path.unlink()
     path.mkdir()  # makes the file impossible to write
     assert stop() == "Alto."
 
 
-def test_a_package_has_no_sources_and_a_page_learns_what_it_needs(place: Path) -> None:
+def test_a_package_without_sources_and_a_page_have_their_texts(place: Path) -> None:
     write(place / "xx" / "some.toml", OWN)
     write(place / "xx" / "names.toml", '"First" = "Primero"\n')
     files = languages.cache_files()
@@ -670,36 +677,36 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows limits no files of a process")
-def test_a_clone_on_a_full_disk_speaks(package: Path) -> None:
+def test_a_clone_on_a_full_disk_has_its_texts(package: Path) -> None:
     code, output = command(package, "complie", "--lang", "es")
     assert code == 2 and "¿Quisiste decir compile?" in output and output.count("\n") == 1
     assert list(package.glob(f"languages/*/*{languages.CACHE_ENDING}*")) == []
 
 
-@pytest.mark.sampled("spoil", "why")
-@pytest.mark.parametrize(("spoil", "why"), [
+@pytest.mark.sampled("spoil", "reason")
+@pytest.mark.parametrize(("spoil", "reason"), [
     (lambda path: path.unlink(missing_ok=True), "1: this cannot be read: No such file"),
     (lambda path: path.write_text('[tsc]\nstopped = "S\n'), "2: this is no TOML: Illegal"),
     (lambda path: path.write_text('[tsc]\na = "S"\na = "S"\n'), "3: a: it is there twice"),
     (lambda path: path.write_bytes(b"[tsc]\n\na = '\xff'\n"), "3: this is no UTF-8"),
 ])  # fmt: skip
-def test_english_texts_that_are_wrong_are_said_without_words_of_ours(
-    spoil: Callable[[Path], object], why: str, package: Path, tmp_path: Path
+def test_invalid_english_texts_are_reported_without_catalogue_texts(
+    spoil: Callable[[Path], object], reason: str, package: Path, tmp_path: Path
 ) -> None:
-    own = tmp_path / "tiniscript"
-    shutil.copytree(package, own)
+    package_folder = tmp_path / "tiniscript"
+    shutil.copytree(package, package_folder)
     for name, words in (
         ("messages", ["check", "-e", "SI|F(2 80)"]),
         ("command", ["check", "no_such.ts", "--lang", "es"]),
         ("command", ["complie"]),
     ):
-        path = own / "languages" / SOURCE_LANGUAGE / f"{name}.toml"
+        path = package_folder / "languages" / SOURCE_LANGUAGE / f"{name}.toml"
         if path.is_file():
             path.chmod(0o644)
         spoil(path)
-        code, output = command(own, *words)
+        code, output = command(package_folder, *words)
         assert code == 2 and output == output.splitlines()[0] + "\n"
-        assert output.startswith(f"tsc: {path}:{why}")
+        assert output.startswith(f"tsc: {path}:{reason}")
 
 
 # -- translators' tools
@@ -716,12 +723,12 @@ def own(place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Transla
     return open_translation(place)
 
 
-def read_catalog(own: Translation) -> Catalog:
+def read_catalog(translation: Translation) -> Catalog:
     with Path("xx.po").open("rb") as file:
         return read_po(file, abort_invalid=True)
 
 
-def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> None:
+def test_a_po_file_has_texts_with_context_notes_and_flags(own: Translation) -> None:
     assert translators.exchange("xx", own.english) == 0
     assert [
         (message.context, message.id, message.string, message.fuzzy, message.auto_comments,
@@ -736,7 +743,7 @@ def test_a_po_has_texts_with_their_context_notes_and_marks(own: Translation) -> 
     ]  # fmt: skip
 
 
-def test_what_comes_back_is_of_the_english_text_beside_it(
+def test_a_returned_translation_belongs_to_its_english_text(
     own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A fuzzy one and an empty one are left out; a text that has changed meanwhile is said."""
@@ -765,7 +772,7 @@ def test_what_comes_back_is_of_the_english_text_beside_it(
 
 
 @pytest.mark.parametrize("language", languages.languages()[1:])
-def test_a_language_goes_out_and_comes_back_with_every_text(
+def test_a_language_is_exported_and_imported_completely(
     language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -780,20 +787,20 @@ def test_a_language_goes_out_and_comes_back_with_every_text(
     assert translators.read_file(Path("out.po"), Translation(language, english)) == 0
     translation_after = Translation(language, english)
     for name in english:
-        old, new = (
+        old_catalogue, new_catalogue = (
             translation.merge(name) for translation in (translation_before, translation_after)
         )
-        assert new.problems == []
-        for at, entry in old.entries.items():
+        assert new_catalogue.problems == []
+        for key, entry in old_catalogue.entries.items():
             is_asked = not entry.is_same
-            assert new.entries[at].translation == entry.translation or not is_asked, at
-            assert new.entries[at].seen_hash == entry.seen_hash or not is_asked, at
+            assert new_catalogue.entries[key].translation == entry.translation or not is_asked, key
+            assert new_catalogue.entries[key].seen_hash == entry.seen_hash or not is_asked, key
 
 
 HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'
 
 
-@pytest.mark.parametrize(("data", "why"), [
+@pytest.mark.parametrize(("data", "reason"), [
     (b"msgid 'x'\n", "xx.po:1: this is no row of a catalogue: "),
     (HEAD.encode() + b'msgid "a"\nmsgstr "\xff"\n', "xx.po: this cannot be read: "),
     (None, "xx.po: this cannot be read: "),
@@ -802,14 +809,18 @@ HEAD = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n\n'
     (HEAD.encode() + b'msgid "a"\nmsgstr "b"\n',
      "xx.po:4: there is no English text with the context of nothing"),
 ])  # fmt: skip
-def test_a_po_with_a_mistake_is_said_with_its_line_and_changes_nothing(
-    data: bytes | None, why: str, own: Translation, place: Path, capsys: pytest.CaptureFixture[str]
+def test_an_invalid_po_file_is_reported_with_its_line_and_changes_nothing(
+    data: bytes | None,
+    reason: str,
+    own: Translation,
+    place: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     if data is not None:
         Path("xx.po").write_bytes(data)
     files_before = {path: path.read_bytes() for path in place.glob("*/*.t*")}
     assert translators.exchange("xx.po", own.english) == 1
-    assert capsys.readouterr().out.startswith(why)
+    assert capsys.readouterr().out.startswith(reason)
     assert {path: path.read_bytes() for path in place.glob("*/*.t*")} == files_before
     assert translators.exchange("zz", own.english) == 1
     assert "zz: no such language. Try:  python -m tools.languages zz" in capsys.readouterr().out

@@ -26,7 +26,7 @@ def is_on_a_block(code: str, spoken_blocks: dict[str, dict[str, object]]) -> boo
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", LESSONS)
-def test_a_lesson_speaks_of_blocks_to_those_who_have_them(number: int, language: str) -> None:
+def test_a_lesson_mentions_blocks_to_block_users(number: int, language: str) -> None:
     title = page_lessons.titles(language)[number - 1]["block_title"]
     steps = page_lessons.steps(number, language, BLOCKS)
     parts = [block for step in steps for block in step["blocks"] if block["kind"] != "program"]
@@ -66,17 +66,17 @@ def test_each_step_has_something_to_do(language: str, form: str) -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", LESSONS)
 def test_both_forms_have_the_same_programs_and_hints(number: int, language: str) -> None:
-    both = [page_lessons.steps(number, language, form) for form in (TEXT, BLOCKS)]
+    both_forms = [page_lessons.steps(number, language, form) for form in (TEXT, BLOCKS)]
     kinds = [
         [([block for block in step["blocks"] if block["kind"] == "program"], bool(step["hint"]))
          for step in steps]
-        for steps in both
+        for steps in both_forms
     ]  # fmt: skip
     assert kinds[0] == kinds[1]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: str) -> None:
+def test_block_users_get_findings_about_blocks(language: str) -> None:
     """This holds for every sentence and every word; in a terminal, none has back quotes."""
     values = {"cm": "3", "seconds": "1.0", "least": "1", "found": "1", "times": "2", "name": "HOP"}
     rest = dict.fromkeys(("within", "limit", "low", "high", "number", "all", "degrees", "truth"))
@@ -86,8 +86,8 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
     for key in (key for key in texts("lessons", language) if key.startswith("said/")):
         words = ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",)
         for word in words:
-            own = {"word": word, "question": "DISTANCE < 15", "what": "DISTANCE"}
-            finding = Finding("", key.removeprefix("said/"), {**values, **own}, {})
+            own_values = {"word": word, "question": "DISTANCE < 15", "what": "DISTANCE"}
+            finding = Finding("", key.removeprefix("said/"), {**values, **own_values}, {})
             terminal, on_blocks = (sentence(finding, language, form) for form in (TEXT, BLOCKS))
             assert not re.search(r"`|\[\[|\]\]", terminal)
             is_line_on_floor = "follows" in key
@@ -99,7 +99,7 @@ def test_what_a_check_finds_is_said_of_blocks_to_those_who_have_them(language: s
                 assert is_on_a_block(code, spoken_blocks), (code, on_blocks)
 
 
-def test_an_alternative_is_read_in_one_form() -> None:
-    both = "Write [[a line|a block]] here[[ and there|]], `A`."
-    assert sentences_in_form(both, TEXT) == "Write a line here and there, `A`."
-    assert sentences_in_form(both, BLOCKS) == "Write a block here, `A`."
+def test_an_alternative_is_shown_in_one_form_only() -> None:
+    both_forms = "Write [[a line|a block]] here[[ and there|]], `A`."
+    assert sentences_in_form(both_forms, TEXT) == "Write a line here and there, `A`."
+    assert sentences_in_form(both_forms, BLOCKS) == "Write a block here, `A`."

@@ -36,8 +36,8 @@ points = [[20, 100], [110, 100]]
 """
 
 
-def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", more: str = "") -> Lesson:
-    text = HEAD.format(robot=robot, more=more) + criteria
+def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", settings: str = "") -> Lesson:
+    text = HEAD.format(robot=robot, more=settings) + criteria
     (folder / "lesson.toml").write_text(text, encoding="utf-8")
     (folder / "world.toml").write_text(WORLD, encoding="utf-8")
     return catalogue.load(folder)
@@ -155,13 +155,13 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("criterion", "right", "wrong", "sentence"), CASES)
+@pytest.mark.parametrize(("criterion", "right_text", "wrong_text", "sentence"), CASES)
 def test_a_criterion_is_met_or_missed(
-    tmp_path: Path, criterion: str, right: str, wrong: str, sentence: str
+    tmp_path: Path, criterion: str, right_text: str, wrong_text: str, sentence: str
 ) -> None:
     lesson = lesson_of(tmp_path, f"[[criteria]]\n{criterion}\n")
-    assert sentences_on(lesson, right) == []
-    (missing,) = findings_of(wrong, lesson, range(1, 2))
+    assert sentences_on(lesson, right_text) == []
+    (missing,) = findings_of(wrong_text, lesson, range(1, 2))
     texts_of_both, spanish = (words_for(missing, language) for language in ("en", "es"))
     assert sentence in texts_of_both
     assert spanish != texts_of_both
@@ -207,7 +207,7 @@ def answer_to_key(key: str, does: str) -> str:
 
 
 @pytest.mark.parametrize("key", ANSWER_BY_KEY)
-def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str) -> None:
+def test_the_judge_presses_a_key_and_checks_the_reaction(tmp_path: Path, key: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key=f"KEY_{key}"))
     assert sentences_on(lesson, answer_to_key(key, ANSWER_BY_KEY[key])) == []
     (missed_text,) = sentences_on(lesson, answer_to_key(OPPOSITE_KEY[key], ANSWER_BY_KEY[key]))
@@ -229,7 +229,7 @@ def test_the_judge_presses_a_key_and_looks_what_is_done(tmp_path: Path, key: str
         (answer_to_key("UP", "F(0.1, 60)").replace("END_IF", "ELSE; L(0.1, 60); END_IF"), "0.0"),
     ],
 )
-def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: str) -> None:
+def test_an_undriven_robot_stands_still(tmp_path: Path, text: str, seconds: str) -> None:
     lesson = lesson_of(tmp_path, OBEYS_CRITERION.format(key="KEY_UP"))
     (missed_text,) = sentences_on(lesson, text)
     assert (
@@ -239,16 +239,16 @@ def test_a_robot_that_nobody_drives_stands(tmp_path: Path, text: str, seconds: s
 
 def test_keys_of_the_other_side_are_pressed_in_a_mirrored_world(tmp_path: Path) -> None:
     lesson = lesson_of(
-        tmp_path, OBEYS_CRITERION.format(key="KEY_LEFT"), more="mirror = true\nworlds = 2"
+        tmp_path, OBEYS_CRITERION.format(key="KEY_LEFT"), settings="mirror = true\nworlds = 2"
     )
     assert [press.key for seed in (1, 2) for press in presses_of(lesson, seed)] == [
         "KEY_LEFT",
         "KEY_RIGHT",
     ]
-    both = answer_to_key("LEFT", "L(0.1, 60)").replace(
+    program = answer_to_key("LEFT", "L(0.1, 60)").replace(
         "W(", "IF(KEY_RIGHT); R(0.1, 60); END_IF; W("
     )
-    assert findings_of(both, lesson, range(1, 3)) == []
+    assert findings_of(program, lesson, range(1, 3)) == []
     assert findings_of(answer_to_key("LEFT", "L(0.1, 60)"), lesson, range(1, 3))
 
 
@@ -264,7 +264,7 @@ def test_held_keys_are_not_the_heartbeat_that_a_run_needs(tmp_path: Path) -> Non
     )
 
 
-def test_what_stands_after_a_loop_is_not_in_it(tmp_path: Path) -> None:
+def test_instructions_after_a_loop_do_not_count_as_inside(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "uses"\nwords = ["LOOP"]\n')
     (sentence,) = sentences_on(lesson, "LOOP(2);W(0.1);END_LOOP;BEEP(0.1, 440)")
     assert "repeats nothing" in sentence
@@ -281,7 +281,7 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "sentence"),
+    ("program", "sentence"),
     [
         ("M(50, 50);LED(TRUE);W(1);LED(FALSE);W(0.1);LED(TRUE);W(0.1);S", ""),
         ("M(50, 50);LED(TRUE);W(1);LED(TRUE);W(0.1);S", "LED was switched on 1 of 2 times"),
@@ -295,10 +295,10 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> None:
+def test_a_lamp_blinks_on_the_way(tmp_path: Path, program: str, sentence: str) -> None:
     """A lamp that is set again without having been off has not blinked."""
     lamp = '[[criteria]]\nkind = "blinks"\nwhat = "LED"\ntimes = 2\n'
-    lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), more)
+    lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), program)
     assert [sentence in line for line in lines_told] == ([True] if sentence else [])
 
 
@@ -309,7 +309,7 @@ def test_a_lamp_blinks_on_the_way(tmp_path: Path, more: str, sentence: str) -> N
         ("WHEN", "WHEN(TRUE);BEEP(0.1, 440);W(FOREVER) UNTIL(FALSE);END_WHEN"),
     ],
 )
-def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
+def test_a_criterion_may_require_a_task(tmp_path: Path, word: str, task: str) -> None:
     needs = f'[[criteria]]\nkind = "beeps"\n[[criteria]]\nkind = "needs"\nwords = ["{word}"]\n'
     lesson = lesson_of(tmp_path, needs, "tinibot32")
     assert sentences_on(lesson, f"F(1, 50)\n{task}\nW(0.1)") == []
@@ -319,7 +319,7 @@ def test_a_task_is_needed_or_not(tmp_path: Path, word: str, task: str) -> None:
     assert f"does not use {word}. Use it here: {word}" in sentence
 
 
-def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: Path) -> None:
+def test_requirements_of_one_world_hold_in_any_order(tmp_path: Path) -> None:
     needs = (
         '[[criteria]]\nkind = "beeps"\ntimes = 2\n[[criteria]]\nkind = "needs"\nwords = ["LOOP"]\n'
     )
@@ -334,7 +334,7 @@ def test_what_one_world_needs_is_needed_in_whichever_order_they_come(tmp_path: P
         assert not findings_of(text, lesson, seeds), seeds
 
 
-def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
+def test_advice_on_a_when_condition_mentions_the_robot(tmp_path: Path) -> None:
     reaches = '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n'
     lesson = lesson_of(tmp_path, reaches, "tinibot32")
     (sentence,) = sentences_on(lesson, "WHEN(DISTANCE < 4);F(1, 89);END_WHEN")
@@ -351,7 +351,7 @@ def test_a_question_of_when_keeps_the_robot(tmp_path: Path) -> None:
         ("L(90, 60)", "was still moving when time ran out after 10.0 s"),
     ],
 )
-def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, sentence: str) -> None:
+def test_failures_of_the_whole_run_are_reported(tmp_path: Path, text: str, sentence: str) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n')
     (verdict_line,) = sentences_on(lesson, text)
     assert sentence in verdict_line
@@ -368,17 +368,17 @@ def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, senten
         ("W(0.05)", "still running"),
     ],
 )
-def test_a_program_that_never_rests_ends(tmp_path: Path, body: str, ending: str) -> None:
+def test_a_program_that_never_waits_is_ended(tmp_path: Path, body: str, ending: str) -> None:
     """The end comes by actions or by the robot's time, never by the wall clock."""
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends"\n')
     (sentence,) = sentences_on(lesson, f"LOOP(FOREVER);{body};END_LOOP")
     assert ending in sentence
 
 
-def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
-    more = "worlds = 3\nnoise_percent = 2\nmirror = true"
+def test_the_same_seed_gives_the_same_world(tmp_path: Path) -> None:
+    settings = "worlds = 3\nnoise_percent = 2\nmirror = true"
     varies = '[[criteria]]\nkind = "never_touches"\n[[varies]]\npart = "boxes[1]"\ny_cm = [5, 30]\n'
-    lesson = lesson_of(tmp_path, varies, more=more)
+    lesson = lesson_of(tmp_path, varies, settings=settings)
     assert vary(lesson, 3) == vary(lesson, 3) != vary(lesson, 5)
     box = lesson.variations[0].place
     assert 105 <= point_of(box, vary(lesson, 1), False).y <= 130
@@ -389,19 +389,19 @@ def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
     assert tracks[0] == tracks[1] != tracks[2]
 
 
-def test_the_button_starts_what_begins_with_sb(tmp_path: Path) -> None:
+def test_the_button_starts_sb_programs(tmp_path: Path) -> None:
     lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "drives"\nat_least_cm = 30\n')
     assert sentences_on(lesson, "SB|F(1, 89)") == []
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_sentence_has_a_next_step(language: str) -> None:
+def test_every_verdict_has_a_next_step(language: str) -> None:
     for key, said_so in all_said(language, "lessons").items():
         if key.startswith("said/"):
             assert said_so.count(". ") + said_so.count("; ") >= 1, key
 
 
-def test_a_wall_that_holds_a_robot_is_named_before_the_time(tmp_path: Path) -> None:
+def test_a_wall_that_blocks_a_robot_is_reported_before_the_timeout(tmp_path: Path) -> None:
     lesson = lesson_of(
         tmp_path,
         '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n[[criteria]]\nkind = "never_touches"\n',

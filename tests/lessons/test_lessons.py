@@ -41,14 +41,14 @@ def name_of(value: object) -> str:
     return str(value.label_by_language["en"]).replace(" ", "_")  # type: ignore[attr-defined]
 
 
-def test_they_are_numbered_without_a_gap() -> None:
+def test_lessons_are_numbered_without_a_gap() -> None:
     assert [int(folder.name[:2]) for folder in FOLDERS] == [*range(1, len(FOLDERS) + 1)]
     assert len(FOLDERS) >= 12
 
 
 @pytest.mark.sampled("folder", "answer", keep=len(answers_of(True)) // 4)
 @pytest.mark.parametrize(("folder", "answer"), answers_of(True), ids=name_of)
-def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
+def test_a_right_answer_passes(folder: Path, answer: Answer) -> None:
     """In the worlds of the task, and in others."""
     lesson = catalogue.load(folder)
     assert findings_of(answer.program, lesson, range(1, lesson.world_count + 1)) == []
@@ -57,7 +57,7 @@ def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
 
 @pytest.mark.sampled("folder", "answer", keep=len(answers_of(False)) // 2)
 @pytest.mark.parametrize(("folder", "answer"), answers_of(False), ids=name_of)
-def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None:
+def test_a_wrong_answer_gets_a_helpful_message(folder: Path, answer: Answer) -> None:
     lesson = catalogue.load(folder)
     findings = findings_of(answer.program, lesson, range(1, lesson.world_count + 1))
     assert findings, "it passes"
@@ -67,24 +67,24 @@ def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None
 
 @each_lesson
 def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
-    right, wrong = catalogue.answers(folder)
-    assert len(right) >= 2
-    assert len(wrong) >= 3
+    right_answers, wrong_answers = catalogue.answers(folder)
+    assert len(right_answers) >= 2
+    assert len(wrong_answers) >= 3
     if (
         catalogue.load(folder).world_count > 1 and folder.name[:2] != "08"
     ):  # the other one is "always to the left"
-        assert any(BY_HEART_LABEL in answer.label_by_language["en"] for answer in wrong)
+        assert any(BY_HEART_LABEL in answer.label_by_language["en"] for answer in wrong_answers)
 
 
 @each_lesson
-def test_what_varies_is_asked_for_in_several_worlds(folder: Path) -> None:
+def test_a_varying_lesson_is_checked_in_several_worlds(folder: Path) -> None:
     lesson = catalogue.load(folder)
     assert (lesson.world_count > 1) == bool(lesson.variations or lesson.is_mirrored)
 
 
 @each_lesson
 @in_both
-def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
+def test_the_pages_of_a_lesson_are_complete(folder: Path, language: str) -> None:
     number = int(folder.name[:2])
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
@@ -107,7 +107,7 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
 
 @each_lesson
 @in_both
-def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
+def test_a_worksheet_draws_its_contents(folder: Path, language: str) -> None:
     """Only moving parts are dashed, and a blank is wide enough to write in."""
     lesson = catalogue.load(folder)
     page = catalogue.page(folder, catalogue.PUPIL, language)
@@ -124,16 +124,16 @@ def test_a_sheet_draws_what_it_says(folder: Path, language: str) -> None:
 
 @each_lesson
 @in_both
-@pytest.mark.parametrize("who", [catalogue.PUPIL, catalogue.TEACHER])
-def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> None:
+@pytest.mark.parametrize("role", [catalogue.PUPIL, catalogue.TEACHER])
+def test_programs_on_pages_compile(folder: Path, language: str, role: str) -> None:
     lesson = catalogue.load(folder)
     robot = robots.load(lesson.robot)
     programs = [
         "\n".join(row for (row,) in block.rows)
-        for block in blocks(catalogue.page(folder, who, language))
+        for block in blocks(catalogue.page(folder, role, language))
         if block.kind == "program"
     ]
-    assert programs or who == catalogue.TEACHER
+    assert programs or role == catalogue.TEACHER
     for program in programs:
         compilation = compile_source(program.encode(), robot, "page.ts", is_strict=True)
         assert compilation.is_right, (program, compilation.diagnostics)
@@ -141,9 +141,9 @@ def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> Non
 
 @each_lesson
 def test_pages_of_all_languages_have_the_same_parts(folder: Path) -> None:
-    for who in (catalogue.PUPIL, catalogue.TEACHER):
+    for role in (catalogue.PUPIL, catalogue.TEACHER):
         kinds = [
-            [(block.kind, len(block.rows)) for block in blocks(catalogue.page(folder, who, lang))]
+            [(block.kind, len(block.rows)) for block in blocks(catalogue.page(folder, role, lang))]
             for lang in LANGUAGES
         ]
         assert all(kind == kinds[0] for kind in kinds)
@@ -162,7 +162,7 @@ def test_a_page_names_the_button_that_the_studio_has(folder: Path) -> None:
 
 
 @each_lesson
-def test_no_page_tells_the_answer(folder: Path) -> None:
+def test_no_page_gives_away_the_answer(folder: Path) -> None:
     """A program on a pupil's page is an example: it does not solve the task."""
     lesson = catalogue.load(folder)
     for language in LANGUAGES:
@@ -178,7 +178,7 @@ def test_every_criterion_is_judged() -> None:
     assert {*JUDGES, *text_judging.JUDGES} == set(KINDS)
 
 
-def test_spanish_speaks_to_one_pupil() -> None:
+def test_spanish_texts_address_one_pupil() -> None:
     for folder in FOLDERS:
         page = catalogue.page(folder, catalogue.PUPIL, "es")
         assert not re.search(r"\b(usted|ustedes|vosotros|coloque|escriba|pruebe)\b", page, re.I)
@@ -187,5 +187,7 @@ def test_spanish_speaks_to_one_pupil() -> None:
 def test_the_line_fits_between_the_sensors_as_the_page_says() -> None:
     """In the middle both sensors see white, as in the first row of lesson 12's table."""
     lesson = catalogue.load(FOLDERS[11])
-    left, right = (robots.load(lesson.robot).body.places[name] for name in ("LINE_L", "LINE_R"))
-    assert left.y_cm - right.y_cm > max(line.width_cm for line in lesson.world.lines)
+    left, right_answers = (
+        robots.load(lesson.robot).body.places[name] for name in ("LINE_L", "LINE_R")
+    )
+    assert left.y_cm - right_answers.y_cm > max(line.width_cm for line in lesson.world.lines)

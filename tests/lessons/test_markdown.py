@@ -8,12 +8,12 @@ from tiniscript.lessons.markdown import as_text, blocks
 
 
 @pytest.mark.parametrize("table", ["|---|", "|---|\n", "|", "||", "|:-:|-|\n|---|", "| |"])
-def test_a_table_without_a_row_is_nothing(table: str) -> None:
+def test_a_table_without_rows_renders_nothing(table: str) -> None:
     assert blocks(table) == []
     assert as_text(f"# One\n\n{table}\n\ntwo") == "One\n===\n\ntwo\n"
 
 
-def test_a_page_moves_no_cursor() -> None:
+def test_a_page_contains_no_cursor_sequences() -> None:
     """In a heading, a list, a table, a program or a paragraph."""
     evil = "a\x1b[2J\x07\x9b2Jb\u202ec"
     page = (

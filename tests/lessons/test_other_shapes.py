@@ -317,10 +317,10 @@ PROGRAMS: dict[int, dict[str, dict[str, str]]] = {
     },
 }  # fmt: skip
 ALL_WRONG_ANSWERS = [
-    pytest.param(number, program, what, id=f"{number}-{group}-{k}")
+    pytest.param(number, program, expected_cause, id=f"{number}-{group}-{k}")
     for number, groups in PROGRAMS.items()
     for group, programs in groups.items()
-    for k, (program, what) in enumerate(programs.items(), 1)
+    for k, (program, expected_cause) in enumerate(programs.items(), 1)
 ]
 
 
@@ -332,30 +332,30 @@ def lesson_of(number: int) -> Lesson:
     return catalogue.load(catalogue.folders()[number - 1])
 
 
-def test_every_lesson_has_some() -> None:
+def test_every_lesson_has_pupils_programs() -> None:
     assert [*PROGRAMS] == [*range(1, len(catalogue.folders()) + 1)]
     assert all(groups.get("right") for groups in PROGRAMS.values())
 
 
-@pytest.mark.sampled("number", "program", "what", keep=len(ALL_WRONG_ANSWERS) // 8)
-@pytest.mark.parametrize(("number", "program", "what"), ALL_WRONG_ANSWERS)
-def test_what_a_pupil_wrote_is_marked_fairly(number: int, program: str, what: str) -> None:
+@pytest.mark.sampled("number", "program", "expected_cause", keep=len(ALL_WRONG_ANSWERS) // 8)
+@pytest.mark.parametrize(("number", "program", "expected_cause"), ALL_WRONG_ANSWERS)
+def test_pupils_programs_are_marked_fairly(number: int, program: str, expected_cause: str) -> None:
     """In all worlds of the task: right programs get no finding, and others the right cause."""
     lesson = lesson_of(number)
     findings = findings_of(program.replace("; ", "\n"), lesson, range(1, lesson.world_count + 1))
-    assert bool(findings) is bool(what)
-    if what:
-        assert what in sentence(findings[0], "en")
+    assert bool(findings) is bool(expected_cause)
+    if expected_cause:
+        assert expected_cause in sentence(findings[0], "en")
 
 
 @pytest.mark.sampled("number", "seed", "program", keep=len(RIGHT_ANSWERS) // 16)
 @pytest.mark.parametrize(("number", "seed", "program"), RIGHT_ANSWERS)
-def test_a_right_program_of_another_shape_passes(number: int, seed: int, program: str) -> None:
+def test_a_right_program_of_different_shape_passes(number: int, seed: int, program: str) -> None:
     assert is_right(number, seed, program)
 
 
 @pytest.mark.parametrize(("number", "seed", "program"), MEMORIZED_ANSWERS)
-def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> None:
+def test_a_hard_coded_program_fails(number: int, seed: int, program: str) -> None:
     assert not is_right(number, seed, program)
 
 
@@ -368,7 +368,7 @@ def test_a_program_by_heart_does_not(number: int, seed: int, program: str) -> No
         if language in ("en", "es") or (folder / f"pupil.{language}.md").is_file()
     ],
 )
-def test_a_task_says_the_numbers_that_are_measured(folder: Path, language: str) -> None:
+def test_a_task_states_the_measured_numbers(folder: Path, language: str) -> None:
     """Each has one home, the criterion: a page names it, and has no number of its own."""
     lesson = catalogue.load(folder)
     written_text = printed_part((folder / f"pupil.{language}.md").read_text(encoding="utf-8"))

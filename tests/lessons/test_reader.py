@@ -72,18 +72,18 @@ CASES = [
 
 
 @pytest.mark.parametrize(("text", "message"), CASES)
-def test_a_refused_lesson_says_why(folder: Path, text: str, message: str) -> None:
+def test_a_refused_lesson_gives_the_reason(folder: Path, text: str, message: str) -> None:
     complaints = refusal_of(folder, text)
     assert any(message in sentence for sentence in complaints), complaints
     assert len(refusal_of(folder, text, "es")) == len(complaints)
 
 
-def test_all_complaints_come_at_once(folder: Path) -> None:
+def test_all_complaints_are_reported_at_once(folder: Path) -> None:
     text = 'speed = 3\nrobot = "tinibot"\nseconds = 0\n[title]\nen = ""\nes = "B"\n' + TOUCH
     assert len(refusal_of(folder, text)) == 3
 
 
-def test_a_world_is_read_as_any_other(folder: Path) -> None:
+def test_the_world_of_a_lesson_is_an_ordinary_world(folder: Path) -> None:
     (folder / "world.toml").write_text(WORLD.replace("floor", "flor"), encoding="utf-8")
     assert "The lesson's file has no key flor" in " ".join(refusal_of(folder, HEAD + TOUCH))
 
@@ -98,7 +98,7 @@ def test_answers_are_read_strictly(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("says", "message"),
+    ("message_table", "message"),
     [
         ("", "wrong[1].says.key is missing"),
         ("key = 'stil'", "wrong[1].says.key has stil, which is not a known word"),
@@ -107,10 +107,10 @@ def test_answers_are_read_strictly(folder: Path) -> None:
         ("key = 'still', cm = '3'", "The lesson's file has no key wrong[1].says.cm"),
     ],
 )  # fmt: skip
-def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
-    folder: Path, says: str, message: str
+def test_a_wrong_answers_message_exists_in_the_checker(
+    folder: Path, message_table: str, message: str
 ) -> None:
-    rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {says} }}\n"
+    rows = f"[[wrong]]\nen = 'a'\nprogram = 'S'\nsays = {{ {message_table} }}\n"
     (folder / "answers.toml").write_text(rows, encoding="utf-8")
     with pytest.raises(LessonRefused) as exception_info:
         catalogue.answers(folder)
@@ -118,7 +118,7 @@ def test_what_is_said_of_a_wrong_answer_is_a_sentence_of_the_checker(
     assert message in why
 
 
-def test_a_place_of_ones_own_is_said_in_each_language(folder: Path) -> None:
+def test_a_custom_goal_is_named_in_each_language(folder: Path) -> None:
     rows = "[[wrong]]\nen = 'a'\nprogram = 'S'\n[wrong.says]\nkey = 'ends_in/short'\ncm = '9'\n"
     rows += "place = 'the blue flag'\nes = 'la bandera azul'\n"
     (folder / "answers.toml").write_text(rows, encoding="utf-8")
@@ -127,7 +127,7 @@ def test_a_place_of_ones_own_is_said_in_each_language(folder: Path) -> None:
     assert "de la bandera azul" in answer.sentence_by_language["es"]
 
 
-def test_a_page_names_the_numbers_of_its_lesson(folder: Path) -> None:
+def test_a_page_states_the_numbers_of_its_lesson(folder: Path) -> None:
     pauses = '[[criteria]]\nkind = "pauses"\nat_least_seconds = 2.5\nat = [90, 80]\n'
     (folder / "lesson.toml").write_text(HEAD + pauses, encoding="utf-8")
     page = folder / "pupil.en.md"

@@ -81,7 +81,7 @@ def test_a_port_that_is_free_soon_is_opened(
 
 @pytest.mark.parametrize("search_s", SEARCH_S)
 @pytest.mark.parametrize("port", PORTS)
-def test_a_port_that_stays_busy_is_said_to_be(
+def test_a_port_that_stays_busy_is_reported(
     monkeypatch: pytest.MonkeyPatch, port: str, search_s: float
 ) -> None:
     place = Place(monkeypatch, search_s, 100 * BUSY_TIMEOUT_S)
@@ -173,7 +173,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         whys.append(True)
     if step.endswith("_shared"):
         whys.append(RuntimeError("a bug"))
-    before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
+    count_before = len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
     for why in whys:
         with monkeypatch.context() as patched:
             patched.setattr(step, failing_call(why))
@@ -184,7 +184,7 @@ def test_a_connection_that_fails_at_any_step_leaves_nothing_open(
         assert lock is not None, f"{why!r} leaves its lock"
         lock.close()
         if sys.platform == "linux":
-            assert len(list(Path("/proc/self/fd").iterdir())) == before, why
+            assert len(list(Path("/proc/self/fd").iterdir())) == count_before, why
     monkeypatch.setattr(Client, "_share", lambda *_: None)
     line = open_client().connection
     assert Device.opened[-1].is_open
@@ -225,7 +225,7 @@ def greeting(version: str, answer: str) -> bytes:
         (greeting(__version__, "right"), "holder_baud"),
     ],
 )
-def test_of_who_holds_a_port_and_cannot_share_it_nothing_stays_open(
+def test_attempts_to_reach_an_unshared_port_leave_nothing_open(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, data: bytes, reason: str
 ) -> None:
     """A client that waits for a busy port tries twenty times a second."""

@@ -35,12 +35,12 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def test_a_package_names_what_pypi_has() -> None:
+def test_advice_names_the_package_on_pypi() -> None:
     assert install_advice.command("virtual") == 'pip install "pillow>=10.1" "wasmtime>=20"'
     assert install_advice.command("firmware") == 'pip install "platformio>=6.1"'
 
 
-def test_pipx_puts_it_into_its_own_environment(
+def test_a_pipx_installation_gets_pipx_advice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clone(tmp_path, monkeypatch)
@@ -59,7 +59,9 @@ def test_an_environment_that_is_not_active_is_named(monkeypatch: pytest.MonkeyPa
     )
 
 
-def test_where_pip_is_refused_it_is_pipx(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pipx_is_advised_if_pip_is_not_allowed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = clone(tmp_path, monkeypatch)
     monkeypatch.setattr(sys, "base_prefix", sys.prefix)
     monkeypatch.setattr("sysconfig.get_path", lambda name: str(tmp_path))
@@ -67,7 +69,7 @@ def test_where_pip_is_refused_it_is_pipx(tmp_path: Path, monkeypatch: pytest.Mon
     assert install_advice.command("virtual") == f'pipx install "{folder}[virtual]"'
 
 
-def test_without_metadata_it_does_not_crash(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_metadata_is_tolerated(monkeypatch: pytest.MonkeyPatch) -> None:
     def nothing(name: str) -> list[str]:
         raise metadata.PackageNotFoundError(name)
 
@@ -76,7 +78,7 @@ def test_without_metadata_it_does_not_crash(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.parametrize("word", ["plain", "a b", 'a"b', "a$HOME[x]", "a`b`", "a\\b", "x>=1", "!"])
-def test_a_shell_reads_the_word_that_was_meant(word: str) -> None:
+def test_the_advised_command_is_quoted_for_the_shell(word: str) -> None:
     assert shlex.split(install_advice.quote(word)) == [word]
 
 
@@ -86,7 +88,7 @@ def test_the_extras_are_those_of_the_package() -> None:
         assert re.search(rf"^{extra} = \[", text, re.M)
 
 
-def test_no_other_place_knows_how_to_install_an_extra() -> None:
+def test_only_one_module_knows_how_to_install_an_extra() -> None:
     """The texts of `tsc firmware` do where the sources are missing: then there is no other way."""
     folder = ROOT / "compiler" / "tiniscript"
     files = {

@@ -32,13 +32,13 @@ def test_a_comment_before_the_first_instruction_names_it(text: str) -> None:
 
 
 @each_row("text", NAMELESS)
-def test_any_other_comment_tells_people_something(text: str) -> None:
+def test_any_other_comment_names_no_robot(text: str) -> None:
     assert named_robot(text) is None
     assert rename_robot(text, "grabber") == text
 
 
 @each_row("text", [text for text in NAMING if "\nS" in text or "\nF" in text])
-def test_the_formatter_keeps_it(text: str) -> None:
+def test_the_formatter_keeps_the_named_robot(text: str) -> None:
     laid_out = format_source(Source(text.removeprefix("\ufeff")))
     name_span = named_robot(laid_out)
     assert name_span is not None and name_span.name.lower() == "liner"
@@ -46,7 +46,7 @@ def test_the_formatter_keeps_it(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", NAMING)
-def test_another_one_takes_its_place(text: str) -> None:
+def test_another_named_robot_replaces_it(text: str) -> None:
     renamed_text = rename_robot(text, "grabber")
     name_span = named_robot(renamed_text)
     assert name_span is not None and name_span.name == "grabber"
@@ -61,7 +61,7 @@ def _span(text: str) -> tuple[int, int]:
     return name_span.span
 
 
-def test_a_long_row_of_anything_is_looked_at_once() -> None:
+def test_a_long_line_is_scanned_once() -> None:
     """No search of this file goes back and forth in a comment."""
     assert named_robot("//" * 100_000 + "robot: x y") is None
     assert named_robot("// robot:" + " " * 200_000 + "a b") is None

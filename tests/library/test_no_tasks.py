@@ -37,7 +37,7 @@ def test_a_text_is_refused_at_its_task(program: Path, verb: tuple[str, ...]) -> 
     assert reports_no_tasks(result, "es", "tinibot") and "línea 2:" in result.out + result.err
 
 
-def test_a_reader_that_lacks_them_is_told_from_a_robot_that_does(program: Path) -> None:
+def test_a_reader_without_tasks_is_distinguished_from_a_robot_without_them(program: Path) -> None:
     """An Uno runs compiled programs."""
     result = run_in_process("check", "--text-level", "uno", program, "--robot", ROBOT)
     output = result.out + result.err
@@ -57,7 +57,7 @@ def test_an_image_and_a_live_line_are_refused(program: Path) -> None:
     assert reports_no_tasks(run_in_process("live", "TASK;S;END_TASK", "--robot", ROBOT))
 
 
-def test_what_sends_nothing_takes_them(program: Path) -> None:
+def test_commands_that_send_nothing_accept_tasks(program: Path) -> None:
     for verb in (("check",), ("fmt",), ("show",), ("run", "--max-time", "0.01")):
         result = run_in_process(*verb, program, *(() if verb == ("fmt",) else ("--robot", ROBOT)))
         assert (result.code, WORDS["en"] in result.err) == (0, False)
@@ -79,7 +79,7 @@ def test_the_library_sends_no_tasks() -> None:
 
 @pytest.mark.parametrize("robot_name", ["tinibot", "grabber", "tinibot32"])
 @pytest.mark.parametrize("sent", ["upload", "live"])
-def test_the_others_run_them(sent: str, robot_name: str) -> None:
+def test_robots_with_tasks_run_them(sent: str, robot_name: str) -> None:
     """A stop ends all tasks; and the robot has the image that the compiler makes."""
     text = "SHOW(7);TASK;SHOW(8);F(FOREVER, 60);END_TASK;WHEN(FALSE);END_WHEN"
     with tiniscript.virtual_robot(robot_name, hurry=math.inf) as robot:
@@ -96,7 +96,7 @@ def test_the_others_run_them(sent: str, robot_name: str) -> None:
         assert fault is not None and (fault.name, fault.column) == ("DIVIDE_BY_ZERO", 8)
 
 
-def test_the_studio_neither_sends_nor_simulates() -> None:
+def test_the_studio_neither_sends_nor_simulates_tasks() -> None:
     result = checking.check(TEXT.encode(), ROBOT, "es")
     assert result.image == b""
     message = result.findings[-1].message
@@ -108,7 +108,7 @@ def test_the_studio_neither_sends_nor_simulates() -> None:
 
 
 @pytest.mark.parametrize("do", ["upload", "live"])
-def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
+def test_an_image_with_tasks_sent_by_a_page_is_refused(do: str) -> None:
     kit = robots.load(ROBOT).kit.fingerprint
     robot = SimpleNamespace(kit=kit)
     connection: Any = SimpleNamespace(
@@ -124,7 +124,7 @@ def test_a_page_that_sends_an_image_all_the_same_is_refused(do: str) -> None:
     assert [item["failure"] for item in link.news()] == ["UNKNOWN_NEEDS"]
 
 
-def test_a_recording_of_it_is_not_played() -> None:
+def test_a_recording_with_tasks_is_not_played() -> None:
     """No robot has run it."""
     checksum = tiniscript.compile(TEXT, ROBOT).checksum
     head = recordings.header_line(recordings.REAL, TEXT, robots.load(ROBOT), checksum)

@@ -35,7 +35,7 @@ def profile_without(key: str, text: str) -> str:
 
 
 @pytest.fixture
-def slow(tmp_path: Path) -> Path:
+def slow_profile(tmp_path: Path) -> Path:
     """The profile of a robot with unmeasured speeds."""
     path = tmp_path / "slow.toml"
     text = profile_without("turn", profile_without("speed", PROFILE.read_text(encoding="utf-8")))
@@ -43,19 +43,21 @@ def slow(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_robot_without_speeds_refuses_an_image(program: Path, slow: Path, tmp_path: Path) -> None:
+def test_a_robot_without_speeds_refuses_an_image(
+    program: Path, slow_profile: Path, tmp_path: Path
+) -> None:
     image = tmp_path / "way.bin"
     assert "0.741 s" in run_in_process("compile", program, "-o", image).out, (
         "the receipt says how long"
     )
     assert image.read_bytes()[3] == 1 and image.read_bytes()[14] == GO
-    result = run_in_process("upload", image, "--robot", slow, "--lang", "es")
+    result = run_in_process("upload", image, "--robot", slow_profile, "--lang", "es")
     assert result.code == 1 and "no puede avanzar por centímetros" in result.err
     assert "tsc run" in result.err
     assert run_in_process("run", image).out.endswith("741 DONE\n")
 
 
-def test_what_is_lacking_has_a_text_of_its_own() -> None:
+def test_each_missing_feature_has_its_own_text() -> None:
     liner = robots.load("liner")
     assert [missing_need_key(needs, liner) for needs in (0, TASKS, GO, TASKS | GO)] == [
         "", "no_tasks", "", "no_tasks"]  # fmt: skip
@@ -65,7 +67,7 @@ def test_what_is_lacking_has_a_text_of_its_own() -> None:
 
 
 @pytest.mark.parametrize("robot", robots.names())
-def test_all_robots_have_them(program: Path, robot: str) -> None:
+def test_all_shipped_robots_have_ways(program: Path, robot: str) -> None:
     profile = robots.load(robot)
     assert not missing_need_key(GO, profile)
     assert (
@@ -75,7 +77,7 @@ def test_all_robots_have_them(program: Path, robot: str) -> None:
     assert checking.check(TEXT.encode(), robot, "en").image
 
 
-def test_the_machine_in_cpp_has_them(program: Path) -> None:
+def test_the_machine_in_cpp_has_ways(program: Path) -> None:
     result = run_in_process("run", "--machine", "cpp", program)
     assert result.code == 0 and result.out == run_in_process("run", program).out
     assert tiniscript.run(TEXT, machine="cpp").events == tiniscript.run(TEXT).events
@@ -89,7 +91,7 @@ def test_a_move_without_power_is_explained() -> None:
 
 
 @pytest.mark.parametrize(("way", "ms"), [("20 CM", "0.741"), ("X CM", "")])
-def test_a_sketch_has_the_time_where_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
+def test_a_sketch_contains_the_time_if_it_is_known(tmp_path: Path, way: str, ms: str) -> None:
     path = tmp_path / "way.ts"
     path.write_text(f"X = 5; F({way}, 60); SHOW(X)", encoding="utf-8")
     result = run_in_process("show", "--arduino", path).gives(0 if ms else 2)
@@ -105,6 +107,6 @@ def test_a_profile_may_leave_a_speed_out(key: str) -> None:
     assert kit.fingerprint == robots.load("tinibot").kit.fingerprint
     half = read(text.replace(line, f"{key} = 0.5\n"), "mine").kit
     assert getattr(half, key) == 500
-    for wrong in ("0", "-1", "20000", '"fast"', "0.0001"):
+    for wrong_speed in ("0", "-1", "20000", '"fast"', "0.0001"):
         with pytest.raises(ProfileRefused):
-            read(text.replace(line, f"{key} = {wrong}\n"), "mine")
+            read(text.replace(line, f"{key} = {wrong_speed}\n"), "mine")

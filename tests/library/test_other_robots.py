@@ -20,17 +20,17 @@ def first_named(text: str, name: str = "tinibot") -> str:
     )
 
 
-def test_the_robots_of_the_lessons_are_those() -> None:
+def test_the_robots_of_the_lessons_are_suggested() -> None:
     kits = {robots.load(catalogue.load(folder).robot).kit for folder in catalogue.folders()}
     assert kits == {robots.load(name).kit for name in LESSON_ROBOTS}
 
 
 @pytest.mark.parametrize("name", [name for name in robots.names() if name != "tinibot"])
-def test_a_robot_that_the_program_names_is_meant(name: str) -> None:
+def test_a_robot_named_in_the_program_is_suggested(name: str) -> None:
     """Also where others have the word, too."""
     kit = robots.load(name).kit
-    own = {BUTTON, *robots.load("tinibot").kit.names}  # of a button there is another message
-    for word in {device.name for device in kit.sensors} - own:
+    own_names = {BUTTON, *robots.load("tinibot").kit.names}  # of a button there is another message
+    for word in {device.name for device in kit.sensors} - own_names:
         assert first_named(f"// robot: {name}\nSI|SHOW({word})") == name
 
 
@@ -39,5 +39,5 @@ def test_a_robot_that_the_program_names_is_meant(name: str) -> None:
     ("SI|SHOW(LINE_L);NECK(90)", "elegoo4"), ("SI|SHOW(LINE_L);LED(TRUE)", "liner"),
     ("SI|LED(TRUE);GRIPPER(9)", "grabber"), ("SI|SHOW(LINE_L);SHOW(DISTANCE);LED(TRUE)", "liner"),
 ])  # fmt: skip
-def test_else_one_with_most_of_its_words_and_then_one_of_a_lesson(text: str, meant: str) -> None:
+def test_otherwise_the_robot_with_most_words_is_suggested(text: str, meant: str) -> None:
     assert first_named(text) == meant

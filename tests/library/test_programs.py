@@ -37,7 +37,7 @@ def test_a_program_has_the_image_that_tsc_compile_writes(tsc: Tsc, tmp_path: Pat
 
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("text", ["SI|F(2, ", "SI|F(0,5, 80);X = 1;Q(3)", "SI|F(2, 80)", "SI|PEN"])
-def test_check_says_what_tsc_check_says(tsc: Tsc, text: str, language: str) -> None:
+def test_check_agrees_with_tsc_check(tsc: Tsc, text: str, language: str) -> None:
     answer = json.loads(tsc("check", "-e", text, "--json", "--lang", language).out)
     assert [message._asdict() for message in tiniscript.check(text, language=language)] == answer
 
@@ -58,7 +58,7 @@ def test_a_program_with_mistakes_is_an_error_that_shows_them() -> None:
     assert error.reason == "mistakes"
 
 
-def test_what_a_robot_of_ones_own_has_can_be_used(tmp_path: Path) -> None:
+def test_devices_of_a_custom_robot_can_be_used(tmp_path: Path) -> None:
     shipped = Path(tiniscript.__file__).parent / "robots" / "tinibot.toml"
     profile = tmp_path / "mine.toml"
     profile.write_text(shipped.read_text("utf-8").replace("DISTANCE", "EYES"), encoding="utf-8")
@@ -76,7 +76,7 @@ def test_a_listing_is_that_of_tsc_show(tsc: Tsc) -> None:
     assert "DISTANCE" in tiniscript.show(tiniscript.compile("SHOW(DISTANCE+1)").image)
 
 
-def test_a_text_of_half_a_character_is_a_mistake() -> None:
+def test_a_lone_surrogate_is_a_mistake() -> None:
     assert tiniscript.check("F(1, \ud800)")[0].severity == "mistake"
     assert tiniscript.check("F(1, 2)\0")[0].code == "TS002"
 
@@ -111,7 +111,7 @@ def test_values_are_numbers_or_yes_and_no() -> None:
         (bool, True), (int, 1), (float, -0.5), (int, 30)]  # fmt: skip
 
 
-def test_a_fault_has_its_place_and_a_cut_run_its_end() -> None:
+def test_a_fault_has_its_place_and_a_limited_run_its_end() -> None:
     trace = tiniscript.run("SI|X = 0\nSHOW(1 / X)")
     assert (trace.ending, trace.events[-1].name) == ("FAULT", "FAULT")
     assert trace.fault is not None
@@ -122,7 +122,7 @@ def test_a_fault_has_its_place_and_a_cut_run_its_end() -> None:
     assert tiniscript.run("LOOP(FOREVER);X = 1;END_LOOP", max_steps=500).steps == 500
 
 
-def test_a_run_is_cut_where_tsc_run_cuts_it(tsc: Tsc) -> None:
+def test_a_run_is_limited_like_in_tsc_run(tsc: Tsc) -> None:
     """A long calculation ends in both, and a loop that takes no time is cut."""
     for count, ending in (("900000", "DONE"), ("FOREVER", "LIMIT")):
         text = f"N = 0;LOOP({count});N = 1;END_LOOP;SHOW(1)"
@@ -167,14 +167,14 @@ def test_a_damaged_image_is_refused() -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_what_is_said_of_bytes_names_no_robot_that_is_not_there(
+def test_messages_about_bytes_name_no_absent_robot(
     language: Literal["en", "es"],
 ) -> None:
-    whole = tiniscript.compile(PROGRAM).image
+    whole_image = tiniscript.compile(PROGRAM).image
     for image, reason in {
         b"xx": "NOT_AN_IMAGE", b"": "NOT_AN_IMAGE",
-        whole[:-1]: "TRUNCATED", whole + b"?": "TRAILING",
-        b"TS\xff" + whole[3:]: "OTHER_VERSION", pack("SI", 0, b"\xff"): "",
+        whole_image[:-1]: "TRUNCATED", whole_image + b"?": "TRAILING",
+        b"TS\xff" + whole_image[3:]: "OTHER_VERSION", pack("SI", 0, b"\xff"): "",
     }.items():  # fmt: skip
         with pytest.raises(tiniscript.ProgramError) as error_info:
             tiniscript.show(image, language=language)
@@ -197,7 +197,7 @@ SHARED = (
 
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_a_sentence_of_the_command_in_the_library_names_nothing_of_the_command(
+def test_messages_in_the_library_do_not_mention_command_options(
     language: str,
 ) -> None:
     values = {"port": "COM5", "why": "broken", "how": "pip"}
@@ -226,7 +226,7 @@ MISUSES: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("reason", MISUSES)
-def test_wrong_use_is_an_error_with_a_sentence(reason: str) -> None:
+def test_wrong_use_raises_an_error_with_a_message(reason: str) -> None:
     with pytest.raises(tiniscript.UsageError) as error_info:
         MISUSES[reason]()
     assert error_info.value.reason == reason
@@ -252,7 +252,7 @@ def test_arguments_out_of_their_range_are_refused(arguments: Any) -> None:
 # -- the package -----------------------------------------------------------------------------------
 
 
-def test_every_name_is_there_and_documented() -> None:
+def test_every_public_name_exists_and_is_documented() -> None:
     for name in tiniscript.__all__:
         value = getattr(tiniscript, name)
         assert value.__doc__, name
@@ -269,7 +269,7 @@ def test_the_library_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_user_has_types(tmp_path: Path) -> None:
+def test_the_package_is_typed(tmp_path: Path) -> None:
     """mypy --strict checks a user's program: a typo is an error."""
     pytest.importorskip("mypy")
     program = tmp_path / "use.py"
@@ -301,7 +301,7 @@ def test_a_user_has_types(tmp_path: Path) -> None:
     ]
 
 
-def test_without_wasmtime_the_next_step_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_wasmtime_is_reported_with_the_next_step(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "wasmtime", None)
     for module in ("vm.wasm_store", "vm.wasm"):
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)

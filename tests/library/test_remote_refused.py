@@ -36,14 +36,14 @@ CODES = {
 
 
 @pytest.mark.parametrize("name", CODES)
-def test_which_code_reads_a_remote_control(name: str) -> None:
+def test_code_that_reads_a_remote_control_is_recognized(name: str) -> None:
     code, does = CODES[name]
     assert reads_remote(code, ROBOT.kit) == does
     assert lacks_remote(code, ROBOT.kit, device_info(PLACES)) == does
     assert not lacks_remote(code, ROBOT.kit, device_info(PLACES | REMOTE))
 
 
-def test_the_refusal_says_what_to_do() -> None:
+def test_the_refusal_names_the_next_step() -> None:
     image = unpack(pack("SI", 0, bytes((READ, OWN))))
     refusal_found = refusal(image, ROBOT, device_info(PLACES))
     assert refusal_found is not None and refusal_found.status == STATUSES["NO_REMOTE"]

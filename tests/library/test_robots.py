@@ -44,7 +44,7 @@ def virtual() -> Iterator[tiniscript.VirtualRobotConnection]:
         yield robot
 
 
-def test_keys_are_pressed_and_others_are_refused(
+def test_keys_are_pressed_and_unknown_ones_refused(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.press("UP", "A", x=-100, y=100)
@@ -56,7 +56,7 @@ def test_keys_are_pressed_and_others_are_refused(
         virtual.press(x=101)
 
 
-def test_a_program_runs_there_and_tells_what_it_shows(
+def test_a_program_runs_on_a_robot_and_reports_its_values(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     assert (virtual.info.robot, virtual.info.port) == ("tinibot", virtual.port)
@@ -87,7 +87,7 @@ def test_a_fault_has_the_line_of_the_program(virtual: tiniscript.VirtualRobotCon
     assert (ending.fault.name, ending.fault.line) == ("DIVIDE_BY_ZERO", 2)
 
 
-def test_a_line_is_done_at_once_and_the_program_stays(
+def test_a_line_runs_at_once_and_the_stored_program_stays(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     stored = virtual.upload("SI|SHOW(7)")
@@ -111,7 +111,7 @@ def test_a_program_may_wait_for_the_button(virtual: tiniscript.VirtualRobotConne
     ] == [{"value": 3}]
 
 
-def test_a_program_that_goes_on_is_not_an_ending_and_a_line_after_its_stop_runs(
+def test_a_running_program_has_not_ended_and_a_line_runs_after_its_stop(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.upload(FOREVER, save=False)
@@ -124,7 +124,7 @@ def test_a_program_that_goes_on_is_not_an_ending_and_a_line_after_its_stop_runs(
     assert virtual.wait().name == "DONE"
 
 
-def test_a_time_limit_ends_a_stream_without_end(
+def test_a_time_limit_ends_an_endless_stream(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     virtual.upload("SI|LOOP(FOREVER);SHOW(1);W(0.01);END_LOOP", save=False)
@@ -133,7 +133,7 @@ def test_a_time_limit_ends_a_stream_without_end(
         virtual.wait(0.2)
 
 
-def test_its_world_and_its_readings_can_be_chosen() -> None:
+def test_world_and_readings_of_a_virtual_robot_can_be_chosen() -> None:
     sensors = {"DISTANCE": [100, 5]}
     with tiniscript.virtual_robot(world="light", sensors=sensors, hurry=50) as robot:
         robot.upload(OBSTACLE, save=False)
@@ -152,7 +152,7 @@ def test_its_world_and_its_readings_can_be_chosen() -> None:
      ("bad_number", {"noise": 2}), ("bad_number", {"motors": (100, 500)}),
      ("no_sensor", {"sensors": {"EYES": 1}}), ("profile_refused", {"robot": "tinbot"})],
 )  # fmt: skip
-def test_a_virtual_robot_refuses_what_it_cannot_be(
+def test_a_virtual_robot_refuses_invalid_settings(
     reason: str, arguments: dict[str, object]
 ) -> None:
     with raises_error(tiniscript.UsageError, reason):
@@ -160,17 +160,17 @@ def test_a_virtual_robot_refuses_what_it_cannot_be(
     assert directory.running_robots() == []
 
 
-def test_wrong_use_of_a_connection_is_an_error(
+def test_wrong_use_of_a_connection_raises_an_error(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
-    for reason, wrong in (
+    for reason, wrong_call in (
         ("nothing_started", lambda: virtual.wait()),
         ("live_button", lambda: virtual.live("SB|F(1, 50)")),
         ("ping_program", lambda: virtual.upload("PING|check_connection")),
         ("bad_number", lambda: list(virtual.events(-1))),
     ):
         with raises_error(tiniscript.UsageError, reason):
-            wrong()
+            wrong_call()
     with pytest.raises(tiniscript.ProgramError, match="TS"):
         virtual.live("F(1 50)")
     with pytest.raises(tiniscript.ProgramError) as too_long:
@@ -182,15 +182,15 @@ def test_wrong_use_of_a_connection_is_an_error(
         virtual.live("F(1, 50)")
 
 
-def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
-    before = threading.active_count()
+def test_a_virtual_robot_ends_with_its_context() -> None:
+    count_before = threading.active_count()
     with tiniscript.virtual_robot() as robot:
         assert [entry.address for entry in directory.running_robots()] == [robot.port]
     assert not list(directory._folder().iterdir())
-    assert threading.active_count() == before
+    assert threading.active_count() == count_before
 
 
-def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
+def test_the_virtual_robot_of_another_process_is_found_without_a_port() -> None:
     with virtual_robot("--robot", "liner") as running_robot, tiniscript.connect() as robot:
         assert robot.port == running_robot.port
         assert robot.info.robot == "liner"
@@ -203,7 +203,7 @@ def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
 # -- a robot on a port -----------------------------------------------------------------------------
 
 
-def test_button_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
+def test_the_button_a_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
 
         def drive() -> None:
@@ -223,7 +223,7 @@ def test_button_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-def test_an_exception_stops_the_robot_and_goes_on(pty_robot: PtyRobot) -> None:
+def test_an_exception_stops_the_robot_and_propagates(pty_robot: PtyRobot) -> None:
     with pytest.raises(ZeroDivisionError), tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER, detached=True)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
@@ -248,7 +248,7 @@ def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot) -> None:
     assert err.rstrip().endswith(b"KeyboardInterrupt")  # no other error came after it
 
 
-def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
+def test_a_detached_program_continues(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER, save=False, detached=True)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
@@ -258,7 +258,7 @@ def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-def test_a_stop_that_nobody_confirms_is_an_error(
+def test_an_unconfirmed_stop_raises_an_error(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.5)
@@ -317,7 +317,7 @@ class StoppedAtFirst:
 
 @pytest.mark.parametrize("stops", range(4))
 @pytest.mark.parametrize("patience", range(4))
-def test_whoever_connects_while_others_stop_the_robot_meets_it(stops: int, patience: int) -> None:
+def test_a_connection_succeeds_while_others_stop_the_robot(stops: int, patience: int) -> None:
     """It waits for as long as its time limit allows."""
     answers = iter([True] * patience + [False] * 9)
     client = client_of(line := StoppedAtFirst(stops))
@@ -330,7 +330,7 @@ def test_whoever_connects_while_others_stop_the_robot_meets_it(stops: int, patie
     assert line.stops == stops - patience - 1
 
 
-def test_only_its_own_word_confirms_a_stop() -> None:
+def test_only_the_robots_own_answer_confirms_a_stop() -> None:
     for names, is_confirmed in (
         (["SHOW", "STOPPED"], True),
         (["SHOW", "LOST"], False),
@@ -343,7 +343,7 @@ def test_only_its_own_word_confirms_a_stop() -> None:
     assert not client_of(earlier).stop(0.01)
 
 
-def test_what_ended_before_a_run_is_not_its_end() -> None:
+def test_earlier_end_events_do_not_end_a_run() -> None:
     follower = Follower(5)
     stopped_event = event("STOPPED")
     started = [StartedEvent(run, 1) for run in (5, 6)]
@@ -353,14 +353,14 @@ def test_what_ended_before_a_run_is_not_its_end() -> None:
     assert follower.follow(stopped_event, "P")
     assert follower.end(stopped_event) == End("STOPPED")
     assert follower.end(DoneEvent(5)) == End("DONE")
-    for last, reason in (
+    for last_event, reason in (
         (started[1], "replaced"), (LostEvent(), "link_lost"), (RestartedEvent(), "restarted")
     ):  # fmt: skip
         with raises_error(tiniscript.RobotError, reason):
-            follower.follow(last, "P")
+            follower.follow(last_event, "P")
 
 
-def test_a_reset_during_a_run_is_not_an_end_of_the_program(pty_robot: PtyRobot) -> None:
+def test_a_reset_during_a_run_does_not_count_as_an_end(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|F(200, 80)", save=False)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
@@ -371,7 +371,7 @@ def test_a_reset_during_a_run_is_not_an_end_of_the_program(pty_robot: PtyRobot) 
         assert robot.wait().name == "DONE"
 
 
-def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot) -> None:
+def test_a_reset_of_an_idle_robot_is_not_reported(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         for _ in range(2):
             robot.upload("SI|SHOW(1)", save=False)
@@ -379,7 +379,7 @@ def test_a_reset_of_a_robot_that_stands_is_noticed_by_nobody(pty_robot: PtyRobot
             pty_robot.switch_off_and_on()
 
 
-def test_a_program_is_saved_when_waiting_is_over_or_its_connection_is_left(
+def test_a_program_is_saved_by_the_end_of_a_wait_or_a_connection(
     pty_robot: PtyRobot,
 ) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
@@ -394,7 +394,7 @@ def test_a_program_is_saved_when_waiting_is_over_or_its_connection_is_left(
         assert robot.start().checksum == program.checksum
 
 
-def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
+def test_the_previous_program_is_restored(pty_robot: PtyRobot) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         programs = []
         for power in (30, 40):
@@ -415,7 +415,7 @@ def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
         assert robot.undo().checksum == programs[1].checksum
 
 
-def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
+def test_a_way_through_another_command_is_usable(pty_robot: PtyRobot, link: Command) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|SHOW(4)")
         assert [
@@ -427,25 +427,25 @@ def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Comma
     link.kill()
 
 
-def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
+def test_a_pulled_cable_is_reported_twice(pty_robot: PtyRobot) -> None:
     robot = tiniscript.connect(pty_robot.port)
     with pytest.raises(tiniscript.StopNotConfirmed) as error_info, robot:
         robot.upload(FOREVER)
         pty_robot.pull()
         robot.wait()
-    before = error_info.value.__context__
-    assert isinstance(before, tiniscript.RobotError)
-    assert before.reason == "port_gone"
+    earlier_error = error_info.value.__context__
+    assert isinstance(earlier_error, tiniscript.RobotError)
+    assert earlier_error.reason == "port_gone"
 
 
-def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_port_is_reported(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 300)
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()
-    before = threading.active_count()
+    count_before = threading.active_count()
     with pytest.raises(tiniscript.RobotError) as error_info:
         tiniscript.connect(pty_robot.port, language="es")
-    assert threading.active_count() == before
+    assert threading.active_count() == count_before
     assert error_info.value.reason == "link_silent"
     assert "Nada responde" in str(error_info.value)
     # and the port is free again
@@ -454,13 +454,13 @@ def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) ->
         assert robot.info.robot == "tinibot"
 
 
-def test_a_port_that_is_not_there_is_an_error() -> None:
+def test_a_missing_port_raises_an_error() -> None:
     with pytest.raises(tiniscript.RobotError) as error_info:
         tiniscript.connect("/dev/no-such-port" if os.name == "posix" else "COM199")
     assert error_info.value.reason in ("port_missing", "port_missing_but")
 
 
-def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_port_has_one_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its sentence says which ones there are; its reason is the one that the documents name."""
     from tiniscript.link import ports
 
@@ -472,14 +472,16 @@ def test_a_port_that_is_not_there_has_one_reason(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.parametrize("watches", [True, False])
-def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
+def test_a_run_of_another_command_continues_after_the_connection_is_left(
     pty_robot: PtyRobot, watches: bool
 ) -> None:
     """A thread holds the port until the other has ended.."""
     robot = tiniscript.connect(pty_robot.port)
     robot.upload(FOREVER)
-    other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port)
-    other.until("running")
+    other_command = Command(
+        "upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", pty_robot.port
+    )
+    other_command.until("running")
     pty_robot.until(lambda: "MOTORS 30 30" in pty_robot.actions, "it does the other's")
     if watches:
         with raises_error(tiniscript.RobotError, "replaced"):
@@ -489,38 +491,38 @@ def test_what_another_command_has_started_through_it_goes_on_when_it_is_left(
     robot.close()  # no effect
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2000, "it goes on")
-    assert pty_robot.moves and other.process.poll() is None
+    assert pty_robot.moves and other_command.process.poll() is None
     with tiniscript.connect(pty_robot.port) as second_robot:  # through the holder of the port
         assert second_robot.info.port == pty_robot.port
         second_robot.stop()
-    assert other.wait_for_result().code == 3
+    assert other_command.wait_for_result().code == 3
     until(
         lambda: not any(thread.name == "holder" for thread in threading.enumerate()), "it lets go"
     )
     process("doctor", "--identify", "--port", pty_robot.port).gives(0)
 
 
-def test_ctrl_c_stops_what_another_command_has_started_through_it(pty_robot: PtyRobot) -> None:
-    other: Command | None = None
+def test_ctrl_c_stops_a_run_of_another_command_through_this_one(pty_robot: PtyRobot) -> None:
+    other_command: Command | None = None
     with pytest.raises(KeyboardInterrupt), tiniscript.connect(pty_robot.port):
-        other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-        other.until("running")
+        other_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+        other_command.until("running")
         raise KeyboardInterrupt
-    assert other is not None and other.wait_for_result().code == 3
+    assert other_command is not None and other_command.wait_for_result().code == 3
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
 
 
-def test_whom_another_command_has_replaced_stops_nothing_through_a_holder(
+def test_a_replaced_client_stops_nothing_through_the_holder(
     pty_robot: PtyRobot, link: Command
 ) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload(FOREVER)
-        other = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-        other.until("running")
+        other_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+        other_command.until("running")
         with raises_error(tiniscript.RobotError, "replaced"):
             robot.wait()
     began_ms = pty_robot.robot_ms
     pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 1500, "it goes on")
-    assert pty_robot.moves and other.process.poll() is None
-    other.kill()
+    assert pty_robot.moves and other_command.process.poll() is None
+    other_command.kill()
     assert link.process.poll() is None

@@ -57,7 +57,7 @@ def wait_for_saving(clock: Clock, saving: Saving, story: list[tuple[float, int]]
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_dips_of_the_supply_end_no_saving_that_goes_on(clock: Clock, seed: int) -> None:
+def test_supply_dips_do_not_end_a_save_in_progress(clock: Clock, seed: int) -> None:
     rng = random.Random(seed)
     story, at_s = [], 0.0
     done_s = rng.uniform(LOW_VOLTAGE_TIMEOUT_S, SAVE_TIMEOUT_S - 1)
@@ -71,15 +71,15 @@ def test_dips_of_the_supply_end_no_saving_that_goes_on(clock: Clock, seed: int) 
         story.append((min(at_s, done_s), SAVED_LOW_SUPPLY if is_low else SAVED_SAVING))
         is_low = not is_low
     story.append((SAVE_TIMEOUT_S * 9, SAVED_STORED))
-    first = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
+    first_state = SAVED_LOW_SUPPLY if rng.random() < 0.5 else SAVED_SAVING
     clock.now_s = rng.choice((0.0, 5.0, 1e6))
-    saving = Saving(receipt(first))
+    saving = Saving(receipt(first_state))
     wait_for_saving(clock, saving, story)
     assert (saving.is_over, saving.reason) == (True, ""), story
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, seed: int) -> None:
+def test_a_low_supply_is_waited_for_equally_long_each_time(clock: Clock, seed: int) -> None:
     """Earlier events do not matter, and a second wait is as long as the first."""
     rng = random.Random(seed)
     saving = Saving(receipt(SAVED_SAVING))
@@ -100,7 +100,7 @@ def test_a_supply_that_stays_low_is_waited_for_as_long_each_time(clock: Clock, s
         clock.now_s += rng.uniform(0, 20)
 
 
-def test_what_is_never_saved_is_given_up(clock: Clock) -> None:
+def test_an_endless_save_is_given_up(clock: Clock) -> None:
     saving = Saving(receipt(SAVED_SAVING))
     assert (
         SAVE_TIMEOUT_S
@@ -135,7 +135,7 @@ class Line:
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_what_becomes_of_a_program_is_told_while_it_runs(
+def test_the_save_state_of_a_program_is_reported_while_it_runs(
     clock: Clock, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     """A supply that is low, each time, and that it is saved: one answer is not the last one."""

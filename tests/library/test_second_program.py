@@ -94,15 +94,15 @@ Story = tuple[str, str, bool]
 
 
 def play_story(robot: RobotConnection, line: Line, story: Story) -> str:
-    how, end, looks = story
-    if how.startswith("upload"):
-        robot.upload(f"SI|F({line.run + 1}, 50)", save=how == "upload for good")
-    elif how == "live":
+    kind, end, looks = story
+    if kind.startswith("upload"):
+        robot.upload(f"SI|F({line.run + 1}, 50)", save=kind == "upload for good")
+    elif kind == "live":
         robot.live("F(2, 50)")
-    elif how == "undo":
+    elif kind == "undo":
         robot.undo()
     else:
-        robot.start(detached=how == "start detached")
+        robot.start(detached=kind == "start detached")
     events = [StartedEvent(line.run, line.program), *END_ACTIONS[end](line)]
     line.events += [(int(monotonic() * 1000), event) for event in events]
     if not looks:
@@ -131,26 +131,26 @@ STORIES = list(itertools.product(START_ACTIONS, END_ACTIONS, (False, True)))
 @pytest.mark.sampled("seed", keep=20)
 @pytest.mark.parametrize("kind", [None, ValueError, KeyboardInterrupt])
 @pytest.mark.parametrize("seed", range(len(STORIES)))
-def test_leaving_is_about_the_last_program_alone(
+def test_leaving_concerns_only_the_last_program(
     monkeypatch: pytest.MonkeyPatch, seed: int, kind: type[BaseException] | None
 ) -> None:
     rng = random.Random(seed)
-    last = STORIES[seed]
+    last_story = STORIES[seed]
     robot, line = connect_client(monkeypatch)
-    outcome = play_story(robot, line, last)
+    outcome = play_story(robot, line, last_story)
     fresh = leave_robot(robot, line, kind)
     for _ in range(8):
         robot, line = connect_client(monkeypatch)
-        before = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
-        for story in before:
+        earlier_stories = [rng.choice(STORIES) for _ in range(rng.randint(1, 3))]
+        for story in earlier_stories:
             play_story(robot, line, story)
             line.events.clear()
             line.unsaved_looks = 0
-        assert play_story(robot, line, last) == outcome, before
-        assert leave_robot(robot, line, kind) == fresh, (before, last)
+        assert play_story(robot, line, last_story) == outcome, earlier_stories
+        assert leave_robot(robot, line, kind) == fresh, (earlier_stories, last_story)
 
 
-def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_that_keeps_running_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reference for the others. Ctrl-C stops any run."""
     for story, calls in (
         (("start", "runs on", False), ["stop", CLOSE_ACTION]),
@@ -163,11 +163,11 @@ def test_a_program_that_runs_on_is_stopped(monkeypatch: pytest.MonkeyPatch) -> N
         for kind in (None, KeyboardInterrupt):
             robot, line = connect_client(monkeypatch)
             play_story(robot, line, story)
-            did = leave_robot(robot, line, kind)
-            assert did == calls if kind is None else did[0] == "stop", (story, kind)
+            outcome = leave_robot(robot, line, kind)
+            assert outcome == calls if kind is None else outcome[0] == "stop", (story, kind)
 
 
-def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_late_values_belong_to_the_text_of_their_program(monkeypatch: pytest.MonkeyPatch) -> None:
     """The next one has the same code. Its own events were not read before that."""
     robot, line = connect_client(monkeypatch)
     for name, end in (("NEAR", "; "), ("FAR", "\n")):
@@ -176,11 +176,12 @@ def test_what_a_program_tells_late_is_of_its_own_text(monkeypatch: pytest.Monkey
         program = checksum(compilation.image)
         line.program = program
         robot.upload(compilation.source.text, save=False)
-        at = rows(compilation.code)[-1].offset
-        late: list[Event] = [
-            ShownEvent(1000, 0, line.run, program, at), FaultEvent(line.run, 1, at, program),
-        ]  # fmt: skip
-        line.events += [(int(monotonic() * 1000), event) for event in late]
+        offset = rows(compilation.code)[-1].offset
+        late_events: list[Event] = [
+            ShownEvent(1000, 0, line.run, program, offset),
+            FaultEvent(line.run, 1, offset, program),
+        ]
+        line.events += [(int(monotonic() * 1000), event) for event in late_events]
     events = list(robot.events(0.2))
     assert [(event.values.get("name"), event.values["line"]) for event in events] == [
         ("NEAR / 0", 1), (None, 1), ("FAR / 0", 2), (None, 2),

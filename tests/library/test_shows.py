@@ -46,7 +46,7 @@ def names(text: str) -> list[str]:
         ("SHOW(5-3)", "5 - 3"), ("SHOW(((2)))", "((2))"), ("SHOW(NOT TRUE)", "NOT TRUE"),
     ],
 )  # fmt: skip
-def test_a_value_is_called_as_the_expression_of_its_show(text: str, expected: str) -> None:
+def test_a_value_is_named_by_the_expression_of_its_show(text: str, expected: str) -> None:
     assert names(text) == [expected]
 
 
@@ -74,8 +74,8 @@ def test_the_copies_of_a_def_are_one_show() -> None:
     assert list_shows(text) == [Show("X", 1, 14)] * 3
 
 
-def test_a_map_that_is_not_of_its_text_names_nothing() -> None:
-    places = tuple(MapLocation(k, *at) for k, at in enumerate(
+def test_a_map_of_another_text_names_nothing() -> None:
+    places = tuple(MapLocation(k, *locationfset) for k, locationfset in enumerate(
         [(9, 1, 9, 5), (1, 1, 0, 0), (1, 1, 1, 5), (1, 6, 1, 9), (1, 1, 2, 3), (1, 90, 1, 99)]
     ))  # fmt: skip
     shows = Shows(SourceMap("", ("SHOW(X; é", "SHOW"), places))
@@ -86,8 +86,8 @@ def test_a_map_that_is_not_of_its_text_names_nothing() -> None:
 # -- of which program -----------------------------------------------------------------------------
 
 
-def event(program: int, at: int, run: int = 1) -> ShownEvent:
-    return ShownEvent(1000, 0, run, program, at)
+def event(program: int, offset: int, run: int = 1) -> ShownEvent:
+    return ShownEvent(1000, 0, run, program, offset)
 
 
 @pytest.fixture
@@ -96,52 +96,52 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("cache")
-def test_a_program_is_found_by_its_checksum_alone() -> None:
-    mine, theirs = compile_right_text("SHOW(DISTANCE)"), compile_right_text("SHOW(LIGHT_R)")
-    at = rows(mine.code)[-1].offset
-    finder = ShowFinder({checksum(mine.image): make_source_map(mine)})
-    assert finder.show_of(event(checksum(mine.image), at)) == Show("DISTANCE", 1, 1)
-    other = event(checksum(theirs.image), at, run=2)
-    assert finder.show_of(other) is None, "nobody here has it"
-    source_map.remember(theirs.image, make_source_map(theirs))
-    assert finder.show_of(other) == Show("LIGHT_R", 1, 1), "it came into the cache later"
-    assert finder.show_of(event(checksum(mine.image), at, run=3)) == Show("DISTANCE", 1, 1)
-    assert finder.show_of(event(checksum(mine.image), -1)) is None
+def test_a_program_is_found_by_checksum_only() -> None:
+    first, second = compile_right_text("SHOW(DISTANCE)"), compile_right_text("SHOW(LIGHT_R)")
+    offset = rows(first.code)[-1].offset
+    finder = ShowFinder({checksum(first.image): make_source_map(first)})
+    assert finder.show_of(event(checksum(first.image), offset)) == Show("DISTANCE", 1, 1)
+    second_event = event(checksum(second.image), offset, run=2)
+    assert finder.show_of(second_event) is None, "nobody here has it"
+    source_map.remember(second.image, make_source_map(second))
+    assert finder.show_of(second_event) == Show("LIGHT_R", 1, 1), "it came into the cache later"
+    assert finder.show_of(event(checksum(first.image), offset, run=3)) == Show("DISTANCE", 1, 1)
+    assert finder.show_of(event(checksum(first.image), -1)) is None
     assert ShowFinder().show_of(ShownEvent(1000, 0)) is None, "of an older robot"
 
 
 @pytest.mark.usefixtures("cache")
-def test_the_same_code_of_another_text_is_called_as_that_text_says() -> None:
+def test_equal_code_is_named_by_its_own_text() -> None:
     first, second = (
         compile_right_text("NEAR = TIME; SHOW(NEAR)"),
         compile_right_text("FAR = TIME; SHOW(FAR)"),
     )
     assert first.image == second.image
-    program, at = checksum(first.image), rows(first.code)[-1].offset
+    program, offset = checksum(first.image), rows(first.code)[-1].offset
     maps = {program: make_source_map(first)}
     finder = ShowFinder(maps)
-    names = [finder.show_of(event(program, at))]
+    names = [finder.show_of(event(program, offset))]
     maps[program] = make_source_map(second)
-    names += [finder.show_of(event(program, at)), finder.show_of(event(program, at, run=2))]
+    names += [finder.show_of(event(program, offset)), finder.show_of(event(program, offset, run=2))]
     assert [show and show.text for show in names] == ["NEAR", "NEAR", "FAR"], "until its next run"
 
 
 @pytest.mark.usefixtures("cache")
-def test_a_value_is_called_so_whatever_was_shown_before() -> None:
+def test_the_name_of_a_value_does_not_depend_on_earlier_values() -> None:
     """This also holds after a reset of the robot, which restarts its run numbers."""
     programs = [compile_right_text(f"SHOW({name})") for name in ("DISTANCE", "LIGHT_R", "TIME")]
-    at = rows(programs[0].code)[-1].offset
+    offset = rows(programs[0].code)[-1].offset
     map_by_checksum = {
         checksum(program.image): make_source_map(program) for program in programs[:2]
     }
-    events = [event(checksum(program.image), at, run) for program in programs for run in (1, 2)]
-    for before in product(events, repeat=2):
+    events = [event(checksum(program.image), offset, run) for program in programs for run in (1, 2)]
+    for earlier_events in product(events, repeat=2):
         for shown_last in events:
             finder = ShowFinder(map_by_checksum)
-            for shown_before in before:
+            for shown_before in earlier_events:
                 finder.show_of(shown_before)
             assert finder.show_of(shown_last) == ShowFinder(map_by_checksum).show_of(shown_last), (
-                before,
+                earlier_events,
                 shown_last,
             )
 
@@ -152,13 +152,13 @@ def test_a_run_keeps_the_text_that_it_began_with() -> None:
     texts = [
         compile_right_text(f"{name} = TIME; SHOW({name})") for name in ("NEAR", "FAR", "THIRD")
     ]
-    program, at = checksum(texts[0].image), rows(texts[0].code)[-1].offset
+    program, offset = checksum(texts[0].image), rows(texts[0].code)[-1].offset
     maps: dict[int, SourceMap] = {}
     finder = ShowFinder(maps)
     for run, compilation in enumerate(texts):
         maps[program] = make_source_map(compilation)
         finder.begin(run % 2, program)
-    names = [finder.show_of(event(program, at, run)) for run in (1, 0, 1)]
+    names = [finder.show_of(event(program, offset, run)) for run in (1, 0, 1)]
     assert [show and show.text for show in names] == ["FAR", "THIRD", "FAR"]
     finder.begin(1, program + 1)
-    assert finder.show_of(event(program + 1, at, 1)) is None
+    assert finder.show_of(event(program + 1, offset, 1)) is None

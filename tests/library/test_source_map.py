@@ -73,11 +73,11 @@ def locate_instructions(text: str) -> list[tuple[str, str]]:
                                   ("RETURN", "S"), ("CALL", "A")]),
     ],
 )  # fmt: skip
-def test_where_an_instruction_comes_from(text: str, expected: list[tuple[str, str]]) -> None:
+def test_an_instruction_is_mapped_to_its_source(text: str, expected: list[tuple[str, str]]) -> None:
     assert locate_instructions(text) == expected
 
 
-def test_instructions_that_became_far_stay_where_they_were() -> None:
+def test_instructions_in_far_form_keep_their_source() -> None:
     """A comparing branch that does not reach is four instructions of one place."""
     row = "S;" * 256
     pairs = locate_instructions(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
@@ -88,7 +88,7 @@ def test_instructions_that_became_far_stay_where_they_were() -> None:
     assert pairs[-1] == ("WAIT8", "W(1)")
 
 
-def test_what_is_folded_away_has_no_place() -> None:
+def test_constant_folded_code_has_no_place() -> None:
     assert locate_instructions("IF(1 > 2); S; ENDIF; W(1)") == [("WAIT8", "W(1)")]
 
 
@@ -99,13 +99,13 @@ def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
     assert offsets == sorted(set(offsets)) and offsets[0] == 0
     assert set(offsets) <= {row.offset for row in rows(compilation.code)}
     spans = [place.span for place in compilation.locations]
-    assert all(one != other for one, other in itertools.pairwise(spans))
+    assert all(first != second for first, second in itertools.pairwise(spans))
 
 
 # -- the map of a program -------------------------------------------------------------------------
 
 
-def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
+def test_an_offset_inside_an_instruction_maps_to_the_instruction() -> None:
     mapping = make_source_map(compile_right_text("S; F(1, 80); W(1)"))
     columns = [None if (place := mapping.location_at(offset)) is None else place.column
                for offset in range(-1, 7)]  # fmt: skip
@@ -113,7 +113,7 @@ def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
     assert (mapping.line(0), mapping.line(1), mapping.line(2)) == ("", "S; F(1, 80); W(1)", "")
 
 
-def test_a_map_is_written_as_json_writes_it() -> None:
+def test_a_map_is_written_like_json() -> None:
     text = "".join(map(chr, range(0x180))) + "\u2028\ud800 🤖"
     places = (MapLocation(0, 1, 1, 1, 2), MapLocation(10, 2, 3, 40, 5))
     for mapping in (
@@ -151,7 +151,7 @@ def test_an_invalid_map_is_refused(changed_fields: dict[str, object]) -> None:
         source_map.from_json(json.dumps(fields))
 
 
-def test_a_variable_is_a_yes_no_where_its_show_is() -> None:
+def test_a_variables_type_is_known_at_its_show() -> None:
     """In random programs, and in the copies of a DEF's values that tasks have."""
     kinds = set()
     for seed in range(40):
@@ -162,8 +162,11 @@ def test_a_variable_is_a_yes_no_where_its_show_is() -> None:
             show_program = compile_text(f"{text}\nSHOW({name})", kit)
             if show_program.is_right:  # otherwise it is a value of a DEF
                 assert show_program.program
-                last = show_program.program.body[-1]
-                assert isinstance(last, Show) and last.is_yes_no == is_yes_no, (seed, name)
+                last_statement = show_program.program.body[-1]
+                assert isinstance(last_statement, Show) and last_statement.is_yes_no == is_yes_no, (
+                    seed,
+                    name,
+                )
                 kinds.add(is_yes_no)
     assert kinds == {True, False}
     compilation = compile_right_text(

@@ -57,7 +57,7 @@ class Chatterbox:
         pass
 
 
-def test_a_line_that_nobody_looks_at_keeps_little() -> None:
+def test_an_unread_line_keeps_few_events() -> None:
     """This happens at the prompt of `tsc live`, and when `tsc monitor` writes into a full pipe."""
     port = Chatterbox()
     tracemalloc.start()
@@ -95,7 +95,7 @@ class Socket(Chatterbox):
         return data
 
 
-def test_what_a_socket_has_is_heard_in_one_piece(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_available_socket_data_is_read_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """With two bytes per turn, a stop waited for seconds after the values. The peer may have sent
     its reason before it closes.
     """
@@ -111,7 +111,7 @@ def make_shown_event(number: int) -> TimedEvent:
     return number, ShownEvent(number, 0)
 
 
-def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
+def test_state_events_are_kept_in_preference_to_values() -> None:
     backlog = Backlog()
     backlog.add_events([(0, StartedEvent(1, 2)), make_shown_event(0)])
     backlog.add_events(make_shown_event(number) for number in range(1, 10 * MOST_EVENTS))
@@ -124,13 +124,13 @@ def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     assert len(backlog) == 0
 
 
-def test_what_has_room_is_not_missed() -> None:
+def test_events_that_fit_are_not_missed() -> None:
     backlog = Backlog()
     backlog.add_events(make_shown_event(number) for number in range(MOST_EVENTS))
     assert [backlog.take_event()[0] for _ in range(MOST_EVENTS)] == list(range(MOST_EVENTS))
 
 
-def test_a_robot_that_only_tells_how_programs_end_is_bounded_too() -> None:
+def test_end_events_alone_are_also_bounded() -> None:
     backlog = Backlog()
     backlog.add_events((number, DoneEvent(number)) for number in range(5 * MOST_EVENTS))
     assert len(backlog) == MOST_EVENTS + 1

@@ -51,7 +51,7 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 # -- requests -----------------------------------------------------------------------------------
 
 
-def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot) -> None:
+def test_a_program_is_uploaded_and_lines_run_at_once(ble: BleRobot) -> None:
     for count, port in enumerate((NAME, ADDRESS_PORT, "BLE://tini 1", ADDRESS_PORT.lower()), 1):
         result = run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", port)
         assert (result.code, result.err) == (0, ""), port
@@ -71,7 +71,7 @@ def test_a_program_is_uploaded_and_runs_and_lines_are_done_at_once(ble: BleRobot
     (HM10, 23, 0.0), (HM10, 185, 0.0), (HM10, 23, 0.15),
     (NORDIC, 23, 0.0), (NORDIC, 64, 0.0), (NORDIC, 185, 0.0), (NORDIC, 23, 0.15),
 ])  # fmt: skip
-def test_a_long_program_arrives_whole(
+def test_a_long_program_arrives_complete(
     bluez: FakeBluez, pty_robot: PtyRobot, tmp_path: Path, service: str, mtu: int, late_s: float
 ) -> None:
     """This holds for any negotiated size, and for late notifications."""
@@ -87,9 +87,7 @@ def test_a_long_program_arrives_whole(
     assert max(map(len, ble.sent_packets)) <= mtu - 3
 
 
-def test_where_a_module_answers_each_write_it_is_waited_for(
-    bluez: FakeBluez, pty_robot: PtyRobot
-) -> None:
+def test_write_responses_of_a_module_are_waited_for(bluez: FakeBluez, pty_robot: PtyRobot) -> None:
     ble = BleRobot(pty_robot)
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
@@ -102,7 +100,7 @@ def test_where_a_module_answers_each_write_it_is_waited_for(
 
 
 @pytest.mark.parametrize("port", [NAME, ADDRESS_PORT, ""])
-def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: str) -> None:
+def test_commands_share_a_connection_under_any_name(ble: BleRobot, port: str) -> None:
     command = start_endless_upload(ble, NAME)
     rows = [
         row
@@ -117,7 +115,7 @@ def test_commands_share_a_connection_whatever_they_call_it(ble: BleRobot, port: 
     assert ble.connections == 1
 
 
-def test_two_at_once_take_turns(ble: BleRobot) -> None:
+def test_two_simultaneous_commands_take_turns(ble: BleRobot) -> None:
     commands = [Command("doctor", "--identify", "--port", port) for port in (NAME, ADDRESS_PORT)]
     results = [command.wait_for_result() for command in commands]
     assert 0 in [result.code for result in results]
@@ -127,7 +125,7 @@ def test_two_at_once_take_turns(ble: BleRobot) -> None:
         )
 
 
-def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) -> None:
+def test_ctrl_c_stops_the_robot_and_releases_it(ble: BleRobot, bluez: FakeBluez) -> None:
     command = start_endless_upload(ble)
     command.signal(signal.SIGINT)
     assert command.wait_for_result().code == 2
@@ -144,7 +142,7 @@ def test_ctrl_c_ends_a_search(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch)
     until(lambda: not bluez.adapter.is_scanning, "BlueZ has heard it")
 
 
-def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
+def test_after_a_killed_command_the_robot_stops_and_is_reachable(
     ble: BleRobot, bluez: FakeBluez
 ) -> None:
     """BlueZ keeps its connection, and a robot that is connected is seen by no scan."""
@@ -161,7 +159,7 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
 
 
 @pytest.mark.parametrize("late_rounds", [0, 4])
-def test_of_two_with_one_name_none_is_taken(
+def test_two_robots_with_one_name_are_not_chosen(
     ble: BleRobot, bluez: FakeBluez, late_rounds: int
 ) -> None:
     """Also where one says its name later."""
@@ -183,7 +181,9 @@ def test_of_two_with_one_name_none_is_taken(
     ("  spaced  ", "spaced"),
     ("Cafe\u0301", "Caf\u00e9"),
 ])  # fmt: skip
-def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed_name: str) -> None:
+def test_names_with_special_characters_are_text(
+    bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed_name: str
+) -> None:
     bluez.add(BleRobot(pty_robot, name))
     assert run_in_process("doctor", "--identify", "--port", f"ble://{typed_name}").code == 0
 
@@ -195,7 +195,7 @@ def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: 
     assert (ble.connections, fake.connections) == (1, 0)
 
 
-def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBluez) -> None:
+def test_all_robots_in_reach_are_listed_and_queried(ble: BleRobot, bluez: FakeBluez) -> None:
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
     bluez.add(Echo(hostile, OTHER_ADDRESS))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP_SERVICE))
@@ -218,7 +218,7 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     assert ADDRESS_PORT not in names
 
 
-def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
+def test_several_robots_are_used_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
     with PtyRobot(ble.robot.kit) as second_robot:
         bluez.add(BleRobot(second_robot, "Tini 2", OTHER_ADDRESS, NORDIC))
         ports = ("--port", NAME, "--port", "ble://tini 2")
@@ -227,7 +227,7 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         assert (ble.robot.actions[:3], second_robot.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
 
 
-def test_all_includes_a_robot_that_is_known(ble: BleRobot) -> None:
+def test_all_includes_known_robots(ble: BleRobot) -> None:
     assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
     for words in (("stop",), ("upload", "-e", DRIVE_PROGRAM)):
         run_in_process(*words, "--all").gives(0, "Done: 1 of 1.")
@@ -245,7 +245,7 @@ def test_a_device_that_is_not_a_robot_is_reported(
     run_in_process("doctor", "--identify", "--port", "ble://echo").gives(3, "comes back")
 
 
-def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_empty_scan_is_reported(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.link.transports.bluetooth_search.SEARCH_S", 3.0)
     run_in_process("doctor", "--identify", "--port", "ble://nobody").gives(
         3, "ble://nobody is not in range", "In range: Tini 1"
@@ -256,7 +256,7 @@ def test_nobody_is_in_reach(ble: BleRobot, monkeypatch: pytest.MonkeyPatch) -> N
     )
 
 
-def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(
+def test_a_closed_connection_is_free_while_its_process_runs(
     ble: BleRobot, bluez: FakeBluez
 ) -> None:
     for count in (1, 2):

@@ -35,7 +35,7 @@ def wait_for_dead_man_stop(ble: BleRobot) -> None:
 
 
 @pytest.mark.parametrize("stage", ["connect", "services", "notify"])
-def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
+def test_a_connection_that_is_never_made_is_reported(ble: BleRobot, stage: str) -> None:
     ble.failing_stage = stage
     for language in ("en", "es"):
         result = run_in_process(
@@ -51,7 +51,7 @@ def test_a_connection_that_is_never_made(ble: BleRobot, stage: str) -> None:
 
 @pytest.mark.sampled("heard_count", keep=3)
 @pytest.mark.parametrize("heard_count", [1, 20, 40, 60, 100, 160, 220, 280])
-def test_a_program_that_is_cut_leaves_the_one_before(
+def test_a_truncated_upload_leaves_the_previous_program(
     ble: BleRobot, tmp_path: Path, heard_count: int
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
@@ -73,9 +73,7 @@ def test_a_program_that_is_cut_leaves_the_one_before(
     )
 
 
-def test_the_end_of_a_connection_is_said_and_heard_by_who_only_reads(
-    ble: BleRobot, bluez: FakeBluez
-) -> None:
+def test_a_pure_reader_notices_the_end_of_a_connection(ble: BleRobot, bluez: FakeBluez) -> None:
     command = start_endless_upload(ble)
     bluez.part(ble)
     command.wait_for_result().gives(3, f"lost the Bluetooth connection to {ADDRESS_PORT}")
@@ -100,9 +98,7 @@ def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBlue
 
 
 @pytest.mark.parametrize("failure", ["power", "unplug", "vanish"])
-def test_an_adapter_that_is_gone_ends_the_command(
-    ble: BleRobot, bluez: FakeBluez, failure: str
-) -> None:
+def test_a_removed_adapter_ends_the_command(ble: BleRobot, bluez: FakeBluez, failure: str) -> None:
     command = start_endless_upload(ble)
     if failure == "power":
         bluez.power(False)
@@ -120,7 +116,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
     assert (result.code, message in result.err) == (3, True)
 
 
-def test_a_flood_is_not_a_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_flood_of_bytes_is_not_a_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
 
     class Flood(Peripheral):
@@ -145,7 +141,7 @@ def test_a_flood_is_not_a_robot(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatc
     (True, False, ("Bluetooth is off on this computer",
                    "el Bluetooth de esta computadora está apagado")),
 ])  # fmt: skip
-def test_a_computer_without_bluetooth(
+def test_a_computer_without_bluetooth_is_reported(
     has_bluez: bool, has_adapter: bool, messages: tuple[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with FakeBluez(has_bluez, has_adapter) as bluez:
@@ -159,7 +155,9 @@ def test_a_computer_without_bluetooth(
         run_in_process("doctor", "--ports", "--ask").gives(0, messages[0])
 
 
-def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bus_without_access_is_reported(
+    bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from bleak.exc import BleakBluetoothNotAvailableError as NotAvailable
     from bleak.exc import BleakBluetoothNotAvailableReason as Reason
     from bleak.exc import BleakDBusError
@@ -179,7 +177,7 @@ def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("package", ["bleak", "zeroconf"])
-def test_without_its_package_the_next_step_is_said(
+def test_a_missing_bluetooth_package_is_reported_with_the_next_step(
     tsc: Tsc, monkeypatch: pytest.MonkeyPatch, package: str
 ) -> None:
     for name in [module for module in sys.modules if module.partition(".")[0] == package]:

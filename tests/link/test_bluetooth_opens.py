@@ -125,7 +125,7 @@ def check_next_client_works(loop: event_loop.EventLoop, device: Device) -> None:
 
 @pytest.mark.parametrize("failure", FAILURES)
 @pytest.mark.parametrize("stage", STAGES)
-def test_what_fails_leaves_the_device(
+def test_a_failed_open_releases_the_device(
     loop: event_loop.EventLoop, monkeypatch: pytest.MonkeyPatch, stage: str, failure: str
 ) -> None:
     device = Device()
@@ -142,7 +142,7 @@ def test_what_fails_leaves_the_device(
 
 
 @pytest.mark.parametrize("missing_uuid", ["service", "writes", "notifies", "write"])
-def test_a_device_that_is_not_a_robot_is_left(
+def test_a_device_that_is_not_a_robot_is_released(
     loop: event_loop.EventLoop, missing_uuid: str
 ) -> None:
     device = Device()
@@ -155,7 +155,7 @@ def test_a_device_that_is_not_a_robot_is_left(
 
 
 @pytest.mark.parametrize("stage", STAGES)
-def test_ctrl_c_leaves_the_device(
+def test_ctrl_c_releases_the_device(
     loop: event_loop.EventLoop, stage: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It may come during any check of a waiting caller."""

@@ -96,7 +96,7 @@ def test_an_incomplete_list_is_ignored(school: Mosquitto, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_process_connects_whenever_its_broker_is_there(tmp_path: Path, seed: int) -> None:
+def test_a_process_reconnects_when_its_broker_is_available(tmp_path: Path, seed: int) -> None:
     """However often it was not, and whether somebody wanted it meanwhile: robots share a connection
     as long as that lasts.
     """
@@ -183,7 +183,7 @@ def message(bytes_of_it: int) -> bytes:
 
 
 @pytest.mark.parametrize("size", [MESSAGE_BYTES, MESSAGE_BYTES + 1, 10_000, SKIPPED_BYTES - 1000])
-def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, size: int) -> None:
+def test_an_oversized_retained_message_is_left_out(school: Mosquitto, size: int) -> None:
     """It may come before a robot, between robots and after one, and is named."""
     topics = [f"{broker.ROOT}/3b/{name}" for name in ("0000000f", "fff", "x" * 300)]
     retained_messages = [
@@ -205,7 +205,7 @@ def test_a_retained_message_that_is_too_large_is_left_out(school: Mosquitto, siz
 
 
 @pytest.mark.parametrize("size", [SKIPPED_BYTES + 1, (256 << 20) - 1])
-def test_a_large_message_ends_the_connection_before_it_is_in_memory(size: int) -> None:
+def test_a_large_message_ends_the_connection_before_it_is_buffered(size: int) -> None:
     sent_count = 0
 
     def serve() -> None:

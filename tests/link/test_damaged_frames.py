@@ -102,13 +102,13 @@ def damage_frames(cpp: CppDamage, count: int, seed: int) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("is_large", [False, True])
-def test_no_wrong_frame_of_many_damaged_ones(is_large: bool) -> None:
+def test_damaged_frames_never_decode_to_wrong_ones(is_large: bool) -> None:
     count = LARGE_FRAMES if is_large else FRAMES
     assert damage_frames(cpp_damage(is_large), count, SEED)[0] >= count
 
 
 @pytest.mark.parametrize("is_large", [False, True])
-def test_python_finds_the_same_in_them(is_large: bool) -> None:
+def test_python_decodes_damaged_frames_alike(is_large: bool) -> None:
     for number in range(LARGE_LINE_COUNT if is_large else LINE_COUNT):
         judge_in_python(cpp_damage(is_large).line(SEED, number), is_large)
 

@@ -32,7 +32,7 @@ class EndlessCoroutine:
             self.is_cancelled = True
 
 
-def test_results_and_failures_come_back() -> None:
+def test_results_and_failures_are_returned() -> None:
     loop = EventLoop()
     assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     with pytest.raises(ValueError, match="so it is"):
@@ -41,7 +41,7 @@ def test_results_and_failures_come_back() -> None:
     loop.close()  # as at the end of the process
 
 
-def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
+def test_a_timed_out_task_is_cancelled_before_the_failure() -> None:
     loop, coroutine = EventLoop(), EndlessCoroutine()
     with pytest.raises(TimeoutError):
         loop.run(coroutine.work(), 0)
@@ -50,7 +50,7 @@ def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
     loop.close()
 
 
-def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_cancels_the_interrupted_task(monkeypatch: pytest.MonkeyPatch) -> None:
     loop, coroutine = EventLoop(), EndlessCoroutine()
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(event_loop, "Bell", interrupted_bell(lambda: coroutine.has_begun.wait(100)))
@@ -59,7 +59,7 @@ def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> N
     loop.close()
 
 
-def test_the_end_of_a_process_cancels_what_runs() -> None:
+def test_the_end_of_a_process_cancels_running_tasks() -> None:
     code = (
         "import asyncio, threading\n"
         "from tiniscript.link.transports.event_loop import shared_loop\n"

@@ -180,7 +180,7 @@ CHECKS = (check_never_silent, check_no_other_program, check_both_are_heard)
 
 
 @pytest.mark.parametrize("check_law", CHECKS, ids=lambda holds: holds.__name__)
-def test_a_law_of_the_wire(check_law: object) -> None:
+def test_each_law_of_the_wire_holds(check_law: object) -> None:
     for seed in range(SEEDS):
         check_law(cpp_link(), seed)  # type: ignore[operator]
 

@@ -41,7 +41,7 @@ def recorded_bytes() -> list[bytes]:
 ROBOT_RECORDING = recorded_bytes()
 
 
-def test_there_are_a_robot_s_bytes_to_look_at() -> None:
+def test_recorded_robot_bytes_exist() -> None:
     assert len(ROBOT_RECORDING) > 100
     assert sum(row_of_ours.startswith(b"// ") for row_of_ours in ROBOT_RECORDING) > 20
 
@@ -50,7 +50,7 @@ def test_there_are_a_robot_s_bytes_to_look_at() -> None:
 
 
 @each_recording
-def test_a_board_is_known_by_its_recording(recording: Recording) -> None:
+def test_a_board_is_recognized_by_its_recording(recording: Recording) -> None:
     board = identify_board(recording.data)
     assert board is not None
     assert (board.name, board.text, board.is_sure) == (recording.name, recording.shown_text, True)
@@ -63,7 +63,7 @@ def test_each_row_has_a_recording() -> None:
 
 
 @each_recording
-def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording) -> None:
+def test_a_truncated_recording_is_recognized_correctly_or_not_at_all(recording: Recording) -> None:
     """A piece identifies less, but nothing wrong: an ESP32's boot messages precede the sketch's."""
     possible_names = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
@@ -76,7 +76,7 @@ def test_a_truncated_recording_is_of_that_board_or_of_none(recording: Recording)
 
 
 @each_recording
-def test_a_recording_says_the_same_however_its_pieces_come(recording: Recording) -> None:
+def test_a_recording_is_recognized_in_any_pieces(recording: Recording) -> None:
     line = LinkLine()
     for offset in range(0, len(recording.data), 3):
         line.note_heard(recording.data[offset : offset + 3])
@@ -91,7 +91,7 @@ def test_noise_before_a_recording_changes_nothing(recording: Recording, noise: b
     assert board is not None and board.name == recording.name
 
 
-def test_two_bytes_alone_say_nothing() -> None:
+def test_two_bytes_identify_nothing() -> None:
     """Neither those of an mBot nor the version of Firmata's protocol prove anything: noise contains
     them, too."""
     for short_data in (
@@ -104,7 +104,7 @@ def test_two_bytes_alone_say_nothing() -> None:
         assert identify_stranger(short_data) is None
 
 
-def test_the_two_that_send_high_bytes_are_told_apart() -> None:
+def test_the_two_boards_that_send_high_bytes_are_told_apart() -> None:
     for data, name in ((boards.FIRMATA, "firmata"), (boards.MBOT_VERSION, "mbot")):
         board = identify_board(data)
         assert board is not None and board.name == name
@@ -116,7 +116,7 @@ def test_the_two_that_send_high_bytes_are_told_apart() -> None:
 
 
 @each_recording
-def test_noise_of_a_wrong_speed_is_not_a_board(recording: Recording) -> None:
+def test_noise_of_a_wrong_baud_rate_is_not_a_board(recording: Recording) -> None:
     for sent_baud in BAUDS:
         for heard_baud in BAUDS:
             noise = at_speed(recording.data, sent_baud, heard_baud)
@@ -150,7 +150,7 @@ def test_a_robot_is_not_a_board(traffic: list[bytes], noise: bytes) -> None:
     st.sampled_from([message.number for message in MESSAGES if message.number >= FIRST_EVENT]),
     st.sampled_from([recording.data for recording in RECORDINGS.values()]), st.booleans(),
 )  # fmt: skip
-def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
+def test_a_frame_that_contains_the_bytes_of_a_board_is_a_robots(
     number: int, data: bytes, is_reply: bool
 ) -> None:
     frame = encode_frame(Frame(number, 3, 7, data[:50], is_reply))
@@ -160,14 +160,14 @@ def test_a_frame_with_the_bytes_of_a_board_in_it_is_a_robot_s(
 
 @pytest.mark.sampled("piece", keep=40)
 @pytest.mark.parametrize("piece", range(200))
-def test_a_piece_of_a_robot_s_bytes_is_not_a_board(piece: int) -> None:
+def test_a_piece_of_a_robots_bytes_is_not_a_board(piece: int) -> None:
     rng = random.Random(piece)
     data = b"".join(rng.choices(ROBOT_RECORDING, k=5))
     start, end = sorted(rng.randrange(len(data) + 1) for _ in range(2))
     assert identify_board(data[start:end]) is None
 
 
-def test_bytes_of_a_computer_are_not_those_of_a_robot() -> None:
+def test_bytes_of_a_computer_are_not_mistaken_for_a_robots() -> None:
     """A device that echoes returns it."""
     assert not foreign.is_robot(b"\0" + encode_frame(Frame(1, 3, 7, b"123456789")))
 
@@ -191,7 +191,7 @@ def test_bytes_of_a_computer_are_not_those_of_a_robot() -> None:
         (b"", ""),
     ],
 )
-def test_what_is_text(data: bytes, name: str) -> None:
+def test_readable_lines_are_text(data: bytes, name: str) -> None:
     assert foreign.readable_line(data) == name
     stranger = identify_stranger(data)
     assert (stranger.text if stranger else "") == name
@@ -220,7 +220,9 @@ class LinkLine(LinkConnection):
 
 
 @each_recording
-def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording) -> None:
+def test_a_connection_names_the_device_that_answers_instead_of_a_robot(
+    recording: Recording,
+) -> None:
     line = LinkLine()
     line.note_heard(recording.data)
     assert reason_of(line, Reply(LOST)) == FOREIGN
@@ -233,7 +235,7 @@ def test_a_connection_says_what_answers_instead_of_a_robot(recording: Recording)
 
 
 @pytest.mark.parametrize("name", ["snek", "brownout", "mbot"])
-def test_the_page_says_what_its_port_has_heard(name: str) -> None:
+def test_the_page_names_the_foreign_device_at_its_port(name: str) -> None:
     recording = RECORDINGS[name]
     page = PageRobot("tinibot", "es", PageKeys(b""))
     page.advance(recording.data, 5, [{"do": "hello", "id": 1, "limit_ms": 300}])
@@ -252,7 +254,7 @@ def test_the_page_says_what_its_port_has_heard(name: str) -> None:
         (b"abc,d", False, "link_other"), (b"// OK\r\n", False, "link_other"),
     ],
 )  # fmt: skip
-def test_what_is_said_where_no_robot_answers(
+def test_the_message_without_a_robot_fits_the_received_bytes(
     heard_bytes: bytes, is_echoed: bool, reason: str
 ) -> None:
     line = LinkLine()
@@ -261,7 +263,7 @@ def test_what_is_said_where_no_robot_answers(
     assert reason_of(line, Reply(LOST)) == reason
 
 
-def test_of_what_comes_the_last_is_kept() -> None:
+def test_the_last_received_bytes_are_kept() -> None:
     line = LinkLine()
     for _ in range(100):
         line.note_heard(b"x" * 99)

@@ -44,7 +44,9 @@ def fetch(session: Session) -> PendingRequest[Any]:
 
 @pytest.mark.parametrize("make_request", [None, live, upload, long_upload, name, fetch])
 @pytest.mark.parametrize("after_ms", [0, 1, 20, 150])
-def test_its_run_ends_and_what_others_want_is_done(make_request: Ask | None, after_ms: int) -> None:
+def test_the_run_of_a_leaving_client_ends_and_others_continue(
+    make_request: Ask | None, after_ms: int
+) -> None:
     """This holds whatever is in progress."""
     session, robot, run = driving_robot()
     request = make_request(session) if make_request else None
@@ -64,7 +66,7 @@ def test_its_run_ends_and_what_others_want_is_done(make_request: Ask | None, aft
     assert session.is_open
 
 
-def test_a_run_of_another_goes_on() -> None:
+def test_a_run_of_another_client_continues() -> None:
     session, robot, run = driving_robot()
     assert robot.until(session, session.upload(DRIVE_IMAGE, saves=False)) == OK
     session.end_run(run, robot.now_ms)
@@ -73,7 +75,7 @@ def test_a_run_of_another_goes_on() -> None:
 
 
 @pytest.mark.parametrize("after_ms", range(5))
-def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
+def test_a_withdrawn_upload_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
     session, robot = open_session()
     long_image = image("F(1, 80);" * 40)
     withdrawn_request = session.upload(long_image)
@@ -86,7 +88,7 @@ def test_an_upload_that_is_withdrawn_starts_nothing_and_the_next_is_done(after_m
     assert not is_moving(robot) and "MOTORS 80 80" not in "".join(robot.did)
 
 
-def test_one_that_waits_is_withdrawn() -> None:
+def test_a_waiting_request_is_withdrawn() -> None:
     session, robot = open_session()
     first_request, withdrawn_request, last_request = (
         live(session),
@@ -118,7 +120,7 @@ def test_a_frame_that_may_start_a_run_is_answered_first(answers: object) -> None
     assert robot.until(session, status) == OK
 
 
-def test_a_program_that_was_sent_before_is_saved_all_the_same() -> None:
+def test_an_earlier_program_is_still_saved() -> None:
     session, robot = open_session()
     assert robot.until(session, session.upload(DRIVE_IMAGE)) == OK
     assert session.run is not None

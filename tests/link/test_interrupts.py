@@ -58,7 +58,7 @@ def interrupt_often(work: Callable[[], object], count: int = INTERRUPT_COUNT) ->
         signal.signal(signal.SIGALRM, old_handler)
 
 
-def test_a_line_goes_on_and_still_stops() -> None:
+def test_a_line_continues_and_can_still_stop() -> None:
     port = Port()
     with closing(PortConnection(port, Session(1))) as line:
 
@@ -74,14 +74,14 @@ def test_a_line_goes_on_and_still_stops() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
-def test_an_event_loop_goes_on() -> None:
+def test_an_event_loop_continues_after_an_interrupt() -> None:
     loop = EventLoop()
     interrupt_often(lambda: loop.run(asyncio.sleep(0), 100), HAIL_COUNT)
     assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     loop.close()
 
 
-def test_a_bell_rings_for_who_waits() -> None:
+def test_a_bell_wakes_its_waiter() -> None:
     bell = Bell()
 
     def work() -> None:

@@ -137,7 +137,7 @@ class Robot:
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("kind", [KeyFile, PageKeys])
-def test_a_robot_is_its_owners_whatever_was_lost_of_claims(
+def test_a_robot_stays_its_owners_whatever_claims_were_lost(
     kind: type[KeyRing], seed: int, tmp_path: Path
 ) -> None:
     """The key that a robot has is never gone here, and it is shown; then it is known that this one

@@ -28,7 +28,7 @@ def test_commands_at_once_lose_no_port() -> None:
     assert len(known_ports.remembered_ports().name_by_port) == COMMAND_COUNT * PORT_COUNT
 
 
-def test_a_school_has_more_than_a_hundred_robots() -> None:
+def test_more_than_a_hundred_robots_are_remembered() -> None:
     for number in range(150):
         known_ports.remember(f"socket://10.0.0.{number}:1", f"R{number}", is_used=False)
     names = known_ports.remembered_ports().name_by_port
@@ -51,7 +51,7 @@ PORTS_BY_NAME = {
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_newest_port_is_first_and_the_one_used_last_is_known(seed: int) -> None:
+def test_the_newest_port_is_first_and_the_last_used_one_is_known(seed: int) -> None:
     """This holds whatever was remembered before, and whether the port was used or only seen; a port
     of several names has the last one."""
     rng, last_port, names = Random(seed), None, dict[str, str]()

@@ -73,7 +73,7 @@ def list_answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[
     return [frame for frame in replies if frame]
 
 
-def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
+def test_frames_wait_until_they_are_read_and_an_excess_one_is_dropped() -> None:
     """A robot with a window of 4 answers four that came at once, one with 1 the first."""
     for is_large, window in ((True, LARGE_WINDOW), (False, 1)):
         robot = open_link(is_large=is_large)
@@ -153,7 +153,7 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, max_byt
     assert image == pack("SI", 0, CODE)
 
 
-def test_both_receivers_find_the_same_where_frames_wait() -> None:
+def test_both_receivers_agree_on_waiting_frames() -> None:
     """Frames, noise and silence, while some of them are not taken yet."""
     rng = random.Random(3)
     print("seed 3")
@@ -195,7 +195,7 @@ SENT_BYTES = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes afte
         ((1, 2, 3, 4), (), 11),
     ],
 )
-def test_what_is_lost_is_sent_again_and_no_more(
+def test_only_lost_pieces_are_sent_again(
     lost_numbers: tuple[int, ...], unanswered: tuple[int, ...], count: int
 ) -> None:
     receiver = InOrderReceiver(lost_numbers, unanswered)
@@ -212,7 +212,9 @@ def test_what_is_lost_is_sent_again_and_no_more(
     (0, 0), (0, 1), (SMALL_FRAME, 0), (SMALL_FRAME, 1),
     (255, 255), (251, 2), (100, 200),  # the header states more bytes than there are
 ])  # fmt: skip
-def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window: int) -> None:
+def test_frames_follow_the_robots_window_up_to_the_available_data(
+    largest: int, window: int
+) -> None:
     receiver = InOrderReceiver()
     robot = AnsweringRobot(receiver, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
@@ -223,7 +225,7 @@ def test_a_robot_gets_frames_as_it_says_up_to_what_there_is(largest: int, window
     assert not is_small or {length for *_, length in robot.data[:-1]} == {54}
 
 
-def test_a_slow_line_has_little_before_a_stop() -> None:
+def test_a_slow_line_buffers_little_before_a_stop() -> None:
     robot = AnsweringRobot(InOrderReceiver(), baud=9600)
     assert robot.run(robot.session.upload(IMAGE)) == OK
     assert robot.most_waiting * robot.longest_bytes <= 9600 // 10 * 0.25
@@ -238,7 +240,7 @@ def test_a_slow_line_has_little_before_a_stop() -> None:
         (None, LOST),
     ],
 )
-def test_a_robot_that_takes_nothing_is_given_up(
+def test_a_robot_that_accepts_nothing_is_given_up(
     outcome: tuple[int, int] | None, status: int
 ) -> None:
     robot = AnsweringRobot(lambda *_: outcome)
@@ -247,20 +249,20 @@ def test_a_robot_that_takes_nothing_is_given_up(
     assert len(robot.data) <= (TRIES + 2) * LARGE_WINDOW
 
 
-def test_a_robot_that_jumps_to_and_fro_has_an_end() -> None:
+def test_a_robot_with_erratic_offsets_is_given_up() -> None:
     rng = random.Random(5)
     robot = AnsweringRobot(lambda *_: (OK, rng.randrange(len(SENT_BYTES))))
     assert robot.run(robot.session.upload(IMAGE)) == LOST
     assert not robot.has_commit
 
 
-def test_what_the_robot_says_to_have_beyond_the_end_is_left_to_commit() -> None:
+def test_an_offset_beyond_the_end_is_left_to_commit() -> None:
     robot = AnsweringRobot(lambda *_: (OK, 0xFFFF))
     assert robot.run(robot.session.upload(IMAGE)) == OK  # its receipt has the checksum
     assert robot.has_commit
 
 
-def test_a_stop_ends_the_pieces() -> None:
+def test_a_stop_ends_the_upload() -> None:
     robot = AnsweringRobot(InOrderReceiver())
     request = robot.session.upload(IMAGE)
     robot.session.receive(b"", 0)
@@ -286,7 +288,7 @@ def test_a_stop_ends_the_pieces() -> None:
 # -- both -----------------------------------------------------------------------------------------
 
 
-def test_the_largest_program_takes_little_more_than_the_wire() -> None:
+def test_the_largest_program_takes_little_longer_than_its_bytes() -> None:
     """8,192 bytes at 115200 baud over a round trip of 40 ms, to the sketch of an ESP32."""
     profile = robots.load("tinibot32")
     assert profile.board.program_bytes == 8192

@@ -27,14 +27,16 @@ COMPUTERS, ROBOTS = link_cases("computer packets"), link_cases("robot packets")
 
 
 @pytest.mark.parametrize("case", SESSIONS, ids=lambda case: case.id)
-def test_the_computer(case: LinkCase, request: pytest.FixtureRequest) -> None:
+def test_the_computer_acts_as_its_cases_state(
+    case: LinkCase, request: pytest.FixtureRequest
+) -> None:
     if request.config.getoption("--accept"):
         pytest.skip("both halves are written by the next test")
     assert play(case.rows, SessionSide(), WrittenSide(case.rows)) == case.rows
 
 
 @pytest.mark.parametrize("case", LINK_CASES, ids=lambda case: case.id)
-def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
+def test_the_robot_acts_as_its_cases_state(case: LinkCase, request: pytest.FixtureRequest) -> None:
     if request.config.getoption("--accept"):
         rows = play(case.rows, computer_of(case), CppSide(cpp_link()))
         if rows != case.rows:
@@ -44,7 +46,9 @@ def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
 
 
 @pytest.mark.parametrize("case", [*PACKETS, *COMPUTERS], ids=lambda case: case.id)
-def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
+def test_the_receiver_acts_as_its_cases_state(
+    case: LinkCase, request: pytest.FixtureRequest
+) -> None:
     rows = with_new_results(case, packets_of(*stream_of(case)))
     if request.config.getoption("--accept"):
         if rows != case.rows:
@@ -54,7 +58,9 @@ def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
 
 
 @pytest.mark.parametrize("case", [*PACKETS, *ROBOTS], ids=lambda case: case.id)
-def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> None:
+def test_the_receiver_in_cpp_acts_as_its_cases_state(
+    case: LinkCase, request: pytest.FixtureRequest
+) -> None:
     rows = with_new_results(case, cpp_link().packets(*stream_of(case)))
     if request.config.getoption("--accept") and case in ROBOTS:
         if rows != case.rows:
@@ -63,5 +69,5 @@ def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> 
     assert rows == case.rows
 
 
-def test_there_are_cases() -> None:
+def test_link_cases_exist() -> None:
     assert len(LINK_CASES) >= 25 and len(PACKETS) >= 12

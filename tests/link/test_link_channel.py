@@ -33,7 +33,7 @@ class SplitWorld(World):
 
 @pytest.mark.sampled("is_large", "count", "min_share")
 @pytest.mark.parametrize(("is_large", "count", "min_share"), [(False, 300, 0.9), (True, 100, 0.85)])
-def test_uploads_over_a_bad_radio(is_large: bool, count: int, min_share: float) -> None:
+def test_uploads_survive_a_bad_radio(is_large: bool, count: int, min_share: float) -> None:
     """No upload falsely reports success, and none is done twice.
 
     Several large frames are under way; some arrive twice or out of order.
@@ -44,7 +44,9 @@ def test_uploads_over_a_bad_radio(is_large: bool, count: int, min_share: float) 
 
 @pytest.mark.sampled("is_large", "count", "min_share")
 @pytest.mark.parametrize(("is_large", "count", "min_share"), [(False, 150, 0.85), (True, 50, 0.6)])
-def test_uploads_in_pieces(is_large: bool, count: int, min_share: float) -> None:
+def test_uploads_in_pieces_survive_a_bad_radio(
+    is_large: bool, count: int, min_share: float
+) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""
     counts = Counter(
         run_upload_scenario(cpp_link(is_large), seed, SplitWorld) for seed in range(count)
@@ -83,7 +85,7 @@ def one_undo(cpp: CppLink, seed: int) -> str:
     return f"{confirmed_count} confirmed"
 
 
-def test_undos_over_a_bad_radio() -> None:
+def test_undos_survive_a_bad_radio() -> None:
     """No undo is done twice, however often its answer is lost."""
     counts = Counter(one_undo(cpp_link(), seed) for seed in range(UNDOS))
     assert counts["4 confirmed"] > UNDOS * 0.8, counts

@@ -43,7 +43,7 @@ def live_data(code: bytes, seq: int = 2, epoch: int = EPOCH + 1) -> bytes:
     return encode_frame(Frame(LIVE, seq, epoch, bytes([RUN_MODE]) + code))
 
 
-def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
+def test_code_prepared_ahead_equals_code_prepared_later() -> None:
     """Zeros anywhere in a frame, code that is refused, and damage included."""
     rng = random.Random(SEED)
     print(f"seed {SEED}")
@@ -65,7 +65,7 @@ def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
+def test_a_live_line_does_not_run_before_its_frame_ends(code: bytes) -> None:
     """The running program continues until then."""
     for runs in (False, True):
         robot = open_session()
@@ -87,7 +87,7 @@ def test_a_robot_makes_the_image_of_the_compiler(text: str) -> None:
     assert [checksum in reply.payload for reply in replies] == [True]
 
 
-def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None:
+def test_a_damaged_overlong_or_late_frame_runs_nothing() -> None:
     for offset in (2, 3, 7, 9, 10, 11):
         damage = bytearray(live_data(CODES[0]))
         damage[offset] ^= 0x40 if offset < 8 else 0x11
@@ -102,7 +102,9 @@ def test_a_frame_that_is_damaged_goes_on_or_ends_too_late_runs_nothing() -> None
 
 
 @pytest.mark.parametrize(("verb", "interruption"), [("", "b"), ("r", "f")], ids=["button", "fault"])
-def test_a_button_or_a_fault_in_between_makes_it_stale(verb: str, interruption: str) -> None:
+def test_a_button_or_a_fault_in_between_makes_prepared_code_stale(
+    verb: str, interruption: str
+) -> None:
     robot = open_session()
     if verb:
         robot.happens(verb)
@@ -122,7 +124,7 @@ def test_a_stop_ends_the_frame_and_then_the_run() -> None:
     assert not robot.step(20, bytes(1)).did
 
 
-def test_another_frame_after_one_that_was_cut_runs_its_own_code() -> None:
+def test_a_frame_after_a_truncated_one_runs_its_own_code() -> None:
     robot = open_session()
     assert not robot.step(10, live_data(CODES[1])[:-1]).did
     step = robot.step(10 + messages.SILENCE_MS, b"\0" + live_data(CODES[0]))

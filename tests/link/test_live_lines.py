@@ -70,7 +70,7 @@ def line_of(number: int) -> bytes:
     return b"".join(bytes((move, 1, digit)) for digit in digits)
 
 
-def test_live_lines_over_a_bad_radio() -> None:
+def test_live_lines_survive_a_bad_radio() -> None:
     """None is executed twice, however many times its answer is lost."""
     counts = send_live_lines(cpp_link(), LINE_COUNT, SEED)
     assert counts["OK"] > LINE_COUNT * 0.8 and counts["sent again"] > LINE_COUNT * 0.1, counts

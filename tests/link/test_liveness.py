@@ -130,14 +130,14 @@ def check(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_what_is_lost_now_and_then_is_done(part: int) -> None:
+def test_requests_succeed_despite_occasional_loss(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
     assert len(counts) > 4, counts
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(10))
-def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) -> None:
+def test_each_request_to_a_silent_robot_ends_and_the_next_succeeds(part: int) -> None:
     """The robot falls silent at any moment, for any time, or was reset; then it is there again."""
     for seed in range(part * 12, (part + 1) * 12):
         rng = random.Random(seed)
@@ -170,7 +170,7 @@ def test_each_request_to_who_is_silent_ends_and_the_next_one_is_done(part: int) 
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_who_polls_when_a_session_wants_it_does_so_seldom_and_misses_nothing(seed: int) -> None:
+def test_polling_on_demand_is_rare_and_misses_nothing(seed: int) -> None:
     """This holds whatever is requested, and whatever is lost."""
     rng = random.Random(seed)
     robot, session, is_dead = switched_on(), computer(), False
@@ -214,7 +214,7 @@ REQUESTS_AND_STOPS: dict[str, Callable[[Session, HostFirmware], object]] = {
 
 
 @pytest.mark.parametrize("request_name", REQUESTS_AND_STOPS)
-def test_a_line_that_was_heard_has_its_whole_time_again(request_name: str) -> None:
+def test_a_received_line_restarts_its_timeout(request_name: str) -> None:
     """This holds however near its end was, with and without a running program."""
     robot, session = switched_on(), computer()
     for dead_ms in range(0, DEAF_MS, 215):
@@ -234,7 +234,7 @@ def test_a_line_that_was_heard_has_its_whole_time_again(request_name: str) -> No
 
 
 @pytest.mark.parametrize("late_ms", range(0, 700, 100))
-def test_answers_to_keys_that_come_late_keep_the_line(late_ms: int) -> None:
+def test_late_answers_to_keys_keep_the_line(late_ms: int) -> None:
     """Later than the next word is said."""
     robot, session = switched_on(), computer()
     assert robot.until(session, session.hello()) == OK

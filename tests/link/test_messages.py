@@ -39,7 +39,7 @@ from tiniscript.link.requests import MODE_BYTES, OFFSET_BYTES, SHORT_BYTES
 from tiniscript.robots.text_levels import LEVELS
 
 
-def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
+def test_message_numbers_are_unique_and_leave_the_flag_bits() -> None:
     numbers = [message.number for message in MESSAGES]
     assert len(set(numbers)) == len(numbers)
     assert all(0 < number < min(REPLY, SEALED) for number in numbers)
@@ -51,7 +51,7 @@ def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
         assert message.is_action == (FIRST_ACTING <= message.number < FIRST_EVENT)
 
 
-def test_no_request_is_or_ends_a_line() -> None:
+def test_no_request_number_is_text_or_a_line_end() -> None:
     """Its number is the second byte on the wire where the first may be one of a line.
 
     A sealed request has a 0 as its fourth byte, so that its first one on the wire is 4 at most.
@@ -120,7 +120,7 @@ def test_each_status_has_its_sentences() -> None:
         assert has_gaps == (name in {*messages.DETAILS, "IMAGE", "RULE"}), name
 
 
-def test_sentences_have_no_gaps_left() -> None:
+def test_sentences_have_all_gaps_filled() -> None:
     for lang in ("en", "es"):
         for status in range(1, 256):
             sentence, advice = statuses.status_text(status, 0x1234, lang)

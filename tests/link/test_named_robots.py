@@ -181,7 +181,7 @@ def test_the_announcement_ends_with_the_robot(
     assert f"ningún robot de esta red se anuncia como tcp://{name}" in result.err
 
 
-def test_names_that_nobody_has(
+def test_unused_names_are_reported(
     tsc: Tsc, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(network, "SEARCH_S", 0.2)
@@ -197,14 +197,14 @@ def test_two_robots_of_one_name_are_not_announced(tini: Robot) -> None:
 
 
 @pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
-def test_an_address_outside_is_not_called(address: str) -> None:
+def test_an_address_outside_the_network_is_not_contacted(address: str) -> None:
     with announce(f"bait-{PROCESS_ID}", address, 7007):
         result = run_in_process("doctor", "--identify", "--port", f"tcp://bait-{PROCESS_ID}")
         message = f"an address outside this network ({address})"
         assert (result.code, message in result.err) == (3, True)
 
 
-def test_a_packet_may_announce_anything(
+def test_any_announcement_packet_is_handled(
     listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
@@ -221,7 +221,7 @@ def test_a_packet_may_announce_anything(
     assert robots == [(name, "socket://127.0.0.1:7007") for name in announced_names]
 
 
-def test_names_without_an_address_do_not_hold_up_the_list(
+def test_names_without_an_address_do_not_delay_the_list(
     listing: None, network: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     query, limits_ms = network.query_service, []
@@ -239,7 +239,7 @@ def test_names_without_an_address_do_not_hold_up_the_list(
     assert limits_ms[0] <= 500 and limits_ms.count(1) > 30  # the first one has all the time
 
 
-def test_a_hostile_name_is_shown_without_what_a_terminal_obeys(
+def test_a_hostile_name_is_shown_without_control_characters(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ports, "list_ports", list)

@@ -78,7 +78,7 @@ def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
     ("win32", "COM3", False),
     ("win32", "COM5", True),
 ])  # fmt: skip
-def test_a_radio_is_known_by_its_port(
+def test_a_radio_is_recognized_by_its_port(
     system: str, port: str, is_radio: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wires = [

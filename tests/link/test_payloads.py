@@ -89,7 +89,7 @@ def test_other_fields_are_refused(values: dict[str, int | bytes]) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "HELLO", "ENDED", "SHOW", "shown"])
-def test_an_event_that_there_is_not_is_refused(name: str) -> None:
+def test_an_unknown_event_is_refused(name: str) -> None:
     with pytest.raises(protocol.BadMessage):
         protocol.read_event({"event": name, "ms": 1, "values": {"value": 1}})
 

@@ -41,7 +41,7 @@ def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Be
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+def test_a_read_waits_like_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     rng = random.Random(seed)
     port, bell = port_and_waits(monkeypatch)
     unread, is_cancelled, failure = b"", False, ""
@@ -87,7 +87,7 @@ def test_a_read_waits_as_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: 
         3 * MOST_BUFFERED_BYTES,
     ],
 )
-def test_room_that_was_read_is_there_again(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+def test_read_bytes_free_their_space(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
     port, _ = port_and_waits(monkeypatch)
     for _ in range(3):
         for _ in range(count // 1000):

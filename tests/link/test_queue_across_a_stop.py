@@ -88,7 +88,7 @@ def check(seed: int) -> str:
 
 
 @pytest.mark.parametrize("ask", [*OTHER_REQUESTS[:4], Session.clear])
-def test_what_others_ask_beside_a_run_leaves_it_to_its_client(ask: Ask) -> None:
+def test_requests_of_others_leave_a_run_to_its_client(ask: Ask) -> None:
     """A latch that is not set is released, too; and the run still ends with its client."""
     wire = Wire(random.Random(1))
     robot, session = wire.robot, wire.session
@@ -103,7 +103,7 @@ def test_what_others_ask_beside_a_run_leaves_it_to_its_client(ask: Ask) -> None:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(40))
-def test_what_was_asked_for_before_a_stop_starts_nothing(part: int) -> None:
+def test_requests_made_before_a_stop_start_nothing(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 60, (part + 1) * 60))
     assert counts["nothing waits"] < 40, counts
 

@@ -103,7 +103,7 @@ def hand() -> Hand:
     return Hand(*open_session())
 
 
-def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
+def test_held_keys_are_read_and_released_ones_are_not() -> None:
     remote = hand()
     for held_state in (
         KEY_UP,
@@ -122,7 +122,7 @@ def test_what_is_held_is_read_and_what_is_let_go_is_not() -> None:
     assert [event.name for event in remote.session.events()] == []
 
 
-def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is() -> None:
+def test_key_messages_are_sent_every_200_ms_only_while_keys_are_held() -> None:
     remote = hand()
     remote.talk(3000)
     assert remote.words == []
@@ -136,7 +136,7 @@ def test_a_word_every_200_ms_while_something_is_held_and_none_while_nothing_is()
     assert len(set(numbers)) == len(numbers), "no word is sent twice"
 
 
-def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
+def test_a_key_message_waits_only_for_the_answer_to_the_previous_one() -> None:
     remote = hand()
     for held_state in (KEY_UP, NOTHING_PRESSED, KEY_A, KEY_UP, NOTHING_PRESSED):
         remote.holds(held_state)
@@ -153,7 +153,7 @@ def test_a_word_waits_only_while_the_one_before_has_no_answer() -> None:
     assert [word for _, word in remote.words[count:]] == [KEY_UP, NOTHING_PRESSED]
 
 
-def test_words_alone_keep_an_attached_program_alive() -> None:
+def test_key_messages_alone_keep_an_attached_program_alive() -> None:
     remote = hand()
     assert (
         remote.robot.until(remote.session, remote.session.upload(image(DRIVE_PROGRAM), saves=False))
@@ -170,7 +170,7 @@ def test_words_alone_keep_an_attached_program_alive() -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(3))
-def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
+def test_a_lost_line_releases_all_keys_within_half_a_second(seed: int) -> None:
     """Whenever it is lost: 300 times in all."""
     rng = random.Random(seed)
     remote = hand()
@@ -189,7 +189,7 @@ def test_a_lost_line_lets_all_go_within_half_a_second(seed: int) -> None:
 
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(4))
-def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
+def test_keys_work_on_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
     """Held keys are mostly read, and released keys are never read more than 0.5 s later."""
     rng = random.Random(seed)
     remote = hand()
@@ -212,7 +212,7 @@ def test_a_line_that_loses_three_of_ten_packets(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
+def test_rapidly_changing_keys_work_on_a_bad_line(seed: int) -> None:
     """`Hand` checks each state: it is that at the time of sending."""
     rng = random.Random(seed)
     remote = hand()
@@ -225,7 +225,7 @@ def test_keys_that_change_all_the_time_on_a_bad_line(seed: int) -> None:
     assert remote.robot.remote() == remote_readings(remote.held_state)
 
 
-def test_whoever_falls_silent_holds_nothing() -> None:
+def test_a_silent_client_holds_no_keys() -> None:
     """A command that hangs, while its session still talks."""
     session, robot = open_session()
     session.press(*KEY_UP)
@@ -235,7 +235,7 @@ def test_whoever_falls_silent_holds_nothing() -> None:
     assert robot.remote() == RELEASED_READINGS
 
 
-def test_two_who_press_on_one_line() -> None:
+def test_keys_of_two_clients_on_one_line_combine() -> None:
     """All their keys count, and the pad that was moved last; a person who leaves releases their
     keys."""
     session, robot = open_session()
@@ -252,7 +252,7 @@ def test_two_who_press_on_one_line() -> None:
 
 
 @pytest.mark.parametrize("text", ["SI|SHOW(1)", "SI|" + "SHOW(1);" * 60], ids=["short", "long"])
-def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: str) -> None:
+def test_an_upload_succeeds_beside_keys_which_are_read_afterwards(text: str) -> None:
     remote = hand()
     remote.holds(KEY_UP)
     remote.talk(100)
@@ -266,7 +266,7 @@ def test_an_upload_beside_keys_is_done_and_the_keys_are_read_afterwards(text: st
     assert remote.robot.remote() == remote_readings(remote.held_state)
 
 
-def test_keys_that_never_rest_leave_others_their_turn() -> None:
+def test_endless_keys_leave_other_requests_their_turn() -> None:
     remote = hand()
     requests = []
     for k in range(1500):
@@ -279,7 +279,7 @@ def test_keys_that_never_rest_leave_others_their_turn() -> None:
     assert len(remote.words) > 20
 
 
-def test_requests_that_never_rest_leave_keys_their_turn() -> None:
+def test_endless_requests_leave_keys_their_turn() -> None:
     remote = hand()
     waiting_requests = [remote.session.status() for _ in range(3)]
     for held_state in (KEY_UP, KEY_A, NOTHING_PRESSED, KEY_LEFT):
@@ -292,7 +292,7 @@ def test_requests_that_never_rest_leave_keys_their_turn() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: int) -> None:
+def test_keys_and_requests_of_an_owner_work_in_any_order(seed: int) -> None:
     """They come at any moment, also while the robot is shown a key, which it forgets in silence."""
     rng = random.Random(seed)
     table, keys = OwnedRobot(), Keys()
@@ -319,7 +319,7 @@ def test_keys_and_requests_of_an_owner_are_all_obeyed_whoever_comes_first(seed: 
     assert [(key.is_stale, key.is_pending) for key in keys.stored_keys] == [(False, False)]
 
 
-def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
+def test_keys_are_sent_between_retries_of_a_waiting_request() -> None:
     """The request is a name, which is saved as soon as the motors are off."""
     remote = hand()
     assert (
@@ -341,7 +341,7 @@ def test_keys_go_between_the_tries_of_a_request_that_waits() -> None:
 # -- stops and starts ---------------------------------------------------------------------------
 
 
-def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
+def test_a_stop_releases_all_keys_and_keys_do_not_release_the_latch() -> None:
     remote = hand()
     assert (
         remote.robot.until(remote.session, remote.session.upload(image(DRIVE_PROGRAM), saves=False))
@@ -363,7 +363,7 @@ def test_a_stop_lets_all_go_and_keys_release_nothing_after_it() -> None:
 
 
 @pytest.mark.parametrize("stop_kind", ["button", "zeros", "text"])
-def test_a_stop_by_somebody_else_voids_what_is_held(stop_kind: str) -> None:
+def test_a_stop_by_another_client_releases_held_keys(stop_kind: str) -> None:
     """It is held again once it is said again."""
     remote = hand()
     session, robot = remote.session, remote.robot
@@ -385,7 +385,7 @@ def test_a_stop_by_somebody_else_voids_what_is_held(stop_kind: str) -> None:
 
 
 @pytest.mark.parametrize("seed", range(24))
-def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
+def test_keys_held_before_a_stop_are_released_after_it(seed: int) -> None:
     """This holds before the next state arrives, for any holder, however soon the next program
     begins.
     """
@@ -412,7 +412,7 @@ def test_what_was_held_before_a_stop_is_not_held_after_it(seed: int) -> None:
     assert has_begun, stop_kind
 
 
-def test_a_program_begins_with_nothing_held() -> None:
+def test_a_program_starts_without_held_keys() -> None:
     remote = hand()
     remote.holds(KEY_UP)
     remote.talk(60)
@@ -432,7 +432,7 @@ def check_nothing_held_at_start(session: Session, robot: HostFirmware) -> None:
     raise AssertionError((request.outcome, run))
 
 
-def test_a_lost_link_and_one_that_is_found_again() -> None:
+def test_keys_work_again_after_a_lost_link_is_restored() -> None:
     remote = hand()
     remote.holds(KEY_UP)
     remote.talk(60)
@@ -447,7 +447,7 @@ def test_a_lost_link_and_one_that_is_found_again() -> None:
 # -- permissions ----------------------------------------------------------------------------------
 
 
-def test_an_older_robot_is_told_nothing() -> None:
+def test_an_older_robot_gets_no_key_messages() -> None:
     session = described()
     request = session.press(*KEY_UP)
     assert session.poll(10) == b""
@@ -459,7 +459,7 @@ def test_an_older_robot_is_told_nothing() -> None:
 
 
 @pytest.mark.parametrize("count", [0, 8, 9, 16])
-def test_a_robot_says_that_it_has_one_where_its_kit_leaves_room(count: int) -> None:
+def test_a_robot_announces_a_remote_control_if_its_kit_leaves_room(count: int) -> None:
     kit = Kit(tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(count)), ())
     session, robot = Session(1, 9600, kit.fingerprint), HostFirmware(kit)
     robot.wait(100)
@@ -470,7 +470,7 @@ def test_a_robot_says_that_it_has_one_where_its_kit_leaves_room(count: int) -> N
 
 @pytest.mark.sampled("defines")
 @pytest.mark.parametrize("defines", [(), ("tiniscript_without_seals",)], ids=["seals", "none"])
-def test_only_who_may_run_a_line_presses_keys_of_a_robot_with_an_owner(
+def test_keys_of_an_owned_robot_need_the_right_to_run_lines(
     defines: tuple[str, ...],
 ) -> None:
     table, keys = OwnedRobot(defines=defines), Keys()
@@ -523,7 +523,7 @@ class Wire:
 @pytest.mark.parametrize(
     "payload", [b"\x40\0\0", b"\xff\0\0", b"\0\x65\0", b"\0\0\x9b", b"\0\x80\0"]
 )
-def test_what_is_out_of_range_is_refused_and_changes_nothing(payload: bytes) -> None:
+def test_out_of_range_keys_are_refused_and_change_nothing(payload: bytes) -> None:
     wire = Wire()
     assert wire.answer(wire.keys(KEY_UP)) == "OK"
     assert wire.answer(wire.frame("KEYS", payload)) == "BAD_VALUE"
@@ -531,7 +531,7 @@ def test_what_is_out_of_range_is_refused_and_changes_nothing(payload: bytes) -> 
     assert wire.answer(wire.frame("KEYS", payload + b"\0")) == "BAD_LENGTH"
 
 
-def test_a_word_of_an_earlier_epoch_is_stale() -> None:
+def test_a_key_message_of_an_earlier_epoch_is_stale() -> None:
     wire = Wire()
     late_word = wire.keys(KEY_UP)
     wire.robot.wait(10, bytes(4))
@@ -541,7 +541,7 @@ def test_a_word_of_an_earlier_epoch_is_stale() -> None:
     assert wire.robot.is_latched
 
 
-def test_a_word_that_comes_twice_counts_once() -> None:
+def test_a_duplicate_key_message_counts_once() -> None:
     """A repeated one is answered, and presses no key again."""
     wire = Wire()
     word = wire.keys(KEY_UP)
@@ -558,7 +558,7 @@ def test_a_word_that_comes_twice_counts_once() -> None:
 
 
 @pytest.mark.parametrize("split", range(1, 14))
-def test_a_word_in_two_reads_and_at_9600_baud(split: int) -> None:
+def test_a_key_message_may_arrive_in_two_reads_at_9600_baud(split: int) -> None:
     wire = Wire()
     word = wire.keys(remote_state_of(["B"], -100, 100))
     wire.robot.wait(30, word[:split])
@@ -569,7 +569,7 @@ def test_a_word_in_two_reads_and_at_9600_baud(split: int) -> None:
     assert wire.robot.remote() == remote_readings(KEY_LEFT)
 
 
-def test_a_thousand_words_in_a_burst() -> None:
+def test_a_burst_of_a_thousand_key_messages_is_handled() -> None:
     """Some are dropped, the last one that is heard counts, and the robot is as before."""
     wire = Wire()
     burst = b"".join(wire.keys(RemoteState(k % 64, 0, 0)) for k in range(1000))
@@ -580,7 +580,7 @@ def test_a_thousand_words_in_a_burst() -> None:
     assert wire.robot.remote() == RELEASED_READINGS
 
 
-def test_keys_between_the_pieces_of_a_program() -> None:
+def test_keys_work_between_the_pieces_of_a_program() -> None:
     """They end no upload, and it ends them no more than any other."""
     wire = Wire()
     sent_image = image("SI|" + "SHOW(1);" * 30)
@@ -601,7 +601,7 @@ def test_keys_between_the_pieces_of_a_program() -> None:
     assert any("FINISHED" in line for line in wire.robot.did)
 
 
-def test_keys_drop_no_open_block_of_text() -> None:
+def test_keys_do_not_discard_an_open_block_of_text() -> None:
     """Another request does: it may need the memory."""
     for sent_bytes, is_kept in ((None, True), ("KEYS", True), ("NAME", False)):
         wire = Wire()
@@ -616,7 +616,7 @@ def test_keys_drop_no_open_block_of_text() -> None:
         assert any("MOTORS 50 50" in line for line in wire.robot.did) == is_kept, sent_bytes
 
 
-def test_the_reply_says_where_the_program_is() -> None:
+def test_the_reply_contains_the_place_of_the_program() -> None:
     wire = Wire()
     program = image("SI|W(5)")
     wire.robot.wait(60, wire.frame("PROGRAM", b"\x10" + program.code))
@@ -628,7 +628,7 @@ def test_the_reply_says_where_the_program_is() -> None:
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_each_press_ends_with_the_answer_to_the_next_word_or_when_all_is_let_go(seed: int) -> None:
+def test_each_press_is_settled_by_the_next_answer_or_a_release(seed: int) -> None:
     rng, remote, now_ms = random.Random(seed), RemoteControl(), 0
     end_actions: dict[str, Callable[[], None]] = {
         "answer": lambda: remote.take_answer(Reply(OK, 0, EmptyReply())),

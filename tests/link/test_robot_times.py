@@ -48,7 +48,7 @@ def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int
 
 
 @pytest.mark.parametrize("name", ["PROGRAM", "START", "button"])
-def test_a_detached_program_and_what_the_button_has_started_go_on(name: str) -> None:
+def test_detached_and_button_started_programs_continue(name: str) -> None:
     cpp = robot_with_session()
     mode = {"PROGRAM": 0x50, "START": 0, "button": 0x10}[name]
     program = messages.encode_payload(BY_NAME["PROGRAM"].request, {"mode": mode, "code": FORWARD})
@@ -62,7 +62,7 @@ def test_a_detached_program_and_what_the_button_has_started_go_on(name: str) -> 
     assert ends_at(cpp, 30, 5000) is None
 
 
-def test_a_long_silence_is_not_a_short_one() -> None:
+def test_a_long_silence_is_not_taken_for_a_short_one() -> None:
     """Times are 16 bits: after a minute, a robot still knows about the silence."""
     cpp = robot_with_session()
     for now_ms in range(0, 200_000, 500):
@@ -71,14 +71,14 @@ def test_a_long_silence_is_not_a_short_one() -> None:
         assert is_taken and (not sent_bytes or now_ms < LISTEN_MS + 1000), now_ms
 
 
-def test_what_is_counted_does_not_wrap() -> None:
+def test_counters_saturate_instead_of_wrapping() -> None:
     """A line that is broken for long stops a robot all the time; a long text is no short one."""
     for find in (packets_of, cpp_link().packets):
         assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
         assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 300 41 41")
 
 
-def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
+def test_a_line_held_low_neither_wraps_the_epoch_nor_floods_the_reply_line() -> None:
     cpp = robot_with_session()
     sent_bytes = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
     frames = [decode_frame(part) for part in sent_bytes.split(b"\0") if part]
@@ -120,7 +120,7 @@ def test_an_echo_of_everything_starts_no_endless_conversation(
 
 
 @pytest.mark.parametrize("line", [b"ERROR:(0)\r\n", b"What?\r\n"])
-def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
+def test_a_module_that_answers_every_line_gets_few_answers(line: bytes) -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
     answers = [cpp.step(now_ms, line).sent for now_ms in range(0, 60_000, 500)]
@@ -131,7 +131,7 @@ def test_a_module_that_answers_each_line_gets_few_answers(line: bytes) -> None:
     assert cpp.step(66_000, b"BAD\r\n").sent
 
 
-def test_a_slow_line_back_costs_no_answer() -> None:
+def test_a_slow_reply_line_loses_no_answer() -> None:
     """Requests that arrive before the last answer could be sent wait."""
     cpp = robot_with_session()
     data = b"".join(encode_frame(Frame(2, seq, 10)) for seq in (2, 3, 4))
@@ -140,7 +140,7 @@ def test_a_slow_line_back_costs_no_answer() -> None:
     assert [frame.seq for frame in frames if frame] == [2, 3, 4]
 
 
-def test_a_robot_tells_only_who_listens() -> None:
+def test_a_robot_sends_events_only_to_listeners() -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)
     assert cpp.happens("s", 1) and not cpp.step(0).sent  # no HELLO has been sent

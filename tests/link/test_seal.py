@@ -82,18 +82,18 @@ def counters(rng: random.Random) -> int:
     )
 
 
-def test_the_vectors_of_the_authors() -> None:
+def test_the_hash_matches_the_authors_test_vectors() -> None:
     assert [siphash(KEY, bytes(range(n))).hex() for n in range(len(VECTORS))] == VECTORS
 
 
-def test_the_robot_has_the_same_hash_of_any_key_and_message() -> None:
+def test_the_robot_computes_the_same_hash() -> None:
     rng = random.Random(1)
     for _ in range(500):
         key, message = rng.randbytes(16), rng.randbytes(rng.randrange(200))
         assert cpp_link().siphash(key, message) == siphash(key, message)
 
 
-def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> None:
+def test_the_robot_opens_only_fresh_seals_of_the_computer() -> None:
     rng = random.Random(1)
     for _ in range(300):
         frame, counter = random_frame(rng, False), counters(rng)
@@ -103,7 +103,7 @@ def test_the_computer_seals_and_the_robot_opens_as_written_and_what_is_new() -> 
         assert not cpp_link().opens(KEY, ORIGIN, counter, sealed_bytes)
 
 
-def test_the_robot_seals_and_the_computer_opens_as_written_and_what_is_new() -> None:
+def test_the_computer_opens_only_fresh_seals_of_the_robot() -> None:
     rng = random.Random(2)
     for _ in range(300):
         frame, counter = random_frame(rng, True), counters(rng)
@@ -138,7 +138,7 @@ def test_each_bit_and_each_length_counts() -> None:
         assert not cpp_link().opens(KEY, ORIGIN, 0, to_robot[:length])
 
 
-def test_another_origin_is_another_key() -> None:
+def test_a_different_origin_gives_a_different_key() -> None:
     sealed_bytes = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
     assert cpp_link().opens(KEY, ORIGIN, 0, sealed_bytes)
     keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, KEY_KIND)}
@@ -151,7 +151,7 @@ def test_another_origin_is_another_key() -> None:
     assert len(keys) == len(ORIGIN) + 1
 
 
-def test_a_counter_at_its_end_seals_nothing_more() -> None:
+def test_an_exhausted_counter_seals_nothing_more() -> None:
     full_seal = seal(sent_counter=LAST_COUNTER - 1)
     assert not full_seal.is_spent
     full_seal.seal_frame(Frame(2, 1, 1))
@@ -166,7 +166,7 @@ def test_a_counter_at_its_end_seals_nothing_more() -> None:
     )
 
 
-def test_no_sealed_frame_is_a_line_of_text() -> None:
+def test_no_sealed_frame_can_be_a_line_of_text() -> None:
     """Its 0 comes early: so it begins with a byte up to 4."""
     rng = random.Random(5)
     for _ in range(2000):
@@ -180,6 +180,6 @@ def test_no_sealed_frame_is_a_line_of_text() -> None:
         assert receiver.packet and not receiver.packet.is_text
 
 
-def test_a_key_is_in_no_text() -> None:
+def test_a_key_appears_in_no_text() -> None:
     texts = f"{seal()!r} {seal()}"
     assert KEY.hex() not in texts and "key" not in texts

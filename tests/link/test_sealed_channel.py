@@ -142,7 +142,7 @@ class QuietWorld(SealedWorld):
         (SealedWorld, True, 0.3),
     ],
 )
-def test_sealed_uploads_over_a_bad_radio(
+def test_sealed_uploads_survive_a_bad_radio(
     world: type[World], is_large: bool, min_share: float
 ) -> None:
     """A stranger may end sessions; no forged frame is obeyed or trusted, and many requests still
@@ -163,7 +163,7 @@ def test_the_frames_of_a_session_are_sealed() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_an_event_without_a_seal_is_believed_only_of_a_robot_that_may_have_dropped_ours(
+def test_an_unsealed_event_is_trusted_only_if_the_robot_may_have_lost_its_seal(
     seed: int,
 ) -> None:
     """It keeps ours while it hears it, however long that is ago first."""
@@ -184,7 +184,7 @@ def test_an_event_without_a_seal_is_believed_only_of_a_robot_that_may_have_dropp
     assert hears_forged()
 
 
-def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
+def test_a_stop_works_despite_any_error_in_its_seal() -> None:
     world = QuietWorld(cpp_link(), random.Random(2), 0, 0)
     stop = BY_NAME["STOP"].number
     for payload, is_sealed in ((b"", False), (b"", True), (bytes(13), True), (bytes(30), True)):

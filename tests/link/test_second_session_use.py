@@ -201,7 +201,7 @@ def open_wire(rng: random.Random) -> Wire:
 
 @pytest.mark.parametrize("is_stopped", [False, True])
 @pytest.mark.parametrize("dead_ms", range(0, 1500, 300))
-def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
+def test_a_restarted_robot_executes_requests_once_the_line_is_back(
     dead_ms: int, is_stopped: bool
 ) -> None:
     """This holds even if the query of its identity was lost, or dropped by a stop."""
@@ -219,7 +219,7 @@ def test_who_has_restarted_does_what_is_asked_when_the_line_is_there_again(
 
 
 @pytest.mark.parametrize("stop_kind", STOPS)
-def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(stop_kind: str) -> None:
+def test_a_request_after_a_stop_seen_in_an_answer_is_executed(stop_kind: str) -> None:
     wire = open_wire(random.Random(1))
     STOPS[stop_kind](wire.robot, wire.session)  # no client hears it
     wire.robot.until(wire.session, wire.session.fetch())
@@ -227,7 +227,7 @@ def test_what_is_asked_behind_a_stop_that_an_answer_has_shown_is_done(stop_kind:
 
 
 @pytest.mark.parametrize("fate", ["nothing", "a reset", *STOPS])
-def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
+def test_a_run_reported_as_lost_reports_nothing_more(fate: str) -> None:
     rng = random.Random(fate)
     wire = open_wire(rng)
     wire.session.tells_starts = wire.session.tells_places = True
@@ -244,7 +244,7 @@ def test_nothing_more_is_told_of_a_run_whose_loss_was_told(fate: str) -> None:
     assert wire.session.events() == []
 
 
-def test_who_is_found_again_tells_where_its_program_is() -> None:
+def test_a_robot_found_again_reports_its_place() -> None:
     """Though that is where it was before."""
     wire = open_wire(random.Random(1))
     wire.session.tells_places = True
@@ -273,7 +273,7 @@ def lose(wire: Wire) -> bool:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_a_session_is_as_a_fresh_one_whatever_it_has_seen(part: int) -> None:
+def test_a_session_behaves_like_a_fresh_one_after_any_history(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 20, (part + 1) * 20))
     assert counts["it runs"] > 0, counts
 

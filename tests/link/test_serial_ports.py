@@ -40,14 +40,14 @@ def without_wait(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("without_wait")
-def test_what_another_program_has_read_ends_nothing(line: Line) -> None:
+def test_bytes_read_by_another_program_end_nothing(line: Line) -> None:
     line.our_end.write(b"ab")
     assert [line.port.read(1) for _ in range(4)] == [b"a", b"b", b"", b""]
     line.our_end.write(b"c")
     assert line.port.read(1) == b"c"
 
 
-def test_a_port_that_is_gone_says_so(line: Line) -> None:
+def test_a_vanished_port_raises_an_error(line: Line) -> None:
     line.our_end.write(b"a")
     assert line.port.read(1) == b"a"
     line.our_end.close()

@@ -108,7 +108,7 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
     assert first_wait_ms == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
 
 
-def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_ends_it() -> None:
+def test_requests_are_retried_before_the_dead_man_timer_ends_a_program() -> None:
     """However long its answers have taken."""
     session = greet(115_200)
     live_request = session.live(FORWARD)
@@ -129,7 +129,7 @@ def test_a_robot_that_runs_a_program_is_asked_again_before_its_dead_man_timer_en
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
 
 
-def test_a_stop_cuts_everything_short() -> None:
+def test_a_stop_preempts_everything() -> None:
     session = greet()
     requests: list[PendingRequest[Any]] = [session.live(FORWARD), session.fetch()]
     session.poll(0)
@@ -141,7 +141,7 @@ def test_a_stop_cuts_everything_short() -> None:
     assert session.is_latched and list_packets(session, 500) == []
 
 
-def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_seconds() -> None:
+def test_an_unanswered_stop_is_reported_and_delays_others_for_a_few_seconds() -> None:
     session = greet()
     session.stop(0)
     early_request = session.ping()
@@ -154,7 +154,7 @@ def test_a_stop_that_nobody_answers_is_told_and_holds_up_others_for_a_few_second
     assert late_request.outcome and late_request.outcome.status == 0
 
 
-def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
+def test_messages_before_a_stop_was_sent_do_not_confirm_it() -> None:
     """The robot may have been started again since."""
     session = greet()
     session.stop(3)
@@ -167,7 +167,7 @@ def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
 
 
 @pytest.mark.parametrize("cause", [2, 3, 4, 5])
-def test_another_stop_confirms_none(cause: int) -> None:
+def test_an_earlier_stop_does_not_confirm_a_later_one(cause: int) -> None:
     """Its STOPPED was under way; the robot may have been started again since."""
     session = greet()
     session.stop(0)
@@ -181,7 +181,7 @@ def test_another_stop_confirms_none(cause: int) -> None:
 
 
 @pytest.mark.parametrize("cause", [3, 5])
-def test_a_robot_that_another_has_stopped_confirms_in_its_epoch(cause: int) -> None:
+def test_a_robot_stopped_by_another_client_confirms_in_its_epoch(cause: int) -> None:
     """It reports the first cause each time; the session may know of that stop, or not yet."""
     for is_known in (True, False):
         session = greet() if is_known else Session(1, kit=KIT)
@@ -219,7 +219,7 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     assert robot.is_latched
 
 
-def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> None:
+def test_possibly_executed_requests_are_not_reported_as_void_after_a_stop() -> None:
     """The frame that does it is under way. Requests that were not sent, or were refused, have no
     effect."""
     session = greet()
@@ -255,7 +255,7 @@ def test_what_may_have_been_done_before_a_stop_is_not_said_to_be_undone() -> Non
     assert live_request.outcome and live_request.outcome.detail == 0
 
 
-def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
+def test_one_stop_is_reported_once_however_late_its_answers_come() -> None:
     """51 of them were stalled; the stop was given up meanwhile. A later stop has another epoch."""
     session = greet()
     session.stop(100)
@@ -269,7 +269,7 @@ def test_one_stop_is_told_once_however_late_its_answers_come() -> None:
     assert [event.name for event in session.events()] == ["STOPPED"]
 
 
-def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
+def test_a_late_answer_to_a_stop_ends_no_later_run() -> None:
     session = greet()
     session.stop(0)
     session.poll(0)
@@ -290,7 +290,7 @@ def test_a_late_answer_to_a_stop_ends_no_run_that_has_begun_since() -> None:
     assert [event.name for event in session.events()] == ["STOPPED"] and not session.is_running
 
 
-def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
+def test_a_reset_robot_may_be_stopped_in_the_previous_epoch() -> None:
     session = greet()
     session.receive(event("STOPPED", 0, {"cause": 3}), 20)
     session.events()
@@ -300,7 +300,7 @@ def test_a_robot_that_was_reset_may_be_stopped_in_the_epoch_of_before() -> None:
     assert [event.name for event in session.events()] == ["STOPPED"]
 
 
-def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:
+def test_a_second_confirmation_of_a_stop_ends_no_later_request() -> None:
     """The radio was slow: two stop sequences were sent before the first was confirmed."""
     session = greet()
     session.stop(0)
@@ -332,7 +332,7 @@ def test_an_old_answer_is_ignored() -> None:
     assert second_request.outcome is None
 
 
-def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
+def test_a_program_that_ends_before_its_receipt_is_not_running() -> None:
     session = greet()
     session.live(FORWARD)
     data = session.poll(0)
@@ -341,7 +341,7 @@ def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
     assert not session.is_running
 
 
-def test_text_and_echoes_are_told() -> None:
+def test_text_and_echoes_are_reported() -> None:
     session = greet()
     session.receive(b"OK+LOST\r\n\0" + encode_frame(Frame(2, 1, 1)), 5)
     events = session.events()
@@ -369,7 +369,7 @@ def test_messages_of_a_newer_robot_do_no_harm() -> None:
 ISA = 256 * ISA_MAJOR + ISA_MINOR  # the robot's rule, as in a detail
 
 
-def test_what_does_not_fit_is_not_sent() -> None:
+def test_programs_that_do_not_fit_are_not_sent() -> None:
     image = unpack(pack("SI", 0, FORWARD))
     cases: list[tuple[Image, int, int]] = [
         (image._replace(isa=(ISA_MAJOR - 1, 0)), STATUSES["OTHER_MACHINE"], ISA),
@@ -418,7 +418,7 @@ def upload_image(image: Image, kit: int | None, is_refused: int = 0) -> tuple[li
     return names, request
 
 
-def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> None:
+def test_code_with_devices_is_sent_with_its_header_to_a_different_kit() -> None:
     """A frame alone does not name the devices: the robot compares them."""
     portable, bound = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
     extended = unpack(pack("SI", 0, FORWARD, b"later"))
@@ -442,7 +442,7 @@ def test_a_receipt_for_another_program_is_not_success() -> None:
     assert request.outcome and request.outcome.status != 0
 
 
-def test_a_program_of_an_older_instruction_set_says_so() -> None:
+def test_a_program_of_an_older_instruction_set_is_reported() -> None:
     """In one frame it could not: HELLO has named the one of our compiler."""
     session = Session(1, kit=KIT, isa=(ISA_MAJOR, ISA_MINOR + 1))
     session.hello()
@@ -459,7 +459,9 @@ def test_a_program_of_an_older_instruction_set_says_so() -> None:
         (ISA_MINOR, (RULES["UNKNOWN_OPCODE"][0], 0)),
     ],
 )
-def test_a_line_that_an_older_machine_does_not_know(minor: int, version: tuple[int, int]) -> None:
+def test_a_line_unknown_to_an_older_machine_is_refused(
+    minor: int, version: tuple[int, int]
+) -> None:
     """LIVE names no version: the robot says only that it has no such instruction."""
     session = Session(1, kit=KIT)
     session.hello()
@@ -470,7 +472,7 @@ def test_a_line_that_an_older_machine_does_not_know(minor: int, version: tuple[i
 
 
 @pytest.mark.parametrize(("busy_ms", "wanted_status"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
-def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, wanted_status: int) -> None:
+def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, wanted_status: int) -> None:
     """One that answers is not lost; one that falls silent then is."""
     session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
@@ -496,7 +498,7 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever(busy_ms: int, wanted_statu
         (11, {"state": STATE_STOPPED, "nonce": 9}, True),
     ],
 )
-def test_hello_tells_whether_another_epoch_voids_what_waits(
+def test_hello_decides_whether_a_new_epoch_voids_waiting_requests(
     epoch: int, values: dict[str, int], is_void: bool
 ) -> None:
     """The answer has another epoch, which was not announced."""
@@ -534,7 +536,7 @@ def session_after_run() -> tuple[Session, int]:
     return session, poll_ms
 
 
-def test_a_heartbeat_has_three_seconds_and_so_has_asking_for_the_end_of_a_run() -> None:
+def test_heartbeats_and_run_end_queries_time_out_after_three_seconds() -> None:
     assert 3000 <= time_lost_ms(greet()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
     session, poll_ms = session_after_run()
     assert session.poll(poll_ms), "it asks how the run has ended"
@@ -549,7 +551,7 @@ IDLE_STATUS: dict[str, int | bytes] = {
 
 
 @pytest.mark.parametrize("is_event_first", [True, False])
-def test_the_end_of_a_run_is_told_once(is_event_first: bool) -> None:
+def test_the_end_of_a_run_is_reported_once(is_event_first: bool) -> None:
     """A heartbeat's reply may report it in the same moment as its event."""
     session, poll_ms = session_after_run()
     frames = [answer(session.poll(poll_ms), IDLE_STATUS),
@@ -582,7 +584,7 @@ def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_co
     assert names == ["READING"] * told_count + ["DONE"] * (told_count == reading_count)
 
 
-def test_an_upload_that_waits_for_the_button_tells_the_end_of_the_run_before_it() -> None:
+def test_an_upload_waiting_for_the_button_reports_the_end_of_the_previous_run() -> None:
     """The upload ended that run, and no event of it is reported after the button's run."""
     robot = HostFirmware(ROBOT.kit)
     robot.wait(200)
@@ -627,7 +629,7 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
         ),
     ],
 )
-def test_a_low_voltage_is_waited_for_less_long(
+def test_a_low_voltage_has_a_shorter_timeout(
     statuses: list[int], times: int, wanted_status: int
 ) -> None:
     assert count_namings(statuses) == (times, wanted_status)
@@ -651,7 +653,7 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
     ]
 
 
-def test_a_place_is_told_when_it_is_another_one() -> None:
+def test_a_place_is_reported_when_it_changes() -> None:
     place, other_place = b"\3\0abcd", b"\3\0abce"
     assert places_told(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
     places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other_place)

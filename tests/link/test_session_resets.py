@@ -27,7 +27,7 @@ def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
 
 
 @pytest.mark.parametrize("seed", range(1, 9))
-def test_a_reset_during_a_run_is_told_and_is_not_an_end_of_the_program(seed: int) -> None:
+def test_a_reset_during_a_run_is_reported_and_does_not_end_the_program(seed: int) -> None:
     session, robot = running()
     robot = reset(robot, seed)
     robot.talk(session, 1500)
@@ -38,7 +38,7 @@ def test_a_reset_during_a_run_is_told_and_is_not_an_end_of_the_program(seed: int
     assert [event.name for event in session.events()] == ["SHOW", "DONE"]
 
 
-def test_a_reset_during_a_run_is_told_where_a_request_is_the_first_to_notice_it() -> None:
+def test_a_reset_during_a_run_first_noticed_by_a_request_is_reported() -> None:
     for is_acting in (False, True):
         session, robot = running()
         robot = reset(robot)
@@ -58,7 +58,7 @@ def test_a_robot_that_was_reset_and_started_by_its_button_has_another_run() -> N
     assert [event.name for event in session.events()][:1] == ["RESTARTED"]
 
 
-def test_another_run_in_the_place_of_ours_does_not_end_it() -> None:
+def test_another_run_in_place_of_ours_does_not_end_it() -> None:
     """The robot was not reset: another client has started another run on it."""
     session, robot = running()
     other_session = Session(2, 9600, KIT.fingerprint)
@@ -74,7 +74,7 @@ def test_another_run_in_the_place_of_ours_does_not_end_it() -> None:
     assert "STOPPED" not in [event.name for event in events]
 
 
-def test_a_stop_that_nobody_has_told_is_not_a_reset() -> None:
+def test_an_unreported_stop_is_not_a_reset() -> None:
     session, robot = running()
     robot.push()  # STOPPED is lost
     robot.talk(session, 1500)
@@ -82,14 +82,14 @@ def test_a_stop_that_nobody_has_told_is_not_a_reset() -> None:
     assert end_event == StoppedEvent(0) and session.is_latched
 
 
-def test_a_fault_that_nobody_has_told_is_asked_for() -> None:
+def test_an_unreported_fault_is_queried() -> None:
     session, robot = start_program("W(0.6); SHOW(1 / DISTANCE)")
     robot.wait(900)  # its end is lost
     robot.talk(session, 1500)
     assert session.events() == [FaultEvent(1, FAULTS[1][0], 5, 481506241)]
 
 
-def test_nothing_is_asked_again_of_a_robot_that_was_stopped_after_its_reset() -> None:
+def test_requests_are_not_retried_after_a_reset_and_a_stop() -> None:
     session, robot = running()
     session.events()
     robot = reset(robot)

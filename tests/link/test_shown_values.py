@@ -61,7 +61,7 @@ def test_a_value_of_our_run_is_of_our_program() -> None:
     assert session.poll(10) == b"", "nothing is asked"
 
 
-def test_what_an_older_robot_shows_has_no_place() -> None:
+def test_values_of_an_older_robot_have_no_place() -> None:
     session = new_session()
     assert events_after(session, value(1, None)) == [make_shown_event()]
     assert session.poll(10) == b""
@@ -74,7 +74,7 @@ def test_a_truncated_place_is_ignored(place: bytes) -> None:
     assert events_after(session, truncated_event) == [make_shown_event()]
 
 
-def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> None:
+def test_the_program_of_another_clients_run_is_queried() -> None:
     """It is requested once for each run; its values wait for the answer and are reported in
     order."""
     session = greet(features=PLACES)
@@ -93,7 +93,7 @@ def test_the_program_of_a_run_that_somebody_else_has_started_is_asked_for() -> N
     ]
 
 
-def test_a_program_that_has_ended_meanwhile_has_no_name() -> None:
+def test_a_program_that_ended_meanwhile_has_no_name() -> None:
     session = greet(features=PLACES)
     assert events_after(session, value(1, 3)) == []
     assert events_after(session, answer_to_ping(session, 3, OTHER_CHECKSUM, 20, STATE_IDLE)) == [
@@ -115,7 +115,7 @@ def test_nothing_but_values_waits_for_the_answer() -> None:
     assert session.events() == [make_shown_event()], "a stop asks nothing"
 
 
-def test_a_value_that_comes_late_never_gets_the_next_program_s_name() -> None:
+def test_a_late_value_never_gets_the_next_programs_name() -> None:
     session = new_session(run=5)
     session.live(FORWARD[:-1] + b"\3")
     next_one = answer(session.poll(20), {**receipt(6), "program": OTHER_CHECKSUM})
@@ -127,14 +127,14 @@ def test_a_value_that_comes_late_never_gets_the_next_program_s_name() -> None:
     ]
 
 
-def test_runs_of_two_epochs_with_one_number_are_two() -> None:
+def test_runs_with_one_number_in_two_epochs_are_distinct() -> None:
     """A robot that was reset counts its runs anew, and so may show the old number."""
     session = new_session(run=1, features=0)
     assert events_after(session, value(1, 1)) == [make_shown_event(1, PROGRAM, 2)]
     assert events_after(session, value(2, 1, epoch=EPOCH + 1)) == [make_shown_event()]
 
 
-def test_a_run_number_that_comes_round_again_is_another_run() -> None:
+def test_a_reused_run_number_is_a_different_run() -> None:
     session = new_session(run=5, features=0)
     session.ping()
     other_run = answer(session.poll(20), {"state": STATE_RUNNING, "run": 6, "place": b""})
@@ -142,20 +142,20 @@ def test_a_run_number_that_comes_round_again_is_another_run() -> None:
     assert events_after(session, value(1, 5)) == [make_shown_event()]
 
 
-def test_a_robot_that_does_not_tell_its_place_is_not_asked() -> None:
+def test_a_robot_that_does_not_report_its_place_is_not_asked() -> None:
     session = greet(features=0)
     assert events_after(session, value(1, 3)) == [make_shown_event()]
     assert session.poll(20) == b""
 
 
-def test_after_a_request_that_takes_its_time_no_value_waits() -> None:
+def test_no_value_waits_after_a_slow_request() -> None:
     session = greet(features=PLACES)
     session.status()
     assert session.poll(10)
     assert events_after(session, value(1, 3)) == [make_shown_event()]
 
 
-def test_only_who_wants_places_is_told_of_them() -> None:
+def test_only_subscribers_get_places() -> None:
     session = greet(features=PLACES)
     events_after(session, value(1, 3))
     assert [

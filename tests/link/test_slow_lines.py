@@ -111,7 +111,7 @@ class Talk:
         (387, SlowLine(100, 300, 0.005)),
     ],
 )
-def test_an_upload_that_goes_on_is_not_given_up(code_bytes: int, line: SlowLine) -> None:
+def test_an_upload_that_progresses_is_not_given_up(code_bytes: int, line: SlowLine) -> None:
     for seed in range(5):
         assert Talk(line, seed=seed).upload(code_bytes) == OK, seed
 
@@ -133,7 +133,7 @@ class LossyWire(Wire):
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("in_a_row", [1, 2, 4])
-def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, seed: int) -> None:
+def test_a_long_program_is_not_given_up_for_its_total_losses(in_a_row: int, seed: int) -> None:
     """Each piece that arrives gives the next one the whole patience."""
     line, is_large = SlowLine(11_520, 5), seed % 2 == 1
     talk = Talk(line, 115_200, is_large)
@@ -155,9 +155,7 @@ def test_a_long_program_is_not_given_up_for_its_losses_in_all(in_a_row: int, see
 
 @pytest.mark.parametrize("is_large", [False, True])
 @pytest.mark.parametrize("cut_ms", [0, 30, 60, 100])
-def test_what_gets_no_further_is_given_up_and_the_next_one_is_done(
-    is_large: bool, cut_ms: int
-) -> None:
+def test_a_stuck_request_is_given_up_and_the_next_succeeds(is_large: bool, cut_ms: int) -> None:
     talk = Talk(SlowLine(1000, 5), 115_200, is_large)
     talk.wait(talk.session.hello())
     for _ in range(3):
@@ -170,7 +168,7 @@ def test_what_gets_no_further_is_given_up_and_the_next_one_is_done(
         assert talk.upload(300) == OK
 
 
-def test_whoever_asks_again_after_an_answer_finds_the_line_free() -> None:
+def test_the_line_is_free_for_a_request_after_an_answer() -> None:
     """No heartbeat comes before that, however long the answer took."""
     talk = Talk(SlowLine(11_520, 1000))
     talk.wait(talk.session.hello())
@@ -191,7 +189,7 @@ def test_a_program_that_would_fit_into_one_large_frame_gets_through_a_line_with_
 
 
 @pytest.mark.parametrize("code_bytes", [60, 100, 150])
-def test_a_long_live_line_gets_through_a_line_with_losses_and_is_done_once(
+def test_a_long_live_line_gets_through_a_line_with_losses_and_runs_once(
     code_bytes: int,
 ) -> None:
     """It cannot come in pieces, so hardly one of its frames comes whole."""
@@ -216,7 +214,7 @@ def test_a_long_live_line_gets_through_a_slow_line_without_many_copies(line: Slo
 @pytest.mark.parametrize(
     "line", [SlowLine(1000), SlowLine(1000, 40), SlowLine(500, 100), SlowLine(11_520, 300)]
 )
-def test_a_line_that_is_slower_than_its_port_gets_little_twice(line: SlowLine) -> None:
+def test_a_line_slower_than_its_port_gets_few_duplicates(line: SlowLine) -> None:
     """An ESP32 at 115200 baud on a slow link, such as a radio or a broker."""
     talk = Talk(line, 115_200, is_large=True)
     assert talk.upload(1800) == OK
@@ -243,7 +241,7 @@ def test_a_line_that_lets_some_bytes_through_ends_an_upload(
 
 
 @pytest.mark.parametrize("is_large", [False, True])
-def test_a_line_that_is_cut_for_long_goes_on_and_for_longer_ends(is_large: bool) -> None:
+def test_a_line_survives_a_long_interruption_but_not_a_longer_one(is_large: bool) -> None:
     for cut_ms, status in ((EXCHANGE_TIMEOUT_MS - 3000, OK), (EXCHANGE_TIMEOUT_MS + 3000, LOST)):
         talk = Talk(SlowLine(960, 20), is_large=is_large)
         request = talk.session.upload(program(380), runs=False)

@@ -167,7 +167,7 @@ Property = Callable[[TextSender, random.Random], None]
 @pytest.mark.parametrize("law", [
     check_all_arrive, check_torn_lines_arrive_when_repeated, check_no_two_zeros_before_frame
 ])  # fmt: skip
-def test_a_sender_that_keeps_the_rule(law: Property, seed: int) -> None:
+def test_a_sender_that_keeps_the_rule_is_accepted(law: Property, seed: int) -> None:
     law(TextSender(), random.Random(seed))
 
 
@@ -214,7 +214,7 @@ class HastySender(TextSender):
     (check_torn_lines_arrive_when_repeated, NoRepeatedZeroSender),
     (check_no_two_zeros_before_frame, TwiceSender),
 ])  # fmt: skip
-def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSender]) -> None:
+def test_a_sender_that_breaks_the_rule_is_noticed(law: Property, sender: type[TextSender]) -> None:
     def violates_law(seed: int) -> bool:
         try:
             law(sender(), random.Random(seed))
@@ -225,7 +225,7 @@ def test_a_sender_that_does_not_is_noticed(law: Property, sender: type[TextSende
     assert any(map(violates_law, range(SEEDS)))
 
 
-def test_heartbeats_cost_no_zero_and_the_rule_looks_at_what_was_sent() -> None:
+def test_heartbeats_need_no_zero_and_the_rule_covers_sent_bytes() -> None:
     sender = Sender()
     assert sender.prepare_frames(b"a\0", 0) == b"\0a\0"  # no byte was sent before
     for now_ms in range(200, 2000, 200):

@@ -44,7 +44,7 @@ REQUEST_NAMES = ["heartbeat", "status", "fetch", "identify", "clear"]
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
 @pytest.mark.parametrize("kind", REQUEST_NAMES)
-def test_it_is_done_after_a_reset(kind: str, make_request: Ask) -> None:
+def test_an_unsent_request_is_executed_after_a_reset(kind: str, make_request: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
         session, robot = open_session()
         busy_line(session, robot, kind)
@@ -55,7 +55,7 @@ def test_it_is_done_after_a_reset(kind: str, make_request: Ask) -> None:
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
 @pytest.mark.parametrize("kind", REQUEST_NAMES)
-def test_it_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
+def test_an_unsent_request_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
     session, robot = running()
     busy_line(session, robot, kind)
     requests = [make_request(session), make_request(session)]
@@ -69,7 +69,7 @@ def test_it_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
 @pytest.mark.parametrize("is_told", [True, False])
-def test_it_is_done_after_a_program_that_faults(is_told: bool, make_request: Ask) -> None:
+def test_an_unsent_request_is_executed_after_a_fault(is_told: bool, make_request: Ask) -> None:
     session, robot = open_session()
     assert robot.until(session, session.live(image(SOON_FAULTING_PROGRAM).code)) == OK
     session.fetch()
@@ -84,7 +84,7 @@ def test_it_is_done_after_a_program_that_faults(is_told: bool, make_request: Ask
 
 @pytest.mark.parametrize("verb", ["upload", "live"])
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-def test_one_after_a_program_that_faults_at_once_is_done(verb: str, make_request: Ask) -> None:
+def test_a_request_after_an_immediate_fault_is_executed(verb: str, make_request: Ask) -> None:
     session, robot = open_session()
     faulty = image(FAULTING_PROGRAM)
     begun = session.live(faulty.code) if verb == "live" else session.upload(faulty)
@@ -95,7 +95,7 @@ def test_one_after_a_program_that_faults_at_once_is_done(verb: str, make_request
     assert "SHOW" in [event.name for event in session.events()]
 
 
-def test_a_stop_after_that_fault_voids_it() -> None:
+def test_a_stop_after_an_immediate_fault_voids_the_request() -> None:
     session, robot = open_session()
     assert robot.until(session, session.live(image(SOON_FAULTING_PROGRAM).code)) == OK
     session.fetch()
@@ -114,7 +114,7 @@ def two_steps() -> Exchange[EmptyReply]:
     return (yield from send_single(Request("IDENTIFY"), EmptyReply))
 
 
-def test_a_stop_that_is_told_before_the_first_step_with_an_effect_voids_it() -> None:
+def test_a_stop_reported_before_the_first_effect_voids_the_request() -> None:
     """HELLO was sent for it, or PING, and then the robot says that it was stopped."""
     session, robot = running()
     request = session._queue_exchange(two_steps())

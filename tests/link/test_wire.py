@@ -34,26 +34,26 @@ class Port:
         super().__setattr__(name, value)
 
 
-def test_it_waits_for_the_first_byte_and_then_for_a_silence() -> None:
+def test_receive_waits_for_the_first_byte_and_then_for_silence() -> None:
     port = Port(b"OK\r", b"\n+")
     assert Wire(port).receive(500, 60) == b"OK\r\n+"
     assert port.waits == [0.5, 0.06, 0.06]
     assert Wire(Port()).receive(500) == b""
 
 
-def test_it_does_not_listen_for_ever() -> None:
+def test_receive_does_not_listen_for_ever() -> None:
     port = Port(*[b"x" * 100] * 1000)
     assert MOST_BYTES <= len(Wire(port).receive(500)) < MOST_BYTES + 100
 
 
-def test_a_board_restarts_when_its_lines_come_back() -> None:
+def test_a_board_restarts_when_its_control_lines_return() -> None:
     port = Port()
     Wire(port).reset_board()
     assert sorted(port.lines[:2]) == [("dtr", False), ("rts", False)]
     assert sorted(port.lines[2:]) == [("dtr", True), ("rts", True)]
 
 
-def test_what_goes_wrong_is_an_os_error() -> None:
+def test_failures_raise_an_os_error() -> None:
     class Closed(Port):
         def read(self, count: int) -> bytes:
             raise TypeError("None")  # pyserial, where the port is closed

@@ -47,20 +47,22 @@ def program(chip: str) -> bytes:
     folders = [SOURCES / name for name in ("src/vm", "extras/chip", "extras/avr")]
     made_from = contents(SOURCES / "src", *folders)
     code = sorted(str(path) for folder in folders for path in folder.glob("*.[cS]*"))
-    mcu, *more = COMPILER_ARGUMENTS[chip]
-    flags = (f"-mmcu={mcu}", *more, *FLAGS, *WARNINGS)
+    mcu, *extra_arguments = COMPILER_ARGUMENTS[chip]
+    flags = (f"-mmcu={mcu}", *extra_arguments, *FLAGS, *WARNINGS)
     return compile_sources("the C++ machine", flags, code, made_from).read_bytes()
 
 
 def compile_sources(
-    what: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]
+    description: str, flags: Sequence[str], code: Sequence[str], made_from: list[bytes]
 ) -> Path:
     """Return the program of sources; unchanged parts are reused."""
 
     def make(path: Path) -> None:
         words = ["avr-g++", *flags, *code, "-o", str(path)]
         completed = subprocess.run(words, capture_output=True, text=True)
-        assert completed.returncode == 0, f"avr-g++ refuses {what}:\n{completed.stderr[:4000]}"
+        assert completed.returncode == 0, (
+            f"avr-g++ refuses {description}:\n{completed.stderr[:4000]}"
+        )
 
     return build_cached("avr-g++", flags, made_from, make)
 

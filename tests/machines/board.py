@@ -123,27 +123,27 @@ def flags_for(header: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=32)
-def build_sketch(header: str, board: str, more: str = "") -> bytes:
-    """Return the sketch for the robot of a header, an ELF file; `more` is another source file."""
+def build_sketch(header: str, board: str, extra_code: str = "") -> bytes:
+    """Return the sketch for the robot of a header, an ELF file; `extra_code` is compiled too."""
     main = Path(__file__).with_name("board_main.cpp")
-    alone = "-Dtiniscript_without_breakpoints"  # no events about halts or readings
-    flags = (*flags_of(board, FLAGS), *flags_for(header), alone, *CPP, "-Wall", "-Wextra",
-             "-Werror", "-Wl,--gc-sections")  # fmt: skip
-    made_from = [header.encode(), more.encode(), main.read_bytes(), bytes(core(board))]
+    no_breakpoints_flag = "-Dtiniscript_without_breakpoints"  # no events about halts or readings
+    flags = (*flags_of(board, FLAGS), *flags_for(header), no_breakpoints_flag, *CPP, "-Wall",
+             "-Wextra", "-Werror", "-Wl,--gc-sections")  # fmt: skip
+    made_from = [header.encode(), extra_code.encode(), main.read_bytes(), bytes(core(board))]
 
     def make(path: Path) -> None:
-        _build(header, more, (*flags, main, core(board)), path)
+        _build(header, extra_code, (*flags, main, core(board)), path)
 
     return build_cached(
         "avr-g++", flags, [*made_from, *contents(SOURCES / "src")], make
     ).read_bytes()
 
 
-def _build(header: str, more: str, words: Sequence[object], path: Path) -> None:
+def _build(header: str, extra_code: str, words: Sequence[object], path: Path) -> None:
     with tempfile.TemporaryDirectory() as name:
         source = Path(shutil.copytree(SOURCES / "src", Path(name) / "src"))
         (source / "boards" / "kits" / "own.h").write_text(header, encoding="utf-8")
-        (source / "more.cpp").write_text(more, encoding="utf-8")
+        (source / "more.cpp").write_text(extra_code, encoding="utf-8")
         code = [
             path
             for path in sorted(
@@ -239,14 +239,16 @@ class Simulated:
 class Board(Simulated):
     """A robot's firmware with one program; `ran` runs it."""
 
-    def __init__(self, robot: Robot, text: str = BUILT_IN_PROGRAM, more: str = "") -> None:
+    def __init__(self, robot: Robot, text: str = BUILT_IN_PROGRAM, extra_code: str = "") -> None:
         super().__init__(robot)
-        elf = build_sketch(firmware.header([robot], "the tests."), self.board, more)
+        elf = build_sketch(firmware.header([robot], "the tests."), self.board, extra_code)
         compilation = compile_text(text, robot.kit)
         assert compilation.image, compilation.diagnostics
         image_before = compile_text(BUILT_IN_PROGRAM, robot.kit).image
-        at = elf.index(image_before)
-        self.elf = elf[:at] + compilation.image + b"\0" * 4 + elf[at + len(compilation.image) + 4 :]
+        start = elf.index(image_before)
+        self.elf = (
+            elf[:start] + compilation.image + b"\0" * 4 + elf[start + len(compilation.image) + 4 :]
+        )
         self.changes: list[Change] = []
         self.copies: list[dict[int, int]] = []  # watched registers at the end of each
         self.quiet_us = 0.0  # longest time with interrupts off
@@ -281,8 +283,8 @@ class Board(Simulated):
             program.write_bytes(self.elf)
             trace = self.simulate(program, ms)
         rows = [line.split() for line in trace.splitlines()]
-        ends = [row for row in rows if row[1:2] == ["END"]]
-        assert ends and int(ends[0][0]) >= round(ms * MS), trace
+        end_rows = [row for row in rows if row[1:2] == ["END"]]
+        assert end_rows and int(end_rows[0][0]) >= round(ms * MS), trace
         self.changes = [
             Change(*map(int, row))
             for row in rows
@@ -292,7 +294,7 @@ class Board(Simulated):
             if row[0] == "COPY":
                 numbers = [int(word) for word in row[2:]]
                 self.copies.append(dict(zip(numbers[::2], numbers[1::2], strict=True)))
-        self.quiet_us = int(ends[0][2]) * 1e6 / HERTZ
+        self.quiet_us = int(end_rows[0][2]) * 1e6 / HERTZ
         return self
 
     def register(self, address: int, ms: float) -> int:

@@ -63,7 +63,7 @@ def bootloader(board: str) -> Bootloader:
     if board == "uno":
         return Bootloader("uno", _optiboot(), "arduino", "m328p", 115_200)
     if board == "nano":
-        old = FOLDER / "atmega" / "ATmegaBOOT_168_atmega328.hex"
-        return Bootloader("uno", old, "arduino", "m328p", 57_600)
+        old_bootloader = FOLDER / "atmega" / "ATmegaBOOT_168_atmega328.hex"
+        return Bootloader("uno", old_bootloader, "arduino", "m328p", 57_600)
     wiring = FOLDER / "stk500v2" / "stk500boot_v2_mega2560.hex"
     return Bootloader("mega", wiring, "wiring", "m2560", 115_200)

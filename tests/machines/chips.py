@@ -23,12 +23,12 @@ class Chip(NamedTuple):
     most_bytes: int = CODE_BYTES + HEADER_BYTES  # most bytes of an image
 
 
-def agrees(run: Ran, want: Ran, max_ms: int) -> bool:
+def agrees(run: Ran, expected: Ran, max_ms: int) -> bool:
     """Return whether a chip has done the same as the machine in Python.
 
     It counts jumps back and calls: a limit of steps cuts later than elsewhere.
     """
-    text_before, _, last = want.trace.removesuffix("\n").rpartition("\n")
-    if last.endswith(" LIMIT") and last != f"{max_ms} LIMIT":
+    text_before, _, last_line = expected.trace.removesuffix("\n").rpartition("\n")
+    if last_line.endswith(" LIMIT") and last_line != f"{max_ms} LIMIT":
         return run.trace.startswith(text_before)
-    return run._replace(steps=0) == want._replace(steps=0) and run.steps <= want.steps
+    return run._replace(steps=0) == expected._replace(steps=0) and run.steps <= expected.steps

@@ -35,8 +35,8 @@ class CppDamage(Process):
     def damage_frames(self, seed: int, line: int, lines: int) -> int:
         """Damage frames of so many lines; return how many. Raise an error on a violation."""
         answer = self.ask(b"J", pack("<III", seed, line, lines))
-        wrong = answer[8:].decode()
-        assert not wrong, f"{wrong} of seed {seed}"
+        wrong_frames = answer[8:].decode()
+        assert not wrong_frames, f"{wrong_frames} of seed {seed}"
         return int.from_bytes(answer[:4], "little")
 
     def typed_stops(
@@ -52,8 +52,8 @@ class CppDamage(Process):
 
     def type_after(self, seed: int, prefix: int, prefixes: int) -> None:
         """Type a stop after so many prefixes. Raise an error on a violation."""
-        wrong = self.ask(b"T", pack("<III", seed, prefix, prefixes))[4:].decode()
-        assert not wrong, f"{wrong} of seed {seed}"
+        wrong_frames = self.ask(b"T", pack("<III", seed, prefix, prefixes))[4:].decode()
+        assert not wrong_frames, f"{wrong_frames} of seed {seed}"
 
     def line(self, seed: int, line: int) -> DamagedLine:
         data, answer = first_text(self.ask(b"L", pack("<II", seed, line)))

@@ -137,9 +137,9 @@ class Esp32Robot(HostFirmware):
         """Make LEDC ignore all further commands."""
         self.ask(b"L", b"")
 
-    def radio(self, what: str, data: bytes = b"") -> bytes:
+    def radio(self, command: str, data: bytes = b"") -> bytes:
         """Cause an event on the other side of a radio: `answer_radio` of `main.cpp`."""
-        return self.ask(b"R", what.encode() + data)
+        return self.ask(b"R", command.encode() + data)
 
     def measure_motor_delay(self) -> tuple[int, float]:
         """Return the turns of the main loop, and the microseconds of this computer, before a motor
@@ -175,11 +175,11 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
 
     Only files that depend on the robot's pins are compiled for each robot.
     """
-    own = BUILD_CACHE / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
-    if not own.exists():  # another worker may look for the file too
-        draft = own.with_suffix(f".{os.getpid()}")
+    header_path = BUILD_CACHE / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
+    if not header_path.exists():  # another worker may look for the file too
+        draft = header_path.with_suffix(f".{os.getpid()}")
         draft.write_text(header, encoding="utf-8")
-        draft.replace(own)
+        draft.replace(header_path)
     files = {
         path: path.name.encode() + path.read_bytes()
         for part in ("src", "extras/esp32", "extras/host")
@@ -187,7 +187,7 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
         if path.suffix in (".h", ".cpp") and path.name != "own.h"
     }
     usual = (*FLAGS, *flags_of(chip, major), *WARNINGS)
-    of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{own}"')
+    of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{header_path}"')
 
     def is_extra_source(path: Path) -> bool:
         is_stand_in = path.parent == STAND_INS_FOLDER and path.name in SIMULATED_FILES
@@ -197,8 +197,8 @@ def build_esp32(header: str, chip: str, major: int) -> Path:
         is_own = path.parent.name in ("boards", "esp32", "src")
         return (*usual, *of_boards) if is_own else usual
 
-    used = {path: text for path, text in files.items() if not is_extra_source(path)}
-    objects = objects_of("g++", BUILD_CACHE, used, flags)
+    used_files = {path: text for path, text in files.items() if not is_extra_source(path)}
+    objects = objects_of("g++", BUILD_CACHE, used_files, flags)
     return compile_once(
         "g++", BUILD_CACHE, "", usual, [name.encode() for name in objects], [*objects, *TLS]
     )

@@ -118,9 +118,9 @@ class Process:
         """Run an image, or raise its refusal."""
         raise NotImplementedError
 
-    def agrees(self, run: Ran, want: Ran, max_ms: int) -> bool:
+    def agrees(self, run: Ran, expected: Ran, max_ms: int) -> bool:
         """Return whether it has done the same as the machine in Python."""
-        return run == want
+        return run == expected
 
     def run_at(self, pace: Pace, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image on a robot that is called at a pace, and that some readings keep waiting."""
@@ -189,8 +189,8 @@ class Host(Process):
 
     def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: Sequence[int]) -> str:
         """Return the trace where the tick after each wait comes so late; after the last it ends."""
-        many = len(late_ms)
-        request = pack(f"<I{many}I", many, *late_ms) + run_request(image, kit, senses)
+        count = len(late_ms)
+        request = pack(f"<I{count}I", count, *late_ms) + run_request(image, kit, senses)
         return self.ask(b"L", request).decode()
 
     def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:
@@ -243,15 +243,15 @@ def first_text(answer: bytes) -> tuple[bytes, bytes]:
 
 def parse_run(answer: str) -> Ran:
     """Return the run that an answer tells of, or raise the refusal of the image."""
-    trace, _, last = answer.removesuffix("\n").rpartition("\n")
-    words = last.split()
+    trace, _, last_line = answer.removesuffix("\n").rpartition("\n")
+    words = last_line.split()
     assert len(words) == 3, f"the machine ends with {answer[-2000:]!r}"
     first, second = int(words[1]), int(words[2])
     if words[0] == "REFUSED":
         raise ImageRefused(REFUSAL_NAMES[first])
     if words[0] == "BREAKS":
         raise Refused(RULE_NAMES[first], second)
-    assert words[0] == "RAN", last
+    assert words[0] == "RAN", last_line
     return Ran(first, second, trace + "\n")
 
 
@@ -314,13 +314,18 @@ def compile_once(
     """Return the compiler's output for `words`, named after all its inputs."""
     path = builds / (_key(compiler, flags, made_from) + suffix)
     if not path.exists():
-        same = _preprocess(compiler, builds, flags, words) if suffix == ".o" else path
-        make_once(same, lambda own: _run_compiler(compiler, [*flags, *words, "-o", str(own)]))
-        if same != path:
-            own = path.with_suffix(f".{os.getpid()}-{get_ident()}")
-            own.hardlink_to(same)
-            own.replace(path)
-            own.unlink(missing_ok=True)  # a hard link to the same file remains
+        preprocessed = _preprocess(compiler, builds, flags, words) if suffix == ".o" else path
+        make_once(
+            preprocessed,
+            lambda temporary_path: _run_compiler(
+                compiler, [*flags, *words, "-o", str(temporary_path)]
+            ),
+        )
+        if preprocessed != path:
+            temporary_path = path.with_suffix(f".{os.getpid()}-{get_ident()}")
+            temporary_path.hardlink_to(preprocessed)
+            temporary_path.replace(path)
+            temporary_path.unlink(missing_ok=True)  # a hard link to the same file remains
     return path
 
 
@@ -336,9 +341,9 @@ def make_once(path: Path, make: Callable[[Path], object]) -> Path:
         with path.with_name(f"{path.name}.lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not path.exists():
-                own = path.with_name(f"{path.name}.{os.getpid()}")
-                make(own)
-                own.replace(path)
+                temporary_path = path.with_name(f"{path.name}.{os.getpid()}")
+                make(temporary_path)
+                temporary_path.replace(path)
     return path
 
 

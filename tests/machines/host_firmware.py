@@ -69,8 +69,8 @@ class HostFirmware(Process):
         head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
         times = pack("<IIB", seed, max_run_ms, int(write_ms * TICKS))
         hashes = pack(f"<{len(kit.hashes)}H", *kit.hashes)
-        begin = head + times + hashes + texts(memory, kit_words(kit))
-        self.ask(b"B", begin + pack("<H", language_number(language)))
+        begin_data = head + times + hashes + texts(memory, kit_words(kit))
+        self.ask(b"B", begin_data + pack("<H", language_number(language)))
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Step one millisecond with received bytes; return the bytes sent."""
@@ -100,12 +100,12 @@ class HostFirmware(Process):
         """Let time pass, at most until the robot sends something, which is returned."""
         return self._pass(milliseconds, b"", PASS_UNTIL_SENT)[0]
 
-    def _pass(self, milliseconds: int, data: bytes, how: int) -> tuple[bytes, list[bool]]:
-        head = pack("<IIHBI", self._clock(self.now_ms + 1), milliseconds, TICKS, how, len(data))
+    def _pass(self, milliseconds: int, data: bytes, flags: int) -> tuple[bytes, list[bool]]:
+        head = pack("<IIHBI", self._clock(self.now_ms + 1), milliseconds, TICKS, flags, len(data))
         sent_bytes, rest = first_text(self.ask(b"W", head + data))
         action_text, rest = first_text(rest)
         rows = (line.split(" ", 1) for line in action_text.decode().splitlines())
-        self._note([f"{(int(ms) - self.clock_ms) % 2**32} {what}" for ms, what in rows])
+        self._note([f"{(int(ms) - self.clock_ms) % 2**32} {action}" for ms, action in rows])
         self.is_lit = bool(rest[0])
         latch_states = [bool(flag) for flag in first_text(rest[1:])[0]]
         self.now_ms += len(latch_states)
@@ -118,8 +118,8 @@ class HostFirmware(Process):
     def _note(self, lines: list[str]) -> None:
         """Record the robot's actions."""
         self.did += lines
-        wrong = [line for line in lines if line.split()[1] in WRONG_DESCRIPTIONS]
-        assert not wrong, f"{wrong} after {self.did[-9:]}"
+        wrong_lines = [line for line in lines if line.split()[1] in WRONG_DESCRIPTIONS]
+        assert not wrong_lines, f"{wrong_lines} after {self.did[-9:]}"
 
     def push(self, milliseconds: int = 100) -> None:
         """Push the start button, and let it go."""

@@ -56,8 +56,8 @@ class CppLink:
         """Switch a robot on: its devices are those of tinibot, as far as it has them."""
         numbers = pack("<HHBBB", room, kit, sensors, actuators, epoch)
         hashes = (*robots.load("tinibot").kit.hashes, *range(510))[: sensors + actuators]
-        begin = numbers + pack(f"<{len(hashes)}H", *hashes)
-        self.ask(b"B", begin + texts(kit_words(robots.load("tinibot").kit)))
+        begin_data = numbers + pack(f"<{len(hashes)}H", *hashes)
+        self.ask(b"B", begin_data + texts(kit_words(robots.load("tinibot").kit)))
 
     def step(
         self, now_ms: int, data: bytes = b"", is_late: bool = False, is_slow: bool = False
@@ -66,8 +66,8 @@ class CppLink:
 
         If the line back is slow, no byte leaves the robot before all have arrived.
         """
-        how = 2 if is_slow else is_late
-        answer = self.ask(b"S", pack("<IBI", now_ms, how, len(data)) + data)
+        delay_code = 2 if is_slow else is_late
+        answer = self.ask(b"S", pack("<IBI", now_ms, delay_code, len(data)) + data)
         sent_bytes, rest = first_text(answer)
         action_text, _ = first_text(rest)
         return Step(sent_bytes, action_text.decode().splitlines())
@@ -87,11 +87,13 @@ class CppLink:
     def siphash(self, key: bytes, message: bytes) -> bytes:
         return self.ask(b"H", key + texts(message))
 
-    def seal(self, key: bytes, origin: bytes, heard: int, sent: int, frame: bytes) -> bytes:
+    def seal(
+        self, key: bytes, origin: bytes, heard_counter: int, sent_counter: int, frame: bytes
+    ) -> bytes:
         """Return a frame of the robot, from its type to its MAC; or no bytes if no counter is
         left."""
         body = b"\0" + frame[:3] + bytes(5) + frame[3:]
-        answer = self._seal(key, origin, heard, sent, body, b"")
+        answer = self._seal(key, origin, heard_counter, sent_counter, body, b"")
         return first_text(answer)[0][1:]
 
     def opens(self, key: bytes, origin: bytes, heard_counter: int, frame: bytes) -> bool:

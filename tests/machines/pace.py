@@ -36,8 +36,8 @@ class Pace(NamedTuple):
     def pack(self, kit: Kit) -> bytes:
         """Return the start of a request to a machine in C++."""
         names = [sensor.name for sensor in kit.readings]
-        slow = sum(1 << names.index(name) for name in self.slow)
-        return pack("<5I", self.every_ms, slow, self.period_ms, self.from_ms, self.to_ms)
+        slow_sensors = sum(1 << names.index(name) for name in self.slow)
+        return pack("<5I", self.every_ms, slow_sensors, self.period_ms, self.from_ms, self.to_ms)
 
     def is_slow(self, name: str, now_ms: int) -> bool:
         return name in self.slow and self.from_ms <= now_ms % self.period_ms < self.to_ms
@@ -52,8 +52,8 @@ def a_pace(rng: random.Random) -> Pace:
     period_ms = rng.choice((31, 50, 90, 130, 170))
     from_ms = rng.randrange(period_ms // 3)
     to_ms = rng.randint(2 * from_ms, period_ms)
-    slow = rng.choice((ECHO_SENSORS, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
-    return Pace(rng.choice((1, 1, 1, 3, 7, 25)), slow, period_ms, from_ms, to_ms)
+    slow_sensors = rng.choice((ECHO_SENSORS, ("LIGHT_L",), ("DISTANCE", "LIGHT_L")))
+    return Pace(rng.choice((1, 1, 1, 3, 7, 25)), slow_sensors, period_ms, from_ms, to_ms)
 
 
 class PacedRobot(TracedRobot):

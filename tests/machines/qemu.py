@@ -57,8 +57,8 @@ class Emulated(Process):
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         return parse_run(self.ask(b"R", run_request(image, kit, senses)).decode())
 
-    def agrees(self, run: Ran, want: Ran, max_ms: int) -> bool:
-        return agrees(run, want, max_ms)
+    def agrees(self, run: Ran, expected: Ran, max_ms: int) -> bool:
+        return agrees(run, expected, max_ms)
 
     def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
         """Return the reader's answer to each text."""

@@ -59,7 +59,7 @@ class ShiftRegister:
         return sum(bit << k for k, bit in enumerate(bits)) if len(bits) == 8 else None
 
     @staticmethod
-    def _want(ns: float, name: str, least_ns: float, what: str, since_ns: float) -> None:
+    def _want(ns: float, name: str, least_ns: float, description: str, since_ns: float) -> None:
         if ns - since_ns < least_ns:
-            violation = f"{what}: {ns - since_ns:.1f} ns, not {least_ns:.0f}"
+            violation = f"{description}: {ns - since_ns:.1f} ns, not {least_ns:.0f}"
             raise WrongTiming(f"{violation} ({name} at {ns:.0f} ns)")

@@ -88,7 +88,7 @@ class SketchBoard(boards.Simulated):
         return self._parse_output(self.simulate(self.elf, ms), devices)
 
     def _parse_output(self, printed_text: str, devices: list[int]) -> Ran:
-        now: dict[int, int] = {}
+        register_values: dict[int, int] = {}
         run = Ran([], [], {pin: [] for pin in devices}, "", [])
         letters = bytearray()
         for line in printed_text.splitlines():
@@ -99,45 +99,51 @@ class SketchBoard(boards.Simulated):
                 letters.append(int(words[2]))
                 run.sent_ms.append(int(words[0]) / MS)
             elif words[1] != "END":
-                now[int(words[1])] = int(words[2])
+                register_values[int(words[1])] = int(words[2])
                 ms = int(words[0]) / MS
-                _note(run.motors, ms, self._motors(now))
-                _note(run.tones, ms, (self._hertz(now),))
+                _note(run.motors, ms, self._motors(register_values))
+                _note(run.tones, ms, (self._hertz(register_values),))
                 for pin in devices:
-                    _note(run.pins[pin], ms, (self._level(now, pin),))
+                    _note(run.pins[pin], ms, (self._level(register_values, pin),))
         return run._replace(text=letters.decode("ascii"))
 
-    def _level(self, now: dict[int, int], pin: int) -> int:
+    def _level(self, register_values: dict[int, int], pin: int) -> int:
         """Return the average level of a pin, 0 to 255."""
         port, bit = self.bit(pin)
         if pin in self.avr.compare_by_pin:
             timer, channel = self.avr.compare_by_pin[pin]
-            if now.get(CONTROLS[timer], 0) & CONNECTIONS[channel]:
-                return now.get(self.compare_address(pin), 0)
-        return 255 if now.get(PORTS[port], 0) >> bit & 1 else 0
+            if register_values.get(CONTROLS[timer], 0) & CONNECTIONS[channel]:
+                return register_values.get(self.compare_address(pin), 0)
+        return 255 if register_values.get(PORTS[port], 0) >> bit & 1 else 0
 
-    def _motors(self, now: dict[int, int]) -> tuple[int, ...]:
+    def _motors(self, register_values: dict[int, int]) -> tuple[int, ...]:
         driver, pins, _ = self.robot.board.motors
         powers = []
         for side in ("left", "right"):
             if driver == "servos":
                 powers.append(0)
                 continue
-            forward = self._level(now, pins[f"{side}_forward"])
+            forward = self._level(register_values, pins[f"{side}_forward"])
             backward_pin = pins.get(f"{side}_backward")  # some boards make it of the other
-            backward = self._level(now, backward_pin) if backward_pin is not None else 255 - forward
+            backward = (
+                self._level(register_values, backward_pin)
+                if backward_pin is not None
+                else 255 - forward
+            )
             if isinstance(motors_of(self.robot.board.motors), Bridge):
-                level = self._level(now, pins[f"{side}_pwm"])
+                level = self._level(register_values, pins[f"{side}_pwm"])
                 forward, backward = level * (forward > 0), level * (backward > 0)
             powers.append(round((forward - backward) / 2.55))
         return tuple(powers)
 
     @staticmethod
-    def _hertz(now: dict[int, int]) -> int:
-        if not now.get(TIMER_2["mask"], 0) & 2:
+    def _hertz(register_values: dict[int, int]) -> int:
+        if not register_values.get(TIMER_2["mask"], 0) & 2:
             return 0
-        divides = PRESCALERS[now.get(TIMER_2["control"], 0) & 7]
-        return HERTZ // (2 * divides * (now.get(TIMER_2["top"], 0) + 1)) if divides else 0
+        divides = PRESCALERS[register_values.get(TIMER_2["control"], 0) & 7]
+        return (
+            HERTZ // (2 * divides * (register_values.get(TIMER_2["top"], 0) + 1)) if divides else 0
+        )
 
 
 def _note(signal: Signal, ms: float, value: tuple[int, ...]) -> None:

@@ -29,9 +29,9 @@ class Wired:
             if data:
                 self.uno.send(data)
             self.uno.run_ms(1)
-            new = self.uno.events[self._seen :]
-            self._seen += len(new)
-            sent_bytes = bytes(event["byte"] for event in new if event.kind == "sent")
+            new_events = self.uno.events[self._seen :]
+            self._seen += len(new_events)
+            sent_bytes = bytes(event["byte"] for event in new_events if event.kind == "sent")
             self.session.receive(sent_bytes, self.now_ms)
 
     def until(self, request: PendingRequest[Any], limit_ms: int = 20_000) -> int:

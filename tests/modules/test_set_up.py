@@ -90,16 +90,16 @@ class Odd:
 
 @of_each
 @pytest.mark.parametrize("late_ms", [0, 200])
-def test_a_module_that_echoes_or_is_late_is_the_same(kind: str, late_ms: int) -> None:
+def test_an_echoing_or_slow_module_is_set_up_alike(kind: str, late_ms: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, echoes=True, late_ms=late_ms))
-    plain = find_only_module(SimulatedWire(KINDS[kind]()))
+    plain_module = find_only_module(SimulatedWire(KINDS[kind]()))
     module = set_up_everything(wire, end, "Tini-7F3A", 9600)
-    assert (module.dialect.name, module.version[:2]) == (kind, plain.version[:2])
+    assert (module.dialect.name, module.version[:2]) == (kind, plain_module.version[:2])
 
 
 @pytest.mark.parametrize("kind", ["HC-05", "HC-06"])
-def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
+def test_a_module_without_a_version_is_found(kind: str) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(Odd(end, deaf="VER"))
     module = find_only_module(wire)
@@ -111,7 +111,7 @@ def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
     assert end.name == "Tini"
 
 
-def test_nobody_and_a_wire_that_only_echoes_are_no_module() -> None:
+def test_silence_and_a_mere_echo_are_not_a_module() -> None:
     class Echo:
         baud = 9600
 
@@ -132,7 +132,7 @@ def test_every_dialect_has_a_simulated_module() -> None:
 
 
 @of_each
-def test_a_module_is_told_from_all_others(kind: str) -> None:
+def test_each_module_is_distinguished_from_all_others(kind: str) -> None:
     wire = SimulatedWire(KINDS[kind]())
     module = find_only_module(wire)
     assert (module.dialect.name, module.baud) == (kind, wire.end.baud)
@@ -148,12 +148,12 @@ def test_a_module_is_found_at_any_speed(kind: str, baud: int) -> None:
 
 @of_each
 @pytest.mark.parametrize("baud", [9600, 57600, 115200])
-def test_name_pin_and_speed_are_what_was_wanted_and_else_stay(kind: str, baud: int) -> None:
+def test_requested_settings_are_changed_and_others_kept(kind: str, baud: int) -> None:
     end: Simulated = KINDS[kind]()
     wire = SimulatedWire(end)
-    before = end.name, end.pin, end.data_baud
+    settings_before = end.name, end.pin, end.data_baud
     assert set_up_module(wire, WantedSettings()) == []
-    assert (end.name, end.pin, end.data_baud) == before
+    assert (end.name, end.pin, end.data_baud) == settings_before
     set_up_everything(wire, end, "Tini-7F3A", baud)
     end.power_on()
     assert end.baud == baud
@@ -166,7 +166,7 @@ def test_an_old_hc_05_gets_its_pin_without_quotes_and_a_new_one_with() -> None:
         assert (end.pin, outcome.status) == ("4711", set_up.DONE)
 
 
-def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
+def test_stored_quotes_are_not_taken_for_the_pin() -> None:
     """An old module that is taken for a new one keeps the quotes: that is seen, and set again."""
     end = Hc05()
     end.version = "3.0-clone"
@@ -177,7 +177,7 @@ def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
     assert (end.pin, outcome.status) == ("4711", set_up.DONE)
 
 
-def test_a_module_that_sleeps_is_woken() -> None:
+def test_a_sleeping_module_is_woken() -> None:
     end = Hm10()
     end.is_asleep = True
     wire = SimulatedWire(end)
@@ -200,7 +200,7 @@ def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
 
 @pytest.mark.parametrize("commands", range(12))
 @of_each
-def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, commands: int) -> None:
+def test_an_interrupted_setup_is_completed_by_the_next_one(kind: str, commands: int) -> None:
     end = KINDS[kind]()
     wire = SimulatedWire(end)
     module = find_only_module(wire)
@@ -220,7 +220,7 @@ def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, comman
     set_up_everything(wire, end, "ANA", 57600)
 
 
-def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
+def test_a_clone_with_different_baud_codes_is_found_at_its_new_speed() -> None:
     """Such a clone reports CC41-A and counts as an MLT-BT05 at another speed; the user sees that
     speed."""
 
@@ -242,7 +242,7 @@ def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
     assert end.baud == 115200
 
 
-def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
+def test_a_refused_setting_is_not_reported_as_done() -> None:
     class Stubborn(Hc06):
         def answer(self, command: str) -> str:
             return "ERROR:(7)" if command.startswith("AT+PIN") else super().answer(command)
@@ -259,9 +259,7 @@ def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
     "forms", [*product(("keeps", "cuts", "changes nothing", "refuses", "is silent"), repeat=2)]
 )
 @pytest.mark.parametrize("kind", [Hc05, Hc05New])
-def test_what_is_told_of_a_pin_is_what_the_module_has(
-    kind: type[Hc05], forms: tuple[str, str]
-) -> None:
+def test_the_reported_pin_is_the_stored_one(kind: type[Hc05], forms: tuple[str, str]) -> None:
     """This holds however it treats each form, with quotes and without."""
 
     class Quirky(kind):  # type: ignore[misc, valid-type]
@@ -285,7 +283,7 @@ def test_what_is_told_of_a_pin_is_what_the_module_has(
         assert outcome.status in (set_up.REFUSED, set_up.SILENT) and end.pin == kind.pin
 
 
-def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
+def test_a_truncated_name_is_noticed() -> None:
     class Short(Hm10):
         def answer(self, command: str) -> str:
             answer = super().answer(command)
@@ -319,14 +317,14 @@ def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
         (WantedSettings(baud=57601), "HC-06", "baud"),
     ],
 )
-def test_what_a_module_cannot_have_is_known_before(
+def test_unsupported_settings_are_known_in_advance(
     settings: WantedSettings, dialect: str, what: str
 ) -> None:
     (found_dialect,) = (other for other in DIALECTS if other.name == dialect)
     assert set_up.unsupported_setting(settings, found_dialect) == what
 
 
-def test_a_name_from_an_id_fits_each() -> None:
+def test_a_name_made_from_an_id_fits_every_module() -> None:
     assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
     assert all(
         not set_up.unsupported_setting(WantedSettings(set_up.name_for(7)), dialect)
@@ -341,10 +339,10 @@ def test_earlier_bytes_are_not_part_of_a_command(kind: str, seed: int) -> None:
     chance = random.Random(f"{kind} {seed}")
     end: Simulated = KINDS[kind](*([chance.choice(BAUDS)] if not kind.startswith("HC-05") else []))
     wire = SimulatedWire(end, end.baud)
-    plain = find_only_module(
+    plain_module = find_only_module(
         SimulatedWire(KINDS[kind](*([end.baud] if not kind.startswith("HC-05") else [])))
     )
     command = chance.choice(["AT", "AT+", "AT+VERSION", "AT+ROLE?", "AT\r", "A", "w" * 20, "\0"])
     wire.send(command.encode())
     wire.receive(chance.choice([1, 10, 100, 900]))
-    assert find_only_module(wire) == plain
+    assert find_only_module(wire) == plain_module

@@ -147,12 +147,12 @@ class Author(ValueAuthor):
 
     def close_block(self, word: str) -> None:
         """Writes the end that belongs to a header, in one of its spellings."""
-        ends = {
+        ends_by_word = {
             "IF": ("ENDIF", "ENDIF", "END_IF"),
             "LOOP": ("END_LOOP", "END_LOOP", "ENDLOOP"),
             "WHILE": ("END_WHILE", "END_WHILE", "ENDWHILE"),
         }
-        self.say(self.rng.choice(ends[word]))
+        self.say(self.rng.choice(ends_by_word[word]))
         self.depth -= 1
 
     def choose(self) -> None:
@@ -208,9 +208,9 @@ class Author(ValueAuthor):
             self.variables[counter] = False
             self.counters.add(counter)
             limit = self.rng.choice(("1", "2", "3", "4.5"))
-            more = ["AND", *self.yes_no(1)] if self.chance(0.3) else []
-            more = ["OR", "FALSE"] if self.chance(0.05) else more
-            self.open_block("WHILE", "(", counter, "<", limit, *more, ")")
+            extra_tokens = ["AND", *self.yes_no(1)] if self.chance(0.3) else []
+            extra_tokens = ["OR", "FALSE"] if self.chance(0.05) else extra_tokens
+            self.open_block("WHILE", "(", counter, "<", limit, *extra_tokens, ")")
         else:
             counted = False
             self.open_block("WHILE", *self.condition())

@@ -68,11 +68,11 @@ class ValueAuthor:
         self.instructions_left = 0  # instructions still to write
         used_names = {device.name for device in (*kit.readings, *kit.actuators)}
         remote = [device.name for device in kit.readings[len(kit.sensors) :]]
-        own = rng.sample(remote, min(len(remote), rng.choice((0, 0, 0, 1, 2, 4))))  # give way
-        self.sensors = [device for device in kit.readings if device.name not in own]
-        self.names = [name for name in VARIABLES if name not in used_names] + own[::3]
-        self.free_defs = [name for name in PROCEDURES if name not in used_names] + own[1::3]
-        self.values = [*VALUES, *own[2::3]]
+        own_names = rng.sample(remote, min(len(remote), rng.choice((0, 0, 0, 1, 2, 4))))  # give way
+        self.sensors = [device for device in kit.readings if device.name not in own_names]
+        self.names = [name for name in VARIABLES if name not in used_names] + own_names[::3]
+        self.free_defs = [name for name in PROCEDURES if name not in used_names] + own_names[1::3]
+        self.values = [*VALUES, *own_names[2::3]]
         self.taken = used_names | set(VARIABLES) | set(PROCEDURES)
         self.variables: dict[str, bool] = {}
         self.counters: set[str] = set()

@@ -19,22 +19,22 @@ def break_text(rng: random.Random, text: str) -> str:
     """The text with a few pieces lost, doubled, swapped or replaced, or with stray characters."""
     pieces = _PIECES.findall(text)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        at = rng.randrange(len(pieces) + 1)
-        what = rng.randrange(7)
-        if what == 0 or at == len(pieces):
-            pieces.insert(at, rng.choice(_NOISE))
-        elif what == 1:
-            del pieces[at]
-        elif what == 2:
-            pieces.insert(at, pieces[at])
-        elif what == 3:
-            other = rng.randrange(len(pieces))
-            pieces[at], pieces[other] = pieces[other], pieces[at]
-        elif what == 4:
-            pieces[at] = rng.choice(_WORDS)
-        elif what == 5:
-            pieces.insert(at, rng.choice(_WORDS))
+        index = rng.randrange(len(pieces) + 1)
+        kind = rng.randrange(7)
+        if kind == 0 or index == len(pieces):
+            pieces.insert(index, rng.choice(_NOISE))
+        elif kind == 1:
+            del pieces[index]
+        elif kind == 2:
+            pieces.insert(index, pieces[index])
+        elif kind == 3:
+            other_index = rng.randrange(len(pieces))
+            pieces[index], pieces[other_index] = pieces[other_index], pieces[index]
+        elif kind == 4:
+            pieces[index] = rng.choice(_WORDS)
+        elif kind == 5:
+            pieces.insert(index, rng.choice(_WORDS))
         else:
-            cut = rng.randrange(len(pieces[at]) + 1)
-            pieces[at] = pieces[at][:cut] + rng.choice(_NOISE) + pieces[at][cut + 1 :]
+            cut = rng.randrange(len(pieces[index]) + 1)
+            pieces[index] = pieces[index][:cut] + rng.choice(_NOISE) + pieces[index][cut + 1 :]
     return "".join(pieces)

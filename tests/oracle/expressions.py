@@ -33,9 +33,9 @@ class ExpressionParser:
         self.text = Text(
             self.tokens, {reading.name for reading in kit.readings if reading.is_yes_no}
         )
-        own = {device.name for device in (*kit.sensors, *kit.actuators)}
+        device_names = {device.name for device in (*kit.sensors, *kit.actuators)}
         for device in kit.readings:
-            if device.name not in own and self.text.gives_way(device.name):
+            if device.name not in device_names and self.text.gives_way(device.name):
                 del self.sensors[device.name]
                 self.text.sensors.discard(device.name)
         self.open_def = ""  # the DEF that is being read
@@ -53,8 +53,8 @@ class ExpressionParser:
     def token(self) -> Token:
         return self.tokens[self.at]
 
-    def fail(self, why: str) -> NoReturn:
-        raise Mistake(f"line {self.token.line}: {why}")
+    def fail(self, message: str) -> NoReturn:
+        raise Mistake(f"line {self.token.line}: {message}")
 
     def next_is(self, *texts: str) -> bool:
         """Return whether the next token is one of these words or signs."""

@@ -35,9 +35,12 @@ MAJOR, MINOR = max(VERSIONS)
 
 def version(code: bytes, needs: int) -> tuple[int, int]:
     """Return the lowest version that has all instructions and needs of verified code."""
-    at, names = 0, set()
-    while at < len(code):
-        name, at = spec_tables.instruction_at(code, at).name, spec_tables.decode(code, at)[2]
+    offset, names = 0, set()
+    while offset < len(code):
+        name, offset = (
+            spec_tables.instruction_at(code, offset).name,
+            spec_tables.decode(code, offset)[2],
+        )
         names.add(name)
     added = (
         number
@@ -60,9 +63,9 @@ def refusal(data: bytes) -> str:
     head = HEADER.parse(data)
     if head.header_length < HEADER.sizeof() or head.code_length > MOST_BYTES:
         return "BAD_HEADER"
-    whole = head.header_length + head.code_length
-    if len(data) != whole:
-        return "TRUNCATED" if len(data) < whole else "TRAILING"
+    whole_length = head.header_length + head.code_length
+    if len(data) != whole_length:
+        return "TRUNCATED" if len(data) < whole_length else "TRAILING"
     reasons = {
         "DAMAGED": zlib.crc32(data[:10] + data[14:]) != head.checksum,
         "UNKNOWN_NEEDS": head.needs & ~NEEDS,

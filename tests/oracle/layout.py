@@ -36,17 +36,17 @@ class Layout:
     def gap(self, left: str, right: str, in_parentheses: bool) -> str:
         """Return the text between two tokens of an instruction."""
         rng = self.rng
-        wordy = left[-1] not in "(),=<>+-*/%" and right[0] not in "(),=<>+-*/%"
+        has_words = left[-1] not in "(),=<>+-*/%" and right[0] not in "(),=<>+-*/%"
         if self.ends != "one line" and in_parentheses and rng.random() < 0.02:
             return f" {self.newline}  " if rng.random() < 0.7 else f" {self.comment()}"
         if self.gaps == "wild":
             space = rng.choice(("", " ", "  ", "\t", "\u00a0", ""))
         elif self.gaps == "normal":
-            bare = left in "()" or right in "(),"
-            space = "" if bare and right != "UNTIL" else " "
+            is_bare = left in "()" or right in "(),"
+            space = "" if is_bare and right != "UNTIL" else " "
         else:
             space = ""
-        return " " if wordy and not space else space
+        return " " if has_words and not space else space
 
     def instruction(self, tokens: Tokens) -> str:
         text, depth = self.word(tokens[0]), 0

@@ -46,13 +46,13 @@ def tokens_of(text: str) -> list[Token]:
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     text = "\n".join(map(without_checksum, text.split("\n")))
     tokens: list[Token] = []
-    line, depth, at = 1, 0, 0
-    while at < len(text):
-        match = _TOKEN.match(text, at)
+    line, depth, position = 1, 0, 0
+    while position < len(text):
+        match = _TOKEN.match(text, position)
         if match is None:
-            raise Mistake(f"line {line}: {text[at]!r} is not understood")
+            raise Mistake(f"line {line}: {text[position]!r} is not understood")
         kind, word = str(match.lastgroup), match.group().upper()
-        at = match.end()
+        position = match.end()
         if kind == "symbol" and word in "()":
             depth = max(0, depth + (1 if word == "(" else -1))
         if word == ";" and depth > 0:
@@ -61,10 +61,10 @@ def tokens_of(text: str) -> list[Token]:
             kind, word = "word", "DEG"
         if word in FIXED_WORDS:
             names, meaning = FIXED_WORDS[word]
-            values, at = _read_values(text, at, len(names)) if names else ([], at)
+            values, position = _read_values(text, position, len(names)) if names else ([], position)
             for token in tokens_of(meaning)[:-1]:
                 replacements = dict(zip(names, values, strict=True)).get(token.text, [token])
-                tokens += (one._replace(line=line) for one in replacements)
+                tokens += (replacement._replace(line=line) for replacement in replacements)
         elif kind != "space" and not (kind == "newline" and depth > 0):
             tokens.append(Token(kind, word, line))
         if kind == "newline":
@@ -73,30 +73,30 @@ def tokens_of(text: str) -> list[Token]:
     return tokens
 
 
-def _read_values(text: str, at: int, count: int) -> tuple[list[list[Token]], int]:
+def _read_values(text: str, position: int, count: int) -> tuple[list[list[Token]], int]:
     """The tokens of each value in the brackets that begin here, and where these end."""
-    match = re.compile(r"\s*\(").match(text, at)
+    match = re.compile(r"\s*\(").match(text, position)
     if match is None:
         raise Mistake("a word without its values")
     begin = end = match.end()
-    depth, ends = 1, [begin - 1]
+    depth, argument_ends = 1, [begin - 1]
     while depth:
         if end == len(text):
             raise Mistake("brackets without an end")
         depth += (text[end] == "(") - (text[end] == ")")
         if depth == 0 or (depth == 1 and text[end] == ","):
-            ends.append(end)
+            argument_ends.append(end)
         end += 1
-    if len(ends) != count + 1:
+    if len(argument_ends) != count + 1:
         raise Mistake("another number of values")
-    return [tokens_of(text[a + 1 : b])[:-1] for a, b in pairwise(ends)], end
+    return [tokens_of(text[a + 1 : b])[:-1] for a, b in pairwise(argument_ends)], end
 
 
 def thousandths(text: str) -> int:
     """The value of a literal, rounded half away from zero; it may be out of range."""
-    whole, _, places = text.partition(".")
-    whole = whole.lstrip("0")
-    if len(whole) > 10:
+    whole_part, _, decimals = text.partition(".")
+    whole_part = whole_part.lstrip("0")
+    if len(whole_part) > 10:
         return 10**13  # out of range anyhow
-    value = int(whole or "0") * 1000 + int((places + "000")[:3])
-    return value + (1 if len(places) > 3 and places[3] >= "5" else 0)
+    value = int(whole_part or "0") * 1000 + int((decimals + "000")[:3])
+    return value + (1 if len(decimals) > 3 and decimals[3] >= "5" else 0)

@@ -83,8 +83,8 @@ class Run:
         """The time that instructions see."""
         return (self.begin_ms + self.passed) % WRAP
 
-    def note(self, what: str) -> None:
-        self.lines.append(f"{self.passed} {what}\n")
+    def note(self, event: str) -> None:
+        self.lines.append(f"{self.passed} {event}\n")
 
     def run(self) -> None:
         steps = 0
@@ -123,30 +123,30 @@ class Run:
         self.passed = reached
 
     def step(self) -> None:
-        row, operands, after, to = decode(self.code, self.pc)
-        self.pc = after
+        row, operands, next_pc, to = decode(self.code, self.pc)
+        self.pc = next_pc
         self.do(row, row.stem, operands, to)
 
     def do(self, row: Instruction, name: str, operands: Sequence[int], to: int) -> None:
         """Execute an instruction; short and far forms act like the others."""
         popped_values = [self.stack.pop() for _ in range(row.takes)][::-1]
-        family, _, last = name.rpartition("_")
+        family, _, suffix = name.rpartition("_")
         if family in ("IF8", "IF16", "UNTIL8", "UNTIL16", "IF_VAR8", "IF_VAR16"):
             *first, constant = operands[: 2 if family.startswith("IF_VAR") else 1]
             value = self.variables[first[0]] if first else popped_values[0]
-            holds = COMPARISONS[last](value, 1000 * constant)
+            is_true = COMPARISONS[suffix](value, 1000 * constant)
             if family.startswith("UNTIL"):
-                self.until(holds)
-            elif not holds:
+                self.until(is_true)
+            elif not is_true:
                 self.pc = to
-        elif last in WAYS:
+        elif suffix in WAYS:
             if "GO" in family:
                 popped_values[0] = self.way(
                     popped_values[0],
                     nearest_in_range(nearest_whole(popped_values[1]), 0, 100),
-                    last in "LR",
+                    suffix in "LR",
                 )
-            self.drive(family, WAYS[last], popped_values, operands)
+            self.drive(family, WAYS[suffix], popped_values, operands)
         elif name in ("WATCH_WAIT", "WATCH_FOREVER_WAIT"):
             self.watch(None, max(popped_values[0], 0) if popped_values else None)
         elif row.role == "value":
@@ -192,8 +192,8 @@ class Run:
                 self.variables[operands[0]] = 1000 * operands[1]
             case "ADD_VAR8" | "ADD_VAR" | "INC_VAR" | "DEC_VAR":
                 by = {"INC_VAR": 1000, "DEC_VAR": -1000, "ADD_VAR8": 1000 * operands[-1]}
-                more = by[name] if name in by else self.variables[operands[1]]
-                self.variables[operands[0]] = fits(self.variables[operands[0]] + more)
+                operand = by[name] if name in by else self.variables[operands[1]]
+                self.variables[operands[0]] = fits(self.variables[operands[0]] + operand)
             case "READ":
                 self.read(operands[0])
             case "SHOW" | "SHOW_YES_NO":
@@ -216,8 +216,8 @@ class Run:
                 act = ACTS[name.removesuffix("8")]
                 operands_and_ranges = zip(operands, act.ranges, strict=not popped_values)
                 values = [
-                    time8(value) if of == TIME else 1000 * value
-                    for value, of in operands_and_ranges
+                    time8(value) if operand_kind == TIME else 1000 * value
+                    for value, operand_kind in operands_and_ranges
                 ]
                 act_values = act.values(popped_values or values)
                 self.note(act.note.format(*act_values))
@@ -290,10 +290,10 @@ class Run:
         if (self.now - self.clock) % WRAP > 20:
             self.clock = self.now
 
-    def wait(self, duration: int, what: str) -> None:
+    def wait(self, duration: int, condition: str) -> None:
         self.begin()
         self.clock = (self.clock + duration) % WRAP
-        self.waits = what
+        self.waits = condition
 
     def drive(
         self, family: str, way: tuple[int, int], popped_values: list[int], operands: Sequence[int]
@@ -359,7 +359,7 @@ def trace(
     max_ms: int = 60_000,
     seed: int = 1,
     max_steps: int = 10_000,
-    late: Callable[[int, int], int] = lambda waited_ms, reached: 0,
+    late_ms: Callable[[int, int], int] = lambda waited_ms, reached: 0,
     begin_ms: int = 0,
     is_slow: Callable[[int, int], bool] = always_ready,
 ) -> str:
@@ -369,6 +369,8 @@ def trace(
     is given which wait it is, from 1, and when the clock is reached. `is_slow` says whether a
     sensor is not ready so long after the start.
     """
-    run = Run(code, kit, readings, max_ms, seed, max_steps, late, begin_ms, is_slow, clock=begin_ms)
+    run = Run(
+        code, kit, readings, max_ms, seed, max_steps, late_ms, begin_ms, is_slow, clock=begin_ms
+    )
     run.run()
     return "".join(run.lines)

@@ -85,15 +85,15 @@ def settle_readings(
                 sure |= defs[statement.name].surely_read
         elif isinstance(statement, If):
             used_names = sure  # sensors that this chain need not read again
-            ends: list[frozenset[str]] = []
+            branch_ends: list[frozenset[str]] = []
             for arm in statement.arms:
                 arm.reads = missing((arm.condition,), used_names)
                 used_names |= set(arm.reads)
                 # The readings for conditions are the compiler's: they do not count as certain.
-                ends.append(settle_readings(arm.body, sure, defs))
+                branch_ends.append(settle_readings(arm.body, sure, defs))
             if statement.arms[-1].condition is not None:
-                ends.append(sure)  # a missing ELSE is an empty arm
-            sure = frozenset.intersection(*ends)
+                branch_ends.append(sure)  # a missing ELSE is an empty arm
+            sure = frozenset.intersection(*branch_ends)
         elif isinstance(statement, Loop):
             statement.reads = missing((statement.count,), sure)
             settle_readings(statement.body, nothing, defs)

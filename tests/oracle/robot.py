@@ -85,8 +85,8 @@ class Robot:
         """Execute the program to its end."""
         raise NotImplementedError
 
-    def note(self, what: str) -> None:
-        self.trace.append(f"{self.now} {what}\n")
+    def note(self, event: str) -> None:
+        self.trace.append(f"{self.now} {event}\n")
 
     def step(self) -> None:
         """Count a step that could repeat without any time passing."""

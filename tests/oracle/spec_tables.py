@@ -55,34 +55,36 @@ class Instruction(NamedTuple):
         """Return the number of its bytes, including the opcode."""
         return self.code_size + sum(operand.size for operand in self.operands)
 
-    def read(self, code: bytes, at: int) -> list[tuple[Operand, int]]:
+    def read(self, code: bytes, offset: int) -> list[tuple[Operand, int]]:
         """Return the operands with their values, where the instruction is at an offset."""
         operands = []
-        at += self.code_size
+        offset += self.code_size
         for operand in self.operands:
-            operands.append((operand, operand.read(code[at : at + operand.size])))
-            at += operand.size
+            operands.append((operand, operand.read(code[offset : offset + operand.size])))
+            offset += operand.size
         return operands
 
-    def values(self, code: bytes, at: int) -> list[int]:
+    def values(self, code: bytes, offset: int) -> list[int]:
         """Return the values except distances of jumps: implied, or read."""
         operand_values = [
-            value for operand, value in self.read(code, at) if not operand.is_distance
+            value for operand, value in self.read(code, offset) if not operand.is_distance
         ]
         return [value for _, value in self.implied] + operand_values
 
-    def target(self, code: bytes, at: int) -> int:
+    def target(self, code: bytes, offset: int) -> int:
         """Return the target of a jump, or the next offset."""
-        after = at + self.size
-        distances = [part for part in self.read(code, at) if part[0].is_distance]
-        return after + sum(-v if operand.kind[:4] == "back" else v for operand, v in distances)
+        next_offset = offset + self.size
+        distances = [part for part in self.read(code, offset) if part[0].is_distance]
+        return next_offset + sum(
+            -v if operand.kind[:4] == "back" else v for operand, v in distances
+        )
 
 
 def rows(name: str) -> list[list[str]]:
     """Return the cells of a generated table, without the backquotes around them."""
     text = SPEC.read_text(encoding="utf-8")
-    begin, end = f"<!-- begin generated: {name} -->", f"<!-- end generated: {name} -->"
-    lines = text[text.index(begin) : text.index(end)].splitlines()[3:]
+    begin_mark, end_mark = f"<!-- begin generated: {name} -->", f"<!-- end generated: {name} -->"
+    lines = text[text.index(begin_mark) : text.index(end_mark)].splitlines()[3:]
     return [
         [cell.strip().strip("`") for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines
     ]
@@ -113,30 +115,30 @@ def instructions() -> dict[int, Instruction]:
         op_operands = tuple(
             Operand(*halves, *kinds[halves[1]]) for halves in map(_label_and_kind, operands)
         )
-        short = re.fullmatch(r"(.+)_(\d+)", name)
-        stem = short[1] if short else name.removesuffix("_FAR")
-        implied = ((kind_of.get(stem, "u8"), int(short[2])),) if short else ()
+        short_match = re.fullmatch(r"(.+)_(\d+)", name)
+        stem = short_match[1] if short_match else name.removesuffix("_FAR")
+        implied = ((kind_of.get(stem, "u8"), int(short_match[2])),) if short_match else ()
         role = role_of[name]
         bytes_ = 2 if code > 0xFF else 1
         table[code] = Instruction(name, stem, op_operands, implied, takes, leaves, role, bytes_)
     return table
 
 
-def code_at(code: bytes, at: int) -> int:
+def code_at(code: bytes, offset: int) -> int:
     """Return the byte that begins an instruction; after `ff` the next one belongs to it."""
-    return int.from_bytes(code[at : at + 1 + (code[at] == ESCAPE)], "big")
+    return int.from_bytes(code[offset : offset + 1 + (code[offset] == ESCAPE)], "big")
 
 
-def instruction_at(code: bytes, at: int) -> Instruction:
+def instruction_at(code: bytes, offset: int) -> Instruction:
     """Return the specification of the instruction there."""
-    return instructions()[code_at(code, at)]
+    return instructions()[code_at(code, offset)]
 
 
 @lru_cache(maxsize=1024)
-def decode(code: bytes, at: int) -> tuple[Instruction, list[int], int, int]:
+def decode(code: bytes, offset: int) -> tuple[Instruction, list[int], int, int]:
     """Return the instruction there, its values, where the next one begins, and where it jumps."""
-    row = instruction_at(code, at)
-    return row, row.values(code, at), at + row.size, row.target(code, at)
+    row = instruction_at(code, offset)
+    return row, row.values(code, offset), offset + row.size, row.target(code, offset)
 
 
 def _label_and_kind(word: str) -> tuple[str, str]:

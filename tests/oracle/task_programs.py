@@ -39,9 +39,9 @@ class TaskAuthor:
             if YES_NO in self.defs[name]:  # the first call determines its kind
                 self.lines += ["IF(FALSE)", self.call(name), "ENDIF"]
         tasks = rng.randint(1, MOST_TASKS)
-        before = sorted(rng.randint(0, 3) for _ in range(tasks))
+        when_counts = sorted(rng.randint(0, 3) for _ in range(tasks))
         for place in range(4):
-            for _ in range(before.count(place)):
+            for _ in range(when_counts.count(place)):
                 self.task()
             if place < 3:
                 self.body(rng.randint(0, 2), 0)
@@ -160,14 +160,14 @@ class TaskAuthor:
         rng = self.rng
         if YES_NO in self.own and rng.random() < 0.5:
             return rng.choice((YES_NO, f"NOT {YES_NO}"))
-        begin = rng.choice((0, 0.02, 0.05, 0.1, 0.2))
+        begin_s = rng.choice((0, 0.02, 0.05, 0.1, 0.2))
         return rng.choice(
             (
                 "TRUE",
                 "FALSE",
-                f"TIME >= {begin}",
-                f"TIME >= {begin} AND TIME < {begin + 0.06:.2f}",
-                f"TIME >= {begin} AND TIME < {begin + 0.06:.2f}",
+                f"TIME >= {begin_s}",
+                f"TIME >= {begin_s} AND TIME < {begin_s + 0.06:.2f}",
+                f"TIME >= {begin_s} AND TIME < {begin_s + 0.06:.2f}",
                 "DISTANCE < 15",
                 "DISTANCE < 15 OR LIGHT_L > 500",
                 "KEY_A",

@@ -23,7 +23,7 @@ PAUSE = 20  # between two looks of an UNTIL
 SIDES = {"F": (1, 1), "B": (-1, -1), "L": (-1, 1), "R": (1, -1)}
 
 
-def always_ready(name: str, now: int) -> bool:
+def always_ready(name: str, now_ms: int) -> bool:
     return False
 
 
@@ -285,9 +285,9 @@ class TaskRobot(Robot):
         if word == "CALL":
             name = statement.name
             values = self.values(statement)
-            for its, value in zip(self.program.values[name], values, strict=True):
+            for value_name, value in zip(self.program.values[name], values, strict=True):
                 assert value is not None
-                me.own[f"{name}.{its}"] = value
+                me.own[f"{name}.{value_name}"] = value
             yield from self.body(self.program.defs[name])
             return
         if word == "READ":

@@ -24,8 +24,8 @@ BATCH = 50
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH))
 def test_random_programs(first: int) -> None:
-    ends = Counter(compare_task_program(seed) for seed in range(first, first + BATCH))
-    assert set(ends) == {"DONE", "LIMIT"}
+    end_counts = Counter(compare_task_program(seed) for seed in range(first, first + BATCH))
+    assert set(end_counts) == {"DONE", "LIMIT"}
 
 
 @each_row(
@@ -59,7 +59,7 @@ def test_random_programs(first: int) -> None:
         + "LOOP(1);" * 8 + "END_LOOP;" * 8,
     ],
 )  # fmt: skip
-def test_what_both_refuse(text: str) -> None:
+def test_both_refuse_the_same_programs(text: str) -> None:
     with pytest.raises(Mistake):
         run(text)
     assert not compile_text(text, KIT).is_right
@@ -78,12 +78,12 @@ def test_what_both_refuse(text: str) -> None:
         + "LOOP(1);" * 8 + "END_LOOP;" * 8,
     ],
 )  # fmt: skip
-def test_what_both_take(text: str) -> None:
+def test_both_accept_the_same_programs(text: str) -> None:
     assert run(text, max_time_ms=100)
     assert compile_text(text, KIT).is_right
 
 
-def test_programs_without_tasks_say_the_version_without_them() -> None:
+def test_programs_without_tasks_have_the_version_without_tasks() -> None:
     """Programs with a task need the next version, and its feature."""
     with_tasks, without = (
         compile_text(text, KIT).image for text in ("TASK;END_TASK;F(1, 50)", "F(1, 50)")

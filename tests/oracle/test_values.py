@@ -34,7 +34,7 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     text, readings = shared_program(rng)
     compilation = compile_text(text, KIT)
     try:
-        want = run(text, PAPER_KIT, readings, MAX_MS)
+        expected = run(text, PAPER_KIT, readings, MAX_MS)
     except Mistake:  # calls too deep, or more copies than a machine accepts
         assert not compilation.is_right, f"seed {seed}, the oracle refuses:\n{text}"
         return "refused"
@@ -47,15 +47,15 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
     for image in dict.fromkeys(images):
         for machine in machines:
             actual = machine(image, KIT, Senses(readings, MAX_MS))
-            assert actual == want, f"seed {seed}, {image.hex()}:\n{text}"
-    return want.split()[-1]
+            assert actual == expected, f"seed {seed}, {image.hex()}:\n{text}"
+    return expected.split()[-1]
 
 
 @pytest.mark.sampled("first", keep=3)
 @pytest.mark.parametrize("first", range(0, 400, BATCH))
 def test_random_programs(first: int) -> None:
-    ends = Counter(check_program(seed) for seed in range(first, first + BATCH))
-    assert {"DONE", "LIMIT"} <= set(ends), ends
+    end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    assert {"DONE", "LIMIT"} <= set(end_counts), end_counts
 
 
 if __name__ == "__main__":

@@ -52,8 +52,8 @@ def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACT
             ours = python_verdict(code, sensors, actuators, needs)
             assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
     if not missing():
-        theirs = host().verdicts(codes, sensors, actuators)
-        for code, verdict, (rule, offset) in zip(codes, without, theirs, strict=True):
+        cpp_verdicts = host().verdicts(codes, sensors, actuators)
+        for code, verdict, (rule, offset) in zip(codes, without, cpp_verdicts, strict=True):
             ours = rule, offset if rule else 0  # for accepted code, the offset is its length
             assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
     return {rule for rule, _ in own_verdicts}
@@ -78,16 +78,16 @@ def damage_programs(programs: list[bytes], seed: int, count: int) -> Iterator[by
     for _ in range(count):
         code = bytearray(rng.choice(programs))
         for _ in range(rng.choice((1, 1, 2, 3))):
-            at = rng.randrange(len(code)) if code else 0
+            index = rng.randrange(len(code)) if code else 0
             kind = rng.randrange(6)
             if kind == 0:
-                del code[at : at + 1]
+                del code[index : index + 1]
             elif kind == 1:
-                code[at:at] = code[at : at + 1]
+                code[index:index] = code[index : index + 1]
             elif kind == 2 and rng.random() < 0.2:
-                del code[at:]
+                del code[index:]
             elif code:
-                code[at] = rng.choice((code[at] ^ 1 << rng.randrange(8), rng.randrange(256)))
+                code[index] = rng.choice((code[index] ^ 1 << rng.randrange(8), rng.randrange(256)))
         yield bytes(code)
 
 
@@ -97,7 +97,7 @@ def disassemblies() -> list[pytest.ParameterSet]:
 
 
 @each_row("case", disassemblies())
-def test_disassembly_and_its_beginnings(case: Case) -> None:
+def test_verdicts_on_disassemblies_and_their_prefixes_agree(case: Case) -> None:
     code = assemble(case.parts["bytecode"])
     for actuators in (0, ACTUATORS):
         compare([code[:length] for length in range(len(code) + 1)], SENSORS, actuators)
@@ -110,7 +110,7 @@ def test_a_sensor_in_an_instruction_of_one_byte(code: str) -> None:
     assert compare([bytes.fromhex(code)], 8) == {0}
 
 
-def test_codes_of_up_to_two_bytes() -> None:
+def test_verdicts_on_all_codes_of_up_to_two_bytes_agree() -> None:
     compare(bytes(values) for size in range(3) for values in product(range(256), repeat=size))
 
 
@@ -126,20 +126,20 @@ def test_each_rule_is_broken_by_its_cases() -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(4))
-def test_random_codes(seed: int) -> None:
+def test_verdicts_on_random_codes_agree(seed: int) -> None:
     broken = compare(random_codes(1000 + seed, 5000))
     broken |= compare(task_codes(1000 + seed, 2000))
     assert 0 in broken and len(broken) > 15
 
 
-def test_damaged_programs() -> None:
+def test_verdicts_on_damaged_programs_agree() -> None:
     programs = every_program()
     assert len(programs) > 100
     assert compare(programs) == {0}
     assert len(compare(damage_programs(programs, 1, 5000))) > 15
 
 
-def test_the_steps_name_every_rule_and_every_role() -> None:
+def test_the_steps_cover_every_rule_and_every_role() -> None:
     text = spec_tables.SPEC.read_text(encoding="utf-8")
     steps = text[
         text.index("A verifier keeps this state") : text.index("The control roles of instructions:")
@@ -159,10 +159,14 @@ def test_code_may_be_as_long_as_the_limit() -> None:
 def test_no_device_has_a_number_above_31() -> None:
     """A kit with more is refused before code runs: a machine keeps 32 readings."""
     codes = {name: code for code, row in spec_tables.instructions().items() for name in [row.name]}
-    for many in (32, 33, 255):
+    for device_count in (32, 33, 255):
         for name, number in (("READ", 31), ("READ", 32), ("PUSH_SENSOR", 32), ("PUSH_READ", 255)):
             code = bytes([codes[name], number])
-            rules = compare([code + bytes([codes["SHOW"]]) if name != "READ" else code], many, many)
+            rules = compare(
+                [code + bytes([codes["SHOW"]]) if name != "READ" else code],
+                device_count,
+                device_count,
+            )
             assert rules == {0 if number == 31 else RULES["BAD_OPERAND"][0]}
 
 
@@ -172,7 +176,7 @@ CHECKS = ("spec_tables", "verifier", "arithmetic", "machine")
 
 
 @each_row("name", [*READS, *CHECKS])
-def test_it_knows_nothing_of_the_package(name: str) -> None:
+def test_the_verifier_is_independent_of_the_package(name: str) -> None:
     text = (ROOT / "tests" / "oracle" / f"{name}.py").read_text(encoding="utf-8")
     imported_modules = {
         alias.name if isinstance(node, ast.Import) else str(node.module)

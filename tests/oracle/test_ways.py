@@ -33,40 +33,42 @@ BATCH = 100
 def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
     """Compare the traces of one random program on some machines; return how it ended."""
     rng = random.Random(seed)
-    theirs, kit = KITS[seed // 2 % 2]
-    both: list[Compilation] = []
-    while not both or not unpack(both[0].image).needs & GO:
-        text = programs.program(rng, theirs, ways=True)
-        both = [compile_text(text, kit, optimize=optimize) for optimize in (True, False)]
-        assert all(compilation.is_right for compilation in both), f"seed {seed}:\n{text}"
-    readings = programs.senses(rng, theirs)
-    want = run(text, theirs, readings, MAX_MS, MAX_STEPS)
+    oracle_kit, kit = KITS[seed // 2 % 2]
+    compilations: list[Compilation] = []
+    while not compilations or not unpack(compilations[0].image).needs & GO:
+        text = programs.program(rng, oracle_kit, ways=True)
+        compilations = [compile_text(text, kit, optimize=optimize) for optimize in (True, False)]
+        assert all(compilation.is_right for compilation in compilations), f"seed {seed}:\n{text}"
+    readings = programs.senses(rng, oracle_kit)
+    expected = run(text, oracle_kit, readings, MAX_MS, MAX_STEPS)
     for image in dict.fromkeys(
-        compilation.image for compilation in both
+        compilation.image for compilation in compilations
     ):  # often they are the same
         for run_on in machines:
             actual = run_on(image, kit, Senses(readings, MAX_MS, MAX_STEPS))
-            assert are_equivalent(want, actual), f"seed {seed}, {image.hex()}:\n{text}"
-        actual = machine.trace(unpack(image).code, theirs, readings, MAX_MS, max_steps=MAX_STEPS)
-        assert machine.TOO_MANY in actual or are_equivalent(want, actual), (
+            assert are_equivalent(expected, actual), f"seed {seed}, {image.hex()}:\n{text}"
+        actual = machine.trace(
+            unpack(image).code, oracle_kit, readings, MAX_MS, max_steps=MAX_STEPS
+        )
+        assert machine.TOO_MANY in actual or are_equivalent(expected, actual), (
             f"seed {seed}, the page:\n{text}"
         )
     laid_out = format_source(Source(text))
-    assert compile_text(laid_out, kit).image == both[0].image, f"seed {seed}"
-    return want.splitlines()[-1].split(" ", 1)[1]
+    assert compile_text(laid_out, kit).image == compilations[0].image, f"seed {seed}"
+    return expected.splitlines()[-1].split(" ", 1)[1]
 
 
 @pytest.mark.sampled("first")
 @pytest.mark.parametrize("first", range(0, 4 * BATCH, BATCH))
 def test_random_programs(first: int) -> None:
-    ends = Counter(check_program(seed) for seed in range(first, first + BATCH))
-    assert {"DONE", "FAULT NO_POWER", "FAULT OVERFLOW"} <= set(ends), ends
+    end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    assert {"DONE", "FAULT NO_POWER", "FAULT OVERFLOW"} <= set(end_counts), end_counts
 
 
 def test_random_programs_with_tasks() -> None:
     seeds = range(4 * BATCH, 5 * BATCH)  # two of them go without power
-    ends = Counter(compare_task_program(seed, needs=GO) for seed in seeds)
-    assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
+    end_counts = Counter(compare_task_program(seed, needs=GO) for seed in seeds)
+    assert {"DONE", "LIMIT", "NO_POWER"} <= set(end_counts), end_counts
 
 
 @each_row(
@@ -101,7 +103,7 @@ def test_random_programs_with_tasks() -> None:
         "F(TRUE CM, 60)",
     ],
 )
-def test_what_both_refuse(text: str) -> None:
+def test_both_refuse_the_same_programs(text: str) -> None:
     with pytest.raises(Mistake):
         run(text)
     assert not compile_text(text, KITS[0][1]).is_right
@@ -121,19 +123,19 @@ def test_what_both_refuse(text: str) -> None:
         "F(0.009 CM, 40)",
     ],
 )
-def test_what_both_take(text: str) -> None:
+def test_both_accept_the_same_programs(text: str) -> None:
     compilation = compile_text(text, KITS[0][1])
     assert run_python(compilation.image, KITS[0][1], Senses()) == run(text)
 
 
-def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
-    theirs, ours = Kit(PAPER_KIT.sensors, (), 45_000), KITS[0][1]._replace(turn=0)
-    assert run("F(45 CM, 100)", theirs).endswith("1000 DONE\n")
-    assert compile_text("F(45 CM, 100)", ours).is_right
+def test_a_robot_without_known_speed_has_no_such_moves() -> None:
+    oracle_kit, kit = Kit(PAPER_KIT.sensors, (), 45_000), KITS[0][1]._replace(turn=0)
+    assert run("F(45 CM, 100)", oracle_kit).endswith("1000 DONE\n")
+    assert compile_text("F(45 CM, 100)", kit).is_right
     with pytest.raises(Mistake):
-        run("L(9 DEG, 100)", theirs)
+        run("L(9 DEG, 100)", oracle_kit)
     assert [
-        diagnostic.code.number for diagnostic in compile_text("L(9 DEG, 100)", ours).diagnostics
+        diagnostic.code.number for diagnostic in compile_text("L(9 DEG, 100)", kit).diagnostics
     ] == ["TS314"]
 
 
@@ -151,7 +153,7 @@ def test_a_robot_whose_speed_is_not_known_has_no_such_moves() -> None:
         ("F(200 CM, 60);IF(DISTANCE < 9);S;ENDIF", "", ""),
     ],
 )
-def test_what_is_advised(text: str, code: str, shown_text: str) -> None:
+def test_advice_on_ways_agrees(text: str, code: str, shown_text: str) -> None:
     diagnostics = compile_text(text, KITS[0][1]).diagnostics
     assert [diagnostic.code.number for diagnostic in diagnostics] == [code] * bool(code)
     assert [diagnostic.values.get("way", "") for diagnostic in diagnostics] == [shown_text] * bool(
@@ -159,7 +161,7 @@ def test_what_is_advised(text: str, code: str, shown_text: str) -> None:
     )
 
 
-def test_degrees_are_only_shown_where_the_robot_has_them() -> None:
+def test_degrees_are_shown_only_if_the_robot_has_them() -> None:
     kit = KITS[0][1]._replace(speed=0, turn=0)
     assert not compile_text("R(20, 60)", kit).diagnostics
     (diagnostic,) = compile_text("R(90, 60)", kit).diagnostics

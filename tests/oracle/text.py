@@ -71,7 +71,7 @@ class Parser(ExpressionParser):
             self.fail("blocks nested too deep in all tasks together")
         if sum(facts.calling for facts in together) > MAX_CALLS:
             self.fail("DEFs called too deep in all tasks together")
-        values = {name: its.values for name, its in self.text.defs.items()}
+        values = {name: definition.values for name, definition in self.text.defs.items()}
         program = Program(main, self.defs, self.variables, values, self.tasks)
         if not fit(program):
             self.fail("no room for what each task has of its own")
@@ -113,12 +113,12 @@ class Parser(ExpressionParser):
         if self.token.kind != "end" and not self.accept_separator():
             self.fail(f"the instruction should end before {self.token.text!r}")
 
-    def inner_block(self, *ends: str) -> list[Statement]:
+    def inner_block(self, *end_words: str) -> list[Statement]:
         """A header's end, a body, and the check that the right word ends it (not taken)."""
         self.end_of_instruction()
         body = self.block()
-        if ALIASES.get(self.token.text, self.token.text) not in ends:
-            self.fail(f"{' or '.join(ends)} expected, not {self.token.text!r}")
+        if ALIASES.get(self.token.text, self.token.text) not in end_words:
+            self.fail(f"{' or '.join(end_words)} expected, not {self.token.text!r}")
         return body
 
     def instruction(self) -> Statement | None:
@@ -175,7 +175,7 @@ class Parser(ExpressionParser):
         self.own = {}
         self.defs[name] = body
 
-    def names(self, of: str) -> None:
+    def names(self, def_name: str) -> None:
         """The names in the brackets of a DEF."""
         while not self.next_is(")"):
             if self.own:
@@ -186,7 +186,7 @@ class Parser(ExpressionParser):
             devices = (*self.sensors, *self.actuators)
             if name in (*self.own, *devices, *self.text.defs) or self.text.assigned_outside(name):
                 self.fail(f"the name {name} is taken")
-            self.own[name] = self.text.is_yes_no(name, self.text.defs[of])
+            self.own[name] = self.text.is_yes_no(name, self.text.defs[def_name])
             self.at += 1
         self.expect(")")
         if len(self.own) > MAX_VALUES:
@@ -212,8 +212,8 @@ class Parser(ExpressionParser):
         word = "IF"
         while word != "ENDIF":
             condition = None if word == "ELSE" else self.condition()
-            ends = ("ENDIF",) if word == "ELSE" else ("ELSEIF", "ELSE", "ENDIF")
-            arms.append(Arm(condition, self.inner_block(*ends)))
+            end_words = ("ENDIF",) if word == "ELSE" else ("ELSEIF", "ELSE", "ENDIF")
+            arms.append(Arm(condition, self.inner_block(*end_words)))
             word = ALIASES.get(self.token.text, self.token.text)
             self.at += 1
         self.blocks -= 1
@@ -289,13 +289,13 @@ class Parser(ExpressionParser):
 
     def call(self, name: str) -> Do:
         """A call, with a value for each name in the brackets of the DEF."""
-        its = self.text.defs[name]
-        if not its.values and not self.next_is("("):
+        definition = self.text.defs[name]
+        if not definition.values and not self.next_is("("):
             return Do("CALL", name)
-        arguments = self.arguments(len(its.values))
-        for value, argument in zip(its.values, arguments, strict=True):
+        arguments = self.arguments(len(definition.values))
+        for value, argument in zip(definition.values, arguments, strict=True):
             assert argument is not None
-            if argument.is_yes_no != self.text.is_yes_no(value, its):
+            if argument.is_yes_no != self.text.is_yes_no(value, definition):
                 self.fail(f"{value} has the other kind")
         return self.check_stack(Do("CALL", name, arguments))
 

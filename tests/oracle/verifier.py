@@ -22,10 +22,10 @@ class Broken(Exception):
 
 
 def _row_of(instruction: Instruction) -> SimpleNamespace:
-    def operands(code: bytes, at: int) -> list[tuple[str, int, int, int]]:
+    def operands(code: bytes, offset: int) -> list[tuple[str, int, int, int]]:
         operand_rows = [
             (operand.kind, operand.low, operand.high, value)
-            for operand, value in instruction.read(code, at)
+            for operand, value in instruction.read(code, offset)
         ]
         return operand_rows + [(kind, value, value, value) for kind, value in instruction.implied]
 

@@ -48,17 +48,20 @@ def commands(text: str) -> list[list[str]]:
     return [shlex.split(line) for line in command_lines]
 
 
-def test_both_lists_type_the_same() -> None:
-    own = {"PUERTO": "PORT", "RED": "NETWORK", "puesta.txt": "bring-up.txt"}
+def test_both_lists_contain_the_same_commands() -> None:
+    english_words = {"PUERTO": "PORT", "RED": "NETWORK", "puesta.txt": "bring-up.txt"}
     english, spanish = (
-        [[own.get(word, word) for word in command] for command in commands(path.read_text("utf-8"))]
+        [
+            [english_words.get(word, word) for word in command]
+            for command in commands(path.read_text("utf-8"))
+        ]
         for path in LISTS.values()
     )
     assert english == spanish
     assert len(english) > 15
 
 
-def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_path: Path) -> None:
+def test_the_report_is_filled_in_as_far_as_possible(pty_robot: PtyRobot, tmp_path: Path) -> None:
     """The report does not name the owner of the robot."""
     report = tmp_path / "bring-up.txt"
     result = on(pty_robot, "doctor", "--yes", "--report", report)
@@ -80,7 +83,7 @@ def test_the_report_is_filled_as_far_as_a_computer_can(pty_robot: PtyRobot, tmp_
     assert "1. Responde: 20 de 20 llegaron de inmediato" in report.read_text("utf-8")
 
 
-def test_whoever_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> None:
+def test_the_form_is_written_even_without_answers(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
     assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
@@ -88,7 +91,7 @@ def test_whoever_does_not_answer_gets_the_form_all_the_same(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("text_before", ["", "(\n"])
-def test_the_typed_stop_of_the_list(board: PtyRobot, text_before: str) -> None:
+def test_the_typed_stop_of_the_list_works(board: PtyRobot, text_before: str) -> None:
     typed = re.findall(r"`([^`]+)`", steps(LISTS["en"])["Typed stop"][0].replace("\\|", "|"))
     start, stop, bracket, second_stop = typed
     assert (bracket, second_stop) == ("(", stop)

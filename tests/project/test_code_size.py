@@ -7,7 +7,7 @@ from tools.bench import code_size
 from tools.bench.compiler import PROGRAMS
 
 
-def test_a_statement_takes_a_fifth_less_than_in_instruction_set_1() -> None:
+def test_statements_are_a_fifth_smaller_than_in_instruction_set_1() -> None:
     measured_measurement = code_size.measure()
     assert measured_measurement.program_count >= 50
     assert (
@@ -16,12 +16,12 @@ def test_a_statement_takes_a_fifth_less_than_in_instruction_set_1() -> None:
     )
 
 
-def test_the_papers_programs() -> None:
+def test_the_papers_programs_keep_their_sizes() -> None:
     kit = robots.load(robots.DEFAULT).kit
     assert [len(compile_text(text, kit).code) for text in PROGRAMS] == [3, 7, 14]
 
 
-def test_the_programs_of_the_documents_use_what_the_set_has_for_them() -> None:
+def test_documented_programs_use_every_short_instruction() -> None:
     """A family that no program of the documents needs would not be worth its codes."""
     families = {name.rpartition("_")[0] for name in code_size.measure().opcodes}
     short = {"PUSH_NUM", "PUSH_VAR", "SET_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET"}

@@ -26,12 +26,12 @@ needs_chip = pytest.mark.skipif(
 
 
 @pytest.mark.parametrize("work", WORKLOADS, ids=lambda work: work.name)
-def test_a_wrong_value_is_an_error(work: Workload) -> None:
+def test_a_wrong_value_raises_an_error(work: Workload) -> None:
     expected = expected_values(work)
     check("some machine", work, expected)
-    for other in ((*expected[:-1], expected[-1] + 1), expected[:-1]):
+    for wrong_values in ((*expected[:-1], expected[-1] + 1), expected[:-1]):
         with pytest.raises(WrongResult, match=f"some machine, work {work.name}"):
-            check("some machine", work, other)
+            check("some machine", work, wrong_values)
 
 
 @needs_chip
@@ -39,12 +39,12 @@ def test_a_wrong_value_is_an_error(work: Workload) -> None:
     ("work", "must"),
     [pytest.param(*row, id=row[0].name) for row in zip(WORKLOADS, MOST_CYCLES, strict=True)],
 )
-def test_cycles_are_at_most_what_they_must(work: Workload, must: float) -> None:
+def test_cycles_are_within_their_limits(work: Workload, must: float) -> None:
     assert 1 < machine.per_iteration(work) <= must
 
 
 @needs_chip
-def test_the_shipped_sketch_takes_its_main_loop_more(
+def test_the_shipped_sketch_adds_only_its_main_loop(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     """Its values are right; and the machine runs for so long that the rest costs little."""
@@ -59,7 +59,7 @@ def test_the_shipped_sketch_takes_its_main_loop_more(
 
 @needs_chip
 @pytest.mark.parametrize("part", sizes.LIMITS)
-def test_a_part_is_not_larger_than_allowed(part: str) -> None:
+def test_no_part_exceeds_its_size_limit(part: str) -> None:
     size, must = sizes.size(part), sizes.LIMITS[part]
     assert must.flash * 0.8 < size.flash <= must.flash
     assert must.ram / 2 < size.ram <= must.ram

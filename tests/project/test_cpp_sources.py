@@ -65,13 +65,13 @@ def capital_names(path: Path) -> set[str]:
 
 
 @each_row("path", FILES)
-def test_nothing_shouts(path: Path) -> None:
+def test_no_name_is_in_capitals(path: Path) -> None:
     """Arduino.h defines 1,480 macros in capitals: F, B0, INPUT. No name of ours may meet one."""
     assert not capital_names(path)
 
 
 @each_row("path", PORTABLE)
-def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
+def test_the_machine_does_not_depend_on_a_board(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     included_headers = re.findall(r"#include (<[^>]+>)", text)
     assert set(included_headers) <= ALLOWED_HEADERS
@@ -80,23 +80,23 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
 
 
 @each_row("path", [path for path in PORTABLE if path.name not in CHOOSING_HEADERS])
-def test_what_a_build_has_is_chosen_in_few_headers(path: Path) -> None:
+def test_build_features_are_chosen_in_few_headers(path: Path) -> None:
     """In other files, a condition encloses the whole file, or chooses which file is included."""
     rows = [row.strip() for row in path.read_text(encoding="utf-8").splitlines() if row.strip()]
     rows = [row for row in rows if not row.startswith("//")]
     conditions = [k for k, row in enumerate(rows) if CONDITION.match(row)]
     if not conditions:
         return
-    first, last = conditions[0], conditions[-1]
-    inside = [row for row in rows[first:last] if not CONDITION.match(row)]
+    first_condition, last_condition = conditions[0], conditions[-1]
+    inside = [row for row in rows[first_condition:last_condition] if not CONDITION.match(row)]
     if all(row.startswith("#include") for row in inside):
         return
-    assert conditions == [first, len(rows) - 1], [rows[k] for k in conditions]
-    assert all(row.startswith("#include") for row in rows[:first])
+    assert conditions == [first_condition, len(rows) - 1], [rows[k] for k in conditions]
+    assert all(row.startswith("#include") for row in rows[:first_condition])
 
 
 @each_row("path", sorted(VM.glob("*.S")))
-def test_what_assembly_chooses_stands_in_the_files_that_build_h_names(path: Path) -> None:
+def test_assembly_choices_are_in_the_files_named_by_build_h(path: Path) -> None:
     """In other files, a condition encloses the whole file, or is an assertion."""
     code = re.sub(r"#if [^#]*?#error[^\n]*\n#endif", "", code_of(path))
     code = re.sub(r"(?m)^#define.*\n|;.*", "", code)
@@ -125,7 +125,7 @@ ASSEMBLY_WITH_TWIN = [
 
 
 @each_row("path", ASSEMBLY_WITH_TWIN)
-def test_what_exists_in_assembly_too_exists_in_the_files_that_it_names(path: Path) -> None:
+def test_assembly_functions_exist_in_the_named_cpp_files(path: Path) -> None:
     """Its first lines name the files for the other chips, and each function exists there."""
     about = first_comment(path)
     (same,) = re.findall(r"[Mm]eans? the same as (.*?)[.] [A-Z`]", about)
@@ -145,13 +145,13 @@ ESSENTIAL_ASSEMBLY = {"execute_avr.S", "number_avr.S"}
 
 
 @each_row("path", [path for path in ASSEMBLY_WITH_TWIN if path.name not in ESSENTIAL_ASSEMBLY])
-def test_what_exists_in_assembly_too_says_what_it_saves_and_when_it_may_go(path: Path) -> None:
+def test_assembly_files_state_their_savings_and_removal_condition(path: Path) -> None:
     about = first_comment(path)
     assert re.search(r"\d+ (bytes|cycles)", about) and "lets it go" in about
 
 
 @each_row("path", BOARDS)
-def test_nothing_on_a_board_waits(path: Path) -> None:
+def test_no_board_code_blocks(path: Path) -> None:
     """The code does not ask the core for work done here by registers; the core defines only the
     clock."""
     waiting = {"delay", "delayMicroseconds", "pulseIn", "_delay_ms", "_delay_us", "Serial", "tone",
@@ -161,20 +161,20 @@ def test_nothing_on_a_board_waits(path: Path) -> None:
 
 
 @each_row("path", HEADERS)
-def test_each_header_is_read_once(path: Path) -> None:
+def test_each_header_is_included_once(path: Path) -> None:
     assert code_of(path).split()[:2] == ["#pragma", "once"]
 
 
 def names_in(mangled_text: str) -> list[str]:
     """Return the names in a name of the linker: `8Receiver5watchEh` has `Receiver` and `watch`."""
-    names, at = [], 0
-    while digits := re.match(r"\d+", mangled_text[at:]):
-        at += len(digits[0]) + int(digits[0])
-        names.append(mangled_text[at - int(digits[0]) : at])
+    names, position = [], 0
+    while digits := re.match(r"\d+", mangled_text[position:]):
+        position += len(digits[0]) + int(digits[0])
+        names.append(mangled_text[position - int(digits[0]) : position])
     return names
 
 
-def test_what_the_linker_places_by_name_has_that_name() -> None:
+def test_functions_placed_by_the_linker_exist_by_name() -> None:
     """Otherwise a renamed function would be placed anywhere, and its calls would take more
     flash."""
     code = "\n".join(map(code_of, sorted((SOURCES / "src").rglob("*.[chS]*"))))
@@ -218,6 +218,6 @@ def test_no_program_is_run_that_another_user_can_have_built(
     link.symlink_to(folder)
     monkeypatch.setattr(host, "USER", 12345)
     monkeypatch.setattr(os, "getuid", lambda: 12345)
-    for other in (folder, link):
+    for path in (folder, link):
         with pytest.raises(PermissionError):
-            host.make_private_folder(other)
+            host.make_private_folder(path)

@@ -19,7 +19,7 @@ PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscri
 FILES = sorted(PACKAGE.rglob("*.py"))
 
 
-def test_a_stage_knows_what_stands_below_it() -> None:
+def test_a_stage_imports_only_lower_stages() -> None:
     """`[tool.importlinter]` in pyproject.toml defines the order."""
     command = Path(sys.executable).with_name("lint-imports")
     completed = subprocess.run(
@@ -28,12 +28,12 @@ def test_a_stage_knows_what_stands_below_it() -> None:
     assert completed.returncode == 0, completed.stdout + completed.stderr
 
 
-def test_no_circle_of_files() -> None:
+def test_there_are_no_import_cycles() -> None:
     """This includes imports at the top, inside functions, and for types alone."""
     assert not measures.import_cycles(measures.imports_of(FILES))
 
 
-def test_the_road_needs_the_standard_library_alone() -> None:
+def test_the_compiler_needs_only_the_standard_library() -> None:
     """Therefore it runs in a browser, and starts fast."""
     modules = modules_imported_by(
         "from tiniscript import compile_text, robots; "
@@ -73,7 +73,7 @@ OF_WRONG = re.compile(
 
 
 @pytest.mark.parametrize("verb", ["compile", "check"])
-def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
+def test_a_right_program_loads_no_modules_for_wrong_ones_or_other_verbs(
     verb: str, tmp_path: Path
 ) -> None:
     program = tmp_path / "right.ts"
@@ -85,9 +85,9 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
         "from tiniscript.cli import main; "
         f"assert main([{verb!r}, '--robot', 'grabber', {str(program)!r}]) == 0"
     )
-    own = {module for module in modules if module.startswith("tiniscript")}
-    assert not {word for word in own if OF_WRONG.match(word)}
-    assert len(own) <= 68
+    own_modules = {module for module in modules if module.startswith("tiniscript")}
+    assert not {word for word in own_modules if OF_WRONG.match(word)}
+    assert len(own_modules) <= 68
     unwanted_modules = {"cobs", "serial", "tomllib", "tomli", "rich", "dataclasses",
                 "tiniscript.link", "tiniscript.base.translations",
                 "tiniscript.vm.machine", "tiniscript.vm.runner", "tiniscript.bytecode.disassembly",
@@ -97,7 +97,7 @@ def test_a_right_program_loads_nothing_for_wrong_ones_or_other_verbs(
     assert not unwanted_modules & modules
 
 
-def test_programs_need_no_link() -> None:
+def test_programs_import_no_link() -> None:
     uses = "compile('SI|F(5,80)'), check('SI|F(5,'), run('SI|F(5,80)'), show('SI|F(5,80)')"
     modules = modules_imported_by(f"from tiniscript import check, compile, run, show; {uses}")
     unwanted_modules = {"serial", "cobs", "wasmtime", "tiniscript.link", "tiniscript.virtual",
@@ -105,7 +105,7 @@ def test_programs_need_no_link() -> None:
     assert not unwanted_modules & modules
 
 
-def test_every_verb_is_there_without_the_extras() -> None:
+def test_every_verb_exists_without_the_extras() -> None:
     """A real robot needs no part of a virtual one, and a user without a radio has a cable."""
     verbs = [path.stem for path in (PACKAGE / "cli" / "commands").glob("*.py")]
     modules_imported_by(
@@ -116,7 +116,7 @@ def test_every_verb_is_there_without_the_extras() -> None:
 
 
 @pytest.mark.parametrize(("arguments", "is_frozen"), [("", True), ("sys.argv[1:]", False)])
-def test_the_end_of_a_process_looks_for_no_garbage(arguments: str, is_frozen: bool) -> None:
+def test_the_end_of_a_process_collects_no_garbage(arguments: str, is_frozen: bool) -> None:
     """A program that calls `main` keeps its collector as it was."""
     code = (
         "import gc, sys; from tiniscript.cli import main; sys.argv = ['tsc', '--version']; "
@@ -155,7 +155,7 @@ def test_a_virtual_robot_without_a_terminal_loads_no_drawing() -> None:
     assert not {"rich", "rich.console"} & modules
 
 
-def test_nothing_that_ctrl_c_may_interrupt_waits_in_python() -> None:
+def test_no_interruptible_wait_is_in_python() -> None:
     """Waits use a Bell: an interrupted Condition keeps its lock, or releases it twice."""
     written_in_python = {"Barrier", "BoundedSemaphore", "Condition", "Event", "Semaphore", "Timer"}
     for stage in ("base", "cli", "doctor", "library", "link", "virtual"):

@@ -53,7 +53,7 @@ def commands() -> list[Command]:
 
 
 @each_row("language, name", sources(ROOT, FRONT_PAGE).items())
-def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
+def test_every_readme_links_to_the_others(language: str, name: str) -> None:
     row = (ROOT / name).read_text(encoding="utf-8").splitlines()[2]
     assert row == " · ".join(links(language, FRONT_PAGE, sources(ROOT, FRONT_PAGE)))
 
@@ -62,7 +62,7 @@ def test_every_readme_leads_to_the_others(language: str, name: str) -> None:
     "language, name, others",
     [(value, name, of.sources) for of in documents(ROOT) for value, name in of.sources.items()],
 )
-def test_a_document_leads_to_itself_in_all_languages_or_in_none(
+def test_a_document_links_to_all_its_translations_or_none(
     language: str, name: str, others: dict[str, str]
 ) -> None:
     text = (ROOT / name).read_text(encoding="utf-8")
@@ -72,7 +72,7 @@ def test_a_document_leads_to_itself_in_all_languages_or_in_none(
 
 
 @pytest.mark.parametrize("command", commands(), ids=lambda c: f"{c.document.name}:{c.line}")
-def test_console(
+def test_console_examples_are_right(
     command: Command, capsys: pytest.CaptureFixture[str], tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
@@ -111,7 +111,7 @@ def test_python(
 
 
 @each_row("name", sources(ROOT, "docs/en/api.md").values())
-def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
+def test_each_page_of_the_library_documents_all_names(name: str) -> None:
     page = (ROOT / name).read_text(encoding="utf-8")
     absent = [name for name in tiniscript.__all__ if f"`{name}" not in page]
     assert not absent, f"{name} says nothing of {absent}"
@@ -119,7 +119,7 @@ def test_each_page_of_the_library_names_all_of_it(name: str) -> None:
 
 
 @each_row("document", DOCUMENTS)
-def test_links_lead_somewhere(document: Path) -> None:
+def test_links_have_existing_targets(document: Path) -> None:
     text = document.read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text):
         if "://" not in target:
@@ -135,17 +135,17 @@ TRANSLATED_DOCUMENTS = [
 
 
 @each_row("language, name, english", TRANSLATED_DOCUMENTS)
-def test_a_translation_leads_to_documents_of_its_language(
+def test_a_translation_links_to_documents_of_its_language(
     language: str, name: str, english: str
 ) -> None:
     page = ROOT / name
-    wrong = []
+    errors = []
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
         led = (page.parent / target).resolve().relative_to(ROOT).as_posix()
-        own = name_in(language, led)
-        if led not in (english, own) and (ROOT / own).is_file():
-            wrong.append(f"{target}: there is {own}")
-    assert not wrong, "\n".join(wrong)
+        own_name = name_in(language, led)
+        if led not in (english, own_name) and (ROOT / own_name).is_file():
+            errors.append(f"{target}: there is {own_name}")
+    assert not errors, "\n".join(errors)
 
 
 # -- names of files, folders and modules ----------------------------------------------------------
@@ -187,7 +187,7 @@ def exists(path: str) -> bool:
 
 
 @each_row("document", [*DOCUMENTS, ROOT / "tools" / "uno" / "README.md"])
-def test_files_that_are_named_exist(document: Path) -> None:
+def test_mentioned_files_exist(document: Path) -> None:
     """A span with a folder of the repository in front is a path; a file's name alone is one's name.
 
     `NAME.toml` and `tests/*.py` are no names.
@@ -199,29 +199,29 @@ def test_files_that_are_named_exist(document: Path) -> None:
         "robot_mega.wasm",
         "robot_esp32.wasm",
     }
-    wrong = []
+    errors = []
     for span in spans_of(document):
         is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
         is_path = is_path or bool(re.fullmatch(r"(?:\w+/)+(?:" + FILE_NAME + ")?", span))
         if is_path and "NAME" not in span and not exists(span):
-            wrong.append(span)
+            errors.append(span)
         if document.parent == ROOT and re.fullmatch(FILE_NAME, span) and "NAME" not in span:
-            wrong += [] if span in known_names else [span]
+            errors += [] if span in known_names else [span]
     if document.name != "CHANGELOG.md":  # the changelog also describes the past
-        assert not wrong, "\n".join(wrong)
+        assert not errors, "\n".join(errors)
 
 
 def test_paths_in_sources_exist() -> None:
     """A path that a docstring or a comment names, as in a document."""
     names = {path.name for path in SOURCES} | {"serial.py"}  # a test writes this file
-    wrong = []
+    errors = []
     for source in SOURCES:
         for span in spans_of(source):
             is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in FOLDERS
             is_wrong = is_path and "NAME" not in span and not exists(span)
             if is_wrong or (re.fullmatch(r"\w+\.py", span) and span not in names):
-                wrong.append(f"{source.relative_to(ROOT)}: {span}")
-    assert not wrong, "\n".join(wrong)
+                errors.append(f"{source.relative_to(ROOT)}: {span}")
+    assert not errors, "\n".join(errors)
 
 
 # `stop_run` and `end_run` (`firmware/run.cpp`), `Link::turn` in `link/link.cpp`
@@ -231,7 +231,7 @@ NAMES_IN_FILE = re.compile(
 )
 
 
-def test_what_architecture_says_is_in_a_file_is_there() -> None:
+def test_the_files_described_in_architecture_have_their_contents() -> None:
     text = (ROOT / "docs/develop/architecture.md").read_text(encoding="utf-8")
     paths = text[text.index("### The path of a program") : text.index("### Ten files to read")]
     count = 0
@@ -270,7 +270,7 @@ def test_a_version_of_the_changelog_has_each_heading_once() -> None:
         assert not re.search(r"(?m)[^\n]\n#", version), "a heading follows an empty line"
 
 
-def test_modules_that_are_named_exist() -> None:
+def test_mentioned_modules_exist() -> None:
     """Modules of `python -m` in documents, sources and scripts exist."""
     paths = [*DOCUMENTS, *SOURCES, *ROOT.glob("tools/*.sh"), *ROOT.glob(".ci/*")]
     named_modules = {(path.name, module) for path in paths for module in modules_in(path)}

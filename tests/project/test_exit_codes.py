@@ -68,7 +68,7 @@ def run_script(clone: Path, words: list[str], fails: str, ci: str) -> tuple[int,
     [(["tools/test.sh"], 10), (["tools/test.sh", "--quick"], 6), (["tools/try.sh"], 2)],
     ids=["test.sh", "test.sh --quick", "try.sh"],
 )
-def test_a_script_fails_where_a_step_of_it_fails(
+def test_a_script_fails_if_one_of_its_steps_fails(
     words: list[str], least: int, tmp_path: Path
 ) -> None:
     clone = folder_of(tmp_path, "venv.sh", "test.sh", "try.sh")
@@ -103,7 +103,7 @@ def test_further_options_go_to_pytest(first_word: str, more: str, tmp_path: Path
 
 
 @needs_sh
-def test_without_ci_a_page_that_cannot_be_made_is_not_a_failure(tmp_path: Path) -> None:
+def test_outside_ci_an_unbuildable_page_is_not_a_failure(tmp_path: Path) -> None:
     """Its tests are skipped, and say so."""
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
     (clone / "steps").write_text("")
@@ -117,7 +117,7 @@ def test_without_ci_a_page_that_cannot_be_made_is_not_a_failure(tmp_path: Path) 
 
 
 @needs_sh
-def test_the_tests_tell_their_processor_time(tmp_path: Path) -> None:
+def test_the_tests_report_their_processor_time(tmp_path: Path) -> None:
     """In CI they also report when it exceeds the limit."""
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
     for name in ("steps", "fails"):
@@ -143,7 +143,7 @@ def test_the_tests_tell_their_processor_time(tmp_path: Path) -> None:
 
 @needs_sh
 @pytest.mark.parametrize("fails_alone", [False, True])
-def test_a_test_that_fails_beside_others_is_tried_alone(
+def test_a_test_that_fails_beside_others_is_rerun_alone(
     fails_alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clone = folder_of(tmp_path, "venv.sh", "test.sh")
@@ -157,7 +157,7 @@ def test_a_test_that_fails_beside_others_is_tried_alone(
 
 
 @pytest.mark.parametrize("fails", ["upload", "studio"])
-def test_the_first_command_fails_as_what_it_starts(
+def test_the_first_command_fails_like_its_child(
     fails: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def run(words: list[str], **options: object) -> subprocess.CompletedProcess[str]:
@@ -170,7 +170,7 @@ def test_the_first_command_fails_as_what_it_starts(
     assert load_first_command().main() == 5
 
 
-def test_the_generator_fails_where_any_file_is_stale(
+def test_the_generator_fails_if_any_file_is_stale(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(generate, "ROOT", tmp_path)
@@ -246,7 +246,7 @@ class Stage:
         return release.main([str(self.folder), "--tag"])
 
 
-def test_a_release_fails_where_a_step_of_it_fails(
+def test_a_release_fails_if_one_of_its_steps_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """However it fails: it cannot be done, the disk is full, or somebody ends it. What was released

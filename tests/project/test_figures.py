@@ -36,7 +36,7 @@ def commands_run(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return rows
 
 
-def test_it_runs_what_the_page_names(
+def test_the_commands_named_on_the_page_are_run(
     commands_run: list[list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -53,7 +53,7 @@ def test_it_runs_what_the_page_names(
         bench.main(["sizes"])
 
 
-def test_all_that_the_page_names_is_there() -> None:
+def test_everything_named_on_the_page_exists() -> None:
     names = [name for name, *_ in bench.commands()]
     assert {"compiler", "machine", "link", "studio"} <= {*names}
     for name in names:
@@ -79,7 +79,7 @@ def test_a_benchmark_fills_in_the_rows_of_its_tables(name: str) -> None:
     assert len(shown_texts) == len(rows) or name == "machine"
 
 
-def test_the_last_row_of_the_history_of_an_uno_is_what_it_takes_now() -> None:
+def test_the_last_row_of_an_unos_history_is_its_current_size() -> None:
     """Both are on the page, and only one is printed by a benchmark."""
     ((_, flash, holds, *_),) = (
         page.cells(row)
@@ -88,19 +88,19 @@ def test_the_last_row_of_the_history_of_an_uno_is_what_it_takes_now() -> None:
         if page.cells(row)[0] == "`tinibot`, Uno"
     )
     history = page.PAGE.read_text(encoding="utf-8").partition("\n| added | bytes | firmware |")[2]
-    *_, last = history.partition("\n\n")[0].split("\n")
-    _, _, firmware, left = page.cells(last)
+    *_, last_row = history.partition("\n\n")[0].split("\n")
+    _, _, firmware, bytes_left = page.cells(last_row)
     assert firmware == flash
-    assert int(left) == int(holds.replace(",", "")) - int(flash.replace(",", ""))
+    assert int(bytes_left) == int(holds.replace(",", "")) - int(flash.replace(",", ""))
 
 
 def test_no_other_row_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     name = "text"
-    row, other = (page.cells(row) for row in page.tables(name)[0].rows)
-    page.show(name, [other, ["`SI|F(2,80)`", "1.00 ms", "2.00 ms"]])
+    row, other_row = (page.cells(row) for row in page.tables(name)[0].rows)
+    page.show(name, [other_row, ["`SI|F(2,80)`", "1.00 ms", "2.00 ms"]])
     head, rule, first, second, _ = capsys.readouterr().out.split("\n", 4)
     assert (head, rule) == page.tables(name)[0][:2]
-    assert (first, page.cells(second)) == (r"| `SI\|F(2,80)` | 1.00 ms | 2.00 ms |", other)
+    assert (first, page.cells(second)) == (r"| `SI\|F(2,80)` | 1.00 ms | 2.00 ms |", other_row)
     with pytest.raises(LookupError, match="no row a robot"):
         page.show(name, [["a robot", "1 ms", "2 ms"]])
     with pytest.raises(ValueError, match="other columns"):

@@ -100,7 +100,7 @@ def pty_robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyRobot]:
 
 
 @each_guide
-def test_what_a_guide_types_prints_what_it_shows(
+def test_commands_of_a_guide_print_the_shown_output(
     pty_robot: PtyRobot, language: str, guide: Path, capsys: pytest.CaptureFixture[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest,
@@ -158,10 +158,10 @@ def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path)
 
 @each_guide
 def test_all_guides_have_the_same_commands_and_headings(language: str, guide: Path) -> None:
-    english, own = steps(GUIDE_BY_LANGUAGE["en"]), steps(guide)
-    for step, other in zip(english, own, strict=True):
-        assert step.words[:1] == other.words[:1]
-        assert bool(step.name) == bool(other.name)
+    english_steps, own_steps = steps(GUIDE_BY_LANGUAGE["en"]), steps(guide)
+    for step, own_step in zip(english_steps, own_steps, strict=True):
+        assert step.words[:1] == own_step.words[:1]
+        assert bool(step.name) == bool(own_step.name)
     headings = [
         len(re.findall(r"^## ", path.read_text(encoding="utf-8"), re.M))
         for path in (GUIDE_BY_LANGUAGE["en"], guide)

@@ -9,7 +9,7 @@ import pytest
 from tools import meant
 
 
-def test_what_is_right_and_what_is_harmful(
+def test_repairs_are_classified_as_right_or_harmful(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     texts = {

@@ -24,7 +24,7 @@ def test_each_module_has_mutants_and_tests(module: Module) -> None:
         assert (ROOT / test.split("::")[0]).exists(), test
 
 
-def test_every_source_is_of_one_module() -> None:
+def test_every_source_belongs_to_one_module() -> None:
     sources = [*ROOT.glob("compiler/tiniscript/**/*.py"), *ROOT.glob("tools/studio/src/**/*.js")]
     for suffix in ("cpp", "S"):
         sources += ROOT.glob(f"vm_arduino/src/*/**/*.{suffix}")
@@ -37,10 +37,10 @@ def test_tests_that_name_a_file_are_first_and_long_ones_last() -> None:
     assert tests[0] == "tests/link/test_seal.py" and tests[-1] == "tests/link/test_named_robots.py"
 
 
-def test_what_is_listed_as_equivalent_is_still_there() -> None:
-    for file, old, _ in equivalent_mutants():
+def test_equivalent_mutants_match_existing_code() -> None:
+    for file, old_code, _ in equivalent_mutants():
         lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
-        assert old in {line.strip() for line in lines}, f"{file}: {old}"
+        assert old_code in {line.strip() for line in lines}, f"{file}: {old_code}"
 
 
 def make_try(known_mutant: Known) -> TestTry:
@@ -55,7 +55,7 @@ def make_try(known_mutant: Known) -> TestTry:
     )
 
 
-def test_known_mutants_are_of_code_and_tests_that_are_there() -> None:
+def test_known_mutants_match_existing_code_and_tests() -> None:
     for known_mutant in KNOWN:
         file, _, name = make_try(known_mutant).test.partition("::")
         texts = [path.read_text(encoding="utf-8") for path in (ROOT / file).parent.glob("*.py")]

@@ -80,7 +80,7 @@ def sketch(text: str) -> str:
     return sketch_of(compilation.source, compilation.program, ROBOT, "en")
 
 
-def test_few_tables_make_a_word(tables: list[ModuleType]) -> None:
+def test_a_word_needs_few_tables(tables: list[ModuleType]) -> None:
     compilation = compile_text(PROGRAM, ROBOT.kit)
     assert not compilation.diagnostics and compilation.program is not None
     assert "CHEEP" in disassemble(compilation.code)

@@ -60,7 +60,7 @@ def _new_words(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(FIXED_WORDS, SHAKE.text, (("BEATS", "POWER"), SHAKE.stands_for))
 
 
-def test_it_does_what_it_stands_for() -> None:
+def test_the_new_word_does_the_same_as_its_expansion() -> None:
     compilation = compile_text(PROGRAM, KIT)
     assert not compilation.diagnostics
     assert compilation.image and compilation.image == compile_text(EXPANDED_PROGRAM, KIT).image
@@ -91,7 +91,7 @@ def test_it_does_what_it_stands_for() -> None:
         ("SHAKE(3, TRUE)", codes.WANTS_NUMBER),
     ],
 )
-def test_what_is_wrong_with_it_is_said(program: str, code: codes.Code) -> None:
+def test_mistakes_with_the_new_word_are_reported(program: str, code: codes.Code) -> None:
     diagnostics = compile_text(program, KIT).diagnostics
     assert [diagnostic.code for diagnostic in diagnostics] == [code]
 
@@ -135,13 +135,13 @@ def test_a_word_with_a_value_does_what_its_instructions_do(program: str, meant_t
     assert "turnLeft(" in sketch and WIGGLE.stands_for not in sketch
 
 
-def test_a_value_is_named_where_it_is_wrong() -> None:
+def test_a_wrong_value_is_named() -> None:
     program = "SI|F(1, 80);WIGGLE(2 + UP)"
     (diagnostic,) = compile_text(program, KIT).diagnostics
     assert program[diagnostic.span.start : diagnostic.span.end] == "UP"
 
 
-def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
+def test_a_value_of_such_a_word_is_one_complete_value() -> None:
     """A repeated RANDOM would be two numbers, so a value needed twice goes into a variable.
 
     In `N * 2` it would need brackets. A name that is a word would mean the word: `F(TIME, 80)` goes
@@ -156,7 +156,7 @@ def test_a_value_of_such_a_word_is_the_whole_of_one_value() -> None:
             assert re.search(is_whole, word.stands_for), word
 
 
-def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
+def test_formatter_blocks_and_sketch_keep_the_new_word() -> None:
     assert format_source(Source(PROGRAM.lower())) == PROGRAM
     form = read_blocks(PROGRAM, KIT)
     horn = form.body[0].bodies[0][0]
@@ -170,7 +170,7 @@ def test_it_is_kept_by_formatter_blocks_and_sketch() -> None:
 
 
 @each_row("level", LEVELS.values())
-def test_a_robot_that_reads_text_gets_what_it_stands_for(level: Level) -> None:
+def test_a_robot_that_reads_text_gets_the_expansion(level: Level) -> None:
     compilation = compile_text(PROGRAM, KIT)
     assert compilation.program is not None
     assert find_misfits(compilation.source, compilation.program, KIT, level) == []
@@ -219,8 +219,8 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
     value = [["NAME", "X"], ["NUMBER", "2"], ["ADD", ""]]
     assert body == [["plain_1", WIGGLE.text, [value]]]
     assert printed == "SI|WIGGLE(X + 2)\n"
-    own = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has no text for it
-    assert labels == [*(f"{{{HORN.text}}} {says}" for says in WORD_TEXTS.values()), own]
+    own_text = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has no text for it
+    assert labels == [*(f"{{{HORN.text}}} {says}" for says in WORD_TEXTS.values()), own_text]
     packed, rows, ranges = tables.split("tini_progmem = {")[1:]
     for word in (HORN.text, WIGGLE.text):
         assert f"// {word}" in packed and f"// {word}" not in rows
@@ -256,7 +256,7 @@ print(json.dumps({
 """
 
 
-def test_what_needs_no_more_than_the_table_has_a_word_with_a_role_of_its_own(
+def test_a_word_with_its_own_role_needs_only_the_table(
     tmp_path: Path,
 ) -> None:
     """No robot's reader knows it; it has a block, and a place on the poster and in references."""
@@ -281,14 +281,14 @@ def test_each_role_that_is_not_a_statement_of_its_own_has_an_instruction_and_a_h
 
 
 @each_row("stage", [lower, statements])
-def test_each_statement_of_the_ir_has_a_row_where_code_is_made_of_it(stage: Any) -> None:
+def test_each_statement_of_the_ir_has_a_row_in_code_generation(stage: Any) -> None:
     """Otherwise only a user would notice a new word with a role of its own that is not
     generated."""
     assert set(stage._STATEMENTS) == {*get_args(ir.Statement)}
 
 
 @pytest.mark.parametrize(("language", "says"), WORD_TEXTS.items())
-def test_it_is_on_the_poster(
+def test_the_new_word_is_on_the_poster(
     language: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(languages, "FOLDER", with_texts(tmp_path / "said"))
@@ -302,7 +302,7 @@ def test_it_is_on_the_poster(
     assert max(line.y for line in lines[:-1]) <= paper.HEIGHT - 26
 
 
-def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_page_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     for number in range(20):
         monkeypatch.setitem(WORDS, f"HORN{number}", HORN._replace(text=f"HORN{number}"))
     with pytest.raises(AssertionError, match="the page has room for 45 rows"):
@@ -316,7 +316,7 @@ def test_a_page_that_is_full_is_an_error(monkeypatch: pytest.MonkeyPatch) -> Non
         ("docs/es/language.md", "es", "Con valores fijos"),
     ],
 )
-def test_it_is_in_the_references(document: str, language: str, says: str) -> None:
+def test_the_new_word_is_in_the_references(document: str, language: str, says: str) -> None:
     row = rf"(?m)^- {says}: .*`HORN` = `BEEP\(0\.5, 440\)` (.*)$"
     match = re.search(row, language_document(document, language))
     with_values = {

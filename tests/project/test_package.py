@@ -91,8 +91,8 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
     ):
         (stale / name).parent.mkdir(parents=True, exist_ok=True)
         (stale / name).touch()
-    own = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
-    own.write_text("#error")
+    own_header = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
+    own_header.write_text("#error")
     page = repo / "compiler" / BUILT_PAGE
     page.parent.mkdir()
     page.touch()
@@ -101,7 +101,7 @@ def wheel(repo: Path, repo_files: set[str], tmp_path_factory: pytest.TempPathFac
     folder = tmp_path_factory.mktemp("wheel")
     with zipfile.ZipFile(build_package(repo, "build_wheel", folder)) as zip_file:
         zip_file.extractall(folder / "unpacked")
-    own.unlink()
+    own_header.unlink()
     cases.unlink()
     shutil.rmtree(page.parent)
     return folder / "unpacked"
@@ -130,7 +130,7 @@ def python(*words: str, folder: Path, **variables: str) -> subprocess.CompletedP
 # -- the wheel
 
 
-def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
+def test_a_wheel_contains_the_repositorys_files_and_nothing_stale(
     wheel: Path, repo_files: set[str]
 ) -> None:
     packed_names = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
@@ -153,7 +153,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     assert len(sources) > 50
 
 
-def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it_is_shown(
+def test_a_wheel_states_its_licence_and_its_description_has_absolute_links(
     wheel: Path, repo: Path
 ) -> None:
     (about,) = wheel.glob("*.dist-info")
@@ -169,7 +169,7 @@ def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it
         assert f"\n{row}\n" in f"{head}\n"
     links = re.findall(r"(!?)\[[^]]*\]\(([^)]+)\)", shown_text)
     assert len(links) > 30
-    ours = 0
+    own_count = 0
     for is_picture, link in links:
         assert link.startswith(("https://", "#")), link
         if link.startswith(URL):
@@ -177,14 +177,14 @@ def test_a_wheel_says_its_licence_and_its_description_leads_to_files_wherever_it
             assert kind == ("raw" if is_picture else "blob")
             assert tag == f"v{facts.version(ROOT)}"
             assert (repo / path).exists(), path
-            ours += 1
-    assert ours > 30
+            own_count += 1
+    assert own_count > 30
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
-    variables, why = prepare()
-    need(why)
+    variables, reason = prepare()
+    need(reason)
     words = ("-m", "tiniscript", "firmware", "--build", "--yes", "--robot", "liner")
     completed = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
     assert completed.returncode == 0, completed.stderr
@@ -205,9 +205,7 @@ touch compiler/tiniscript/studio/page/index.html
 
 @pytest.mark.sampled(of="source packages")
 @pytest.mark.parametrize("page", ["none", "built", "asked for"])
-def test_a_wheel_says_what_it_is_made_without(
-    source_folder: Path, tmp_path: Path, page: str
-) -> None:
+def test_a_wheel_reports_missing_parts(source_folder: Path, tmp_path: Path, page: str) -> None:
     """Only a person at a terminal is asked to build the page, as with `python -m build --wheel`;
     pip, which has no terminal, needs no npm."""
     folder = tmp_path / "sources"
@@ -220,20 +218,22 @@ def test_a_wheel_says_what_it_is_made_without(
     stand_in.parent.mkdir(parents=True)
     stand_in.write_text(PAGE_BUILD_SCRIPT)
     stand_in.chmod(0o755)
-    ours, theirs = os.openpty()
+    own_end, other_end = os.openpty()
     packages: list[bytes] = []
-    reader = Thread(target=lambda: packages.extend(iter(lambda: rest_of(ours), b"")), daemon=True)
+    reader = Thread(
+        target=lambda: packages.extend(iter(lambda: rest_of(own_end), b"")), daemon=True
+    )
     reader.start()
     command = [sys.executable, "-c", BUILD_CODE.format("build_wheel"), str(tmp_path)]
     stdin, stderr = (
-        (theirs, theirs) if page == "asked for" else (subprocess.DEVNULL, subprocess.PIPE)
+        (other_end, other_end) if page == "asked for" else (subprocess.DEVNULL, subprocess.PIPE)
     )
     completed = subprocess.run(
         command, cwd=folder, stdin=stdin, stdout=subprocess.PIPE, stderr=stderr, text=True
     )
-    os.close(theirs)
+    os.close(other_end)
     reader.join(HANG_LIMIT_S)
-    os.close(ours)
+    os.close(own_end)
     output = completed.stderr or b"".join(packages).decode()
     assert completed.returncode == 0, output
     assert "made without" in output and FIRMWARE_MISSING in output and CASES_MISSING in output
@@ -283,19 +283,19 @@ def test_a_source_package_has_the_whole_repository(
 
 
 @pytest.mark.sampled(of="source packages")
-def test_a_source_package_is_the_same_from_another_place(
+def test_a_source_package_is_the_same_from_any_folder(
     repo: Path, source_folder: Path, tmp_path: Path
 ) -> None:
     """Twice in a row, of files with other times, in a folder with another name."""
-    first = next(source_folder.parent.parent.glob("*.tar.gz"))
-    other = tmp_path / "another place"
-    shutil.copytree(repo, other, copy_function=shutil.copy,
+    first_archive = next(source_folder.parent.parent.glob("*.tar.gz"))
+    other_folder = tmp_path / "another place"
+    shutil.copytree(repo, other_folder, copy_function=shutil.copy,
                     ignore=shutil.ignore_patterns("*.egg-info", "build"))  # fmt: skip
-    second = build_package(other, "build_sdist", tmp_path / "made")
-    assert first.read_bytes() == second.read_bytes()
+    second_archive = build_package(other_folder, "build_sdist", tmp_path / "made")
+    assert first_archive.read_bytes() == second_archive.read_bytes()
 
 
-def test_a_registry_takes_both_packages(wheel: Path, source_folder: Path) -> None:
+def test_a_registry_accepts_both_packages(wheel: Path, source_folder: Path) -> None:
     files = [*wheel.parent.glob("*.whl"), *source_folder.parent.parent.glob("*.tar.gz")]
     assert len(files) == 2
     completed = python("-m", "twine", "check", "--strict", *map(str, files), folder=wheel)

@@ -24,38 +24,38 @@ def drawing(request: pytest.FixtureRequest) -> ElementTree.Element:
     return ElementTree.fromstring(front.front_picture(request.param, "a test"))
 
 
-def test_nothing_is_cut_off(drawing: ElementTree.Element) -> None:
-    right = front.PADDING + front.LEFT_WIDTH - 16
+def test_no_picture_is_cut_off(drawing: ElementTree.Element) -> None:
+    right_edge = front.PADDING + front.LEFT_WIDTH - 16
     for text in drawing.iter(f"{SVG}text"):
         if "Mono" in text.get("font-family", ""):
             shown_text = "".join(text.itertext())
             end = float(text.get("x", "")) + len(shown_text) * SIGN * float(
                 text.get("font-size", "")
             )
-            assert end <= right, shown_text
+            assert end <= right_edge, shown_text
         assert float(text.get("y", "")) <= front.HEIGHT - 16
     for shape in (*drawing.iter(f"{SVG}polygon"), *drawing.iter(f"{SVG}polyline")):
         for point in shape.get("points", "").split():
             x, y = (float(part) for part in point.split(","))
-            assert right < x < front.WIDTH
+            assert right_edge < x < front.WIDTH
             assert 0 < y < front.HEIGHT
 
 
-def test_the_robot_drives_around(drawing: ElementTree.Element) -> None:
+def test_the_pictured_robot_drives_around_the_obstacles(drawing: ElementTree.Element) -> None:
     way = next(drawing.iter(f"{SVG}polyline")).get("points", "").split()
     assert len(set(way)) > 10
     shapes = list(drawing.iter(f"{SVG}polygon"))
     assert len(shapes) == 9  # the arena, six boxes, the robot at its beginning and end
 
 
-def test_what_a_program_does_is_printed(drawing: ElementTree.Element) -> None:
+def test_the_actions_of_a_program_are_printed(drawing: ElementTree.Element) -> None:
     shown_texts = ["".join(text.itertext()) for text in drawing.iter(f"{SVG}text")]
     assert "1000 MOTORS 0 0" in shown_texts
     assert any("[TS102]" in row for row in shown_texts)
     assert any("[TS012]" in row for row in shown_texts)
 
 
-def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
+def test_every_world_and_path_are_inside_the_picture() -> None:
     drawing = ElementTree.fromstring(world_picture("a test"))
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
     assert {name for name, *_ in DRIVES} < set(worlds.names())
@@ -75,7 +75,7 @@ def test_every_world_and_its_way_are_inside_of_the_picture() -> None:
 
 
 @each_row("name", guide_pictures(""))
-def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
+def test_a_picture_of_a_guide_contains_all_its_parts(name: str) -> None:
     drawing = ElementTree.fromstring(guide_pictures("a test")[name]())
     _, _, width, height = map(int, drawing.get("viewBox", "").split())
     for element in drawing.iter():
@@ -93,6 +93,6 @@ def test_a_picture_of_a_guide_has_all_of_its_parts_inside(name: str) -> None:
     assert len(ways) == drives.get(name, 0)
 
 
-def test_a_way_keeps_its_bends_and_its_returns() -> None:
+def test_a_path_keeps_its_bends_and_reversals() -> None:
     way = [(0.0, 0.0), (5.0, 0.1), (10.0, 0.0), (10.0, 5.0), (10.0, 9.0), (10.0, 3.0)]
     assert arena.simplified_path(way) == [(0.0, 0.0), (10.0, 0.0), (10.0, 9.0), (10.0, 3.0)]

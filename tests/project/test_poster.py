@@ -30,13 +30,13 @@ def test_every_word_of_the_table_is_on_it(language: str) -> None:
         assert is_there == word.role.is_offered, word.text
 
 
-def test_a_word_that_is_missing_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_word_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(poster, "GROUPS", poster.GROUPS[1:])
     with pytest.raises(AssertionError, match="the poster lacks"):
         poster.page("en")
 
 
-def test_what_it_shows_can_be_typed() -> None:
+def test_lines_on_the_poster_can_be_typed() -> None:
     kit = robots.load("tinibot").kit
     for line in lines_of("en"):
         if line.font != MONO_FONT or not line.text[0].isalpha() or "..." in line.text:
@@ -49,7 +49,7 @@ def test_what_it_shows_can_be_typed() -> None:
 
 
 @in_both
-def test_the_drawing_is_whole(language: str) -> None:
+def test_the_drawing_is_complete(language: str) -> None:
     path = ROOT / "docs" / "poster" / f"poster.{language}.svg"
     tree = ElementTree.fromstring(path.read_text("utf-8"))
     texts = [element.text for element in tree.iter("{http://www.w3.org/2000/svg}text")]
@@ -57,7 +57,7 @@ def test_the_drawing_is_whole(language: str) -> None:
 
 
 @in_both
-def test_the_pdf_is_whole(language: str) -> None:
+def test_the_pdf_is_complete(language: str) -> None:
     """Each object is where the table at its end says, and no part leaves the page."""
     data = (ROOT / "docs" / "poster" / f"poster.{language}.pdf").read_bytes()
     assert data.startswith(b"%PDF-1.4\n") and data.endswith(b"%%EOF\n")
@@ -67,21 +67,24 @@ def test_the_pdf_is_whole(language: str) -> None:
     for number, offset in enumerate(offsets, 1):
         assert data[offset:].startswith(b"%d 0 obj\n" % number)
     length = int(re.search(rb"/Length (\d+)", data)[1])  # type: ignore[index]
-    begin = data.index(b"stream\n") + 7
-    assert data[begin + length :].startswith(b"\nendstream")
+    stream_start = data.index(b"stream\n") + 7
+    assert data[stream_start + length :].startswith(b"\nendstream")
     wanted_texts = [paper._pdf_text(line.text) for line in lines_of(language)]
-    assert re.findall(r"(\(.*\)) Tj ET", data[begin : begin + length].decode()) == wanted_texts
+    assert (
+        re.findall(r"(\(.*\)) Tj ET", data[stream_start : stream_start + length].decode())
+        == wanted_texts
+    )
 
 
 @in_both
-def test_nothing_is_written_over_something_else(language: str) -> None:
+def test_no_texts_overlap(language: str) -> None:
     for line in lines_of(language):
         letter = {MONO_FONT: 0.6}.get(line.font, 0.52) * line.size
         end = line.x + letter * len(line.text)
         assert end <= (poster.SENTENCE_X if line.font == MONO_FONT else paper.WIDTH), line.text
 
 
-def test_the_poster_names_own_words_in_its_language() -> None:
+def test_the_poster_names_user_words_in_its_language() -> None:
     """A reader of Spanish does not use STEP and SPEED."""
     spanish = " ".join(line.text for line in lines_of("es"))
     assert re.search(r"DEF PASO .* VELOCIDAD = 50", spanish)

@@ -14,7 +14,7 @@ from tools.generate.__main__ import OUTPUTS
 GENERATED_MARKS = ("// Generated", "# Generated", "; Generated")
 
 
-def test_the_page_of_versions_has_those_of_the_code() -> None:
+def test_the_page_of_versions_matches_the_code() -> None:
     page = (ROOT / "docs" / "en" / "versions.md").read_text(encoding="utf-8")
     assert f"| TiniScript, the package | `{tiniscript.__version__}` |" in page
     assert f"| the bytecode | {ISA_MAJOR}.{ISA_MINOR} |" in page
@@ -32,7 +32,7 @@ def marks() -> list[str]:
 
 
 @each_row("pattern", marks())
-def test_a_mark_is_of_generated_files(pattern: str) -> None:
+def test_marked_files_are_generated(pattern: str) -> None:
     names = [path.relative_to(ROOT).as_posix() for path, _ in OUTPUTS]
     assert any(fnmatch(name, pattern) for name in names), "nothing is generated there"
 

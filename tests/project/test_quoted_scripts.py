@@ -29,7 +29,7 @@ def list_quoted_texts() -> Iterator[tuple[str, str]]:
                     yield f"{path.relative_to(ROOT)}:{node.lineno}", node.value
 
 
-def test_what_a_quoted_script_names_is_there() -> None:
+def test_names_in_quoted_scripts_exist() -> None:
     rows = [row for row in list_quoted_texts() if QUOTED_IMPORT.search(row[1])]
     assert len(rows) > 20
 
@@ -48,7 +48,7 @@ def test_what_a_quoted_script_names_is_there() -> None:
     go_through(names_what_is_there, rows, lambda row: row[0])
 
 
-def test_what_a_dotted_name_names_is_there() -> None:
+def test_dotted_names_exist() -> None:
     """Names as in `monkeypatch.setattr`; others do not begin with a module of ours."""
     rows = [
         row for row in list_quoted_texts() if DOTTED_NAME.fullmatch(row[1])

@@ -9,7 +9,7 @@ from tiniscript.recovery.told import READERS
 from tools import readers
 
 
-def test_the_readers_that_ask_what_was_meant_are_there() -> None:
+def test_the_documented_readers_exist() -> None:
     assert {*readers.WHOLE_LINE_READERS} <= {reader.__name__ for reader in READERS}
 
 
@@ -44,7 +44,7 @@ def test_a_rewrite_names_its_row(capsys: pytest.CaptureFixture[str]) -> None:
         ("W(1); XYZZY", ["W(1); XYZZY: no reader, so usage.py says what it knows of the mistake"]),
     ],
 )
-def test_what_is_said_of_a_text(text: str, expected: list[str]) -> None:
+def test_the_trace_of_a_text_is_printed(text: str, expected: list[str]) -> None:
     lines = "\n".join(readers.trace(text)).splitlines()
     assert [line for line in lines if line in expected] == expected
     assert bool(lines) == bool(expected)

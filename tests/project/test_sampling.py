@@ -50,7 +50,7 @@ def test_more_of_{0}(): ...
 SIDES = ("left", "right", "front", "back")
 
 
-def test_a_history_that_nobody_may_read_draws_nothing(
+def test_an_unreadable_history_draws_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In a container, the checkout may have another owner."""
@@ -81,10 +81,10 @@ class Plugin:
         self, config: pytest.Config, items: list[pytest.Item]
     ) -> None:
         for config.option.sample in self.commits:
-            left = list(items)
-            sampling.leave_out(config, left)
+            items_left = list(items)
+            sampling.leave_out(config, items_left)
             letters = sampling.sample_of(config, "letters", "abcd", 2)
-            names = [item.name for item in left]
+            names = [item.name for item in items_left]
             self.drawn.append(([*names, *letters], sampling.how_to_repeat(config)))
 
 
@@ -133,13 +133,13 @@ def test_each_value_is_in_each_sample_and_each_row_in_one(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("words", "of"), [(["--whole"], ""), (["-k", "case"], ""), ([], "::test_case")]
 )
-def test_what_is_asked_for_has_all_its_rows(words: list[str], of: str, tmp_path: Path) -> None:
+def test_requested_tests_have_all_their_rows(words: list[str], of: str, tmp_path: Path) -> None:
     ((names, output),) = collect_tests(tmp_path, *words, of=of)
     assert sum("_case" in name for name in names) == 60 and output == ""
     assert names[-4:] == [*"abcd"]
 
 
-def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> None:
+def test_some_files_run_whole_and_each_does_eventually(tmp_path: Path) -> None:
     commits = [*map(str, range(20)), "7"]
     counts = Counter[str]()
     collections = collect_tests(tmp_path, of=None, commits=commits)
@@ -153,14 +153,14 @@ def test_of_files_some_are_whole_and_each_of_them_some_time(tmp_path: Path) -> N
         counts.update(names)
     assert len(counts) == 3 * len(SIDES)
     assert collections[7] == collections[20]
-    left = f"{tmp_path / 'test_left.py'}"
-    for collected_names, _ in collect_tests(tmp_path, left, of=None, commits=commits):
+    left_path = f"{tmp_path / 'test_left.py'}"
+    for collected_names, _ in collect_tests(tmp_path, left_path, of=None, commits=commits):
         assert "test_more_of_left" in collected_names  # named on the command line
     ((collected_names, _),) = collect_tests(tmp_path, "--whole", of=None)
     assert sum(side in name for name in collected_names for side in SIDES) == 3 * len(SIDES)
 
 
-def test_a_tenth_of_the_long_tests_is_drawn_and_each_of_them_some_time(tmp_path: Path) -> None:
+def test_a_tenth_of_the_long_tests_is_drawn_and_each_is_eventually(tmp_path: Path) -> None:
     def long_tests(
         *words: str, of: str | None = None, commits: Sequence[str] = ("7",)
     ) -> list[list[str]]:
@@ -188,10 +188,10 @@ def test_all_rows_of_one_test_run_and_each_that_fails_is_named() -> None:
             raise KeyError(name)
 
     assert list(inspect.signature(test).parameters) == ["lang"]
-    with pytest.raises(AssertionError) as why:
+    with pytest.raises(AssertionError) as error_info:
         test(lang="en")
     assert lines == ["aen", "ben", "cen", "den"]
-    first, second = str(why.value).split("\n\n")
+    first, second = str(error_info.value).split("\n\n")
     assert first.startswith("('b', 2): AssertionError: two")
     assert second == "third: KeyError: 'c'"
     with pytest.raises(AssertionError, match="no rows"):

@@ -111,7 +111,7 @@ def test_ci_of_root_runs_the_tests_as_a_new_user(tmp_path: Path) -> None:
         shutil.rmtree(clone)
 
 
-def test_a_first_answer_is_of_tests_that_are_there() -> None:
+def test_the_first_tests_to_run_exist() -> None:
     script = (ROOT / "tools" / "test.sh").read_text(encoding="utf-8")
     names = script.partition('QUICK="tests')[2].partition('"')[0].split()
     assert len(names) > 10
@@ -152,13 +152,13 @@ def has_installed(clone: Path) -> bool:
     return INSTALLING_MESSAGE in completed.stderr
 
 
-def test_what_is_installed_is_not_installed_again(folder: Path) -> None:
+def test_an_existing_installation_is_not_repeated(folder: Path) -> None:
     assert has_installed(folder)
     assert not has_installed(folder)
     assert (folder / ".venv" / "asked").read_text().endswith(f"--editable {folder}[test]\n")
 
 
-def test_another_pyproject_is_installed_whatever_its_time(folder: Path) -> None:
+def test_a_changed_pyproject_is_installed_whatever_its_time(folder: Path) -> None:
     """Changed in the same second, or restored from an older state of the repository."""
     assert has_installed(folder)
     (folder / "pyproject.toml").write_text("two")
@@ -167,7 +167,7 @@ def test_another_pyproject_is_installed_whatever_its_time(folder: Path) -> None:
     assert not has_installed(folder)
 
 
-def test_a_folder_that_has_moved_is_installed_again(folder: Path) -> None:
+def test_a_moved_folder_is_installed_again(folder: Path) -> None:
     assert has_installed(folder)
     moved_path = folder.rename(folder.with_name("moved"))
     assert has_installed(moved_path)
@@ -199,7 +199,7 @@ class Pip:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_what_is_there_is_what_is_asked_for(
+def test_the_installed_packages_are_the_requested_ones(
     seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """After any history of states of the repository, of extras, and of ends of pip. Existing
@@ -247,9 +247,7 @@ def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("left", ["exit 1", "exit 127", "case $* in *pip*) exit 1;; esac; echo it"])
-def test_the_shell_leaves_an_environment_alone_that_cannot_install(
-    left: str, tmp_path: Path
-) -> None:
+def test_the_shell_does_not_start_an_unusable_environment(left: str, tmp_path: Path) -> None:
     """Its creation may have been interrupted, or the system may have a new Python since."""
     python = 'case "$*" in *environment*) echo python3;; esac'
     completed = run_script(tmp_path, {"../.venv/bin/python": left, "python3": python})
@@ -260,7 +258,7 @@ PYTHONS = ("python3", "python3.13", "python3.12", "python3.11", "python3.10", "p
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_the_shell_takes_a_python_that_is_new_enough(seed: int, tmp_path: Path) -> None:
+def test_the_shell_uses_a_sufficiently_new_python(seed: int, tmp_path: Path) -> None:
     """Other versions, and their order, do not matter."""
     rng = random.Random(seed)
     minors = {name: rng.randint(7, 14) for name in PYTHONS if rng.random() < 0.5}
@@ -299,7 +297,7 @@ def test_a_debian_without_any_python_gets_one(has_apt: bool, code: int, tmp_path
     ],
     ids=["no sudo", "no rights", "no network"],
 )
-def test_whoever_cannot_install_venv_is_not_told_to_do_it_again(
+def test_users_who_cannot_install_venv_are_not_told_to(
     sudo: dict[str, str], locale: str, english: bool, tmp_path: Path
 ) -> None:
     fakes = {"python3": "case $* in *ensurepip*) exit 1;; esac", "apt-get": "exit 100", **sudo}
@@ -358,12 +356,12 @@ def test_windows_has_its_interpreter_and_its_line_elsewhere() -> None:
 
     assert environment.python_of(Path("x"), "nt") == Path("x/Scripts/python.exe")
     assert environment.python_of(Path("x"), "posix") == Path("x/bin/python")
-    first = load_first_command()
-    assert first.activation("nt") == r".venv\Scripts\Activate.ps1"
-    assert first.activation("posix") == ". .venv/bin/activate"
+    first_command = load_first_command()
+    assert first_command.activation("nt") == r".venv\Scripts\Activate.ps1"
+    assert first_command.activation("posix") == ". .venv/bin/activate"
 
 
-def test_an_old_python_is_told_where_to_get_one(
+def test_an_old_python_names_the_source_of_a_new_one(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from tools import environment
@@ -377,7 +375,7 @@ def test_an_old_python_is_told_where_to_get_one(
     environment.check_version((3, 10))
 
 
-def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(folder: Path) -> None:
+def test_offline_users_are_told_about_proxies_and_the_usb_stick(folder: Path) -> None:
     """The hint precedes pip's own output, of which the end is enough."""
     python = folder / ".venv" / "bin" / "python"
     output = "  Traceback (most recent call last)\n  ERROR: no setuptools\nERROR: no network\n"
@@ -412,8 +410,8 @@ def test_the_first_command_drives_the_virtual_robot(
     assert (ROOT / "way.png").is_file()
     if not exists_before:
         (ROOT / "way.png").unlink()
-    first = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
-    assert capture_result.out.startswith(first)  # without its notes, in English
+    program_start = "SI|LOOP(FOREVER);\n  F(FOREVER, 80) UNTIL(DISTANCE < 10);\n"
+    assert capture_result.out.startswith(program_start)  # without its notes, in English
     assert "way.png" in capture_result.err
     assert "Ahora el tuyo" in capture_result.err
     assert "Aviso" not in capture_result.err
@@ -462,7 +460,7 @@ def test_the_first_command_ends_with_the_studio(
 
 
 @each_row("terminals", [(), ("stdin",), ("stdout",), ("stdout", "stderr")])
-def test_the_first_command_asks_nobody_who_is_not_there(
+def test_the_first_command_asks_no_question_without_a_terminal(
     terminals: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from tools import environment

@@ -28,7 +28,7 @@ def cycles_of(uno: Uno, pin: str, state: str) -> list[int]:
 # -- time -----------------------------------------------------------------------------------------
 
 
-def test_it_runs_to_a_cycle() -> None:
+def test_a_run_ends_at_the_requested_cycle() -> None:
     with Uno(build_uno("echo", Baud=115200, Wait=1)) as uno:
         for cycle in (1000, 1001, 54_321):
             uno.run_to(cycle)
@@ -40,7 +40,7 @@ def test_it_runs_to_a_cycle() -> None:
             uno.run_until("D7", "pwm", limit_ms=1)
 
 
-def test_it_tells_how_long_interrupts_are_off() -> None:
+def test_masked_interrupt_times_are_measured() -> None:
     """In the program, from an interrupt's entry, and where it allows others."""
     with Uno(
         build_uno("masked", Program=500, Interrupt=300, Later=200), watches_masked=True
@@ -88,14 +88,14 @@ def test_a_burst_overruns_the_buffer() -> None:
 # -- EEPROM ---------------------------------------------------------------------------------------
 
 
-def test_a_byte_of_the_eeprom_takes_its_time(tmp_path: Path) -> None:
+def test_writing_an_eeprom_byte_takes_time(tmp_path: Path) -> None:
     file = tmp_path / "eeprom"
     with Uno(build_uno("memory", Ignores=0), eeprom=file) as uno:
         uno.run_ms(30)
-    (begin,), (end,) = cycles_of(uno, "D8", "high"), cycles_of(uno, "D8", "low")[1:]
-    assert (end - begin) / CYCLES_PER_MS == pytest.approx(5 * 3.4, abs=0.02)
+    (begin_cycle,), (end_cycle,) = cycles_of(uno, "D8", "high"), cycles_of(uno, "D8", "low")[1:]
+    assert (end_cycle - begin_cycle) / CYCLES_PER_MS == pytest.approx(5 * 3.4, abs=0.02)
     (by_interrupt,) = cycles_of(uno, "D9", "high")
-    assert (by_interrupt - end) / CYCLES_PER_MS == pytest.approx(2 * 3.4, abs=0.02)
+    assert (by_interrupt - end_cycle) / CYCLES_PER_MS == pytest.approx(2 * 3.4, abs=0.02)
     assert cycles_of(uno, "D10", "high")
     content = file.read_bytes()
     assert (len(content), content[:6], content[10:12]) == (1024, b"\1\2\3\4\5\xff", b"\x77\x77")
@@ -108,13 +108,13 @@ def test_firmware_that_does_not_wait_loses_bytes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("ms", "left"), [(1.0, b"\xff\xff"), (2.0, b"\1\xff"), (4.5, b"\1\xff"), (6.0, b"\1\2")]
+    ("ms", "bytes_left"), [(1.0, b"\xff\xff"), (2.0, b"\1\xff"), (4.5, b"\1\xff"), (6.0, b"\1\2")]
 )
-def test_a_power_cut_leaves_half_a_byte(tmp_path: Path, ms: float, left: bytes) -> None:
+def test_a_power_cut_leaves_a_partial_byte(tmp_path: Path, ms: float, bytes_left: bytes) -> None:
     """The byte is erased first; the previous memory is there after the next power-on."""
     file = tmp_path / "eeprom"
     file.write_bytes(b"\x55" * 1024)
-    expected = left if ms > 3.4 else left[:1] + b"\x55"
+    expected = bytes_left if ms > 3.4 else bytes_left[:1] + b"\x55"
     with Uno(build_uno("memory", Ignores=0), eeprom=file) as uno:
         uno.run_ms(ms)
         uno.kill()
@@ -128,7 +128,7 @@ def test_a_power_cut_leaves_half_a_byte(tmp_path: Path, ms: float, left: bytes) 
 
 
 @pytest.mark.parametrize("is_off", [0, 1, 2])
-def test_the_second_time_out_resets(is_off: int) -> None:
+def test_the_second_timeout_resets(is_off: int) -> None:
     """This holds with interrupts off, so that the first one is not handled, and during sleep."""
     with Uno(build_uno("watchdog", IsOff=is_off)) as uno:
         uno.run_ms(100)

@@ -207,7 +207,7 @@ def fields_in_cpp(text: str, opening: str) -> set[str]:
     return set(FIELD.findall(body[: body.index("\n};")]))
 
 
-def test_what_both_keep_of_a_program_has_one_name() -> None:
+def test_state_kept_by_both_machines_has_one_name() -> None:
     """These are the fields of a program without tasks: a Task, and in C++ the record of the only
     task."""
     text = code_of(CPP / "vm" / "state.h")

@@ -82,7 +82,7 @@ def list_installed(root: str, extras: set[str]) -> dict[str, Distribution]:
 
 
 @pytest.mark.sampled(of="sticks that pip reads")
-def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
+def test_the_stick_installs_offline(stick: Path, tmp_path: Path) -> None:
     for needed_module in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
         # An import of setuptools would replace the distutils of this process.
         need_package("" if find_spec(needed_module) else f"no package {needed_module}")
@@ -140,7 +140,7 @@ def make_older(home: Path) -> None:
 
 
 @pytest.mark.sampled(of="sticks that pip reads")
-def test_a_stick_without_a_wheel_says_so(stick: Path, tmp_path: Path) -> None:
+def test_a_stick_without_a_wheel_is_reported(stick: Path, tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     (empty / "wheels").mkdir(parents=True)
     shutil.copy(stick / "install.py", empty)
@@ -152,7 +152,7 @@ def test_a_stick_without_a_wheel_says_so(stick: Path, tmp_path: Path) -> None:
     assert "no packages for this computer" in completed.stderr
 
 
-def test_every_link_of_the_pages_leads_somewhere(stick: Path) -> None:
+def test_every_link_of_the_pages_has_a_target(stick: Path) -> None:
     pages = stick / "pages"
     count = 0
     for page in pages.rglob("*.html"):
@@ -220,7 +220,7 @@ def test_nothing_of_this_computer_is_on_the_stick(stick: Path) -> None:
             assert "index-url" not in text, path
 
 
-def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
+def test_an_unavailable_installer_is_named(tmp_path: Path) -> None:
     missing = usb_stick.add_installer(tmp_path, "file:///nowhere/python-3.13.9-amd64.exe")
     assert "by hand" in missing[0].sentence("en")
     assert "a mano" in missing[0].sentence("es")
@@ -250,7 +250,7 @@ def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> Non
     assert not re.search(r"Poster|Wiring|teacher</a>", index)
 
 
-def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
+def test_a_phone_shows_each_teacher_page_completely(stick: Path) -> None:
     """Only the wiring is cut at 390 px, and it has a note about scrolling."""
     pages = [*sorted(stick.glob("pages/**/*.es.html")), stick / "pages" / "index.es.html"]
     cut = """[...document.querySelectorAll('pre, table, .finished')]
@@ -269,7 +269,7 @@ def test_a_phone_shows_each_page_of_a_teacher_whole(stick: Path) -> None:
     assert len(sizes) > 20
 
 
-def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_with_other_contents_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     assert usb_stick.main([str(tmp_path)]) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
@@ -305,13 +305,13 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
     for name in ("only_windows", "only_old"):
         wheel(tmp_path, name)
     needs = ["only_windows; sys_platform == 'win32'", "only_old; python_version < '3.11'"]
-    ours = wheel(tmp_path, "robot", needs)
+    own_wheel = wheel(tmp_path, "robot", needs)
     for system, python, wanted_names in (
         ("windows", "3.10", {"only_windows", "only_old"}),
         ("windows", "3.12", {"only_windows"}),
         ("mac-apple", "3.10", {"only_old"}),
     ):
-        names = fetch_packages(tmp_path, tmp_path / f"{system}{python}", system, python, ours)
+        names = fetch_packages(tmp_path, tmp_path / f"{system}{python}", system, python, own_wheel)
         assert {name.split("-")[0] for name in names} == {"robot", *wanted_names}
 
 
@@ -323,16 +323,16 @@ def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
 
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
-    old = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
+    old_wheel = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
     metadata = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
     files = {"thing/__init__.py": "", "thing/fast.cpython-311-x86_64-linux-gnu.so": "x",
              "thing-1.dist-info/WHEEL": metadata, "thing-1.dist-info/RECORD": ""}  # fmt: skip
-    with zipfile.ZipFile(old, "w") as wheel:
+    with zipfile.ZipFile(old_wheel, "w") as wheel:
         for name, text in files.items():
             wheel.writestr(zipfile.ZipInfo(name, (2020, 1, 2, 3, 4, 6)), text)
-    with zipfile.ZipFile(old) as wheel:
+    with zipfile.ZipFile(old_wheel) as wheel:
         when = wheel.infolist()[0].date_time
-    path = stick_wheels.without_parts_in_c(old, tmp_path)
+    path = stick_wheels.without_parts_in_c(old_wheel, tmp_path)
     assert path.name == "thing-1-py3-none-any.whl"
     with zipfile.ZipFile(path) as wheel:
         assert {row.date_time for row in wheel.infolist()} == {when}, "another time, other bytes"

@@ -39,7 +39,7 @@ PROGRAM = "SI|F(2, 80)\n"
     ["con", "CON.bin", "aux.html", "nul.txt", "com1.csv", "lpt9", "COM¹.bin", "x/prn.toml",
      r"C:\x\con.bin", "x.", "x ", "sheet:1.html", "what?.bin", "a\tb", r"d:\x\a:b", "con .bin"],
 )  # fmt: skip
-def test_names_that_no_file_has(name: str) -> None:
+def test_reserved_file_names_are_recognized(name: str) -> None:
     assert has_no_file(name)
 
 
@@ -48,11 +48,11 @@ def test_names_that_no_file_has(name: str) -> None:
     ["prog.bin", "console.bin", "com.bin", "com10.csv", "C:prog.bin", r"C:\Users\Ana María\p.bin",
      r"..\x\prog.bin", "./prog.bin", r"\\school\pupils\prog.bin", "lpt.bin", "año.bin", ".x"],
 )  # fmt: skip
-def test_names_of_files(name: str) -> None:
+def test_file_names_are_checked(name: str) -> None:
     assert not has_no_file(name)
 
 
-def test_an_output_that_windows_would_lose_is_refused(
+def test_an_output_name_that_windows_would_lose_is_refused(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from serial.tools import list_ports  # noqa: F401 - it looks at the platform when imported
@@ -116,11 +116,11 @@ def test_a_program_of_notepad_is_the_same_program(
 ) -> None:
     """With CR LF and a byte order mark; mistakes have the same message."""
     monkeypatch.chdir(tmp_path)
-    wrong = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
+    wrong_text = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
     outputs = set()
-    for name, begin, end in (("a", "", "\n"), ("b", "\ufeff", "\r\n")):
-        for kind, program in (("right", PROGRAM + "B(1, 50)\n"), ("wrong", wrong)):
-            text = begin + program.replace("\n", end)
+    for name, bom, end in (("a", "", "\n"), ("b", "\ufeff", "\r\n")):
+        for kind, program in (("right", PROGRAM + "B(1, 50)\n"), ("wrong", wrong_text)):
+            text = bom + program.replace("\n", end)
             Path(f"{kind}_{name}.ts").write_bytes(text.encode())
         assert tsc("compile", f"right_{name}.ts").code == 0
         result = tsc("check", f"wrong_{name}.ts")
@@ -147,7 +147,7 @@ def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> 
         assert "\\u" not in misread(sentence, encoding), sentence
 
 
-def test_signs_without_a_code_become_plain_ones() -> None:
+def test_unencodable_characters_are_replaced_by_plain_ones() -> None:
     assert misread("10 kΩ − 5…", "cp850") == "10 kohm - 5..."
     assert misread("10 kΩ − 5…", "cp1252") == "10 kohm - 5…"
     assert misread("┤█│→", "cp1252") == "|#|>"
@@ -212,7 +212,7 @@ for words in commands:
 """
 
 
-def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
+def test_only_unix_modules_use_unix_functions(tmp_path: Path) -> None:
     """Without the modules that Windows lacks, each module can be imported, and commands without a
     robot run."""
     for needed_module in ("wasmtime", "PIL", "bleak", "zeroconf"):
@@ -294,7 +294,7 @@ class Kernel:
 
 
 @pytest.mark.parametrize(
-    ("before", "taken", "handle", "is_read", "after"),
+    ("mode_before", "taken", "handle", "is_read", "mode_after"),
     [
         (3, 7, 42, True, 7),  # cmd: it can, and was not asked
         (2, 7, 42, True, 7),
@@ -304,10 +304,10 @@ class Kernel:
     ],
 )  # fmt: skip
 def test_colors_are_for_consoles_that_read_them(
-    before: int, taken: int, handle: int, is_read: bool, after: int,
+    mode_before: int, taken: int, handle: int, is_read: bool, mode_after: int,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    kernel = Kernel(before, taken)
+    kernel = Kernel(mode_before, taken)
     runtime = ModuleType("msvcrt")
     runtime.get_osfhandle = lambda number: handle  # type: ignore[attr-defined]
     monkeypatch.setattr(sys, "platform", "win32")
@@ -318,7 +318,7 @@ def test_colors_are_for_consoles_that_read_them(
     assert not streams.reads_sequences(console), "it has no number"
     monkeypatch.setattr(console, "fileno", lambda: 1)
     assert streams.reads_sequences(console) is is_read
-    assert kernel.mode == after
+    assert kernel.mode == mode_after
     assert streams.has_colors(console) is is_read
     monkeypatch.setenv("NO_COLOR", "1")
     assert not streams.has_colors(console)
@@ -352,7 +352,7 @@ sys.exit(main(["help"]))
         ("linux", errno.EINVAL, "other", None, 2),
     ],
 )
-def test_a_reader_that_has_left_is_not_a_mistake(
+def test_a_closed_reader_is_not_an_error(
     platform: str, number: int, about: str, value: object, code: int
 ) -> None:
     """`tsc help | more`, and then q: the C library of Windows calls that an invalid argument."""

@@ -81,7 +81,7 @@ def test_a_container_may_read_its_history() -> None:
             assert "container" not in job or "--add safe.directory" in runs, path.name
 
 
-def test_visitors_commands_are_those_of_readme() -> None:
+def test_the_visitors_commands_are_those_of_the_readme() -> None:
     runs = [step.get("run", "") for name, step in steps() if name == "checks.yml"]
     texts = [
         (ROOT / name).read_text(encoding="utf-8") for name in sources(ROOT, FRONT_PAGE).values()
@@ -95,7 +95,7 @@ def test_visitors_commands_are_those_of_readme() -> None:
     assert 'python -m pip install ".[virtual]"' in runs
 
 
-def test_what_a_workflow_runs_is_there() -> None:
+def test_commands_run_by_a_workflow_exist() -> None:
     about = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     count = 0
     for words in commands():
@@ -114,10 +114,10 @@ def test_what_a_workflow_runs_is_there() -> None:
     assert count >= 6
 
 
-def test_lines_of_tsc_do_what_they_should() -> None:
-    ours = [words for words in commands() if words[0] == "tsc"]
-    assert len(ours) == 2
-    for words in ours:
+def test_tsc_lines_of_workflows_work() -> None:
+    tsc_commands = [words for words in commands() if words[0] == "tsc"]
+    assert len(tsc_commands) == 2
+    for words in tsc_commands:
         result = process(*words[1:])
         assert result.code == 0, result.err
     assert "drove" in result.out + result.err

@@ -82,14 +82,14 @@ def _mend(program: list[str], messages: list[str], changed_lines: list[str]) -> 
     return "\n".join(lines) if rows else None
 
 
-def _part(line: str, fix: str, new: str) -> str:
+def _part(line: str, fix: str, new_line: str) -> str:
     """Return the part of a line that `fix` replaces to get the new line, or an empty text."""
     for start in range(len(line)):
-        if new.startswith(line[:start] + fix):
-            rest = len(new) - start - len(fix)
+        if new_line.startswith(line[:start] + fix):
+            rest = len(new_line) - start - len(fix)
             part = line[start : len(line) - rest]
             is_plain = part == part.strip() and PLACE_SEPARATOR not in part
-            if part and is_plain and line.replace(part, fix, 1) == new:
+            if part and is_plain and line.replace(part, fix, 1) == new_line:
                 return part
     return ""
 
@@ -137,15 +137,17 @@ def _rows(entry: Entry) -> list[str]:
         return [*above, *(message_rows or [">"])]
     program, mended_lines = entry.program.split("\n"), entry.mended.split("\n")
     pairs = enumerate(zip(program, mended_lines, strict=False), 1)
-    line_by_number = {number: new for number, (old, new) in pairs if old.rstrip() != new}
+    line_by_number = {
+        number: new_line for number, (old_line, new_line) in pairs if old_line.rstrip() != new_line
+    }
     marked = list(message_rows)
     for k, row in enumerate(entry.messages):
         number, _, fix = (*row.split(" ", 2), "")[:3]
-        line, new = program[int(number) - 1], line_by_number.get(int(number))
-        if fix and new == _indent(line) + fix:
+        line, new_line = program[int(number) - 1], line_by_number.get(int(number))
+        if fix and new_line == _indent(line) + fix:
             marked[k] = f">= {row}"
             del line_by_number[int(number)]
-        elif fix and new is not None and (part := _part(line, fix, new)):
+        elif fix and new_line is not None and (part := _part(line, fix, new_line)):
             marked[k] = f">= {row}{PLACE_SEPARATOR}{part}"
             del line_by_number[int(number)]
     rows = [f"={number} {line}".rstrip() for number, line in line_by_number.items()]

@@ -64,17 +64,17 @@ def _name_of_all(programs: Sequence[str]) -> str:
     return name_of("".join(sorted(map(name_of, programs))))
 
 
-def add(new: Sequence[str], programs: Sequence[str]) -> None:
+def add(added: Sequence[str], programs: Sequence[str]) -> None:
     """Take new programs into the list of chosen ones, until all are chosen again."""
     first, *rows = LIST.read_text(encoding="utf-8").splitlines()
     written_match = HEAD.match(first)
     if (
-        not new
+        not added
         or not written_match
-        or written_match[3] != _name_of_all([it for it in programs if it not in new])
+        or written_match[3] != _name_of_all([it for it in programs if it not in added])
     ):
         return  # entries were added or removed
-    rows += map(_row, new)
+    rows += map(_row, added)
     first = _head(len(rows), int(written_match[1]), programs, int(written_match[2]))
     LIST.write_text("\n".join((first, *rows)) + "\n", encoding="utf-8")
     list_covering_entries.cache_clear()
@@ -121,16 +121,18 @@ def _branches(branches: Sequence[frozenset[Branch]]) -> list[frozenset[Branch]]:
     ways: dict[tuple[str, int], set[int]] = {}
     for file, start, end in frozenset().union(*branches):
         ways.setdefault((file, start), set()).add(end)
-    is_branch = {at for at, ends in ways.items() if len(ends) > 1}
+    is_branch = {position for position, targets in ways.items() if len(targets) > 1}
     return [frozenset(arc for arc in arcs if arc[:2] in is_branch) for arcs in branches]
 
 
-def choose_cover(branches: Sequence[frozenset[Branch]], before: Iterable[int] = ()) -> list[int]:
+def choose_cover(
+    branches: Sequence[frozenset[Branch]], covered_before: Iterable[int] = ()
+) -> list[int]:
     """Return the numbers of a few sets whose union is that of all.
 
     Each time the one that adds most; of two, rather one of `before`, so that little changes.
     """
-    chosen_before, uncovered = set(before), set().union(*branches)
+    chosen_before, uncovered = set(covered_before), set().union(*branches)
     heap = [(-len(branch_set), k not in chosen_before, k) for k, branch_set in enumerate(branches)]
     heapq.heapify(heap)
     chosen = []

@@ -27,7 +27,7 @@ def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.Mon
     assert 0 < len(checks) <= 40
 
 
-def test_a_program_is_checked_so_often_and_no_more() -> None:
+def test_a_program_is_checked_a_limited_number_of_times() -> None:
     """This limit holds whatever its repairs uncover."""
     (missing,) = check("F(2 80)")
     texts: list[str] = []
@@ -46,5 +46,5 @@ def test_a_repair_that_contains_a_mistake_is_not_offered() -> None:
     (missing,) = check("F(2 80)")
     edits = [Edit(Span(3, 3), ",,,"), Edit(Span(5, 6), "")]
     for start, is_repair in ((2, True), (3, False), (5, False), (6, True)):
-        other = missing._replace(span=Span(start, 9))
-        assert is_better([other], [missing], edits) == is_repair
+        other_diagnostic = missing._replace(span=Span(start, 9))
+        assert is_better([other_diagnostic], [missing], edits) == is_repair

@@ -27,9 +27,9 @@ def test_nothing_is_read_after_the_end(program: str) -> None:
 def test_all_cut_programs_end() -> None:
     cut = set()
     for entry in entries()[::12]:
-        last = entry.program.splitlines()[-1]
-        ends = [match.end() for match in WORDS.finditer(last)]
-        cut |= {last[:end] for end in ends[:3] + ends[-3:]}
+        last_line = entry.program.splitlines()[-1]
+        word_ends = [match.end() for match in WORDS.finditer(last_line)]
+        cut |= {last_line[:end] for end in word_ends[:3] + word_ends[-3:]}
     assert len(cut) > 100
     for program in cut:
         check(program)
@@ -51,7 +51,7 @@ def test_all_cut_programs_end() -> None:
     ],
     ids=["words", "notes", "again", "equal", "kinds", "stops", "steps", "values", "letters"],
 )
-def test_a_long_row_is_read_once(program: str) -> None:
+def test_a_long_line_is_read_once(program: str) -> None:
     assert any(diagnostic.is_mistake for diagnostic in check(program))
     most = MOST_CALLS if len(program) > MOST_CHARACTERS else MOST_CALLS_WHOLE
     assert calls_of_check(program) < most * len(program)

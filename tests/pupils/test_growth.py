@@ -10,17 +10,17 @@ from tiniscript.library.compiling import compile_source
 LEAST = 4_000  # pieces
 
 
-@pytest.mark.sampled("begin", "piece", "end")
+@pytest.mark.sampled("opening", "piece", "end")
 @pytest.mark.parametrize(
-    ("begin", "piece", "end"),
+    ("opening", "piece", "end"),
     [
         ("", "1+", "1"), ("", "1+", ""), ("", "SI|", ""), ("", "SI|\n", ""),
         ("", "SI|", "F(1, 80)"),
         ("SI|SHOW(", "1+", "1)"), ("SI|F(", "1+", "1)"), ("SI|IF(", "1+", "1)"), ("X = ", "1+", ""),
     ],
 )  # fmt: skip
-def test_a_long_text_takes_no_more_than_in_proportion(begin: str, piece: str, end: str) -> None:
-    short, long = (calls_of_check(f"{begin}{piece * count}{end}") for count in (LEAST, 4 * LEAST))
+def test_a_long_text_takes_no_more_than_in_proportion(opening: str, piece: str, end: str) -> None:
+    short, long = (calls_of_check(f"{opening}{piece * count}{end}") for count in (LEAST, 4 * LEAST))
     assert long < 4.8 * short
 
 

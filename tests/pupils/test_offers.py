@@ -25,7 +25,10 @@ def spans_in_changed_text(edits: list[Edit]) -> list[Span]:
     grown = [len(edit.text) - (edit.span.end - edit.span.start) for edit in ordered_edits]
     starts = [edit.span.start + shift for edit, shift in
               zip(ordered_edits, accumulate(grown, initial=0), strict=False)]  # fmt: skip
-    return [Span(at, at + len(edit.text)) for at, edit in zip(starts, ordered_edits, strict=True)]
+    return [
+        Span(start, start + len(edit.text))
+        for start, edit in zip(starts, ordered_edits, strict=True)
+    ]
 
 
 def ways(diagnostic: Diagnostic, text: str) -> list[list[Edit]]:
@@ -49,16 +52,16 @@ def find_wrong_codes(
 ) -> list[str]:
     """Return the codes of mistakes in the part of the changed program that a message shows."""
     changed_text = apply_edits(text, edits)
-    own = sorted(edits_of(diagnostic) or edits)
+    own_edits = sorted(edits_of(diagnostic) or edits)
     spans = [
         span
         for edit, span in zip(sorted(edits), spans_in_changed_text(edits), strict=True)
-        if edit in own
+        if edit in own_edits
     ]
     value = next((diagnostic.values[gap] for gap in SAID if diagnostic.values.get(gap)), "")
-    at = changed_text.find(value, max(0, spans[0].start - len(value))) if value else -1
-    if 0 <= at < spans[-1].end:
-        spans.append(Span(at, at + len(value)))
+    position = changed_text.find(value, max(0, spans[0].start - len(value))) if value else -1
+    if 0 <= position < spans[-1].end:
+        spans.append(Span(position, position + len(value)))
     return [
         diagnostic.code.number for diagnostic in check(changed_text)
         if diagnostic.is_mistake
@@ -84,10 +87,16 @@ def codes_with_wrong_offers(text: str) -> list[str]:
         together += its if not edits_overlap(its, together) else []
     bad = []
     for diagnostic in diagnostics:
-        others = [other for other in diagnostics if other is not diagnostic]
-        other_words = {text[slice(*other.span)].upper() for other in others} - {""}
-        other_codes = {other.code.number for other in others}
-        other_codes |= OF_BLOCKS if others or not edits_of(diagnostic) else set()
+        other_diagnostics = [
+            other_diagnostic
+            for other_diagnostic in diagnostics
+            if other_diagnostic is not diagnostic
+        ]
+        other_words = {
+            text[slice(*other_diagnostic.span)].upper() for other_diagnostic in other_diagnostics
+        } - {""}
+        other_codes = {other_diagnostic.code.number for other_diagnostic in other_diagnostics}
+        other_codes |= OF_BLOCKS if other_diagnostics or not edits_of(diagnostic) else set()
         tried_edits = ways(diagnostic, text)
         if set(edits_of(diagnostic) or ()) <= set(together) and edits_of(diagnostic):
             tried_edits.append(together)
@@ -99,7 +108,7 @@ def codes_with_wrong_offers(text: str) -> list[str]:
     return bad
 
 
-def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
+def test_repairs_offered_for_the_corpus_compile(
     programs: tuple[Entry, ...],
 ) -> None:
     texts = [entry.program for entry in programs]
@@ -110,12 +119,12 @@ def test_what_the_corpus_of_wrong_programs_is_offered_compiles(
 
 
 @each_row("text", ["SI|WAIT UNTIL BUTTON", "SI|W UNTIL BUTTON", "BREIK", "EXIT", "F(FOREVR, 60)"])
-def test_what_would_be_wrong_is_not_offered(text: str) -> None:
+def test_wrong_repairs_are_not_offered(text: str) -> None:
     for diagnostic in check(text):
         assert edits_of(diagnostic) is None
         assert not diagnostic.values.get("fix")
 
 
-def test_a_word_that_is_near_is_still_named() -> None:
+def test_a_similar_word_is_still_suggested() -> None:
     (diagnostic,) = check("BREIK")
     assert diagnostic.values["meant"] == "BREAK" and not diagnostic.values["near"]

@@ -50,7 +50,7 @@ def loses_a_number(text: str, edits: list[Edit]) -> bool:
     return False
 
 
-def test_there_are_enough(programs: tuple[Entry, ...]) -> None:
+def test_the_corpus_has_enough_programs(programs: tuple[Entry, ...]) -> None:
     assert len(entries()) >= 2000 and len(programs) >= 200
     assert len({entry.program for entry in entries()}) == len(entries())
 
@@ -61,7 +61,7 @@ def test_the_programs_of_a_commit_are_chosen_of_this_corpus_and_code() -> None:
     assert not why_stale(first, now), f"{why_stale(first, now)}: python -m tests.pupils.cover"
 
 
-def test_they_are_chosen_again_when_others_may_be_needed() -> None:
+def test_programs_are_rechosen_when_the_corpus_has_changed() -> None:
     head_before = head(1, 1, ["S", "F"])
     assert why_stale(head_before, head(2, 2, ["F", "S"])) == ""
     assert why_stale(head_before, head(1, 1, ["S", "B"])) == "programs have come or gone"
@@ -74,40 +74,46 @@ def test_they_are_chosen_again_when_others_may_be_needed() -> None:
     )
 
 
-def test_a_new_program_is_tested_until_they_are_chosen_again(
+def test_a_new_program_is_tested_until_the_next_choice(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written_path = tmp_path / "cover.txt"
     monkeypatch.setattr(cover, "LIST", written_path)
     written_path.write_text(head(0, 5, ["S", "F"]) + "\n")
-    new = "B\nS"
-    add([new], ["S", "F", new])
-    row = f"{cover.name_of(new)} B"
-    assert written_path.read_text().splitlines() == [head(1, 5, ["S", "F", new]), row]
+    new_text = "B\nS"
+    add([new_text], ["S", "F", new_text])
+    row = f"{cover.name_of(new_text)} B"
+    assert written_path.read_text().splitlines() == [head(1, 5, ["S", "F", new_text]), row]
     add(["L"], ["S", "L"])
-    assert not why_stale(written_path.read_text(), head(1, 5, ["S", "F", new])), (
+    assert not why_stale(written_path.read_text(), head(1, 5, ["S", "F", new_text])), (
         "others have gone, too"
     )
 
 
-def test_few_reach_what_all_reach() -> None:
+def test_the_chosen_programs_reach_the_same_code_as_all() -> None:
     steps = ([1], [1, 2], [2], [3, 1], [1, 3])
     sets = [frozenset(("", k, k) for k in step) for step in steps]
     assert choose_cover(sets) == [1, 3]
-    assert choose_cover(sets, before=[4]) == [1, 4], "what was taken before stays"
+    assert choose_cover(sets, covered_before=[4]) == [1, 4], "what was taken before stays"
 
 
-def test_the_corpus_is_as_it_was(
+def test_the_corpus_is_unchanged(
     request: pytest.FixtureRequest, programs: tuple[Entry, ...]
 ) -> None:
     entries = [current_entry(program) for program in programs]
     if request.config.getoption("--accept"):
         write(entries)
         pairs = zip(programs, entries, strict=True)
-        new = [now.program for old_entry, now in pairs if now.messages and not old_entry.messages]
-        add(new, [entry.program for entry in programs])
+        new_programs = [
+            now.program for old_entry, now in pairs if now.messages and not old_entry.messages
+        ]
+        add(new_programs, [entry.program for entry in programs])
         return
-    changed_entries = [(old, new) for old, new in zip(programs, entries, strict=True) if old != new]
+    changed_entries = [
+        (old, new_programs)
+        for old, new_programs in zip(programs, entries, strict=True)
+        if old != new_programs
+    ]
     assert not changed_entries, (
         f"{len(changed_entries)} of {len(entries)}, the first: {changed_entries[0]}"
     )
@@ -161,7 +167,7 @@ TEXT_ONLY_GAPS = {
 }  # fmt: skip
 
 
-def test_what_a_message_says_to_write_is_offered(programs: tuple[Entry, ...]) -> None:
+def test_suggested_texts_are_offered_as_repairs(programs: tuple[Entry, ...]) -> None:
     """This includes a warning, which then disappears; `tsc check --fix` applies no repair of a
     warning."""
     go_through(check_offer, programs)
@@ -184,7 +190,7 @@ def check_offer(entry: Entry) -> None:
             assert diagnostic.repair is None
 
 
-def test_what_is_repaired_is_repaired_once(programs: tuple[Entry, ...]) -> None:
+def test_repairs_are_idempotent(programs: tuple[Entry, ...]) -> None:
     go_through(check_repaired, programs)
 
 

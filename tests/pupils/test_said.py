@@ -96,7 +96,7 @@ def test_a_copied_call_is_never_taken_for_another_program(program: str, language
 
 
 @pytest.mark.parametrize("program", ["F(1, 80) forever", "W(1) siempre"])
-def test_what_goes_on_without_end_is_a_program(program: str) -> None:
+def test_an_endless_suggestion_is_a_program(program: str) -> None:
     [diagnostic] = check(f"SI|{program}")
     assert not any(
         diagnostic.is_mistake for diagnostic in check(f"SI|{diagnostic.values['endless']}")

@@ -34,7 +34,7 @@ VALUES = (("2, 60", ["F", "B"]), ("1, 440", ["BEEP"]), ("-30, 40", ["M"]), ("2",
 
 @pytest.mark.parametrize("head", HEADS)
 @pytest.mark.parametrize("words", ORDERS)
-def test_si_before_orders_in_words_asks_nothing(head: str, words: str) -> None:
+def test_si_before_verbal_commands_is_not_a_condition(head: str, words: str) -> None:
     for text in (f"{head} {words}", f"{head}, {words}", f"{head} {words}\nS", f"{head} {words};"):
         diagnostic = check(text)[0]
         begun_text = "SB" if head == "SB" else "SI"
@@ -45,15 +45,15 @@ def test_si_before_orders_in_words_asks_nothing(head: str, words: str) -> None:
 @pytest.mark.parametrize(
     "words", ["hay una pared, para", "DISTANCE < 10 avanza", "see a wall stop"]
 )
-def test_si_before_a_question_asks(words: str) -> None:
+def test_si_before_a_question_is_a_condition(words: str) -> None:
     assert not any(diagnostic.code.number == "TS036" for diagnostic in check(f"si {words}"))
 
 
 @pytest.mark.parametrize("signs", SPOKEN)
-def test_signs_that_are_named_are_written(signs: tuple[str, ...]) -> None:
-    opened_text, closed_text, comma, separator, bar, forward, right = signs
+def test_named_symbols_are_replaced_by_the_symbols(signs: tuple[str, ...]) -> None:
+    opened_text, closed_text, comma, separator, bar, forward, right_symbol = signs
     call = f"{forward} {opened_text} 2 {comma} 80 {closed_text}".strip()
-    turn = f"{right} {opened_text} 1 {comma} 50 {closed_text}".strip()
+    turn = f"{right_symbol} {opened_text} 1 {comma} 50 {closed_text}".strip()
     meant = {f"{call} {separator} {turn}": "F(2, 80);R(1, 50)", call: "F(2, 80)"}
     for (words, line), place in product(
         meant.items(), ("{}", "W(1)\n{}\nS", "IF(DISTANCE < 9)\n{}\nENDIF")
@@ -69,25 +69,26 @@ def test_signs_that_are_named_are_written(signs: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("kind", ["int ", "float ", "let ", "const int ", "variable "])
 @pytest.mark.parametrize("head", ["SI|", "SB|", "si |"])
-def test_a_typed_variable_above_si_comes_behind_it(kind: str, head: str) -> None:
-    for end, note, more in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
-        wrong = f"{kind}vel = 70{end}{note}\n{more}{head}F(2, vel)"
+def test_a_typed_variable_before_si_is_moved_after_it(kind: str, head: str) -> None:
+    for end, note, declaration in product((";", ""), ("", " // fast"), ("", "int t = 2\n")):
+        wrong_text = f"{kind}vel = 70{end}{note}\n{declaration}{head}F(2, vel)"
         begun_text = "".join(head.split()).upper()
-        right = f"{begun_text}vel = 70{end}{note}\n{more.replace('int ', '')}F(2, vel)"
+        right_text = f"{begun_text}vel = 70{end}{note}\n{declaration.replace('int ', '')}F(2, vel)"
         assert (
             apply_edits(
-                wrong, [it for diagnostic in check(wrong) for it in edits_of(diagnostic) or []]
+                wrong_text,
+                [it for diagnostic in check(wrong_text) for it in edits_of(diagnostic) or []],
             )
-            == right
+            == right_text
         )
-        assert repair_program(wrong, check).text == right
+        assert repair_program(wrong_text, check).text == right_text
 
 
 @pytest.mark.parametrize(
     "place", ["SI|{}", "SB|{}", "W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"]
 )
 @pytest.mark.parametrize(("values", "words"), VALUES)
-def test_values_without_a_word_get_those_that_take_them(
+def test_values_without_a_word_get_a_matching_word(
     values: str, words: list[str], place: str
 ) -> None:
     text = place.format(f"({values})")
@@ -111,7 +112,7 @@ BUTTONS = (
 
 @pytest.mark.parametrize("words", ORDERS)
 @pytest.mark.parametrize("head", STARTS + BUTTONS)
-def test_words_say_how_a_program_starts(head: str, words: str) -> None:
+def test_words_determine_how_a_program_starts(head: str, words: str) -> None:
     begun_text = "SB" if head in BUTTONS else "SI"
     for text in (f"{head} {words}", f"{head} {words};", f"{head} {words}\nS"):
         (diagnostic,) = check(text)
@@ -121,7 +122,7 @@ def test_words_say_how_a_program_starts(head: str, words: str) -> None:
 
 
 @pytest.mark.parametrize("head", BUTTONS[:2])
-def test_a_value_that_nobody_gave_is_called_an_example(head: str) -> None:
+def test_a_made_up_value_is_called_an_example(head: str) -> None:
     (diagnostic,) = check(f"{head} go forward")
     full_message = message(diagnostic, Source(""), "en")
     assert "SB|F(2, 80)" in full_message.fix
@@ -150,23 +151,23 @@ BODIES = ("F(1, 80);", "SI|F(1, 80);", "SI\nF(1, 80)", "F(1, 80); // }", "SB", "
 
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("body", BODIES)
-def test_what_a_sketch_has_in_its_setup_begins_the_program(body: str, frame: str) -> None:
+def test_the_setup_of_a_sketch_begins_the_program(body: str, frame: str) -> None:
     begun_text, bare = ("SB", body[2:]) if body[:2] == "SB" else ("SI", body.removeprefix("SI"))
-    right = f"{begun_text}|{bare.lstrip('|').lstrip()}"
+    right_text = f"{begun_text}|{bare.lstrip('|').lstrip()}"
     rests = {"": "", "void loop() {\n  R(1, 60);\n}": "LOOP(FOREVER);\n  R(1, 60);\nEND_LOOP"}
     gaps = ("\n",) if "//" in body or not body else (" ", "\n  ")
     for (rest, loop), gap, brace in product(rests.items(), gaps, (" {", "\n{")):
         text = f"{frame}{brace}{gap}{body}{gap.rstrip(' ') or ' '}}}\n{rest}"
         repaired_text = apply_edits(text, edits_of(check(text)[0]) or [])
         repaired_text = repair_program(repaired_text, check).text
-        assert compile(repaired_text).code == compile(f"{right}\n{loop}").code, text
+        assert compile(repaired_text).code == compile(f"{right_text}\n{loop}").code, text
         assert repaired_text.startswith(f"{begun_text}|"), text
 
 
 @pytest.mark.parametrize("marks", ["\u201c\u201d", '""', "''", "\u00ab\u00bb"])
 @pytest.mark.parametrize("line", ["SB|F(2, 80)", "SI|F(2, 80);S", "F(2, 80)"])
-def test_a_line_in_quotation_marks_is_shown_with_its_start(line: str, marks: str) -> None:
-    wrong = f"{marks[0]}{line}{marks[1]}"
-    (diagnostic,) = check(wrong)
-    assert diagnostic.values["fix"] == line, wrong
-    assert repair_program(wrong, check).text.replace(" ", "") == line.replace(" ", "")
+def test_a_quoted_line_is_suggested_with_its_start(line: str, marks: str) -> None:
+    wrong_text = f"{marks[0]}{line}{marks[1]}"
+    (diagnostic,) = check(wrong_text)
+    assert diagnostic.values["fix"] == line, wrong_text
+    assert repair_program(wrong_text, check).text.replace(" ", "") == line.replace(" ", "")

@@ -17,7 +17,7 @@ BRACKET_CONTENTS = ("7", "DISTANCE < 23", "7.5, 23", "ABS(7)")
 @pytest.mark.sampled("place", keep=2)
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("word", ["S", "STOP", "BREAK", "END_LOOP", "ENDIF", "START", "DISTANCE"])
-def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> None:
+def test_contents_of_needless_brackets_are_named(word: str, place: str) -> None:
     for inside, language in product(BRACKET_CONTENTS, ("en", "es", "pt")):
         text = place.format(f"{word}({inside})")
         messages = [
@@ -35,13 +35,13 @@ def test_what_stands_in_needless_brackets_is_named(word: str, place: str) -> Non
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_a_question_in_needless_brackets_is_asked(place: str) -> None:
+def test_a_condition_in_needless_brackets_is_recognized(place: str) -> None:
     text = place.format("STOP(DISTANCE < 10)")
     offers = [diagnostic.values.get("fix") for diagnostic in check(text)]
     assert "IF(DISTANCE < 10);STOP;ENDIF" in offers
 
 
 @pytest.mark.parametrize(("text", "lost_text"), [("TASK(1)\nS\nEND_TASK", "1"), ("SHOW1(5)", "1")])
-def test_what_a_shown_change_only_cuts_out_is_named(text: str, lost_text: str) -> None:
+def test_parts_removed_by_a_suggestion_are_named(text: str, lost_text: str) -> None:
     first, *_ = check(text)
     assert first.values["lost"] == lost_text

@@ -46,20 +46,20 @@ def numbers(text: str) -> list[tuple[float, str]]:
     pairs = []
     for match in re.finditer(r"(?<![\w.])\d+(?:\.\d+)?", text):
         text_before, text_after = text[: match.start()], text[match.end() :]
-        own = next((unit for pattern, unit in PLACES if pattern.search(text_before)), None)
-        if own == "":
+        own_unit = next((unit for pattern, unit in PLACES if pattern.search(text_before)), None)
+        if own_unit == "":
             way = re.match(r"(?i) ?(CM|DEG)\b", text_after)
-            own = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
+            own_unit = {"CM": "cm", "DEG": "°"}[way[1].upper()] if way else "s"
         is_minus = re.search(r"(?:[(,=<>+*/]|^)\s*-$", text_before) is not None
-        pairs.append((-float(match[0]) if is_minus else float(match[0]), own or ""))
+        pairs.append((-float(match[0]) if is_minus else float(match[0]), own_unit or ""))
     return pairs
 
 
 def is_kept(written_text: str, value: float, unit: str, repaired_text: str) -> bool:
     """Return whether a program has a number with its sign and unit, or still as it was written."""
     return written_text in repaired_text or any(
-        abs(number - value) < 0.001 and (not own or not unit or own == unit)
-        for number, own in numbers(repaired_text)
+        abs(number - value) < 0.001 and (not own_unit or not unit or own_unit == unit)
+        for number, own_unit in numbers(repaired_text)
     )
 
 
@@ -82,36 +82,36 @@ def variants(text: str) -> list[tuple[str, str, float, str]]:
         if text[:start].rstrip()[-1:] not in ("-", "+"):
             texts.append((f"{text[:start]}-{text[start:]}", f"-{match[0]}", -value, ""))
         for written_text, unit, scale in units():
-            new = f"{text[:end]} {written_text}{text[end:]}"
-            texts.append((new, f"{match[0]} {written_text}", value * scale, unit))
+            new_text = f"{text[:end]} {written_text}{text[end:]}"
+            texts.append((new_text, f"{match[0]} {written_text}", value * scale, unit))
     return texts
 
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
-def test_no_repair_loses_a_sign_or_a_unit_in_the_example_of_a_row(text: str) -> None:
-    for wrong, written_text, value, unit in variants(text):
-        repaired_text = repair_program(wrong, check).text
-        assert is_kept(written_text, value, unit, repaired_text), (wrong, repaired_text)
+def test_no_repair_of_an_example_loses_a_sign_or_a_unit(text: str) -> None:
+    for wrong_text, written_text, value, unit in variants(text):
+        repaired_text = repair_program(wrong_text, check).text
+        assert is_kept(written_text, value, unit, repaired_text), (wrong_text, repaired_text)
 
 
 @pytest.mark.sampled("text", keep=15)
 @pytest.mark.parametrize("text", [*dict.fromkeys(EXAMPLES)])
-def test_what_is_only_shown_keeps_a_unit_or_says_that_it_loses_it(text: str) -> None:
+def test_suggestions_keep_a_unit_or_report_its_loss(text: str) -> None:
     """A minus is not checked: without it, a move reverses, and the message says so."""
-    for wrong, written_text, value, unit in variants(text):
+    for wrong_text, written_text, value, unit in variants(text):
         shown_diagnostics = [
             diagnostic
-            for diagnostic in check(wrong)
+            for diagnostic in check(wrong_text)
             if diagnostic.repair and not diagnostic.repair.is_sure
         ]
         # Part of a single number: `2. 80`.
-        is_part = re.search(rf"\d\. {re.escape(written_text)}", wrong)
+        is_part = re.search(rf"\d\. {re.escape(written_text)}", wrong_text)
         for diagnostic in shown_diagnostics if unit and not is_part else ():
-            repaired_text = apply_edits(wrong, edits_of(diagnostic) or [])
+            repaired_text = apply_edits(wrong_text, edits_of(diagnostic) or [])
             lost_text = diagnostic.values.get("lost", "")
             assert written_text in lost_text or is_kept(written_text, value, unit, repaired_text), (
-                wrong,
+                wrong_text,
                 repaired_text,
             )
 
@@ -126,14 +126,14 @@ def loses_nothing(text: str) -> None:
     for number, sign, space in product(("2", "0.5"), ("", "-", "- "), ("", " ")):
         for word, unit, scale in units():
             written_text = f"{sign}{number}{space}{word}"
-            wrong = text.replace("{}", written_text)
-            repaired_text = repair_program(wrong, check).text
+            wrong_text = text.replace("{}", written_text)
+            repaired_text = repair_program(wrong_text, check).text
             value = float(number) * scale * (-1 if sign else 1)
-            assert is_kept(written_text, value, unit, repaired_text), (wrong, repaired_text)
+            assert is_kept(written_text, value, unit, repaired_text), (wrong_text, repaired_text)
 
 
 @pytest.mark.parametrize(
-    ("text", "repaired_text", "lost", "more"),
+    ("text", "repaired_text", "lost", "added"),
     [
         ("F(2 s, 80 %)", "F(2, 80)", [], []),
         ("avanza 2,5 s", "F(2.5, 80)", [], []),
@@ -166,14 +166,14 @@ def loses_nothing(text: str) -> None:
         ("4*(F(2, 80))", "LOOP(4);F(2, 80);END_LOOP", [], []),
     ],
 )  # fmt: skip
-def test_what_a_repair_loses_or_does_more(
-    text: str, repaired_text: str, lost: list[str], more: list[str]
+def test_losses_and_additions_of_a_repair_are_found(
+    text: str, repaired_text: str, lost: list[str], added: list[str]
 ) -> None:
-    assert difference(text, repaired_text, KIT) == (lost, more)
+    assert difference(text, repaired_text, KIT) == (lost, added)
 
 
 @pytest.mark.parametrize(
-    ("wrong", "repaired_text"),
+    ("wrong_text", "repaired_text"),
     [
         ("T = 500 ms;W(T)", "T = 0.5;W(T)"),
         ("F(5, 60) UNTIL(TIME > 500 ms)", "F(5, 60) UNTIL(TIME > 0.5)"),
@@ -187,14 +187,14 @@ def test_what_a_repair_loses_or_does_more(
         ("DEF PASO;S\nENDDEF PASO\nPASO;PASO", "DEF PASO;S\nEND_DEF\nPASO;PASO"),
     ],
 )
-def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(
-    wrong: str, repaired_text: str
+def test_repairs_keep_units_and_names_or_are_not_applied(
+    wrong_text: str, repaired_text: str
 ) -> None:
-    assert repair_program(wrong, check).text == repaired_text
+    assert repair_program(wrong_text, check).text == repaired_text
 
 
 @pytest.mark.parametrize(
-    ("wrong", "tried_text"),
+    ("wrong_text", "tried_text"),
     [
         ("SIDE = 30 CM\nF(SIDE, 60)", "SIDE = 30 and F(SIDE CM, 60)"),
         ("SIDE = 30 CM\nW(SIDE)", "SIDE = 30"),
@@ -205,29 +205,27 @@ def test_what_has_a_unit_or_a_name_is_made_with_it_or_not_at_all(
         ("F(- 2 sec, 60)", "B(2, 60)"),
     ],
 )
-def test_what_is_only_shown_says_what_it_loses_and_what_else_is_meant(
-    wrong: str, tried_text: str
-) -> None:
-    (diagnostic,) = check(wrong)
-    shown_message = message(diagnostic, Source(wrong), "en")
+def test_suggestions_name_losses_and_other_readings(wrong_text: str, tried_text: str) -> None:
+    (diagnostic,) = check(wrong_text)
+    shown_message = message(diagnostic, Source(wrong_text), "en")
     assert shown_message.fix == tried_text
     assert (lost_text := diagnostic.values.get("lost", "")) in shown_message.message
     assert bool(lost_text) is ("leaves out" in shown_message.message)
-    assert repair_program(wrong, check).text == wrong or diagnostic.values.get("carried")
+    assert repair_program(wrong_text, check).text == wrong_text or diagnostic.values.get("carried")
 
 
 @pytest.mark.parametrize("digits", ["15", "25", "05", "251"])
 @pytest.mark.parametrize(
-    "wrong", ["F({0},{1}, {2})", "avanza {0},{1} segundos a {2}", "W({2});F({0},{1}, 80)"]
+    "wrong_text", ["F({0},{1}, {2})", "avanza {0},{1} segundos a {2}", "W({2});F({0},{1}, 80)"]
 )
-def test_digits_of_a_decimal_comma_are_no_other_number(wrong: str, digits: str) -> None:
+def test_digits_after_a_decimal_comma_are_not_a_second_number(wrong_text: str, digits: str) -> None:
     """`F(1,5, 15)` is F(1.5, 15): its 15 is there."""
-    text = wrong.format(digits[0], digits[1:], digits)
+    text = wrong_text.format(digits[0], digits[1:], digits)
     for diagnostic in check(text):
         assert "lost" not in diagnostic.values, (text, diagnostic.values)
 
 
-def test_no_repair_takes_a_sign_for_a_command_out() -> None:
+def test_no_repair_removes_a_sign_as_a_command() -> None:
     """A stop sign is S, in any place; a sign without meaning may be removed."""
     rows = (read_language_file(language, "lexicon.txt").split("\n") for language in languages())
     command_rows = [row.partition("|") for its in rows for row in its if re.match("[FBLRS] ", row)]
@@ -244,14 +242,14 @@ def test_no_repair_takes_a_sign_for_a_command_out() -> None:
             )
 
 
-def test_what_one_line_would_lose_costs_the_others_nothing() -> None:
+def test_a_loss_in_one_line_does_not_block_repairs_of_others() -> None:
     """A number of another line is not that of this one, and BLA is unknown."""
-    wrong = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"
-    right = wrong.replace("F(2 80)", "F(2, 80)").replace("LUZ_ESQ", "LIGHT_L")
-    assert repair_program(wrong, check).text == right
+    wrong_text = "IF(LUZ_ESQ > 50%)\nF(2 80)\nENDIF\nBLA(3);F(1, 50)"
+    right_text = wrong_text.replace("F(2 80)", "F(2, 80)").replace("LUZ_ESQ", "LIGHT_L")
+    assert repair_program(wrong_text, check).text == right_text
 
 
-def test_a_unit_is_told_where_it_stands() -> None:
-    wrong = "F(25 CM, 60) UNTIL(DISTANCE < 10 CM)"
-    (diagnostic,) = check(wrong)
-    assert (diagnostic.values["found"], wrong[slice(*diagnostic.span)]) == ("10 CM", "10 CM")
+def test_a_unit_is_reported_at_its_place() -> None:
+    wrong_text = "F(25 CM, 60) UNTIL(DISTANCE < 10 CM)"
+    (diagnostic,) = check(wrong_text)
+    assert (diagnostic.values["found"], wrong_text[slice(*diagnostic.span)]) == ("10 CM", "10 CM")

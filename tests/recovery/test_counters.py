@@ -24,10 +24,10 @@ BODIES = ("F(1, {v} * 10)", "W(1);SHOW({v});S", "IF({v} > 2);S;ENDIF")
 SEPARATORS = ("\n", "\n  ")
 
 
-def mend(wrong: str) -> str:
+def mend(wrong_text: str) -> str:
     """Return a program with all that its messages offer."""
-    edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
-    return apply_edits(wrong, edits)
+    edits = [edit for diagnostic in check(wrong_text) for edit in edits_of(diagnostic) or []]
+    return apply_edits(wrong_text, edits)
 
 
 @pytest.mark.parametrize("head", HEADS)
@@ -36,27 +36,29 @@ def test_a_counter_that_is_used_grows_from_its_first_value(head: str, end: str) 
     for name, (first, last), body, separator in product(NAMES, RANGES, BODIES, SEPARATORS):
         values = {"v": name, "a": first, "b": last, "c": last + 1}
         begun_text, inside, ended_text = (part.format(**values) for part in (head, body, end))
-        wrong = f"SI|W(3)\n{begun_text}{separator}{inside}\n{ended_text}\nS"
+        wrong_text = f"SI|W(3)\n{begun_text}{separator}{inside}\n{ended_text}\nS"
         loop = f"LOOP({last - first + 1});{name.upper()} = {name.upper()} + 1"
-        right = f"{name.upper()} = {first - 1};{loop}"
-        assert right in [message(it, Source(wrong), "en").fix for it in check(wrong)], wrong
-        assert mend(wrong) == f"SI|W(3)\n{right}{separator}{inside}\nEND_LOOP\nS"
-        assert not check(mend(wrong))
+        right_text = f"{name.upper()} = {first - 1};{loop}"
+        assert right_text in [
+            message(it, Source(wrong_text), "en").fix for it in check(wrong_text)
+        ], wrong_text
+        assert mend(wrong_text) == f"SI|W(3)\n{right_text}{separator}{inside}\nEND_LOOP\nS"
+        assert not check(mend(wrong_text))
 
 
 @pytest.mark.parametrize("text", ["for each {v} from {a} to {b}", "para cada {v} de {a} a {b}"])
 @pytest.mark.parametrize("name", NAMES)
-def test_one_that_is_not_used_says_how_often(text: str, name: str) -> None:
+def test_an_unused_counter_becomes_a_loop_count(text: str, name: str) -> None:
     for first, last in RANGES:
-        wrong = f"SI|{text.format(v=name, a=first, b=last)}\nF(1, 60)\nEND_LOOP"
-        assert mend(wrong) == f"SI|LOOP({last - first + 1})\nF(1, 60)\nEND_LOOP"
+        wrong_text = f"SI|{text.format(v=name, a=first, b=last)}\nF(1, 60)\nEND_LOOP"
+        assert mend(wrong_text) == f"SI|LOOP({last - first + 1})\nF(1, 60)\nEND_LOOP"
 
 
 @pytest.mark.parametrize(
     "text",
     ["FOR 3 TO 5", "FOR I = 5 TO 1", "FOR I = 1 TO V", "REPEAT 4", "FOR F = 1 TO 3", "I = 1 TO"],
 )  # fmt: skip
-def test_what_counts_otherwise_is_left(text: str) -> None:
+def test_other_counting_loops_are_left_alone(text: str) -> None:
     fixes = [
         diagnostic.values.get("fix", "") for diagnostic in check(f"SI|{text}\nSHOW(I)\nEND_LOOP")
     ]
@@ -73,13 +75,13 @@ STEPS = {
 @pytest.mark.parametrize(
     ("first", "last", "step"), [(10, 100, 10), (0, 9, 2), (1, 5, 1), (5, 6, 3)]
 )
-def test_a_counter_that_goes_by_steps_shows_the_same_numbers(
+def test_a_counter_with_steps_shows_the_same_numbers(
     head: str, end: str, first: int, last: int, step: int
 ) -> None:
-    wrong = f"{head.format(a=first, b=last, c=last + 1, s=step)}\nSHOW(I)\n{end}"
-    (diagnostic, *_) = check(wrong)
+    wrong_text = f"{head.format(a=first, b=last, c=last + 1, s=step)}\nSHOW(I)\n{end}"
+    (diagnostic, *_) = check(wrong_text)
     numbers = range(first, last + 1, step)
     assert diagnostic.values["fix"] == f"I = {first - step};LOOP({len(numbers)});I = I + {step}", (
-        wrong
+        wrong_text
     )
-    assert "leaves out" not in " ".join(map(str, message(diagnostic, Source(wrong), "en")))
+    assert "leaves out" not in " ".join(map(str, message(diagnostic, Source(wrong_text), "en")))

@@ -43,7 +43,7 @@ def places(body: tuple[str, ...]) -> str:
 
 @pytest.mark.parametrize("separator", [";", "; ", " ; "])
 @pytest.mark.parametrize(("begun_text", "block"), [*product(PROGRAM_HEADS, BLOCKS)])
-def test_each_place_is_named_and_none_is_made(
+def test_each_possible_end_is_named_but_none_is_inserted(
     begun_text: str, block: tuple[str, str], separator: str
 ) -> None:
     for body in BODIES:
@@ -59,7 +59,7 @@ def test_each_place_is_named_and_none_is_made(
 @pytest.mark.parametrize("enclosing_block", ENCLOSING_BLOCKS)
 @pytest.mark.parametrize("block", BLOCKS[2:])
 @pytest.mark.parametrize("body", BODIES[:3])
-def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
+def test_the_inner_block_lacks_its_end_if_the_outer_one_has_its_own(
     body: tuple[str, ...], block: tuple[str, str], enclosing_block: tuple[str, str]
 ) -> None:
     if (block[1], enclosing_block[1]) == ("END_LOOP", "END_LOOP"):
@@ -75,20 +75,20 @@ def test_the_inner_block_lacks_its_end_where_the_outer_one_has_its_own(
 
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("tail", ["", ";F(8, 50)"])
-def test_an_endless_loop_in_a_task_ends_where_that_ends(body: tuple[str, ...], tail: str) -> None:
+def test_an_endless_loop_in_a_task_ends_with_the_task(body: tuple[str, ...], tail: str) -> None:
     text = "SI|" + ";".join(("TASK", "LOOP(FOREVER)", *body, "END_TASK")) + tail
-    last = body[-1]
-    assert code_and_fix(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last}")
+    last_line = body[-1]
+    assert code_and_fix(text) == ("This LOOP has no END_LOOP", f"Write ;END_LOOP after {last_line}")
     assert repair_program(text, check).text == text.replace("END_TASK", "END_LOOP;END_TASK")
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-def test_one_place_is_not_a_question(block: tuple[str, str]) -> None:
+def test_a_single_possible_end_is_stated_directly(block: tuple[str, str]) -> None:
     text = f"SI|{block[0]}; F(1, 60)"
     assert code_and_fix(text)[1] == f"Write ;{block[1]} after F(1, 60)"
 
 
-def test_it_ends_in_its_last_branch_and_before_the_end_of_another() -> None:
+def test_a_missing_end_follows_the_last_branch_or_precedes_an_outer_end() -> None:
     text = "SI|IF(DISTANCE < 9);S;W(2);ELSE;W(1);F(1, 60)"
     assert (
         code_and_fix(text)[1]

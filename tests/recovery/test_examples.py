@@ -26,19 +26,21 @@ SAID = {"en": "is an example", "es": "es solo un ejemplo", "pt": "é só um exem
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("word", ["F", "B", "L", "R"])
-def test_a_power_that_is_missing_is_the_one_of_the_others(word: str, place: str) -> None:
+def test_a_missing_power_is_copied_from_other_moves(word: str, place: str) -> None:
     for power in ("50", "35"):
-        wrong = place.format(f"{word}(1)", p=power)
-        diagnostic = next(diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake)
-        assert diagnostic.values["fix"] == f"{word}(1, {power})", wrong
-        assert not diagnostic.values.get("sample"), wrong
+        wrong_text = place.format(f"{word}(1)", p=power)
+        diagnostic = next(diagnostic for diagnostic in check(wrong_text) if diagnostic.is_mistake)
+        assert diagnostic.values["fix"] == f"{word}(1, {power})", wrong_text
+        assert not diagnostic.values.get("sample"), wrong_text
 
 
 @pytest.mark.parametrize("place", PLACES)
-def test_where_the_others_have_several_it_is_an_example(place: str) -> None:
-    wrong = place.format("R(1)", p="50") + ";L(1, 30)"
-    diagnostic = next(diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake)
-    assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), wrong
+def test_with_several_other_powers_an_example_is_used(place: str) -> None:
+    wrong_text = place.format("R(1)", p="50") + ";L(1, 30)"
+    diagnostic = next(diagnostic for diagnostic in check(wrong_text) if diagnostic.is_mistake)
+    assert (diagnostic.values["fix"], diagnostic.values["sample"]) == ("R(1, 80)", "80 %"), (
+        wrong_text
+    )
 
 
 @pytest.mark.parametrize("place", SURROUNDINGS)
@@ -53,5 +55,5 @@ def test_an_example_is_called_an_example(place: str, language: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["F(2, 8O)", "F(dos, ochenta)", "W(uno)", "F(2 seg 80)"])
-def test_a_number_that_is_written_in_another_form_is_not_an_example(text: str) -> None:
+def test_a_number_written_in_another_form_is_not_an_example(text: str) -> None:
     assert not any(diagnostic.values.get("sample") for diagnostic in check(text))

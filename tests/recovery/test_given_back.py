@@ -39,7 +39,7 @@ def test_a_return_and_its_uses_are_one_mistake(
 
 @pytest.mark.parametrize("use", USES)
 @pytest.mark.parametrize("separator", SEPARATORS)
-def test_what_the_message_says_to_do_is_right(use: str, separator: str) -> None:
+def test_following_the_message_gives_a_right_program(use: str, separator: str) -> None:
     call = ["DOUBLE(4)", *use.replace("DOUBLE(4)", "RESULT").split(";")]
     join_after = separator.join(["SI|DEF DOUBLE(N)", "RESULT = N * 2", "END_DEF", *call])
     assert not any(diagnostic.is_mistake for diagnostic in check(join_after))
@@ -47,14 +47,16 @@ def test_what_the_message_says_to_do_is_right(use: str, separator: str) -> None:
 
 @pytest.mark.parametrize("use", USES)
 @pytest.mark.parametrize("other_statement", ["", ";F(2 80)", ";BLA(3)"])
-def test_a_call_as_a_value_without_a_return_is_told_once(use: str, other_statement: str) -> None:
+def test_a_call_used_as_a_value_without_return_is_reported_once(
+    use: str, other_statement: str
+) -> None:
     text = f"SI|DEF DOUBLE(N);SHOW(N);END_DEF;{use}{other_statement}"
     first, *others = check(text)
     assert (first.code.number, first.values.get("called")) == ("TS051", "DOUBLE")
     assert len(others) == bool(other_statement)
 
 
-def test_questions_and_wholes_are_read_on() -> None:
+def test_conditions_and_expressions_with_such_calls_are_read_on() -> None:
     text = "SI|DEF NEAR(N);RETURN DISTANCE < N;END_DEF;IF(NEAR(4) AND KEY_A);S;ENDIF"
     assert codes_of(text) == ["TS051"]
     for question_template in (
@@ -67,7 +69,7 @@ def test_questions_and_wholes_are_read_on() -> None:
         assert codes_of(f"SI|DEF A(N);SHOW(N);END_DEF;{twice}") == ["TS051"]
 
 
-def test_a_return_of_nothing_or_outside_a_def_and_right_calls_are_not_of_this_kind() -> None:
+def test_other_returns_and_right_calls_are_not_reported_as_this_mistake() -> None:
     assert codes_of("SI|DEF A;S;RETURN;END_DEF;A") == ["TS101"]
     assert codes_of("SI|S;RETURN 5") == ["TS101"]
     assert not check("DEF A(N);W(N);END_DEF;A(3);IF(DISTANCE < 9);A(2);ENDIF;A(4)")

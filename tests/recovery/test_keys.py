@@ -37,9 +37,7 @@ ORDERS = ("F(1, 60)", "S")
 
 @pytest.mark.sampled("key_text", "side", keep=100)
 @pytest.mark.parametrize(("key_text", "side"), CASES)
-def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(
-    key_text: str, side: str
-) -> None:
+def test_a_paraphrased_key_becomes_its_reading_in_any_condition(key_text: str, side: str) -> None:
     for place in PLACES:
         assert repair_program(place.replace("{}", key_text), check).text == place.replace(
             "{}", f"KEY_{side}"
@@ -47,12 +45,10 @@ def test_a_key_in_own_words_becomes_its_reading_wherever_it_is_asked(
 
 
 @pytest.mark.parametrize("key", ["KEY", "TECLA", "FLECHA", "SETA"])
-@pytest.mark.parametrize("other", [" = SPACE", "", " = 1", " == ENTER", "_ESPACIO", " = Z"])
-def test_another_key_is_told_all_that_there_are_and_asks_for_no_number(
-    key: str, other: str
-) -> None:
+@pytest.mark.parametrize("suffix", [" = SPACE", "", " = 1", " == ENTER", "_ESPACIO", " = Z"])
+def test_an_unknown_key_is_reported_with_all_keys(key: str, suffix: str) -> None:
     for place in PLACES:
-        text = place.replace("{}", key + other, 1).replace("{}", "KEY_A")
+        text = place.replace("{}", key + suffix, 1).replace("{}", "KEY_A")
         (diagnostic,) = check(text)
         key_text = message(diagnostic, Source(text), "en").message
         assert diagnostic.code.number == "TS103" and all(key in key_text for key in KEYS), text
@@ -62,13 +58,13 @@ def test_another_key_is_told_all_that_there_are_and_asks_for_no_number(
 @pytest.mark.parametrize("sign", [" = ", ": ", " -> "])
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("side", SIDES)
-def test_an_order_for_a_key_is_asked_for_it(side: str, order: str, sign: str) -> None:
+def test_an_instruction_for_a_key_gets_its_condition(side: str, order: str, sign: str) -> None:
     for key, word in product((*OF_KEYS, "KEY_"), SIDES[side]):
         text = f"KEY_{side}" if key == "KEY_" else f"{key} {word}"
-        wrong = f"SI|{text}{sign}{order}\nW(3)"
-        (diagnostic,) = check(wrong)
-        right = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
-        assert apply_edits(wrong, edits_of(diagnostic) or []) == right
+        wrong_text = f"SI|{text}{sign}{order}\nW(3)"
+        (diagnostic,) = check(wrong_text)
+        right_text = f"SI|WHEN(KEY_{side});{order};END_WHEN\nW(3)"
+        assert apply_edits(wrong_text, edits_of(diagnostic) or []) == right_text
         inside = f"SI|LOOP(FOREVER);{text}{sign}{order};END_LOOP"
         (diagnostic,) = check(inside)
         assert diagnostic.values["fix"] == f"IF(KEY_{side});{order};ENDIF"
@@ -82,18 +78,18 @@ STICK = {"UP": "PAD_Y > 0", "DOWN": "PAD_Y < 0", "LEFT": "PAD_X < 0", "RIGHT": "
 def test_a_side_of_the_stick_is_shown_as_its_number_and_as_an_arrow(stick: str, side: str) -> None:
     forms = ("{k} {s}", "{k}_{s}", "{k} = {s}", "{s} {k}", "{k}({s})", "{k} {s} = TRUE")
     for place, form, word in product(PLACES, forms, SIDES[side]):
-        wrong = place.replace("{}", form.format(k=stick, s=word), 1).replace("{}", "KEY_A")
-        (diagnostic,) = check(wrong)
+        wrong_text = place.replace("{}", form.format(k=stick, s=word), 1).replace("{}", "KEY_A")
+        (diagnostic,) = check(wrong_text)
         values = {"fix": STICK[side], "arrow": f"KEY_{side}"}
-        assert {name: diagnostic.values.get(name) for name in values} == values, wrong
-        assert repair_program(wrong, check).text == wrong
+        assert {name: diagnostic.values.get(name) for name in values} == values, wrong_text
+        assert repair_program(wrong_text, check).text == wrong_text
 
 
 @pytest.mark.parametrize("side", STICK)
-def test_an_axis_with_its_side_is_asked_for_its_number(side: str) -> None:
+def test_an_axis_with_a_side_becomes_a_comparison(side: str) -> None:
     for place, form in product(PLACES, ("PAD_X {}", "PAD_X = {}", "STICK_X_{}", "PAD_Y == {}")):
-        wrong = place.replace("{}", form.replace("{}", side), 1).replace("{}", "KEY_A")
-        (diagnostic,) = check(wrong)
+        wrong_text = place.replace("{}", form.replace("{}", side), 1).replace("{}", "KEY_A")
+        (diagnostic,) = check(wrong_text)
         assert (diagnostic.values["fix"], diagnostic.values["arrow"]) == (STICK[side], "")
 
 
@@ -115,7 +111,7 @@ def test_a_letter_for_a_sensor_is_shown_as_that_sensor(side: str) -> None:
 @pytest.mark.parametrize(
     ("way", "side"), [(way, side) for side in ("LEFT", "RIGHT") for way in SIDES[side]]
 )
-def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str) -> None:
+def test_a_paraphrased_light_sensor_becomes_its_reading(stem: str, way: str, side: str) -> None:
     for form, place in product(
         ("{0}_{1}", "{1}_{0}", "{0}{1}", "{1}{0}", "{0}({1})", "{0} {1}"), PLACES
     ):
@@ -130,7 +126,7 @@ def test_a_light_in_own_words_becomes_its_reading(stem: str, way: str, side: str
     ["KEY = 3;IF(KEY > 2);F(1 60);ENDIF", "UP = 3;F(UP, 60);F(2 80)", "IF(KEY_A);F(1 60);ENDIF",
      "DEF TECLA(UP);F(UP, 60);END_DEF;TECLA(2);F(1 60)", "F(2 60) // press key A"],
 )  # fmt: skip
-def test_names_of_a_program_and_notes_are_no_keys(text: str) -> None:
+def test_program_names_and_comments_are_not_keys(text: str) -> None:
     assert {diagnostic.code.number for diagnostic in check(f"SI|{text}")} == {"TS017"}
 
 

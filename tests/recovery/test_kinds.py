@@ -48,14 +48,17 @@ def test_crossed_ends_are_swapped_and_no_body_leaves_its_block(
 ) -> None:
     lines = ["SI|S", outer[0], inner[0], "F(1, 60)", "{}", *rest.split(";"), "{}", "BEEP(1, 440)"]
     text = separator.join(lines)
-    wrong, right = text.format(outer[1], inner[1]), text.format(inner[1], outer[1])
-    assert not any(diagnostic.is_mistake for diagnostic in check(right))
-    (diagnostic,) = check(wrong)
+    wrong_text, right_text = text.format(outer[1], inner[1]), text.format(inner[1], outer[1])
+    assert not any(diagnostic.is_mistake for diagnostic in check(right_text))
+    (diagnostic,) = check(wrong_text)
     assert diagnostic.code.number == "TS026" and diagnostic.values["swapped"] == inner[1]
-    assert apply_fix(wrong, diagnostic) == right and repair_program(wrong, check).text == wrong
+    assert (
+        apply_fix(wrong_text, diagnostic) == right_text
+        and repair_program(wrong_text, check).text == wrong_text
+    )
 
 
-def test_they_are_told_beside_another_mistake_and_in_words() -> None:
+def test_crossed_ends_are_reported_beside_other_mistakes() -> None:
     text = "SI|LOOP(3);WHILE(DISTANCE > 10);F(1 60);END_LOOP;R(1, 60);END_WHILE"
     assert [code for code, _ in codes_and_fixes(text)] == ["TS017", "TS026"]
     text = "SI|REPETIR 3\nMIENTRAS(DISTANCE > 10)\nF(1, 60)\nFIN REPETIR\nR(1, 60)\nFIN MIENTRAS"
@@ -67,7 +70,7 @@ def test_they_are_told_beside_another_mistake_and_in_words() -> None:
     )
 
 
-def test_an_end_that_has_no_other_or_an_arm_between_is_not_swapped() -> None:
+def test_an_unmatched_end_or_one_across_a_branch_is_not_swapped() -> None:
     for text in ("LOOP(2);IF(DISTANCE < 9);S;END_LOOP;ELSE;W(1);ENDIF",
                  "LOOP(2);IF(DISTANCE < 9);S;END_LOOP;LOOP(2);ENDIF;S;END_LOOP"):  # fmt: skip
         assert not any(diagnostic.values.get("swapped") for diagnostic in check(text)), text
@@ -81,12 +84,12 @@ def test_an_end_that_has_no_other_or_an_arm_between_is_not_swapped() -> None:
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{}", "SI|LOOP(2)\n{}\nEND_LOOP", "{};W(1)"])
 def test_the_second_branch_of_a_question_is_its_else(word: str, sign: str, template: str) -> None:
     asked_text = sign.join(["LIGHT_L > 300", "L(1, 60)", "BEEP(1, 440)"])
-    wrong = template.format(f"{word}({asked_text})")
-    right = template.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
-    assert apply_fix(wrong, check(wrong)[0]).replace("; ", ";") == right
+    wrong_text = template.format(f"{word}({asked_text})")
+    right_text = template.format("IF(LIGHT_L > 300);L(1, 60);ELSE;BEEP(1, 440);ENDIF")
+    assert apply_fix(wrong_text, check(wrong_text)[0]).replace("; ", ";") == right_text
 
 
-def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
+def test_text_after_the_closing_bracket_is_outside_the_branch() -> None:
     text = "SI|W(1);SI(DISTANCE < 10; S);F(1, 60)"
     assert repair_program(text, check).text == "SI|W(1);IF(DISTANCE < 10);S;ENDIF;F(1, 60)"
 
@@ -96,14 +99,16 @@ def test_what_stands_after_its_brackets_is_in_no_branch() -> None:
 
 @pytest.mark.parametrize("separator", SEPARATORS)
 @pytest.mark.parametrize("value", ["40", "V + 1", "DISTANCE"])
-def test_a_def_with_one_value_that_is_set_is_called(separator: str, value: str) -> None:
+def test_a_def_with_one_value_that_is_assigned_is_called(separator: str, value: str) -> None:
     lines = ["SI|DEF PASSO(N)", "F(N CM, 60)", "END_DEF", "V = 3", f"PASSO = {value}", "S"]
-    wrong = separator.join(lines)
-    assert codes_and_fixes(wrong)[0] == ("TS110", f"PASSO({value})")
-    assert apply_fix(wrong, check(wrong)[0]) == wrong.replace(f"PASSO = {value}", f"PASSO({value})")
+    wrong_text = separator.join(lines)
+    assert codes_and_fixes(wrong_text)[0] == ("TS110", f"PASSO({value})")
+    assert apply_fix(wrong_text, check(wrong_text)[0]) == wrong_text.replace(
+        f"PASSO = {value}", f"PASSO({value})"
+    )
 
 
-def test_a_def_without_a_value_or_a_name_that_is_asked_gets_another_name() -> None:
+def test_a_variable_named_like_a_def_is_renamed() -> None:
     for text in ("DEF A;S;END_DEF;A = 3;A", "DEF A(N);W(N);END_DEF;A = 3;A(2);SHOW(A)"):
         assert codes_and_fixes(text)[0] == ("TS110", "A_2")
     two = "DEF LADO(N, P);F(N, P);END_DEF;LADO = 2, 60"
@@ -147,25 +152,28 @@ def test_a_variable_x_is_only_shown_as_a_sign() -> None:
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
 @pytest.mark.parametrize(("power", "way"), [("70", "30"), ("60", "90"), ("40", "25"), ("99", "20")])
-def test_a_unit_stays_with_its_number_and_the_other_reading_is_beside_it(
+def test_a_unit_stays_with_its_number_and_the_alternative_is_shown(
     word: str, unit: str, template: str, power: str, way: str
 ) -> None:
-    wrong = template.format(f"{word}({power}, {way} {unit})")
-    own, other = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
-    assert codes_and_fixes(wrong) == [("TS076", f"{own} or {other}")]
-    assert repair_program(wrong, check).text == wrong
+    wrong_text = template.format(f"{word}({power}, {way} {unit})")
+    own_reading, other_reading = f"{word}({way} {unit}, {power})", f"{word}({power} {unit}, {way})"
+    assert codes_and_fixes(wrong_text) == [("TS076", f"{own_reading} or {other_reading}")]
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{};S", "SI|DEF A\n{}\nEND_DEF\nA"])
 @pytest.mark.parametrize(("little", "power"), [("2", "60"), ("5", "20"), ("0.5", "100")])
-def test_a_tiny_value_is_not_the_power_where_another_number_fits(
+def test_a_tiny_value_is_not_the_power_if_another_number_fits(
     word: str, unit: str, template: str, little: str, power: str
 ) -> None:
-    wrong = template.format(f"{word}({little}, {power} {unit})")
-    first, other = f"{word}({little} {unit}, {power})", f"{word}({power} {unit}, {little})"
-    assert codes_and_fixes(wrong) == [("TS076", f"{first} or {other}")]
-    assert repair_program(wrong, check).text == wrong
+    wrong_text = template.format(f"{word}({little}, {power} {unit})")
+    first_reading, other_reading = (
+        f"{word}({little} {unit}, {power})",
+        f"{word}({power} {unit}, {little})",
+    )
+    assert codes_and_fixes(wrong_text) == [("TS076", f"{first_reading} or {other_reading}")]
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 def test_each_of_several_moves_has_both_readings() -> None:
@@ -194,7 +202,7 @@ def test_the_unit_of_a_value_of_a_def_goes_into_its_body(
     assert f"{word}(LARGO {way}, 60)" in apply_fix(late, check(late)[0])
 
 
-def test_a_moved_program_says_which_unit_it_loses() -> None:
+def test_a_moved_program_reports_the_lost_unit() -> None:
     text = "SI|ESPERA_X(3)\nDEF ESPERA_X(N graus)\nW(N)\nEND_DEF"
     (diagnostic,) = check(text)
     assert diagnostic.values["lost"] == "graus" and repair_program(text, check).text == text
@@ -226,7 +234,7 @@ def test_a_semicolon_between_two_values_is_named(word: str, other_statement: str
 
 
 @pytest.mark.parametrize(("word", "unit"), TRAVELS)
-def test_a_right_unit_before_it_is_not_told_of(word: str, unit: str) -> None:
+def test_a_right_unit_before_a_semicolon_is_not_reported(word: str, unit: str) -> None:
     for number in ("20", "N_2", "2 * 3"):
         codes = {code for code, _ in codes_and_fixes(f"SI|W(1);{word}({number} {unit}; 60)")}
         assert "TS019" in codes and "TS088" not in codes
@@ -273,14 +281,16 @@ def test_a_wrong_head_of_a_def_makes_no_name_of_its_body_unknown(separator: str)
 
 
 @pytest.mark.parametrize(
-    ("call", "right"),
+    ("call", "right_text"),
     [("LADO(pot=60, lar=20)", "LADO(20, 60)"), ("LADO(20, pot = 60)", "LADO(20, 60)"),
      ("LADO(pot=60, 20)", "LADO(20, 60)"), ("LADO(LAR=V + 1, POT=60)", "LADO(V + 1, 60)")],
 )  # fmt: skip
 @pytest.mark.parametrize("separator", SEPARATORS)
-def test_named_values_of_a_def_stand_in_its_order(call: str, right: str, separator: str) -> None:
+def test_named_values_of_a_def_are_put_in_its_order(
+    call: str, right_text: str, separator: str
+) -> None:
     lines = ["SI|DEF LADO(LAR, POT)", "F(LAR CM, POT)", "END_DEF", "V = 4", call]
-    assert codes_and_fixes(separator.join(lines)) == [("TS052", right)]
+    assert codes_and_fixes(separator.join(lines)) == [("TS052", right_text)]
     assert not check("DEF A(Q);IF(Q);S;ENDIF;END_DEF;X = 3;A(X = 3)")
 
 
@@ -301,7 +311,7 @@ def test_a_power_is_named_with_all_of_its_sign(sign: str) -> None:
     assert text[slice(*diagnostic.span)] == diagnostic.values["found"]
 
 
-def test_two_offers_say_how_their_brackets_differ() -> None:
+def test_two_offers_explain_how_their_brackets_differ() -> None:
     (offer,) = codes_and_fixes("SI|D = MAX(LIGHT_L, 4 + LIGHT_R")
     first, second = "(in the brackets: LIGHT_L, 4 + LIGHT_R)", "(in the brackets: LIGHT_L, 4)"
     assert offer[1].index(first) < offer[1].index(second)
@@ -327,9 +337,9 @@ def test_the_question_after_until_is_shown(asked_text: str, next_move: str) -> N
 @pytest.mark.parametrize(
     "other_statement", ["W(9) UNTIL(DISTANCE < {})", "IF(DISTANCE < {});S;ENDIF"]
 )
-def test_an_example_takes_the_number_of_the_program(number: str, other_statement: str) -> None:
-    other = other_statement.format(number)
-    for text in (f"SI|F(FOREVER, 50);{other}", f"SI|{other}\nB(FOREVER, 50)"):
+def test_an_example_uses_the_number_of_the_program(number: str, other_statement: str) -> None:
+    other_line = other_statement.format(number)
+    for text in (f"SI|F(FOREVER, 50);{other_line}", f"SI|{other_line}\nB(FOREVER, 50)"):
         assert codes_and_fixes(text)[0][1].endswith(f"UNTIL(DISTANCE < {number})")
     assert codes_and_fixes("SI|F(FOREVER, 50)")[0][1].startswith(
         "F(FOREVER, 50) UNTIL(DISTANCE < 10)"
@@ -351,13 +361,13 @@ CONDITION_TEMPLATES = [
 @pytest.mark.sampled("text", keep=4)
 @pytest.mark.parametrize("place", ["SI|{}", "SI|W(1);{}", "SI|W(1)\n{}"])
 @pytest.mark.parametrize("text", CONDITION_TEMPLATES)
-def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: str) -> None:
-    wrong = place.format(text)
-    compared = [fix for _, fix in codes_and_fixes(wrong.format(COMPARISON))]
+def test_a_yes_no_may_replace_any_comparison(text: str, place: str) -> None:
+    wrong_text = place.format(text)
+    compared = [fix for _, fix in codes_and_fixes(wrong_text.format(COMPARISON))]
     assert compared and COMPARISON in compared[0]
     for question in ("KEY_A", "NOT KEY_LEFT", "KEY_UP AND KEY_B"):
         as_compared = [fix.replace(COMPARISON, question) for fix in compared]
-        assert [fix for _, fix in codes_and_fixes(wrong.format(question))] == as_compared
+        assert [fix for _, fix in codes_and_fixes(wrong_text.format(question))] == as_compared
 
 
 @pytest.mark.sampled("order", keep=2)
@@ -366,7 +376,7 @@ def test_a_yes_or_no_is_a_question_wherever_a_comparison_is(text: str, place: st
     ("word", "end"), [("IF", "ENDIF"), ("WHILE", "END_WHILE"), ("WHEN", "END_WHEN")]
 )
 @pytest.mark.parametrize("template", ["{}", "W(1);{}", "W(1)\n{}", "{};W(2)"])
-def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
+def test_text_after_a_trailing_condition_does_not_become_its_block(
     order: str, word: str, end: str, template: str
 ) -> None:
     for question in ("KEY_A", COMPARISON):
@@ -393,7 +403,7 @@ def test_no_block_is_made_of_what_comes_after_a_question_about_what_is_before(
         ("para cada i de 1 a 4", "para cada"),
     ],
 )  # fmt: skip
-def test_what_counts_is_named_without_what_it_counts(
+def test_only_the_counting_word_is_named(
     head: str, named_text: str, template: str, separator: str
 ) -> None:
     text = template.format(separator.join((head, "L(1, 60)", "END_LOOP")))
@@ -403,7 +413,7 @@ def test_what_counts_is_named_without_what_it_counts(
 
 @pytest.mark.parametrize("use", ["F(1, {})", "LOOP({});S;END_LOOP", "BEEP(1, {});BEEP(2, {})"])
 @pytest.mark.parametrize("name", ["notes", "N"])
-def test_a_name_that_holds_a_list_is_not_asked_for_its_number(name: str, use: str) -> None:
+def test_a_name_that_holds_a_list_is_not_compared_as_a_number(name: str, use: str) -> None:
     text = f"SI|{name} = [440, 494]\n{use.replace('{}', name)}"
     assert [code for code, _ in codes_and_fixes(text)] == ["TS067"]
     assert "TS103" in [code for code, _ in codes_and_fixes(text + ";W(OTHER)")]

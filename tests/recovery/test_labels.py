@@ -53,15 +53,17 @@ def add_labels(label: str, program: tuple[str, ...]) -> list[str]:
 
 @pytest.mark.sampled("label", keep=32)
 @pytest.mark.parametrize("label", LABELS)
-def test_a_label_is_taken_out_wherever_its_instruction_stands(label: str) -> None:
+def test_a_label_is_removed_anywhere(label: str) -> None:
     for program, (begun_text, separator) in product(PROGRAMS, PLACES):
-        wrong = begun_text + separator.join(add_labels(label, program))
-        assert {diagnostic.code.number for diagnostic in check(wrong)} == {"TS054"}, wrong
-        assert repair_program(wrong, check).text == begun_text + separator.join(program), wrong
+        wrong_text = begun_text + separator.join(add_labels(label, program))
+        assert {diagnostic.code.number for diagnostic in check(wrong_text)} == {"TS054"}, wrong_text
+        assert repair_program(wrong_text, check).text == begun_text + separator.join(program), (
+            wrong_text
+        )
 
 
 @pytest.mark.parametrize("label", LABELS)
-def test_it_is_told_before_the_setup_below_a_title_and_beside_another_mistake(label: str) -> None:
+def test_a_label_is_reported_near_setup_titles_and_other_mistakes(label: str) -> None:
     rows = add_labels(label, ("SI|F(2, 60)", "R(2 60)"))
     codes = [diagnostic.code.number for diagnostic in check("\n".join(["My square", *rows]))]
     assert codes == ["TS073", "TS054", "TS054", "TS017"]
@@ -74,5 +76,5 @@ def test_it_is_told_before_the_setup_below_a_title_and_beside_another_mistake(la
      "avanza 2) F(1, 60)", "S. F(2, 80)", "IF 3: F(2, 80)", "PASO 1 = 3", "4 vueltas: F(2, 80)",
      "TASK 1: F(2, 80)", "X = |5 - DISTANCE|"],
 )  # fmt: skip
-def test_what_may_be_more_than_a_label_stays(text: str) -> None:
+def test_possible_instructions_are_not_removed_as_labels(text: str) -> None:
     assert "TS054" not in {diagnostic.code.number for diagnostic in check(f"SI|{text}")}

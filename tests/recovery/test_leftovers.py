@@ -19,24 +19,26 @@ PLACES = (
 @pytest.mark.parametrize("words", WORDS)
 @pytest.mark.parametrize("order", ["BREAK", "S", "STOP"])
 @pytest.mark.parametrize("place", PLACES)
-def test_words_after_an_order_without_values_are_taken_out(
+def test_words_after_a_command_without_values_are_removed(
     place: str, order: str, words: str
 ) -> None:
-    wrong = place.format(f"{order} {words}")
-    (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
-    assert message(diagnostic, Source(wrong), "en").fix == f"Remove {words}"
-    assert apply_edits(wrong, edits_of(diagnostic) or []) == place.format(order)
-    assert repair_program(wrong, check).text == wrong
+    wrong_text = place.format(f"{order} {words}")
+    (diagnostic,) = [diagnostic for diagnostic in check(wrong_text) if diagnostic.is_mistake]
+    assert message(diagnostic, Source(wrong_text), "en").fix == f"Remove {words}"
+    assert apply_edits(wrong_text, edits_of(diagnostic) or []) == place.format(order)
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 @pytest.mark.parametrize("words", WORDS)
 @pytest.mark.parametrize("end", ["END_LOOP", "END_WHILE"])
-def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
+def test_words_after_an_end_are_removed(end: str, words: str) -> None:
     head = {"END_LOOP": "LOOP(2)", "END_WHILE": "WHILE(DISTANCE > 9)"}[end]
     for tail in ("", ";S", "\nW(1)"):
-        wrong = f"SI|{head};F(1, 60);{end} {words}{tail}"
-        (diagnostic,) = [diagnostic for diagnostic in check(wrong) if diagnostic.is_mistake]
-        assert apply_edits(wrong, edits_of(diagnostic) or []) == wrong.replace(f" {words}", "")
+        wrong_text = f"SI|{head};F(1, 60);{end} {words}{tail}"
+        (diagnostic,) = [diagnostic for diagnostic in check(wrong_text) if diagnostic.is_mistake]
+        assert apply_edits(wrong_text, edits_of(diagnostic) or []) == wrong_text.replace(
+            f" {words}", ""
+        )
 
 
 @pytest.mark.parametrize(
@@ -44,7 +46,7 @@ def test_and_so_are_words_after_an_end(end: str, words: str) -> None:
     ["S F(1, 60)", "S vuelta", "S DISTANCE", "DEF PASO;W(1);END_DEF;S PASO", "S otra vez", "S 3",
      "V = 3;S V", "STOP UNTIL(DISTANCE > 9)", "S stop", "S // now"],
 )  # fmt: skip
-def test_a_possible_order_or_value_is_not_a_leftover(text: str) -> None:
+def test_a_possible_command_or_value_is_not_a_leftover(text: str) -> None:
     assert not any(diagnostic.values.get("needless") for diagnostic in check(f"SI|{text}"))
 
 
@@ -64,16 +66,18 @@ def test_a_second_start_behind_an_instruction_is_a_separator(
 
 @pytest.mark.parametrize("separator", [";", "\n"])
 def test_a_task_that_is_called_has_no_name_and_begins_by_itself(separator: str) -> None:
-    wrong = separator.join(("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)"))
-    fixes = [message(diagnostic, Source(wrong), "en").fix for diagnostic in check(wrong)]
+    wrong_text = separator.join(
+        ("SI|TASK siren", "BEEP(1, 440)", "END_TASK", "START siren", "F(4, 70)")
+    )
+    fixes = [message(diagnostic, Source(wrong_text), "en").fix for diagnostic in check(wrong_text)]
     assert fixes == ["TASK", "Remove siren"]
 
 
 @pytest.mark.parametrize("word", ["Fim", "FIM.", "Fin;", "end", "End."])
 @pytest.mark.parametrize("above", ["F(2, 80)", "Espere(1)", "Br(2, 80)", "R(1 60);S"])
-def test_an_end_of_all_is_not_needed_whatever_else_is_wrong(above: str, word: str) -> None:
-    wrong = f"SI|W(1)\n{above}\n{word}"
-    assert "TS044" in {diagnostic.code.number for diagnostic in check(wrong)}
+def test_a_final_end_is_superfluous_whatever_else_is_wrong(above: str, word: str) -> None:
+    wrong_text = f"SI|W(1)\n{above}\n{word}"
+    assert "TS044" in {diagnostic.code.number for diagnostic in check(wrong_text)}
     for head, end in (("LOOP(2)", "END_LOOP"), ("IF(DISTANCE < 9)", "ENDIF")):
         block = f"SI|{head}\nF(2, 80)\n{word.rstrip('.;')}"
         assert repair_program(block, check).text == f"SI|{head}\nF(2, 80)\n{end}"

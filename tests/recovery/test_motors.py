@@ -26,18 +26,22 @@ POWERS = (("60", "60"), ("-30", "45"))
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("pair", PAIRS)
-def test_a_pair_is_one_m_with_both_powers(pair: tuple[str, str], place: str) -> None:
+def test_a_pair_of_motor_commands_becomes_one_m(pair: tuple[str, str], place: str) -> None:
     for separator, (left, right), is_turned in product(SEPARATORS, POWERS, (False, True)):
         calls = (f"{pair[0]}({left})", f"{pair[1]}({right})")
-        wrong = place.format(separator.join(calls[::-1] if is_turned else calls))
-        edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
-        assert apply_edits(wrong, edits) == place.format(f"M({left}, {right})"), wrong
-        assert repair_program(wrong, check).text == wrong  # elsewhere its power is not a percentage
+        wrong_text = place.format(separator.join(calls[::-1] if is_turned else calls))
+        edits = [edit for diagnostic in check(wrong_text) for edit in edits_of(diagnostic) or []]
+        assert apply_edits(wrong_text, edits) == place.format(f"M({left}, {right})"), wrong_text
+        assert (
+            repair_program(wrong_text, check).text == wrong_text
+        )  # elsewhere its power is not a percentage
 
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 @pytest.mark.parametrize("place", PLACES)
-def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> None:
+def test_a_message_about_a_single_motor_explains_that_m_sets_both(
+    place: str, language: str
+) -> None:
     for pair in PAIRS:
         for name in pair:
             text = place.format(f"{name}(60)")
@@ -48,7 +52,7 @@ def test_of_one_alone_it_is_said_that_m_has_both(place: str, language: str) -> N
 
 
 @pytest.mark.parametrize("separator", SEPARATORS)
-def test_a_name_that_a_program_defines_is_its_own(separator: str) -> None:
+def test_a_name_defined_by_the_program_is_not_a_motor(separator: str) -> None:
     defs = (f"DEF MOTOR_{side}(X);M(X, X);END_DEF" for side in "LR")
     text = separator.join((*defs, "MOTOR_L(60)", "MOTOR_R(30)", "F(2 80)"))
     assert [diagnostic.code.number for diagnostic in check(text)] == ["TS017"]
@@ -64,21 +68,21 @@ OFF = ("stop()", "mBot.stop()", "S", "parar()")
 @pytest.mark.parametrize("off", OFF)
 def test_motors_on_and_off_after_a_wait_are_a_move(off: str, place: str) -> None:
     for separator, (on, word), (wait, time) in product(SEPARATORS, ON.items(), WAITS.items()):
-        wrong = place.format(separator.join((f"{on}(50)", wait, off)))
-        edits = [edit for diagnostic in check(wrong) for edit in edits_of(diagnostic) or []]
-        assert apply_edits(wrong, edits) == place.format(f"{word}({time}, 50)"), wrong
+        wrong_text = place.format(separator.join((f"{on}(50)", wait, off)))
+        edits = [edit for diagnostic in check(wrong_text) for edit in edits_of(diagnostic) or []]
+        assert apply_edits(wrong_text, edits) == place.format(f"{word}({time}, 50)"), wrong_text
         twice = place.format(separator.join((f"{on}(50)", wait, "left(40)", wait, off)))
         edits = [edit for diagnostic in check(twice) for edit in edits_of(diagnostic) or []]
         assert apply_edits(twice, edits) == place.format(f"{word}({time}, 50);L({time}, 40)"), twice
 
 
 @pytest.mark.parametrize("text", ["F(2);W(2);S", "F(50);W(2)", "F(2, 50);W(2);S", "F(50);S;W(2)"])
-def test_no_motor_is_on_without_a_power_a_wait_and_an_end(text: str) -> None:
+def test_no_move_is_made_without_power_wait_and_end(text: str) -> None:
     assert "F(2, 50)" not in [
         diagnostic.values.get("fix") for diagnostic in check(text) if diagnostic.repair
     ]
 
 
-def test_a_word_of_the_program_switches_no_motor() -> None:
-    wrong = "DEF GO(X);F(X, 60);END_DEF;GO(50);W(2);S;F(2 80)"
-    assert [diagnostic.values.get("fix") for diagnostic in check(wrong)] == ["F(2, 80)"]
+def test_a_word_defined_by_the_program_switches_no_motor() -> None:
+    wrong_text = "DEF GO(X);F(X, 60);END_DEF;GO(50);W(2);S;F(2 80)"
+    assert [diagnostic.values.get("fix") for diagnostic in check(wrong_text)] == ["F(2, 80)"]

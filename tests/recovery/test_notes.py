@@ -25,34 +25,34 @@ PLACES = (
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize("sign", SIGNS)
-def test_a_note_begins_with_another_sign_and_is_told_once(sign: str, place: str) -> None:
+def test_a_comment_with_a_foreign_sign_is_reported_once(sign: str, place: str) -> None:
     for note in NOTES:
-        wrong = place.replace("{}", sign + note)
-        diagnostics = check(wrong)
+        wrong_text = place.replace("{}", sign + note)
+        diagnostics = check(wrong_text)
         assert [diagnostic.code for diagnostic in diagnostics] == [codes.OTHER_NOTE] * len(
             diagnostics
-        ), wrong
-        right = place.replace("{}", f"// {note}")
-        assert repair_program(wrong, check).text == right
+        ), wrong_text
+        right_text = place.replace("{}", f"// {note}")
+        assert repair_program(wrong_text, check).text == right_text
 
 
 @pytest.mark.parametrize("end", [" */", "*/", " -->", " **/"])
-def test_a_note_loses_the_sign_that_ends_it(end: str) -> None:
-    begin = "<!-- " if ">" in end else "/* "
-    wrong = f"SI|F(2, 80) {begin}go{end}\n{begin}wait 3{end}\nW(3)"
-    assert repair_program(wrong, check).text == "SI|F(2, 80) // go\n// wait 3\nW(3)"
+def test_the_closing_sign_of_a_comment_is_removed(end: str) -> None:
+    opening = "<!-- " if ">" in end else "/* "
+    wrong_text = f"SI|F(2, 80) {opening}go{end}\n{opening}wait 3{end}\nW(3)"
+    assert repair_program(wrong_text, check).text == "SI|F(2, 80) // go\n// wait 3\nW(3)"
 
 
 @pytest.mark.parametrize("sign", SIGNS)
 @pytest.mark.parametrize("order", ["F(3, 60)", "IF(DISTANCE < 10);S;ENDIF", "avanza(3)"])
-def test_a_note_that_may_be_an_order_is_not_made_one(sign: str, order: str) -> None:
-    wrong = f"SI|F(2, 80) {sign}{order}"
-    assert check(wrong)
-    assert repair_program(wrong, check).text == wrong
+def test_a_possible_instruction_is_not_made_a_comment(sign: str, order: str) -> None:
+    wrong_text = f"SI|F(2, 80) {sign}{order}"
+    assert check(wrong_text)
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 @pytest.mark.parametrize("sign", ["#", "# ", "--"])
-def test_a_sign_where_a_value_is_begins_no_note(sign: str) -> None:
+def test_a_sign_in_place_of_a_value_starts_no_comment(sign: str) -> None:
     values = ("F({}a, 80)", "F(2, {}a)", "X = {}a", "W(1 + {}a)", "IF(DISTANCE < {}a);S;ENDIF")
     for value, text_before in product(values, ("", "SI|", "S;")):
         assert codes.OTHER_NOTE not in [

@@ -33,11 +33,13 @@ def program(head: str, call: str, count: int) -> str:
 @each_row("count, joint, other", product(ARGUMENT_COUNTS, JOINTS, JOINTS))
 def test_brackets_may_be_missing_around_any_count(count: int, joint: str, other: str) -> None:
     names, numbers = NAMES[:count], NUMBERS[:count]
-    right = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
+    right_text = {"head": f"({', '.join(names)})", "call": f"({', '.join(numbers)})"}
     bare = {"head": f" {joint.join(names)}", "call": f" {other.join(numbers)}"}
     for lacks in ({"head"}, {"call"}, {"head", "call"}):
-        wrong = program(count=count, **{**right, **{it: bare[it] for it in lacks}})
-        assert repair_program(wrong, check).text == program(count=count, **right), wrong
+        wrong_text = program(count=count, **{**right_text, **{it: bare[it] for it in lacks}})
+        assert repair_program(wrong_text, check).text == program(count=count, **right_text), (
+            wrong_text
+        )
 
 
 CALL_SLIPS = (
@@ -52,7 +54,7 @@ CALL_SLIPS = (
 
 
 @pytest.mark.parametrize("language", languages())
-def test_no_sentence_on_a_def_ends_with_a_gap_or_takes_another_word(language: str) -> None:
+def test_no_message_about_a_def_has_a_gap_or_a_wrong_word(language: str) -> None:
     for count, slip in product(ARGUMENT_COUNTS, CALL_SLIPS):
         names, numbers = (", ".join(its[:count]) for its in (NAMES, NUMBERS))
         header = slip.format(w="", a=names) if slip[0] == "{" else ""
@@ -85,7 +87,7 @@ UNTAUGHT_NAMES = ("A", "Q", "AB", "ABC", "LADO", "SIDE", "CUADRADO", "HOLA_2", "
 
 
 @pytest.mark.parametrize("name", UNTAUGHT_NAMES)
-def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: str) -> None:
+def test_an_undefined_word_is_explained_with_def_for_any_values(name: str) -> None:
     for given_text in GIVEN_VALUES:
         text = f"{name}({given_text})"
         first = check(text)[0]
@@ -95,7 +97,7 @@ def test_a_word_that_nothing_teaches_is_told_of_def_whatever_its_values(name: st
 
 
 @pytest.mark.parametrize("count", range(1, PARAMETERS + 1))
-def test_another_count_of_values_shows_the_call_and_says_how_many(count: int) -> None:
+def test_a_wrong_number_of_values_is_reported_with_the_call(count: int) -> None:
     usage = f"SIDE({', '.join(NAMES[:count])})"
     for value_count in range(PARAMETERS + 2):
         text = f"DEF {usage}\nS\nEND_DEF\nSIDE({', '.join(['60'] * value_count)})"
@@ -137,46 +139,48 @@ EXTRAS = (" = 5", "=5", " + 1", "=-5", " = (5)", " = MAX(1, 2)", " < 3")
 
 
 @each_row("count, extra", product(ARGUMENT_COUNTS, EXTRAS))
-def test_what_follows_a_name_in_a_def_is_named_and_its_header_shown(count: int, extra: str) -> None:
+def test_wrong_text_after_a_defs_name_is_reported_with_the_right_header(
+    count: int, extra: str
+) -> None:
     """Default values of Python for calls without any. All names are known below."""
     names = NAMES[:count]
-    right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
+    right_text = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for place in range(count):
-        wrong = right.replace(names[place], names[place] + extra, 1)
-        (diagnostic,) = check(wrong)
-        assert diagnostic.code.number == "TS091", wrong
-        assert diagnostic.values["fix"] == right.split("\n")[0], wrong
+        wrong_text = right_text.replace(names[place], names[place] + extra, 1)
+        (diagnostic,) = check(wrong_text)
+        assert diagnostic.code.number == "TS091", wrong_text
+        assert diagnostic.values["fix"] == right_text.split("\n")[0], wrong_text
 
 
 @pytest.mark.parametrize("count", range(2, PARAMETERS + 1))
-def test_a_comma_that_is_missing_in_a_def_is_shown_in_its_header(count: int) -> None:
+def test_a_missing_comma_in_a_def_is_shown_in_its_header(count: int) -> None:
     names = NAMES[:count]
-    right = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
+    right_text = program(f"({', '.join(names)})", f"({', '.join(NUMBERS[:count])})", count)
     for bits in range(1, 1 << (count - 1)):
         joints = [" " if bits >> k & 1 else ", " for k in range(count - 1)]
         head = "".join(map("".join, zip(names, [*joints, ""], strict=True)))
-        wrong = right.replace(", ".join(names), head, 1)
-        (diagnostic,) = check(wrong)
+        wrong_text = right_text.replace(", ".join(names), head, 1)
+        (diagnostic,) = check(wrong_text)
         assert (diagnostic.code.number, diagnostic.values["fix"]) == (
             "TS017",
-            right.split("\n")[0],
-        ), wrong
+            right_text.split("\n")[0],
+        ), wrong_text
 
 
 @pytest.mark.parametrize("word", sorted(word for word in WORDS if WORDS[word].is_call))
 @pytest.mark.parametrize("count", [0, *ARGUMENT_COUNTS])
 def test_a_def_by_a_word_of_the_language_is_renamed_with_its_calls(word: str, count: int) -> None:
-    own = len(WORDS[word].arguments)
-    if count == own:
+    argument_count = len(WORDS[word].arguments)
+    if count == argument_count:
         return  # the callee is ambiguous
     head = f"({', '.join(NAMES[:count])})" if count else ""
     call = f"({', '.join(NUMBERS[:count])})" if count else ""
     inside = f"F({NAMES[0]} CM, 60)" if count else "F(30 CM, 60)"
     program = f"DEF {{0}}{head}\n{inside}\nEND_DEF\nW(1)\n{{0}}{call}\n{{0}}{call}"
-    wrong = program.format(word)
-    (diagnostic,) = check(wrong)
+    wrong_text = program.format(word)
+    (diagnostic,) = check(wrong_text)
     assert diagnostic.code.number == "TS105"
-    repaired_text = apply_edits(wrong, edits_of(diagnostic) or [])
+    repaired_text = apply_edits(wrong_text, edits_of(diagnostic) or [])
     assert repaired_text == program.format(f"{word}_1")
     assert not [diagnostic for diagnostic in check(repaired_text) if diagnostic.is_mistake]
 
@@ -191,18 +195,20 @@ def test_calls_in_a_row_are_instructions_also_of_unknown_words(place: str) -> No
     known_calls = ("F(2, 80)", "W(1)", "BEEP(1, 440)")
     for one, word, gap in product(known_calls, UNKNOWN_WORDS, (" ", "  ", "")):
         calls = (one, f"{word}(1, 60)", known_calls[0])
-        wrong = place.format(gap.join(calls))
-        first, *others = check(wrong)
-        assert first.code.number == "TS013", wrong
-        assert apply_edits(wrong, edits_of(first) or []) == place.format(";".join(calls)), wrong
-        assert [other.values.get("found") for other in others] == [word], wrong
+        wrong_text = place.format(gap.join(calls))
+        first, *others = check(wrong_text)
+        assert first.code.number == "TS013", wrong_text
+        assert apply_edits(wrong_text, edits_of(first) or []) == place.format(";".join(calls)), (
+            wrong_text
+        )
+        assert [diagnostic.values.get("found") for diagnostic in others] == [word], wrong_text
 
 
 @pytest.mark.parametrize("point", [". ", " . ", ".  "])
 @pytest.mark.parametrize(
-    "right", ["F(2, 80)", "B(1, 60)", "L(0.5, 60)", "BEEP(1, 440)", "M(50, -30)"]
+    "right_text", ["F(2, 80)", "B(1, 60)", "L(0.5, 60)", "BEEP(1, 440)", "M(50, -30)"]
 )
-def test_a_point_before_a_space_is_a_comma(right: str, point: str) -> None:
+def test_a_point_before_a_space_is_read_as_a_comma(right_text: str, point: str) -> None:
     for place in ("{}", "SI|{}", "W(1);{};S", "S\n{}\nS"):
-        wrong = place.format(right.replace(", ", point))
-        assert repair_program(wrong, check).text == place.format(right), wrong
+        wrong_text = place.format(right_text.replace(", ", point))
+        assert repair_program(wrong_text, check).text == place.format(right_text), wrong_text

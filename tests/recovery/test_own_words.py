@@ -48,7 +48,7 @@ def message_text(diagnostic: Diagnostic, text: str) -> str:
 
 @each_row("header", HEADERS)
 @pytest.mark.parametrize("condition", CONDITIONS)
-def test_a_question_is_shown_with_the_number_that_was_written(header: str, condition: str) -> None:
+def test_a_condition_is_shown_with_the_written_number(header: str, condition: str) -> None:
     for head, end in (("si", "fin"), ("SE", "FIM"), ("while", "end"), ("MIENTRAS", "FIN MIENTRAS")):
         text = header.format(h=head, c=condition.format(OWN), e=end)
         for diagnostic in check(text):
@@ -70,7 +70,7 @@ def test_a_word_after_a_number_lacks_no_comma() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"),
+    ("wrong_text", "right_text"),
     [
         ("R(HALF TURN, 60)", "R(180 DEG, 60)"),
         ("SI|W(1); L(UNA VUELTA, 60)", "L(360 DEG, 60)"),
@@ -79,10 +79,10 @@ def test_a_word_after_a_number_lacks_no_comma() -> None:
         ("R(3/4 vuelta, 60)", "R(270 DEG, 60)"),
     ],
 )
-def test_a_part_of_a_turn_is_degrees(wrong: str, right: str) -> None:
-    (diagnostic,) = check(wrong)
-    assert diagnostic.values["fix"] == right
-    assert repair_program(wrong, check).text == wrong
+def test_a_fraction_of_a_turn_becomes_degrees(wrong_text: str, right_text: str) -> None:
+    (diagnostic,) = check(wrong_text)
+    assert diagnostic.values["fix"] == right_text
+    assert repair_program(wrong_text, check).text == wrong_text
 
 
 RENAMED = [
@@ -107,7 +107,7 @@ OWN_BLOCKS = (
 
 
 @each_row("word", RENAMED)
-def test_a_name_is_renamed_wherever_it_is_meant(word: str) -> None:
+def test_a_name_is_renamed_in_all_its_uses(word: str) -> None:
     """A DEF: its calls, and no move of its own; a variable: each use, and no instruction."""
     move = WORDS[word].example if WORDS[word].role.is_instruction else "S"
     text = f"DEF {word}\n{move}\nEND_DEF\n{word}\nF(1, 60)\n{word}"
@@ -139,7 +139,7 @@ def test_a_variable_is_renamed_in_its_uses(word: str) -> None:
 
 
 @each_row("word", sorted({*words("unsensed")}))
-def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
+def test_sensors_that_no_kit_has_are_not_suggested(word: str) -> None:
     for text in (f"IF({word} > {OWN});S;ENDIF", f"WHEN({word} = 1)\nS\nEND_WHEN"):
         (diagnostic,) = check(text)
         assert diagnostic.values.get("unsensed", "").upper() == word, text
@@ -148,7 +148,7 @@ def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "fix"),
+    ("wrong_text", "fix"),
     [
         ("F(2;80) R(1;50)", "F(2, 80);R(1, 50)"),  # `80)` is no number of a list
         ("IF RANDOM(1,2) = 1\nS\nENDIF", "IF(RANDOM(1, 2) = 1)"),
@@ -160,43 +160,45 @@ def test_no_sensor_is_asked_for_one_that_no_kit_has(word: str) -> None:
         ("M(50, 80, 2 seg)", "M(50, 80);W(2);S"),
     ],
 )
-def test_what_is_told_keeps_all_that_was_written(wrong: str, fix: str) -> None:
-    values = check(wrong)[0].values
+def test_suggestions_keep_everything_that_was_written(wrong_text: str, fix: str) -> None:
+    values = check(wrong_text)[0].values
     assert values.get("fix", values.get("example")) == fix
 
 
 @pytest.mark.parametrize(
-    ("wrong", "question"),
+    ("wrong_text", "question"),
     [
         ("IF(DISTANCE < 37 OR DARK);S;ENDIF", "DISTANCE < 37 OR LIGHT_L < 500"),
         ("IF(hay luz y DISTANCE < 37);S;ENDIF", "LIGHT_L > 500 AND DISTANCE < 37"),
         ("F(5, 60) UNTIL(DISTANCE < 37 o mucha luz)", "DISTANCE < 37 OR LIGHT_L > 500"),
     ],
 )
-def test_words_beside_a_comparison_are_asked_beside_it(wrong: str, question: str) -> None:
-    (diagnostic,) = check(wrong)
+def test_words_beside_a_comparison_become_conditions_beside_it(
+    wrong_text: str, question: str
+) -> None:
+    (diagnostic,) = check(wrong_text)
     assert (diagnostic.code.number, diagnostic.values["question"]) == ("TS135", question)
 
 
-def test_lines_that_nobody_reads_are_instructions_of_their_blocks() -> None:
+def test_unreadable_lines_count_as_instructions_of_their_blocks() -> None:
     text = "if distance < 20 then\nturn right 90 degrees\nelse\nforward\nend"
     assert repair_program(text, check).text == (
         "IF(DISTANCE < 20)\nturn right 90 degrees\nelse\nforward\nENDIF"
     )
 
 
-def test_ends_of_several_blocks_come_one_after_the_other() -> None:
+def test_ends_of_several_blocks_are_separate() -> None:
     text = "LOOP(siempre)\n  IF DISTANCE < 15 cm\n    R(1, 60)\n  ELSE\n    F(1, 80)\nEND"
     assert "END_LOOPIF" not in {diagnostic.values.get("found") for diagnostic in check(text)}
 
 
-def test_an_end_alone_is_that_of_its_block() -> None:
+def test_a_bare_end_closes_its_block() -> None:
     text = "forever\nif distance < 20 then\nturn right 90 degrees\nelse\nforward\nend"
     assert (check(text)[-1].code.number, check(text)[-1].values["right"]) == ("TS023", "ENDIF")
 
 
 @pytest.mark.parametrize(
-    ("wrong", "expected"),
+    ("wrong_text", "expected"),
     [
         ("F(5, 60) HASTA NEGRO", {"question": "LIGHT_L < 500", "another": "LIGHT_R < 500"}),
         ("F(5, 60) hasta la pared", {"question": "DISTANCE < 10"}),
@@ -206,13 +208,15 @@ def test_an_end_alone_is_that_of_its_block() -> None:
         ("IF(COLOR = 37);S;ENDIF", {"question": None}),
     ],
 )
-def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, expected: dict[str, str]) -> None:
-    values = check(wrong)[0].values
+def test_words_in_conditions_refer_to_their_sensor(
+    wrong_text: str, expected: dict[str, str]
+) -> None:
+    values = check(wrong_text)[0].values
     assert {name: values.get(name) for name in expected} == expected
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"),
+    ("wrong_text", "right_text"),
     [
         ("IF(SENSOR_LUZ_DERECHA > 37);S;ENDIF", "IF(LIGHT_R > 37);S;ENDIF"),
         ("IF(DISTANCE IS 37);S;ENDIF", "IF(DISTANCE = 37);S;ENDIF"),
@@ -235,12 +239,12 @@ def test_words_are_asked_of_the_sensor_that_they_mean(wrong: str, expected: dict
         ("VARIAVEL X = 5\nF(X, 50)", "X = 5\nF(X, 50)"),
     ],
 )
-def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
-    assert repair_program(wrong, check).text == right
+def test_unambiguous_repairs_are_applied(wrong_text: str, right_text: str) -> None:
+    assert repair_program(wrong_text, check).text == right_text
 
 
 @pytest.mark.parametrize(
-    ("wrong", "expected"),
+    ("wrong_text", "expected"),
     [
         ("SPIN 360", {"to_left": "L(360 DEG, 60)", "to_right": "R(360 DEG, 60)"}),
         ("gira 2 vueltas", {"to_right": "R(720 DEG, 80)"}),
@@ -299,14 +303,16 @@ def test_what_can_mean_one_thing_alone_is_made(wrong: str, right: str) -> None:
         ),
     ],
 )
-def test_no_number_or_word_is_told_that_was_not_meant(wrong: str, expected: dict[str, str]) -> None:
-    diagnostics = check(wrong)
+def test_no_unintended_number_or_word_is_reported(
+    wrong_text: str, expected: dict[str, str]
+) -> None:
+    diagnostics = check(wrong_text)
     assert any(
         {name: it.values.get(name) for name in expected} == expected for it in diagnostics
     ), diagnostics
 
 
-def test_a_word_sounds_the_same_alone_as_in_a_list() -> None:
+def test_a_word_is_recognized_alone_as_in_a_list() -> None:
     """A pattern of `sounds.txt` reads all words at once, so none may reach into the next line."""
     all_words = [*WORDS, *lexicon()]
     sounds_in_list = Speller(all_words)._word_by_sound
@@ -318,7 +324,7 @@ def test_a_word_sounds_the_same_alone_as_in_a_list() -> None:
 
 
 @pytest.mark.parametrize("sign", sorted(COMPARISONS - {"="}))
-def test_the_sign_beside_a_light_without_its_side_is_kept(sign: str) -> None:
+def test_the_comparison_of_a_light_without_a_side_is_kept(sign: str) -> None:
     """For `IF LUZ < 20`, no message asks which light is brighter than 20."""
     mirrored_sign = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}.get(sign, sign)
     for word in words("light"):

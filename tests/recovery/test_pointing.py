@@ -24,7 +24,7 @@ def without_spaces(text: str) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(4))
-def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
+def test_the_caret_points_at_the_text_that_the_message_names(part: int) -> None:
     count = 0
     for entry in entries()[part::4]:
         source = Source(entry.program)
@@ -60,7 +60,7 @@ def test_the_text_under_the_caret_is_what_the_message_names(part: int) -> None:
         ("se NÃO(DISTANCE < 10);S;FIM", "se"),
     ],
 )
-def test_a_message_names_the_sign_alone(program: str, piece: str) -> None:
+def test_a_message_names_only_the_sign(program: str, piece: str) -> None:
     diagnostic = check(program)[0]
     assert diagnostic.values["found"].lower() == program[slice(*diagnostic.span)] == piece
 
@@ -75,7 +75,7 @@ def test_a_message_names_the_sign_alone(program: str, piece: str) -> None:
         ("‘F(2, 80); S’\nS", "F(2, 80); S"),
     ],
 )
-def test_a_line_in_quotation_marks_is_told_once(program: str, fix: str) -> None:
+def test_a_quoted_line_is_reported_once(program: str, fix: str) -> None:
     (diagnostic,) = check(program)
     assert (
         diagnostic.code is codes.QUOTE

@@ -32,9 +32,9 @@ def examples() -> list[str]:
     """Return the examples of all rows that speak of an instruction, each on one line."""
     texts = []
     for pattern, *_, example in chain(rewrites.cells(rows.SIGNS), rewrites.cells(rows.TOKENS)):
-        wrong = example.rpartition(" => ")[0].strip()
+        wrong_text = example.rpartition(" => ")[0].strip()
         if not any(sign in pattern for sign in LINE_ANCHORS) and "//" not in example:
-            texts.append(re.sub(r"\s*⏎\s*", ";", re.sub(r"^SI\s*\|", "", wrong)))
+            texts.append(re.sub(r"\s*⏎\s*", ";", re.sub(r"^SI\s*\|", "", wrong_text)))
     return [*dict.fromkeys(texts)]
 
 
@@ -69,14 +69,16 @@ def test_a_row_means_the_same_wherever_its_instruction_stands(part: int) -> None
     go_through(check_same_meaning_everywhere, examples()[part::3])
 
 
-def check_same_meaning_everywhere(wrong: str) -> None:
-    alone = find_meant_program(wrong)
+def check_same_meaning_everywhere(wrong_text: str) -> None:
+    alone = find_meant_program(wrong_text)
     if alone is None:
         return  # the program depends on its lines in the table
-    is_open = ends(alone.text) > ends(wrong)  # later lines may belong to the block that it begins
+    is_open = ends(alone.text) > ends(
+        wrong_text
+    )  # later lines may belong to the block that it begins
     is_free = not TOP_LEVEL_WORD.search(alone.text.upper())
     for place in (*PLACES_ON_A_LINE, *(PLACES_IN_A_BLOCK if is_free else ())):
-        candidate = find_meant_program(place.format(wrong))
+        candidate = find_meant_program(place.format(wrong_text))
         same = place.format(alone.text)
         if is_open and not place.endswith("{}"):
             assert (

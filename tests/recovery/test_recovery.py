@@ -36,15 +36,15 @@ ROWS: list[rewrites.SignRow | rewrites.TokenRow] = [*rewrites.sign_rows(), *rewr
 
 
 @each_row("row", [pytest.param(row, id=row.example[0][:50]) for row in ROWS])
-def test_the_example_of_a_row_is_read_as_it_says(row: rewrites.TokenRow | rewrites.SignRow) -> None:
-    wrong, right = row.example
+def test_the_example_of_a_row_is_read_as_stated(row: rewrites.TokenRow | rewrites.SignRow) -> None:
+    wrong_text, right_text = row.example
     readings = []
     for kit in KITS:
-        candidate = Recovery(wrong, kit, partial(mistakes, kit)).best_candidate()
+        candidate = Recovery(wrong_text, kit, partial(mistakes, kit)).best_candidate()
         readings.append(candidate and candidate.text)
-        if readings[-1] == right:
+        if readings[-1] == right_text:
             return
-    assert readings == [right]
+    assert readings == [right_text]
 
 
 def find_meant_program(text: str) -> Candidate | None:
@@ -85,7 +85,7 @@ def is_whole(line: list[Lexeme]) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "code", "values", "edit"),
+    ("wrong_text", "code", "values", "edit"),
     [
         ("F(2 80)", "TS017", {"usage": _F, "fix": _MOVE}, Edit(Span(3, 3), ",")),
         ("S\navanzar(2, 80)", "TS102",
@@ -99,11 +99,11 @@ def is_whole(line: list[Lexeme]) -> bool:
     ],
 )  # fmt: skip
 def test_an_explanation_has_a_slip_and_its_edits(
-    wrong: str, code: str, values: dict[str, str], edit: Edit
+    wrong_text: str, code: str, values: dict[str, str], edit: Edit
 ) -> None:
-    candidate = find_meant_program(wrong)
+    candidate = find_meant_program(wrong_text)
     assert candidate is not None
-    (explanation,) = explain_candidate(wrong, candidate)
+    (explanation,) = explain_candidate(wrong_text, candidate)
     assert (explanation.code, explanation.edits) == (CODES[code], [edit])
     assert explanation.values_as(explanation.code) == {**values, "whole": "", "ends": ""}
 
@@ -116,7 +116,7 @@ BLOCK_GAPS = {"whole", "line", "lines", "times", "ends"}
 
 
 @each_row("code", [pytest.param(code, id=code.number) for code in slips.NAMES_OF_CODE])
-def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
+def test_a_message_contains_only_facts_of_its_slip(code: Code) -> None:
     """Each value of a slip is used by a text, and every used value exists."""
     names = {*slips.NAMES_OF_CODE[code]}
     gap_sets = []
@@ -128,20 +128,22 @@ def test_a_message_says_what_a_slip_has_and_no_more(code: Code) -> None:
             gap_sets.append({*re.findall(r"\{@?(\w+)\}", text)})
             text = languages.find_text("messages", f"{code.number}/{part}/{k}", "en")
     assert names <= set().union(*gap_sets) | DEDUPED_GAPS.get(code, set())
-    own = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
-    whole = [names & own for names in gap_sets if names <= own | BLOCK_GAPS]
+    own_gaps = {"found", "right", "before", "word", "usage", "fix", "letter", "takes"}
+    whole = [names & own_gaps for names in gap_sets if names <= own_gaps | BLOCK_GAPS]
     assert code in CODES_SAID_ELSEWHERE or set().union(*whole) <= names
 
 
-def test_a_line_is_searched_once_for_the_same_names() -> None:
+def test_a_line_is_searched_only_once_for_the_same_names() -> None:
     line = lexemes("F(2 80)")
-    one, same, other = (Names([lexemes(text)], KIT) for text in ("", "", "X = 1"))
-    readings = lines.read(line, one)
-    assert lines.read(line, same) is readings
-    assert lines.read(line, other) is not readings
+    first_names, same_names, other_names = (
+        Names([lexemes(text)], KIT) for text in ("", "", "X = 1")
+    )
+    readings = lines.read(line, first_names)
+    assert lines.read(line, same_names) is readings
+    assert lines.read(line, other_names) is not readings
 
 
-def test_the_parser_says_where_it_cannot_go_on() -> None:
+def test_the_parser_reports_where_it_cannot_continue() -> None:
     names = Names([], KIT)
     assert lines.parse_line(lexemes("S; F(2 80)"), names) == Failure(2, 5)
     assert lines.parse_line(lexemes("F(2, 80) B(1, 50)"), names) == Failure(0, 6)
@@ -150,7 +152,7 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_text",
     [
         "X == 6",
         "X = 3\nX = X = 5",
@@ -165,13 +167,13 @@ def test_the_parser_says_where_it_cannot_go_on() -> None:
         "S\n,,",
     ],
 )
-def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
-    candidate = find_meant_program(wrong)
+def test_ambiguous_repairs_are_only_suggested(wrong_text: str) -> None:
+    candidate = find_meant_program(wrong_text)
     assert candidate is None or not candidate.is_applied
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"),
+    ("wrong_text", "right_text"),
     [
         ("MIENTRAS(DISTANCE > 20)\nS\nEND_LOOP", "WHILE(DISTANCE > 20)\nS\nEND_WHILE"),
         ("LOOP(4){F(1, 80); S", "LOOP(4);F(1, 80);S;END_LOOP"),
@@ -183,13 +185,13 @@ def test_what_may_change_the_meaning_is_only_shown(wrong: str) -> None:
         ("SHOW(ABSS(-3))", "SHOW(ABS(-3))"),  # no other word has brackets in a value
     ],
 )
-def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> None:
-    candidate = find_meant_program(wrong)
-    assert (candidate.text if candidate and candidate.is_applied else None) == right
+def test_repairs_with_one_reading_are_applied(wrong_text: str, right_text: str | None) -> None:
+    candidate = find_meant_program(wrong_text)
+    assert (candidate.text if candidate and candidate.is_applied else None) == right_text
 
 
 @pytest.mark.parametrize(
-    ("wrong", "kit", "right"),
+    ("wrong_text", "kit", "right_text"),
     [
         ("PINZA(90)", "grabber", "GRIPPER(90)"),
         ("ABRIR PINZA", "grabber", "GRIPPER(180)"),
@@ -201,34 +203,34 @@ def test_what_can_mean_nothing_else_is_made(wrong: str, right: str | None) -> No
         ("SHOW(BATERIA)", "grabber", None),
     ],
 )
-def test_words_of_a_kit_are_read_on_its_robots_alone(
-    wrong: str, kit: str, right: str | None
+def test_words_of_a_kit_are_recognized_only_on_its_robots(
+    wrong_text: str, kit: str, right_text: str | None
 ) -> None:
-    own = robots.load(kit).kit
-    candidate = Recovery(wrong, own, partial(mistakes, own)).best_candidate()
-    assert (candidate.text if candidate and candidate.is_applied else None) == right
+    own_kit = robots.load(kit).kit
+    candidate = Recovery(wrong_text, own_kit, partial(mistakes, own_kit)).best_candidate()
+    assert (candidate.text if candidate and candidate.is_applied else None) == right_text
 
 
 @pytest.mark.parametrize(
-    ("wrong", "asked_text"),
+    ("wrong_text", "asked_text"),
     [
         ("X == 6", "X = 6"),
         ("F(1, 50)\nREPITE", None),  # no empty block is offered
     ],
 )
-def test_what_may_be_meant_is_a_question(wrong: str, asked_text: str | None) -> None:
-    candidate = find_meant_program(wrong)
+def test_possible_meanings_become_a_question(wrong_text: str, asked_text: str | None) -> None:
+    candidate = find_meant_program(wrong_text)
     assert (candidate and candidate.text, bool(candidate and candidate.is_applied)) == (
         asked_text,
         False,
     )
 
 
-@pytest.mark.parametrize(("how", "is_made"), [("applied", False), ("offered", True)])
-def test_a_row_that_is_made_without_asking_loses_no_number(
-    monkeypatch: pytest.MonkeyPatch, how: str, is_made: bool
+@pytest.mark.parametrize(("treatment", "is_made"), [("applied", False), ("offered", True)])
+def test_automatically_applied_rows_lose_no_number(
+    monkeypatch: pytest.MonkeyPatch, treatment: str, is_made: bool
 ) -> None:
-    monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {how} | S 5 => S")
+    monkeypatch.setattr(rows, "TOKENS", f"^ S @num $ | S | 1 | TS044 | {treatment} | S 5 => S")
     (row,) = rewrites.token_rows.__wrapped__()
     line = rewrites.EncodedLine(lexemes("S 5"), Names([], KIT))
     (match,) = line.matches(row.pattern)

@@ -33,8 +33,12 @@ _START = re.compile(r"(?i)\b(?:S[IB]\s*\||PING)")
 
 @cache
 def right_lines() -> list[str]:
-    own = [*programs(), *(entry.program for entry in entries() if not entry.messages), *ODD_LINES]
-    return sorted(line for line in own if _starts_at_once(line) and not _mistakes(line))
+    candidates = [
+        *programs(),
+        *(entry.program for entry in entries() if not entry.messages),
+        *ODD_LINES,
+    ]
+    return sorted(line for line in candidates if _starts_at_once(line) and not _mistakes(line))
 
 
 @cache
@@ -59,7 +63,7 @@ _BLOCK_WORDS = {word for word, row in WORDS.items() if row.role.belongs_to_block
 
 @pytest.mark.sampled("seed", keep=SEEDS_IN_CI // 3)
 @pytest.mark.parametrize("seed", range(SEEDS_IN_CI))
-def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
+def test_only_the_wrong_line_is_reported(seed: int) -> None:
     """After, before and between right ones, which are no longer looked at for warnings."""
     chance = random.Random(seed)
     program, line = chance.choice(right_lines()), chance.choice(wrong_lines())
@@ -69,7 +73,7 @@ def test_a_wrong_line_is_told_of_alone(seed: int) -> None:
 
 
 @each_row("odd", ODD_LINES)
-def test_what_is_right_in_an_odd_way_is_right_beside_a_wrong_line(odd: str) -> None:
+def test_unusual_but_right_lines_are_right_beside_a_wrong_one(odd: str) -> None:
     for line in (
         "F(2;80)",
         "F(2, 8=9",
@@ -95,9 +99,9 @@ def test_a_word_after_an_instruction_begins_no_block(block: str) -> None:
         check_reported_alone([f"{head}  F(1, 80)"], line, tail.strip().split("\n"))
 
 
-def check_reported_alone(before: list[str], line: str, after: list[str]) -> None:
-    rows = "\n".join([*before, line, *after]).split("\n")
-    wrong_row = "\n".join(before).count("\n") + 1
+def check_reported_alone(lines_before: list[str], line: str, lines_after: list[str]) -> None:
+    rows = "\n".join([*lines_before, line, *lines_after]).split("\n")
+    wrong_row = "\n".join(lines_before).count("\n") + 1
     source = Source("\n".join(rows))
     diagnostics = [diagnostic for diagnostic in check(source.text) if diagnostic.is_mistake]
     assert diagnostics, source.text
@@ -123,4 +127,4 @@ def _starts_at_once(text: str) -> bool:
 
 if __name__ == "__main__":
     for seed in range(int(sys.argv[1])):
-        test_a_wrong_line_is_told_of_alone(seed)
+        test_only_the_wrong_line_is_reported(seed)

@@ -20,17 +20,17 @@ PLACES = (
     ("asked_text", "share"),
     [("LIGHT_L > 80", "LIGHT_L > 818"), ("DISTANCE < 50", "DISTANCE < 200")],
 )
-def test_a_percentage_of_a_sensor_is_shown_as_its_number(
+def test_a_percentage_of_a_sensor_is_converted_to_its_range(
     asked_text: str, share: str, percent: str
 ) -> None:
     for place in PLACES:
-        wrong = place.replace("{}", asked_text + percent)
-        (diagnostic,) = check(wrong)
-        tried_text = message(diagnostic, Source(wrong), "en").fix
+        wrong_text = place.replace("{}", asked_text + percent)
+        (diagnostic,) = check(wrong_text)
+        tried_text = message(diagnostic, Source(wrong_text), "en").fix
         assert f"write {share};" in tried_text and tried_text.endswith(f"write {asked_text}"), place
-        assert repair_program(wrong, check).text == wrong
+        assert repair_program(wrong_text, check).text == wrong_text
 
 
-@pytest.mark.parametrize("right", ["IF(LIGHT_L > 80 % 7)", "IF(LIGHT_L % 2 = 0)"])
-def test_a_remainder_is_not_a_percentage(right: str) -> None:
-    assert not check(f"{right};S;ENDIF")
+@pytest.mark.parametrize("right_text", ["IF(LIGHT_L > 80 % 7)", "IF(LIGHT_L % 2 = 0)"])
+def test_a_remainder_is_not_a_percentage(right_text: str) -> None:
+    assert not check(f"{right_text};S;ENDIF")

@@ -29,7 +29,7 @@ FRAMES = (
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(3))
-def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
+def test_a_plus_before_a_number_is_removed(part: int) -> None:
     """This holds for every number of every program, except in `X = +1`, which may be `X += 1`."""
     count = 0
     for text in RIGHT_PROGRAMS[part::3]:
@@ -40,14 +40,14 @@ def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
                 continue
             if token.kind is not NUMBER or is_set:
                 continue
-            wrong = f"{text[: token.start]}+{text[token.start :]}"
-            diagnostics = check(wrong)
+            wrong_text = f"{text[: token.start]}+{text[token.start :]}"
+            diagnostics = check(wrong_text)
             assert [(diagnostic.code, diagnostic.span.start) for diagnostic in diagnostics] == [
                 (codes.EXTRA_WORD, token.start)
-            ], wrong
+            ], wrong_text
             assert (
-                apply_edits(wrong, edits_of(diagnostics[0]) or [])
-                == repair_program(wrong, check).text
+                apply_edits(wrong_text, edits_of(diagnostics[0]) or [])
+                == repair_program(wrong_text, check).text
                 == text
             )
             count += 1
@@ -55,7 +55,7 @@ def test_a_plus_before_a_number_goes_and_the_number_stays(part: int) -> None:
 
 
 @pytest.mark.parametrize("text", ["X = 1;X = +5", "X = 1;W(X);X =+ 5", "X = 1\nX = +5"])
-def test_a_plus_after_the_sign_that_sets_a_variable_may_be_one_more(text: str) -> None:
+def test_a_plus_after_an_assignment_may_be_an_increment(text: str) -> None:
     diagnostics = check(f"{text};SHOW(X)")
     assert "X = X + 5" in message(diagnostics[0], Source(text), "en").fix
     assert repair_program(f"{text};SHOW(X)", check).text == f"{text};SHOW(X)"
@@ -63,7 +63,7 @@ def test_a_plus_after_the_sign_that_sets_a_variable_may_be_one_more(text: str) -
 
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("step", STEPS)
-def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
+def test_increments_and_decrements_are_recognized_everywhere(step: str, frame: str) -> None:
     text = frame.format("SPEED = 60;" + step.format("SPEED") + ";F(1, SPEED)")
     sign = step.strip("{} ")[0]
     mended_text = repair_program(text, check).text
@@ -76,7 +76,7 @@ def test_one_more_or_less_is_read_everywhere(step: str, frame: str) -> None:
     "frame", ["F(5, 60) UNTIL{}", "IF{};S;ENDIF", "WHILE{};F(1, 50);END_WHILE", "WHEN{};S;END_WHEN",
               "IF(DISTANCE < 5);S;ELSEIF{};S;ENDIF", "W(5) UNTIL{}"],
 )  # fmt: skip
-def test_questions_in_brackets_are_one_question(frame: str, word: str) -> None:
+def test_bracketed_conditions_are_one_condition(frame: str, word: str) -> None:
     text = frame.format(f"(DISTANCE < 10) {word} (LIGHT_L < 20)")
     mended_text = repair_program(text, check).text
     assert not [diagnostic for diagnostic in check(mended_text) if diagnostic.code.is_mistake]

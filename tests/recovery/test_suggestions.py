@@ -21,14 +21,14 @@ KIT = robots.load(robots.DEFAULT).kit
 
 
 @each_row("row", [pytest.param(row, id=row.example[0]) for row in rows()])
-def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
-    wrong, expected = row.example
+def test_the_example_of_a_row_gets_its_stated_message(row: SuggestionRow) -> None:
+    wrong_text, expected = row.example
     name, _, value = expected.partition("=")
-    suggested = [suggestion.diagnostic for suggestion in find_suggestions(wrong, KIT)]
+    suggested = [suggestion.diagnostic for suggestion in find_suggestions(wrong_text, KIT)]
     assert len(suggested) < 2
     diagnostics = [
         diagnostic
-        for diagnostic in suggested or check(wrong)
+        for diagnostic in suggested or check(wrong_text)
         if row.code in (diagnostic.code, None)
         and expected in (f"{name}={diagnostic.values.get(name)}", diagnostic.code.number)
     ]
@@ -36,7 +36,7 @@ def test_the_example_of_a_row_is_told_as_it_says(row: SuggestionRow) -> None:
     assert {*row.values} - {"?", "*"} <= {*diagnostics[0].values}
 
 
-def test_what_was_found_is_told_by_the_row_of_its_example() -> None:
+def test_each_example_is_reported_by_its_own_row() -> None:
     """Each example has the message of its own row, and no row is useless."""
     telling: list[SuggestionRow] = []
     original = usage.Usage.diagnostic_of
@@ -66,7 +66,7 @@ def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_text",
     [
         "F(2, 80) gracias; F(1, 50)",  # no note: TS044
         "F(1, 80) MISPELT",  # rather the name of a DEF
@@ -78,17 +78,17 @@ def test_each_heading_names_the_laws_that_its_rows_keep(table: str) -> None:
         "F(1, 80) " + "la " * 30,
     ],
 )
-def test_text_that_is_not_a_note_is_left_to_other_rules(wrong: str) -> None:
-    codes = {suggestion.diagnostic.code.number for suggestion in find_suggestions(wrong, KIT)}
+def test_text_that_is_not_a_comment_is_left_to_other_rules(wrong_text: str) -> None:
+    codes = {suggestion.diagnostic.code.number for suggestion in find_suggestions(wrong_text, KIT)}
     assert not codes & {"TS071", "TS085"}
 
 
-def test_a_block_is_not_a_note_about_the_text_before_it() -> None:
+def test_a_block_is_not_a_comment_on_the_text_before_it() -> None:
     codes = {diagnostic.code.number for diagnostic in check("B(1, 60) IF(DISTANCE < 10)\nS\nENDIF")}
     assert not codes & {"TS071", "TS085"}
 
 
-def test_other_mistakes_beside_the_words_are_reported_too() -> None:
+def test_other_mistakes_beside_the_words_are_also_reported() -> None:
     diagnostics = check("F(2 80) hola\nW(2) espero; AVANZA(1, 80)")
     assert [(diagnostic.code.number, diagnostic.values["fix"]) for diagnostic in diagnostics] == [
         ("TS017", "F(2, 80)"),
@@ -99,21 +99,23 @@ def test_other_mistakes_beside_the_words_are_reported_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "expected"),
+    ("wrong_text", "expected"),
     [
         ("F(2, 80)\nS\nF(2, 80)\nS\netc", {"all": "LOOP(4);F(2, 80);S;END_LOOP"}),
     ],
 )  # fmt: skip
-def test_what_stands_above_is_meant_again(wrong: str, expected: dict[str, str]) -> None:
-    assert expected.items() <= check(wrong)[-1].values.items()
+def test_a_reference_to_earlier_text_is_resolved(wrong_text: str, expected: dict[str, str]) -> None:
+    assert expected.items() <= check(wrong_text)[-1].values.items()
 
 
-@pytest.mark.parametrize("wrong", ["LOOP(2)\n...\nEND_LOOP", "idem", '"\nF(2, 80)', "F(2, 80)."])
-def test_nothing_stands_above_that_could_be_meant(wrong: str) -> None:
-    assert not {diagnostic.code.number for diagnostic in check(wrong)} & {"TS130", "TS131"}
+@pytest.mark.parametrize(
+    "wrong_text", ["LOOP(2)\n...\nEND_LOOP", "idem", '"\nF(2, 80)', "F(2, 80)."]
+)
+def test_a_reference_without_earlier_text_is_not_resolved(wrong_text: str) -> None:
+    assert not {diagnostic.code.number for diagnostic in check(wrong_text)} & {"TS130", "TS131"}
 
 
-def test_what_follows_a_question_in_words_is_told_with_it() -> None:
+def test_text_after_a_verbal_condition_is_reported_with_it() -> None:
     asked_diagnostic, end = check("IF(mucha luz) S ENDIF")
     assert (asked_diagnostic.values["question"], asked_diagnostic.values["another"]) == (
         "LIGHT_L > 500",
@@ -124,21 +126,26 @@ def test_what_follows_a_question_in_words_is_told_with_it() -> None:
 
 
 def test_words_are_never_dropped_without_asking() -> None:
-    for wrong in ("F(1, 80) hola", "F(2, 80) 3 veces", "F(2, 80) y retrocede", "F(2, 80) al 50%"):
-        assert repair_program(wrong, check).text == wrong
+    for wrong_text in (
+        "F(1, 80) hola",
+        "F(2, 80) 3 veces",
+        "F(2, 80) y retrocede",
+        "F(2, 80) al 50%",
+    ):
+        assert repair_program(wrong_text, check).text == wrong_text
 
 
 def test_a_repair_beside_words_does_not_drop_them() -> None:
     assert "hola" in repair_program("F(1, 80) B(1, 80) hola", check).text
 
 
-def test_a_number_of_another_unit_is_converted() -> None:
+def test_a_number_in_another_unit_is_converted() -> None:
     (diagnostic,) = check("S 500 ms")
     assert diagnostic.values["fix"] == "S;W(0.5)"
 
 
 @pytest.mark.parametrize(
-    ("wrong", "values"),
+    ("wrong_text", "values"),
     [
         ("F(1, 80); L(1, 60) x4", {"all": "LOOP(4);F(1, 80);L(1, 60);END_LOOP"}),
         ("F(2, 80) luego espera", {"fix": "F(2, 80);W(1)", "example": "1 s"}),
@@ -150,6 +157,6 @@ def test_a_number_of_another_unit_is_converted() -> None:
         ("avanza hasta menos de 10", {"fix": "F(FOREVER, 80) UNTIL(DISTANCE < 10)"}),
     ],
 )  # fmt: skip
-def test_values_of_a_row_are_filled(wrong: str, values: dict[str, str]) -> None:
-    (diagnostic,) = check(wrong)
+def test_values_of_a_row_are_filled(wrong_text: str, values: dict[str, str]) -> None:
+    (diagnostic,) = check(wrong_text)
     assert values.items() <= diagnostic.values.items()

@@ -32,7 +32,7 @@ SURROUNDINGS = ("{}", "SI|W(1);{}", "{};S", "LOOP(3);{};END_LOOP", "DEF A1;{};EN
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 @pytest.mark.parametrize("words", PROGRAM_BY_NOTE)
-def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> None:
+def test_possible_comments_are_read_as_comments_first(words: str, language: str) -> None:
     for place in (*LAST_PLACES, *EARLIER_PLACES):
         text = place.format(f"F(3, 50) {words}")
         diagnostic = next(
@@ -46,35 +46,40 @@ def test_words_that_may_be_a_note_are_one_first(words: str, language: str) -> No
 
 @pytest.mark.parametrize("separator", [";", "\n"])
 @pytest.mark.parametrize("template", SURROUNDINGS)
-@pytest.mark.parametrize(("asked_text", "other"), IFS)
-def test_an_else_that_asks_the_opposite_asks_nothing(
-    asked_text: str, other: str, template: str, separator: str
+@pytest.mark.parametrize(("asked_text", "else_condition"), IFS)
+def test_an_else_with_the_opposite_condition_needs_none(
+    asked_text: str, else_condition: str, template: str, separator: str
 ) -> None:
-    body = separator.join((f"IF({asked_text})", "B(1, 60)", f"ELSE({other})", "F(1, 60)", "ENDIF"))
-    wrong = template.format(body)
+    body = separator.join(
+        (f"IF({asked_text})", "B(1, 60)", f"ELSE({else_condition})", "F(1, 60)", "ENDIF")
+    )
+    wrong_text = template.format(body)
     diagnostic = next(
-        diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
+        diagnostic for diagnostic in check(wrong_text) if diagnostic.code.number == "TS039"
     )
-    assert (diagnostic.values["fix"], diagnostic.values["rival"]) == ("ELSE", f"ELSEIF({other})"), (
-        wrong
-    )
+    assert (diagnostic.values["fix"], diagnostic.values["rival"]) == (
+        "ELSE",
+        f"ELSEIF({else_condition})",
+    ), wrong_text
     (edit,) = edits_of(diagnostic) or []
-    assert wrong[slice(*edit.span)] == f"ELSE({other})" and edit.text == "ELSE"
+    assert wrong_text[slice(*edit.span)] == f"ELSE({else_condition})" and edit.text == "ELSE"
 
 
 @pytest.mark.parametrize("template", SURROUNDINGS)
-@pytest.mark.parametrize("other", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
-def test_an_else_that_asks_something_else_is_an_elseif(template: str, other: str) -> None:
-    wrong = template.format(f"IF(DISTANCE < 20);B(1, 60);ELSE({other});F(1, 60);ENDIF")
-    diagnostic = next(
-        diagnostic for diagnostic in check(wrong) if diagnostic.code.number == "TS039"
+@pytest.mark.parametrize("else_condition", ["DISTANCE > 40", "LIGHT_L > 20", "DISTANCE < 10"])
+def test_an_else_with_another_condition_becomes_elseif(template: str, else_condition: str) -> None:
+    wrong_text = template.format(
+        f"IF(DISTANCE < 20);B(1, 60);ELSE({else_condition});F(1, 60);ENDIF"
     )
-    assert diagnostic.values["fix"] == f"ELSEIF({other})"
+    diagnostic = next(
+        diagnostic for diagnostic in check(wrong_text) if diagnostic.code.number == "TS039"
+    )
+    assert diagnostic.values["fix"] == f"ELSEIF({else_condition})"
 
 
-@pytest.mark.parametrize("one", ["F(3, 60)", "L(2, 40)"])
-@pytest.mark.parametrize("other", ["B(3, 60)", "F(1, 30)"])
-def test_tasks_that_drive_may_be_meant_one_after_the_other(one: str, other: str) -> None:
-    text = f"SI|TASK;{one};END_TASK;TASK;{other};END_TASK"
+@pytest.mark.parametrize("first_body", ["F(3, 60)", "L(2, 40)"])
+@pytest.mark.parametrize("second_body", ["B(3, 60)", "F(1, 30)"])
+def test_tasks_that_drive_may_be_meant_sequentially(first_body: str, second_body: str) -> None:
+    text = f"SI|TASK;{first_body};END_TASK;TASK;{second_body};END_TASK"
     (warning,) = check(text)
-    assert re.search(rf"{re.escape(one)};{re.escape(other)}", warning.values["after"])
+    assert re.search(rf"{re.escape(first_body)};{re.escape(second_body)}", warning.values["after"])

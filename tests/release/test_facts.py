@@ -34,12 +34,12 @@ def git(root: Path, *words: str) -> None:
     subprocess.run(["git", "-C", root, *identity_options, *words], check=True, capture_output=True)
 
 
-def replace_in_file(name: str, old: str, new: str) -> Callable[[Path], None]:
+def replace_in_file(name: str, old_text: str, new_text: str) -> Callable[[Path], None]:
     def change(root: Path) -> None:
         path = root / name
         text = path.read_text(encoding="utf-8")
-        assert old in text, (name, old)
-        path.write_text(text.replace(old, new), encoding="utf-8")
+        assert old_text in text, (name, old_text)
+        path.write_text(text.replace(old_text, new_text), encoding="utf-8")
 
     return change
 
@@ -70,7 +70,7 @@ def clone(tmp_path: Path) -> Path:
     return root
 
 
-def test_what_is_ready_gets_no_complaint(clone: Path) -> None:
+def test_a_ready_release_has_no_problems(clone: Path) -> None:
     assert list(facts.release_problems(clone)) == []
     git(clone, "tag", f"v{VERSION}")
     assert list(facts.release_problems(clone)) == []
@@ -107,25 +107,25 @@ WRONG_CHANGES: dict[str, Callable[[Path], object]] = {
 }
 
 
-def test_what_is_wrong_is_said_in_a_sentence(clone: Path) -> None:
-    for why, change in WRONG_CHANGES.items():
+def test_each_release_problem_has_a_message(clone: Path) -> None:
+    for problem, change in WRONG_CHANGES.items():
         change(clone)
         commit(clone)
         complaints = list(facts.release_problems(clone))
-        assert len(complaints) == 1 and why in complaints[0] and len(complaints[0]) < 200, (
-            why,
+        assert len(complaints) == 1 and problem in complaints[0] and len(complaints[0]) < 200, (
+            problem,
             complaints,
         )
         git(clone, "reset", "-q", "--hard", "HEAD~")
 
 
-def test_a_file_that_is_not_committed_is_named(clone: Path) -> None:
+def test_an_uncommitted_file_is_named(clone: Path) -> None:
     (clone / "new.txt").touch()
     (complaint,) = facts.release_problems(clone)
     assert complaint.startswith("1 files are not committed, new.txt among them.")
 
 
-def test_another_commit_with_the_tag_of_this_version_is_told(clone: Path) -> None:
+def test_a_tag_of_this_version_on_another_commit_is_reported(clone: Path) -> None:
     git(clone, "tag", f"v{VERSION}")
     commit(clone)
     (complaint,) = facts.release_problems(clone)
@@ -134,7 +134,7 @@ def test_another_commit_with_the_tag_of_this_version_is_told(clone: Path) -> Non
     )
 
 
-def test_a_tag_of_another_version_is_told(clone: Path) -> None:
+def test_a_tag_of_another_version_is_reported(clone: Path) -> None:
     git(clone, "tag", "v1.2.3")
     git(clone, "tag", "seen")
     (complaint,) = facts.release_problems(clone)
@@ -163,7 +163,7 @@ def test_an_address_has_one_place() -> None:
 
 
 @pytest.mark.parametrize("is_tagged", [False, True])
-def test_an_address_is_kept_where_it_is_another_one(
+def test_a_different_address_is_kept(
     clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_tagged: bool
 ) -> None:
     """A commit that is ready for release stays so."""

@@ -25,17 +25,17 @@ def folder(place: Path, names: list[str], when: int) -> Path:
 def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
     names = ["b.sh", "a/ñ.txt", "a/b.txt"]
     one = folder(tmp_path / "one", names, EPOCH + 1)
-    other = folder(tmp_path / "other place", names[::-1], 10_000)
+    other_folder = folder(tmp_path / "other place", names[::-1], 10_000)
     first = pack_folder(one, tmp_path / "x-1.zip", EPOCH)
     (tmp_path / "again").mkdir()
-    second = pack_folder(other, tmp_path / "again" / "x-1.zip", EPOCH)
+    second = pack_folder(other_folder, tmp_path / "again" / "x-1.zip", EPOCH)
     assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as zip_file:
         assert zip_file.namelist() == ["x-1/a/b.txt", "x-1/a/ñ.txt", "x-1/b.sh"]
         assert {row.date_time for row in zip_file.infolist()} == {(2023, 11, 14, 22, 13, 20)}
 
 
-def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> None:
+def test_unpacked_files_keep_their_executable_bit(tmp_path: Path) -> None:
     path = pack_folder(
         folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH
     )
@@ -44,7 +44,7 @@ def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> Non
     assert rights == {"x/b.sh": 0o755, "x/a.txt": 0o644}
 
 
-def test_the_library_is_the_same_twice(tmp_path: Path) -> None:
+def test_the_library_is_built_reproducibly(tmp_path: Path) -> None:
     sums = set()
     for place in ("one", "other place"):
         path = tmp_path / place / "TiniScript"

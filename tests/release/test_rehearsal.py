@@ -13,13 +13,13 @@ from tools.release import facts
 from tools.release.parts import PARTS, Clone, chosen_parts
 
 
-def test_parts_bring_those_that_they_need_in_their_order() -> None:
+def test_parts_include_their_dependencies_in_order() -> None:
     assert chosen_parts([]) == list(PARTS)
     assert chosen_parts(["stick"]) == ["conformance", "wheel", "stick"]
     assert chosen_parts(["page", "library"]) == ["studio", "page", "library"]
 
 
-def test_a_process_that_builds_has_the_time_of_the_commit_and_no_settings(
+def test_a_build_process_has_the_commits_time_and_no_settings(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PYTHONSTARTUP", "x")
@@ -31,7 +31,7 @@ def test_a_process_that_builds_has_the_time_of_the_commit_and_no_settings(
     assert "PYTHONSTARTUP" not in variables
 
 
-def test_what_fails_in_a_clone_or_cannot_be_cloned_is_an_error(
+def test_failures_in_or_of_a_clone_are_errors(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clone = Clone(tmp_path, tmp_path, "1", "", 77, 2, False)
@@ -51,7 +51,7 @@ def test_what_fails_in_a_clone_or_cannot_be_cloned_is_an_error(
 @pytest.mark.parametrize(
     ("has_complaint", "differs", "goes_on", "tags"), [*product((False, True), repeat=4)]
 )
-def test_a_commit_is_released_and_tagged_if_nothing_is_wrong(
+def test_a_faultless_commit_is_released_and_tagged(
     has_complaint: bool,
     differs: bool,
     goes_on: bool,

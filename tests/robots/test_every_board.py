@@ -36,7 +36,7 @@ def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
     assert board in VARIANTS, "tests/machines/board.py names the core's folder with its pins"
 
 
-def test_every_board_is_told_to_people() -> None:
+def test_every_board_is_documented() -> None:
     (option,) = (
         option for option in OPTIONS if (option.flags, option.verbs) == ("--chip", "firmware")
     )

@@ -53,21 +53,21 @@ def test_a_device_is_read_or_set_by_firmware_and_sketch(driver: Driver) -> None:
 
 
 @pytest.mark.parametrize("driver", DRIVERS.values(), ids=names([*DRIVERS.values()]))
-def test_a_driver_is_told_to_who_writes_a_profile(driver: Driver) -> None:
+def test_every_driver_is_documented_for_profile_authors(driver: Driver) -> None:
     sample = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
     headings = re.findall(r"(?m)^# {3,}(.*)", sample.read_text(encoding="utf-8"))
     assert re.search(rf"\b{driver.name}\b", " ".join(headings)), "python -m tools.generate"
 
 
-def test_a_driver_that_a_sketch_does_not_know_is_named() -> None:
+def test_a_driver_without_sketch_support_is_named() -> None:
     """This holds for any names of its pins."""
     for driver in DEVICES:
         robot = robot_with("l298n", [driver])
         board = robot.board
-        new = Wiring("new", {"left": 5}, {})
+        new_wiring = Wiring("new", {"left": 5}, {})
         board = board._replace(
-            sensors=(new,) * len(board.sensors),
-            actuators=(new,) * len(board.actuators),
+            sensors=(new_wiring,) * len(board.sensors),
+            actuators=(new_wiring,) * len(board.actuators),
         )
         with pytest.raises(LookupError, match="robots/drivers has no driver new"):
             firmware.header([robot._replace(board=board)], "a test.")
@@ -146,9 +146,9 @@ ALL_ROBOTS = [
 
 def compile_all(robot: Robot, folder: Path) -> None:
     """Compile without output: a compiler quickly reports errors that no test of the text finds."""
-    header, own = firmware.header([robot], "a test."), folder / "own.h"
-    own.write_text(header, encoding="utf-8")
-    own_define = f'-Dtiniscript_own="{own}"'
+    header, own_header = firmware.header([robot], "a test."), folder / "own.h"
+    own_header.write_text(header, encoding="utf-8")
+    own_define = f'-Dtiniscript_own="{own_header}"'
     if robot.board.chip.startswith("esp32"):
         need(missing())
         flags = (*flags_of(robot.board.chip, 2), own_define, "-Wpedantic")
@@ -165,7 +165,7 @@ def compile_all(robot: Robot, folder: Path) -> None:
 
 @pytest.mark.sampled("robot", keep=12)
 @pytest.mark.parametrize("robot", ALL_ROBOTS)
-def test_what_a_driver_writes_compiles(robot: Robot, tmp_path: Path) -> None:
+def test_generated_code_of_every_driver_compiles(robot: Robot, tmp_path: Path) -> None:
     compile_all(robot, tmp_path)
 
 
@@ -194,14 +194,14 @@ def with_parts(chip: str, parts: Sequence[str]) -> Robot:
 
 
 @pytest.mark.parametrize("chip", ["uno", "mega", "esp32dev"])
-def test_a_robot_compiles_with_none_of_a_part(
+def test_a_robot_without_an_optional_part_compiles(
     chip: str, tmp_path: Path, pytestconfig: pytest.Config
 ) -> None:
     for parts in ((), *sample_of(pytestconfig, chip, SETS_OF_PARTS, 3)):
         compile_all(with_parts(chip, parts), tmp_path)
 
 
-def test_motors_that_the_firmware_does_not_know_are_named() -> None:
+def test_motors_without_firmware_support_are_named() -> None:
     robot = robot_with("l298n", DEVICES)
     board = robot.board._replace(motors=robot.board.motors._replace(driver="new"))
     with pytest.raises(LookupError, match="robots/drivers has no driver new"):

@@ -43,7 +43,7 @@ def test_an_arc_stays_on_its_circle() -> None:
 
 
 @pytest.mark.parametrize(("left", "right"), SETTINGS)
-def test_a_time_in_parts_is_the_same_way(left: int, right: int) -> None:
+def test_a_move_in_parts_gives_the_same_path(left: int, right: int) -> None:
     pose = Pose(5, -3, 20)
     for part_ms in (20, 0, 333, 1, 646):
         pose = move_pose(BODY, pose, left, right, part_ms)
@@ -54,7 +54,7 @@ def test_a_time_in_parts_is_the_same_way(left: int, right: int) -> None:
 
 
 @pytest.mark.parametrize(("left", "right"), SETTINGS)
-def test_points_end_where_the_way_ends_and_are_close_enough(left: int, right: int) -> None:
+def test_path_points_are_close_and_reach_the_end(left: int, right: int) -> None:
     way = [START, *points(BODY, START, left, right, 1500)]
     assert way[-1] == move_pose(BODY, START, left, right, 1500)
     if left != -right:
@@ -63,7 +63,7 @@ def test_points_end_where_the_way_ends_and_are_close_enough(left: int, right: in
             assert min(turn, 360 - turn) <= ARC_STEP + 1e-9
 
 
-def test_many_rounds_are_one_circle_and_the_way_to_the_end() -> None:
+def test_many_rounds_are_one_circle_and_the_path_to_the_end() -> None:
     way = points(BODY, START, 20, 80, 10**9)
     assert len(way) <= 2 * 360 / ARC_STEP
     assert way[-1] == move_pose(BODY, START, 20, 80, 10**9)
@@ -73,7 +73,7 @@ def test_many_rounds_are_one_circle_and_the_way_to_the_end() -> None:
 # ---- a way of several settings
 
 
-def test_a_way_knows_its_corners_and_where_the_robot_is() -> None:
+def test_a_path_has_its_corners_and_the_current_pose() -> None:
     way = Way(BODY)
     way.set_motors(0, 50, 50)
     way.set_motors(1000, 0, 0)
@@ -96,12 +96,12 @@ def test_thinned_out_corners_keep_the_shape() -> None:
     way = Way(BODY)
     for k in range(1000):
         way.set_motors(k, 100, 100 - k % 2)
-    pose, last = way.pose(1000), way.corners[-1]
+    pose, last_corner = way.pose(1000), way.corners[-1]
     way.thin_out(800)
     assert len(way.corners) < 800
     assert way.corners[0] == START
-    assert way.corners[-1] == last
+    assert way.corners[-1] == last_corner
     assert way.pose(1000) == pose
     way.thin_out(10)
     assert len(way.corners) == 10
-    assert way.corners[-1] == last
+    assert way.corners[-1] == last_corner

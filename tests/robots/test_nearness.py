@@ -29,7 +29,7 @@ def test_a_shipped_robot_is_nearest_to_itself(name: str) -> None:
     assert chips[0] == chips[1]
 
 
-def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
+def test_common_parts_count_before_differing_ones() -> None:
     text = TEXTS["liner"].replace(BATTERY, "")
     assert text != TEXTS["liner"]
     head, _, rest = text.partition("[board.sensors.BATTERY]")
@@ -37,11 +37,13 @@ def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
     text = text.replace('BATTERY = "battery voltage"\n', "")
     nearest = nearest_to(read(text, "mine"))
     assert nearest == ("liner", False, ("LINE_L", "LINE_R", "BUTTON", "LED"), ("BATTERY",), ())
-    other = TEXTS["tinibot"].replace('"LIGHT_R"', '"LIGHT_B"', 1)
+    other_text = TEXTS["tinibot"].replace('"LIGHT_R"', '"LIGHT_B"', 1)
     for table in ("board.sensors.", "body.sensors."):
-        other = other.replace(f"[{table}LIGHT_R]", f"[{table}LIGHT_B]")
-    other = other.replace("\nLIGHT_R = {", "\nLIGHT_B = {").replace('LIGHT_R = "', 'LIGHT_B = "')
-    nearest = nearest_to(read(other, "mine"))
+        other_text = other_text.replace(f"[{table}LIGHT_R]", f"[{table}LIGHT_B]")
+    other_text = other_text.replace("\nLIGHT_R = {", "\nLIGHT_B = {").replace(
+        'LIGHT_R = "', 'LIGHT_B = "'
+    )
+    nearest = nearest_to(read(other_text, "mine"))
     assert nearest == ("tinibot", False, ("LIGHT_L", "DISTANCE"), ("LIGHT_R",), ("LIGHT_B",))
     range_of = TEXTS["grabber"].replace("range = [0, 180]", "range = [0, 90]")
     nearest = nearest_to(read(range_of, "mine"))
@@ -50,19 +52,21 @@ def test_what_both_have_counts_first_and_what_only_one_has_then() -> None:
     )  # fmt: skip
 
 
-def test_more_in_common_counts_before_fewer_others() -> None:
+def test_more_common_parts_count_before_fewer_differing_ones() -> None:
     distance, _, button = robots.load("grabber").kit.sensors
     mine = robots.load("tinibot")._replace(kit=Kit((distance, button), ()))
     assert nearest_to(mine)[:3] == ("grabber", False, ("DISTANCE", "BUTTON"))
 
 
-def test_the_command_says_it_of_a_file_and_of_nothing_shipped(tsc: Tsc, tmp_path: Path) -> None:
-    own = tmp_path / "mine.toml"
-    own.write_text(TEXTS["tinibot"], encoding="utf-8")
-    result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+def test_the_command_names_the_nearest_robot_only_for_custom_files(
+    tsc: Tsc, tmp_path: Path
+) -> None:
+    own_profile = tmp_path / "mine.toml"
+    own_profile.write_text(TEXTS["tinibot"], encoding="utf-8")
+    result = tsc("firmware", "--board", own_profile, "-o", tmp_path / "own.h")
     assert "Your robot has the same kit as tinibot" in result.err
-    own.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
-    result = tsc("firmware", "--board", own, "-o", tmp_path / "own.h")
+    own_profile.write_text(TEXTS["grabber"].replace("[0, 180]", "[0, 90]"), encoding="utf-8")
+    result = tsc("firmware", "--board", own_profile, "-o", tmp_path / "own.h")
     assert result.err == (
         "Of the robots that come with tsc, grabber is the most similar to yours. In common:"
         " DISTANCE, TEMPERATURE, BUTTON, LED. Only grabber has: GRIPPER. Only yours has: GRIPPER.\n"

@@ -133,7 +133,9 @@ REFUSED = [
 
 
 @each_row("code, name, old, new, path", REFUSED)
-def test_refusals(code: str, name: str, old: str, new: str, path: str | None) -> None:
+def test_invalid_profiles_are_refused(
+    code: str, name: str, old: str, new: str, path: str | None
+) -> None:
     refusals = refusal(edit_profile(name, old, new))
     if path is None:
         assert codes(refusals) == [code]
@@ -161,7 +163,9 @@ pin = {pin}
     ("l298n", 3, 2, "board.buzzer"),
     ("l298n", 5, None, ""),  # timer 0 keeps the time, and does PWM besides
 ])  # fmt: skip
-def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) -> None:
+def test_timer_conflicts_of_an_uno_are_refused(
+    motors: str, pin: int, timer: int | None, first: str
+) -> None:
     """Servos take PWM 9 and 10, the buzzer PWM 3 and 11; the names of both are said."""
     text_before, _, text_after = TEXTS["tinibot"].partition("[board.motors]")
     wired_text = {
@@ -182,7 +186,7 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     assert f"which {first} uses." in sentence
 
 
-@pytest.mark.parametrize(("name", "old", "pin", "code"), [
+@pytest.mark.parametrize(("name", "old_text", "pin", "code"), [
     *(("tinibot32", "right_backward = 21", pin, "pin_at_boot") for pin in (0, 5, 12, 14, 15)),
     ("tinibot32", "left_pwm = 25", 12, "pin_at_boot"),
     ("tinibot32", "start_button = 4", 0, "pin_of_reset"),
@@ -201,13 +205,15 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     ("tinibotc3", "start_button = 8", 9, "pin_of_reset"),
     ("tinibotc3", "start_button = 8", 2, ""),
 ])  # fmt: skip
-def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
+def test_unsuitable_pins_of_esp32s_are_refused(
+    name: str, old_text: str, pin: int, code: str
+) -> None:
     """A pin with a reset pulse starts no motor; flash, link, inputs and ADC2 are checked."""
-    key, _, left = old.partition(" = ")
-    text, count = re.subn(rf"(?m)^{old}\b", f"{key} = {pin}", TEXTS[name])
+    key, _, value_text = old_text.partition(" = ")
+    text, count = re.subn(rf"(?m)^{old_text}\b", f"{key} = {pin}", TEXTS[name])
     assert count == 1
     if (name, pin) == ("tinibotc3", 2):
-        text = text.replace("trigger = 2", f"trigger = {left}")
+        text = text.replace("trigger = 2", f"trigger = {value_text}")
     if not code:
         assert read(text, "test").board.chip.startswith("esp32")
         return
@@ -218,7 +224,7 @@ def test_pins_of_esp32s(name: str, old: str, pin: int, code: str) -> None:
         assert sentence.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
 
 
-def test_pwm_of_an_esp32_c3() -> None:
+def test_too_many_pwm_pins_of_an_esp32_c3_are_refused() -> None:
     """It has three timers, for two pins of one frequency each, so a fan in addition to four motor
     pins has none."""
     text_before, mark, text_after = TEXTS["tinibotc3"].partition("[board.sensors.LIGHT_R]")
@@ -226,9 +232,12 @@ def test_pwm_of_an_esp32_c3() -> None:
     refusals = refusal(text)
     assert codes(refusals) == ["timers_used_up"]
     assert describe(refusals, "en")[0].startswith("board.actuators.FAN.pin is pin 9: its PWM needs")
-    for old, new in (("two_wire", "l298n"), ("left_forward = 3", "left_pwm = 3\nleft_forward = 6"),
-                     ("right_forward = 5", "right_pwm = 5\nright_forward = 2")):  # fmt: skip
-        text = text.replace(old, new)
+    for old_text, new_text in (
+        ("two_wire", "l298n"),
+        ("left_forward = 3", "left_pwm = 3\nleft_forward = 6"),
+        ("right_forward = 5", "right_pwm = 5\nright_forward = 2"),
+    ):
+        text = text.replace(old_text, new_text)
     assert "pin_at_boot" in codes(refusal(text)), "direction pins need no timer"
     dev = TEXTS["tinibot32"].partition("[board.sensors.LIGHT_R]")
     assert read(dev[0] + FAN.format(pin=22) + dev[1] + dev[2], "test").board.actuators
@@ -249,7 +258,7 @@ def test_every_code_has_a_test() -> None:
     assert {f"need/{need}" for need in ABILITIES} == {key for key in texts if key[:5] == "need/"}
 
 
-def test_all_complaints_come_at_once() -> None:
+def test_all_complaints_are_reported_at_once() -> None:
     text = edit_profile("tinibot", "range = [0, 400]", "range = [4, 0]")
     text = text.replace("trigger = 4", "trigger = 1").replace('"LIGHT_R"', '"LOOP"', 1)
     text = text.replace("length_cm = 21", "length = 21")
@@ -274,7 +283,7 @@ def test_a_lamp_cannot_be_held() -> None:
     assert "Quita esa línea" in describe(refusals, "es")[0]
 
 
-def test_a_refusal_says_what_to_do() -> None:
+def test_a_refusal_names_the_next_step() -> None:
     refusals = refusal(edit_profile("tinibot", "left_pwm = 5", "left_pwm = 4"))
     assert describe(refusals, "en") == [
         "board.motors.left_pwm is pin 4, which cannot be a PWM output on the board uno."
@@ -289,7 +298,7 @@ def test_a_refusal_says_what_to_do() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "old", "new", "sentences"),
+    ("name", "old_text", "new_text", "sentences"),
     [
         ("tinibot", "[board]", "[bord]", ["Did you mean board?"]),
         ("tinibot", "length_cm", "lenght_cm", ["Did you mean length_cm?"]),
@@ -303,14 +312,16 @@ def test_a_refusal_says_what_to_do() -> None:
          ["echo is missing", "Did you mean trigger?"]),
     ],
 )  # fmt: skip
-def test_one_slip_is_one_complaint(name: str, old: str, new: str, sentences: list[str]) -> None:
-    complaints = describe(refusal(edit_profile(name, old, new)), "en")
+def test_one_mistake_is_one_complaint(
+    name: str, old_text: str, new_text: str, sentences: list[str]
+) -> None:
+    complaints = describe(refusal(edit_profile(name, old_text, new_text)), "en")
     assert len(complaints) == len(sentences), complaints
     for sentence, complaint in zip(sentences, complaints, strict=True):
         assert sentence in complaint
 
 
-def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
+def test_a_renamed_device_names_all_tables_to_change() -> None:
     sentences = describe(
         refusal(edit_profile("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en"
     )
@@ -321,7 +332,7 @@ def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
     assert all(sentence.endswith("Did you mean DISTANCIA?") for sentence in sentences)
 
 
-def test_what_is_shown_is_short_and_printable() -> None:
+def test_shown_values_are_short_and_printable() -> None:
     assert printable_value("a\x1b[2J\n" + "b" * 99) == "a?[2J?" + "b" * 34 + "…"
     assert printable_value(16**9000) == "…"
 
@@ -338,7 +349,7 @@ FILES: list[tuple[str, bytes | None]] = [
 
 
 @pytest.mark.parametrize(("code", "content"), FILES)
-def test_trouble_with_files(code: str, content: bytes | None, tmp_path: Path) -> None:
+def test_file_errors_are_reported(code: str, content: bytes | None, tmp_path: Path) -> None:
     path = str(tmp_path / "robot.toml")
     if content is not None:
         Path(path).write_bytes(content)
@@ -352,7 +363,7 @@ def test_trouble_with_files(code: str, content: bytes | None, tmp_path: Path) ->
     assert all(describe(exception_info.value, language) for language in LANGUAGES)
 
 
-def test_a_wrong_name_gets_the_nearest_one() -> None:
+def test_a_wrong_name_suggests_the_nearest_one() -> None:
     with pytest.raises(ProfileRefused) as exception_info:
         robots.load("Tinybot")
     assert describe(exception_info.value, "es") == [
@@ -381,27 +392,29 @@ def mutate(text: str, chance: random.Random) -> str:
     """A text with some lines deleted, doubled, moved, or given another value."""
     lines = text.split("\n")
     for _ in range(chance.choice((1, 1, 2, 5, 20))):
-        at = chance.randrange(len(lines))
-        key, equals, _ = lines[at].partition("=")
-        how = chance.randrange(6)
-        if how == 0:
-            del lines[at]
-        elif how == 1:
-            lines.insert(chance.randrange(len(lines)), lines[at])
-        elif how == 2 and lines[at]:
-            cut = chance.randrange(len(lines[at]))
-            lines[at] = lines[at][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[at][cut + 1 :]
-        elif how == 3:
-            lines[at] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[at])
+        index = chance.randrange(len(lines))
+        key, equals, _ = lines[index].partition("=")
+        kind = chance.randrange(6)
+        if kind == 0:
+            del lines[index]
+        elif kind == 1:
+            lines.insert(chance.randrange(len(lines)), lines[index])
+        elif kind == 2 and lines[index]:
+            cut = chance.randrange(len(lines[index]))
+            lines[index] = (
+                lines[index][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[index][cut + 1 :]
+            )
+        elif kind == 3:
+            lines[index] = re.sub(r"-?\d+", lambda _: chance.choice(ODD_NUMBERS), lines[index])
         elif equals:
-            lines[at] = f"{key}= {chance.choice(ODD_NUMBERS)}"
+            lines[index] = f"{key}= {chance.choice(ODD_NUMBERS)}"
         lines = lines or [""]
     return "\n".join(lines)
 
 
 @pytest.mark.sampled("seed", keep=10)
 @pytest.mark.parametrize("seed", range(40))
-def test_nothing_but_a_refusal_comes_of_a_broken_profile(seed: int) -> None:
+def test_a_broken_profile_is_always_refused(seed: int) -> None:
     chance = random.Random(seed)
     for _ in range(50):
         name = chance.choice(sorted(TEXTS))

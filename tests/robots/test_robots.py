@@ -30,7 +30,7 @@ def test_the_default_comes_first_and_every_toml_is_shipped() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(TEXTS))
-def test_a_shipped_robot_is_what_its_toml_says(name: str) -> None:
+def test_a_shipped_robot_matches_its_toml(name: str) -> None:
     robot = robots.load(name)
     assert robot == robots.load(str(FOLDER / f"{name}.toml"))
     assert robots.load(name.upper()) == read(TEXTS[name], name)
@@ -72,7 +72,7 @@ def test_a_shipped_robot_needs_no_toml() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old_text", "new_text"),
     [
         ('robot = "Grabber"', 'robot = "Big hand"'),
         ('LED = "lamp"', ""),
@@ -84,12 +84,17 @@ def test_a_shipped_robot_needs_no_toml() -> None:
         ("range = [-40, 125]", "range = [-40.000, 125.0]"),
     ],
 )
-def test_the_fingerprint_is_blind_to_what_programs_do_not_see(old: str, new: str) -> None:
-    assert read(edit_profile("grabber", old, new), "x").kit.fingerprint == FINGERPRINTS["grabber"]
+def test_the_fingerprint_ignores_parts_that_programs_do_not_use(
+    old_text: str, new_text: str
+) -> None:
+    assert (
+        read(edit_profile("grabber", old_text, new_text), "x").kit.fingerprint
+        == FINGERPRINTS["grabber"]
+    )
 
 
 @pytest.mark.parametrize(
-    ("old", "new"),
+    ("old_text", "new_text"),
     [
         ('unit = "cm"', 'unit = "mm"'),
         ('unit = "cm"', ""),
@@ -99,11 +104,14 @@ def test_the_fingerprint_is_blind_to_what_programs_do_not_see(old: str, new: str
         ("range = [0, 180]", "range = [0, 181]"),
     ],
 )
-def test_the_fingerprint_sees_ranges_and_units(old: str, new: str) -> None:
-    assert read(edit_profile("grabber", old, new), "x").kit.fingerprint != FINGERPRINTS["grabber"]
+def test_the_fingerprint_covers_ranges_and_units(old_text: str, new_text: str) -> None:
+    assert (
+        read(edit_profile("grabber", old_text, new_text), "x").kit.fingerprint
+        != FINGERPRINTS["grabber"]
+    )
 
 
-def test_the_fingerprint_sees_names_kinds_and_order() -> None:
+def test_the_fingerprint_covers_names_kinds_and_order() -> None:
     text = TEXTS["tinibot"]
     swapped_text = text.replace("LIGHT_R", "LIGHT_X").replace("LIGHT_L", "LIGHT_R")
     renamed_text = text.replace("LIGHT_R", "LAMP")
@@ -134,7 +142,7 @@ def test_numbers_are_exact() -> None:
     assert read(text, "x").kit.sensors[2][3:] == (100, 1_000_250)
 
 
-def test_a_label_that_is_missing_is_the_other_languages_or_the_name() -> None:
+def test_a_missing_label_falls_back_to_another_language_or_the_name() -> None:
     text = TEXTS["tinibot"].partition("[labels.en]")[0]
     assert read(text, "mine").labels["es"] == {
         "robot": "mine",
@@ -182,7 +190,7 @@ def test_a_wire_that_is_optional_may_be_missing() -> None:
         ),
     ],
 )
-def test_motor_drivers(motors: str, settings: dict[str, int]) -> None:
+def test_motor_drivers_are_read(motors: str, settings: dict[str, int]) -> None:
     text_before, _, text_after = TEXTS["tinibot"].partition("\n[board.motors]\n")
     pins = text_after.partition("left_pwm")[2].partition("\n\n")
     used_pin = f"left_pwm{pins[0]}" if "l293d" in motors else ""
@@ -203,7 +211,7 @@ def test_a_file_may_have_any_name_a_bom_and_crlf(
 # ---- tables of the boards
 
 
-def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
+def test_every_driver_has_a_use_and_needs_known_abilities() -> None:
     uses = {used_by for used_by, _ in DRIVERS}
     kinds = {
         f"{group} {kind}" for group in ("sensors", "actuators") for kind in ("number", "yes/no")
@@ -216,7 +224,7 @@ def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
 
 
 @pytest.mark.parametrize("chip", CHIPS.values(), ids=list(CHIPS))
-def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
+def test_every_ability_has_a_pin_and_link_pins_have_none(chip: Chip) -> None:
     every = chip.digital_pins | chip.reading_pins | chip.analog_pins
     assert not every & chip.link_pins
     assert set(chip.timer_of_pwm_pin) <= chip.digital_pins

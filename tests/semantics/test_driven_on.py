@@ -33,7 +33,7 @@ def move_values(text: str) -> dict[str, str]:
 
 @pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("separator", [";", "\n", "  // on;S\n", "\n\n// it drives\n"])
-def test_a_wait_and_an_s_end_it_wherever_it_stands(template: str, separator: str) -> None:
+def test_a_wait_and_s_end_a_move_anywhere(template: str, separator: str) -> None:
     for wait, whole in WAITS.items():
         parts = separator.join(("F(FOREVER, 60)", wait, "STOP"))
         assert move_values(template.format(parts)) == {"whole": whole}, parts
@@ -43,7 +43,7 @@ def test_a_wait_and_an_s_end_it_wherever_it_stands(template: str, separator: str
 @pytest.mark.parametrize(("move", "motors"), [
     ("F", "M(60, 60)"), ("B", "M(-60, -60)"), ("L", "M(-60, 60)"), ("R", "M(60, -60)"),
 ])  # fmt: skip
-def test_an_s_further_on_ends_its_motors(template: str, move: str, motors: str) -> None:
+def test_a_later_s_ends_the_motors(template: str, move: str, motors: str) -> None:
     text = f"{move}(FOREVER, 60);BEEP(1, 440);LOOP(2);BEEP(1, 880);END_LOOP;S"
     assert move_values(template.format(text)) == {"running": motors}
 
@@ -53,7 +53,7 @@ def test_an_s_further_on_ends_its_motors(template: str, move: str, motors: str) 
     "", " // on; S", ";W(3)", ";W(3) // S", ";B(1, 50);S", ";IF(DISTANCE < 9);S;ENDIF",
     ";W(1) UNTIL(DISTANCE < 9);W(1);S",
 ])  # fmt: skip
-def test_nothing_else_does(template: str, tail: str) -> None:
+def test_no_other_instruction_ends_a_move(template: str, tail: str) -> None:
     rest = template.replace("{};", "{}\n")  # a note ends with its line
     assert move_values(rest.format(f"F(FOREVER, 60){tail}")) == {}
 
@@ -61,7 +61,7 @@ def test_nothing_else_does(template: str, tail: str) -> None:
 @pytest.mark.sampled("template")
 @pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("word", [*WORDS, "espera"])
-def test_no_word_with_forever_is_taken_for_a_move(template: str, word: str) -> None:
+def test_no_other_word_with_forever_is_taken_for_a_move(template: str, word: str) -> None:
     """This holds for any number of values: FOREVER alone, first, last or between others."""
     for values in ("FOREVER", "FOREVER, 60", "60, FOREVER", "FOREVER, 60, 60", ""):
         check(template.format(f"{word}({values});W(3);S"))

@@ -55,7 +55,9 @@ def duration_of(text: str, is_optimized: bool = True) -> Duration:
         ("DEF A;S;END_DEF;F(2, 80);TASK;W(3);A;END_TASK", 0, None),
     ],
 )
-def test_a_program_that_ends(text: str, least: int, most: int | None) -> None:
+def test_the_duration_of_an_ending_program_is_known(
+    text: str, least: int, most: int | None
+) -> None:
     for is_optimized in (True, False):
         assert duration_of(text, is_optimized) == Duration(least, most, False)
 
@@ -73,10 +75,10 @@ def test_a_program_that_ends(text: str, least: int, most: int | None) -> None:
         ("W(1);WHEN(DISTANCE < 9);SHOW(1);END_WHEN", 1000),  # a WHEN watches forever
     ],
 )
-def test_a_program_that_never_ends(text: str, least: int) -> None:
+def test_an_endless_program_has_no_duration(text: str, least: int) -> None:
     assert duration_of(text) == Duration(least, None, True)
 
 
-def test_one_arm_that_ends_is_enough() -> None:
+def test_one_ending_branch_is_enough() -> None:
     text = "IF(DISTANCE < 9);LOOP(FOREVER);W(1);END_LOOP;ENDIF;W(2)"
     assert duration_of(text) == Duration(2000, None, False)

@@ -31,18 +31,18 @@ def mistakes(text: str) -> list[str]:
 @pytest.mark.parametrize("word", "FB")
 @pytest.mark.parametrize("value", ["30", "7.5"])
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(1);{}", "SI|{};S"])
-def test_a_number_for_a_distance_that_is_driven_is_centimetres(
+def test_a_number_for_a_driven_distance_is_centimetres(
     separator: str, word: str, value: str, template: str
 ) -> None:
     text = template.format(f"DISTANCE = {value}{separator}{word}(DISTANCE, 60){separator}S")
     (diagnostic,) = check(text)
     assert f"Write {word}({value} CM, 60) instead of {word}(DISTANCE, 60)" in fix_of(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
-    right = template.format(f"{word}({value} CM, 60){separator}S")
-    assert apply_edits(text, diagnostic.repair.edits) == right and not mistakes(right)
+    right_text = template.format(f"{word}({value} CM, 60){separator}S")
+    assert apply_edits(text, diagnostic.repair.edits) == right_text and not mistakes(right_text)
 
 
-def test_each_use_up_to_the_next_number_is_written() -> None:
+def test_each_use_up_to_the_next_assignment_is_rewritten() -> None:
     text = "SI|DISTANCE = 30;F(DISTANCE, 60);B(DISTANCE, 40);DISTANCE = 9;F(DISTANCE, 60)"
     first = check(text)[0]
     assert first.repair is not None
@@ -54,7 +54,7 @@ def test_each_use_up_to_the_next_number_is_written() -> None:
     ("unit", "number", "way"),
     [("mm", "300", "30 CM"), ("m", "0.5", "50 CM"), ("cm", "30", "30 CM"), ("°", "90", "90 DEG")],
 )
-def test_the_unit_of_the_sensor_says_the_unit_of_the_move(unit: str, number: str, way: str) -> None:
+def test_the_unit_of_the_move_follows_the_sensor(unit: str, number: str, way: str) -> None:
     sensors = tuple(it._replace(unit=unit) if it.unit == "cm" else it for it in TINIBOT.sensors)
     word = "R" if way.endswith("DEG") else "F"
     text = f"SI|DISTANCE = {number};{word}(DISTANCE, 60)"
@@ -62,7 +62,7 @@ def test_the_unit_of_the_sensor_says_the_unit_of_the_move(unit: str, number: str
     assert diagnostic.values["way"] == f"{word}({way}, 60)"
 
 
-def test_a_move_of_another_unit_and_a_robot_without_one_get_a_number_of_their_own() -> None:
+def test_a_move_in_another_unit_gets_its_own_number() -> None:
     assert "CM, 60" not in fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)")
     assert fix_of("SI|DISTANCE = 30;R(DISTANCE, 60)").startswith("R does not take CM")
     kit = TINIBOT._replace(speed=0, turn=0)
@@ -85,17 +85,17 @@ RESTS = [["BEEP(1, 440)"], ["F(1, 60)", "S"], ["LOOP(2);S;END_LOOP"]]
 @pytest.mark.parametrize(
     "template", ["SI|{}", "SI|F(2, 60);{}", "DEF A;{};END_DEF;A", "TASK;{};END_TASK;F(9, 60)"]
 )
-def test_the_rest_after_a_break_goes_into_the_other_branch(
+def test_instructions_after_a_break_move_into_the_other_branch(
     separator: str, head: str, inside: list[str], rest: list[str], template: str
 ) -> None:
     text = template.format(separator.join([head, *inside, "BREAK", "ENDIF", *rest]))
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
-    right = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
-    assert diagnostic.values["fix"] == ";".join(right)
+    right_text = [head, *(inside or ["S"]), "ELSE", *rest, "ENDIF"]
+    assert diagnostic.values["fix"] == ";".join(right_text)
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
     joined_text = text_after.replace("\n", ";").replace("; ", ";")
-    assert joined_text == template.format(";".join(right)).replace("; ", ";")
+    assert joined_text == template.format(";".join(right_text)).replace("; ", ";")
     assert not mistakes(text_after)
 
 
@@ -103,22 +103,22 @@ def test_the_rest_after_a_break_goes_into_the_other_branch(
 @pytest.mark.parametrize("inside", [[], ["S"], ["B(1, 60)", "W(1) // wait"]])
 @pytest.mark.parametrize("rest", [["BEEP(1, 440)"], ["F(1, 60)", "S // and stand"]])
 @pytest.mark.parametrize("template", ["SI|{}", "SI|F(2, 60)\n{}", "DEF A\n{}\nEND_DEF\nA"])
-def test_the_notes_of_a_break_and_around_it_stay(
+def test_comments_around_a_break_are_kept(
     head: str, inside: list[str], rest: list[str], template: str
 ) -> None:
     text = template.format("\n".join([head, *inside, "BREAK // it ends", "ENDIF // if", *rest]))
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
     assert diagnostic.repair is not None
     text_after = apply_edits(text, diagnostic.repair.edits)
-    last = " // it ends" if inside else "S // it ends"
-    lines = [head, *inside, last, "ELSE // if", *rest, "ENDIF"]
+    last_comment = " // it ends" if inside else "S // it ends"
+    lines = [head, *inside, last_comment, "ELSE // if", *rest, "ENDIF"]
     assert text_after == template.format("\n".join(lines))
     assert not mistakes(text_after)
     plain = [line.partition(" //")[0] for line in (*(inside or ["S"]), "ELSE", *rest)]
     assert diagnostic.values["fix"] == ";".join([head, *plain, "ENDIF"])
 
 
-def test_a_break_in_the_else_leaves_out_the_other_way_round() -> None:
+def test_a_break_in_the_else_is_repaired_in_reverse() -> None:
     text = "SI|IF(DISTANCE < 9);B(1, 60);ELSE;S;BREAK;ENDIF;W(2)"
     assert check(text)[0].values["fix"] == "IF(DISTANCE < 9);B(1, 60);W(2);ELSE;S;ENDIF"
 
@@ -131,7 +131,7 @@ def test_a_break_in_the_else_leaves_out_the_other_way_round() -> None:
      "SI|IF(DISTANCE < 9);IF(KEY_A);BREAK;ENDIF;S;ENDIF;W(1)",
      "SI|IF(DISTANCE < 9);BREAK;ENDIF;DEF A;S;END_DEF;A"],
 )  # fmt: skip
-def test_where_nothing_or_more_is_left_out_no_branch_is_offered(text: str) -> None:
+def test_no_branch_is_offered_if_nothing_or_too_much_is_skipped(text: str) -> None:
     diagnostic = next(it for it in check(text) if it.code.number == "TS115")
     assert not diagnostic.values.get("fix") and diagnostic.repair is None
 
@@ -153,7 +153,7 @@ def find_diagnostics(text: str, kit: Kit) -> list[Diagnostic]:
 @pytest.mark.parametrize("template", ["SI|{}", "SI|W(2);{};F(1, 60)", "LOOP(2);{};END_LOOP"])
 @pytest.mark.parametrize("given_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, template: str) -> None:
+def test_a_robot_without_a_lamp_is_reported(word: str, given_text: str, template: str) -> None:
     text = template.format(f"{word}({given_text})")
     (shown_message,) = [message(it, Source(text), "en") for it in find_diagnostics(text, TINIBOT)]
     assert shown_message.code == "TS122"
@@ -162,7 +162,7 @@ def test_a_robot_without_a_lamp_says_so(word: str, given_text: str, template: st
 
 @pytest.mark.parametrize("given_text", SWITCHED)
 @pytest.mark.parametrize("word", [*LAMPS, *LIGHTS])
-def test_a_robot_with_a_lamp_names_it(word: str, given_text: str) -> None:
+def test_a_robots_lamp_is_named(word: str, given_text: str) -> None:
     text = f"SI|{word}({given_text});W(1)"
     (diagnostic,) = find_diagnostics(text, LINER)
     answer = "TRUE" if given_text in ("ON", "HIGH", "TRUE", "1") else "FALSE"
@@ -187,7 +187,7 @@ def test_lamps_are_reported_once_and_an_unswitched_light_is_not_a_lamp() -> None
 @pytest.mark.parametrize(
     "inside", ["F({} CM, 60)", "R({}, 60)", "W(1 + {})", "LOOP({});S;END_LOOP"]
 )
-def test_a_number_in_a_def_gets_its_name_in_the_body_too(
+def test_a_number_in_a_def_is_also_named_in_its_body(
     lang: str, name: str, separator: str, inside: str
 ) -> None:
     lines = ["SI|DEF SIDE(40)", "B(1, 60)", *inside.format("40").split(";"), "END_DEF", "SIDE(40)"]
@@ -195,8 +195,8 @@ def test_a_number_in_a_def_gets_its_name_in_the_body_too(
     fix = fix_of(text, lang)
     assert inside.format(name).split(";")[0] in fix and f"DEF SIDE({name})" in fix
     assert "SIDE(40)" in fix
-    right = text.replace("DEF SIDE(40)", f"DEF SIDE({name})")
-    assert not mistakes(right.replace(inside.format("40"), inside.format(name)))
+    right_text = text.replace("DEF SIDE(40)", f"DEF SIDE({name})")
+    assert not mistakes(right_text.replace(inside.format("40"), inside.format(name)))
 
 
 def test_another_number_of_the_body_is_not_named() -> None:
@@ -209,9 +209,11 @@ def test_another_number_of_the_body_is_not_named() -> None:
 
 
 @pytest.mark.parametrize("place", ["SI|{}", "W(1);{}", "{};S", "IF(DISTANCE < 9);{};ENDIF"])
-@pytest.mark.parametrize("other", ["D(1, 50)", "I(1, 50)", "d(2, 30)"])
-def test_a_beside_another_initial_is_forward(place: str, other: str) -> None:
-    for first, second in (("A(2, 70)", other), (other, "a(2, 70)")):
+@pytest.mark.parametrize("other_statement", ["D(1, 50)", "I(1, 50)", "d(2, 30)"])
+def test_the_letter_a_beside_another_initial_means_forward(
+    place: str, other_statement: str
+) -> None:
+    for first, second in (("A(2, 70)", other_statement), (other_statement, "a(2, 70)")):
         text = place.format(f"{first};{second}")
         near = {it.values["found"]: it.values.get("near") for it in check(text)}
         assert near["A"] == "F", text

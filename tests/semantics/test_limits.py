@@ -59,7 +59,7 @@ LIMITS = [
 
 
 @pytest.mark.parametrize(("make", "limit", "code"), LIMITS)
-def test_what_just_fits_and_what_does_not(
+def test_programs_at_the_limits_compile_and_beyond_are_refused(
     make: Callable[[int], str], limit: int, code: Code
 ) -> None:
     fitting = compile_text(make(limit), KIT)

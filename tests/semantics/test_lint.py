@@ -22,7 +22,7 @@ KIT = robots.load("tinibot").kit
 
 
 @each_row("text, code", ADVISED_PROGRAMS)
-def test_advice(text: str, code: str) -> None:
+def test_each_warning_is_given_alone(text: str, code: str) -> None:
     compilation = check_text(text, KIT)
     assert compilation.is_right
     assert [diagnostic.code.number for diagnostic in compilation.diagnostics] == [code]
@@ -110,7 +110,7 @@ def test_advice(text: str, code: str) -> None:
         "SHOW(FALSE AND 1 / 0 > 2)",
     ],
 )
-def test_no_advice(text: str) -> None:
+def test_unwarranted_warnings_are_not_given(text: str) -> None:
     assert check_text(text, KIT).diagnostics == []
 
 
@@ -129,7 +129,7 @@ def test_the_table_has_every_warning() -> None:
         assert f"codes.{names[code]}" in Path(source.origin).read_text(encoding="utf-8")
 
 
-def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_row_reports_only_its_codes(monkeypatch: pytest.MonkeyPatch) -> None:
     """It reports each of its codes, because an unused one would be a false promise."""
     reported: dict[lints.Row, set[codes.Code]] = {row: set() for row in lints.TABLE}
 
@@ -142,14 +142,14 @@ def test_a_row_reports_its_codes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
         return row._replace(report=find)
 
-    rows = {at: [*map(watch_row, its)] for at, its in lints._ROWS.items()}
+    rows = {node_kind: [*map(watch_row, its)] for node_kind, its in lints._ROWS.items()}
     monkeypatch.setattr(lints, "_ROWS", rows)
     for text in [*(text for text, _ in ADVISED_PROGRAMS), *WRONG]:
         check_text(text, KIT)
     assert reported == {row: set(row.codes) for row in lints.TABLE}
 
 
-def test_a_kit_without_numbers_has_a_usual_speed() -> None:
+def test_a_kit_without_speeds_uses_a_usual_speed() -> None:
     """Centimetres were meant there, too; because it has no CM, the message offers no repair."""
     kit = KIT._replace(speed=0, turn=0)
     (diagnostic,) = check_text("F(20, 60)", kit).diagnostics
@@ -159,11 +159,16 @@ def test_a_kit_without_numbers_has_a_usual_speed() -> None:
     assert check_text("F(20, 30);F(19, 60)", kit).diagnostics == []
 
 
-def test_advice_is_for_right_programs_alone() -> None:
-    wrong = check_text("X = 5;S = 5", KIT)
-    assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]
-    assert wrong.program is not None
-    assert lint(wrong.program, KIT, wrong.source, scan(wrong.source.text))
+def test_warnings_are_for_right_programs_only() -> None:
+    wrong_compilation = check_text("X = 5;S = 5", KIT)
+    assert [diagnostic.is_mistake for diagnostic in wrong_compilation.diagnostics] == [True]
+    assert wrong_compilation.program is not None
+    assert lint(
+        wrong_compilation.program,
+        KIT,
+        wrong_compilation.source,
+        scan(wrong_compilation.source.text),
+    )
 
 
 @each_row(
@@ -174,7 +179,7 @@ def test_advice_is_for_right_programs_alone() -> None:
          "TASK\nLOOP(FOREVER) // beeps\n  W(1) // so\nEND_LOOP\nENDTASK;S"),
     ],
 )  # fmt: skip
-def test_a_loop_is_put_around_a_task_that_is_done_once(text: str, wanted_text: str) -> None:
+def test_a_loop_is_suggested_around_a_task_that_runs_once(text: str, wanted_text: str) -> None:
     (diagnostic,) = check_text(text, KIT).diagnostics
     assert diagnostic.repair is not None
     assert apply_edits(text, diagnostic.repair.edits) == wanted_text
@@ -189,7 +194,7 @@ def warnings_of(text: str) -> list[str]:
 
 @pytest.mark.parametrize("number", ["3", "20", "100", "250", "300", "500", "600", "1000", "10000"])
 @pytest.mark.parametrize("sign", ["<", "<=", ">", ">=", "="])
-def test_a_clock_counts_in_what_a_wait_does(number: str, sign: str) -> None:
+def test_the_clock_includes_waits(number: str, sign: str) -> None:
     is_long = "TS811" in warnings_of(f"W({number})")
     for compared_text in (f"TIME {sign} {number}", f"{number} {sign} TIME"):
         for question in (
@@ -206,7 +211,7 @@ def test_a_clock_counts_in_what_a_wait_does(number: str, sign: str) -> None:
 
 @pytest.mark.parametrize("sign", ["<", "<=", ">", ">="])
 @pytest.mark.parametrize("word", ["F", "B", "L", "R", "W"])
-def test_a_while_that_its_moves_never_end_is_turned_round(word: str, sign: str) -> None:
+def test_a_while_that_its_moves_never_end_is_inverted(word: str, sign: str) -> None:
     move = f"{word}(0.2{', 60' if word != 'W' else ''})"
     is_turned = (word, sign[0]) in (("F", "<"), ("B", ">"))
     for body in (move, f"{move};{move}", f"SHOW(DISTANCE);{move}", f"BEEP(0.1, 440);{move}"):
@@ -216,15 +221,15 @@ def test_a_while_that_its_moves_never_end_is_turned_round(word: str, sign: str) 
         ]
         assert bool(diagnostics) is is_turned, text
         for diagnostic in diagnostics:
-            right = text.replace(f"WHILE(DISTANCE {sign} 20)", diagnostic.values["fix"])
-            assert "TS824" not in warnings_of(right), right
+            right_text = text.replace(f"WHILE(DISTANCE {sign} 20)", diagnostic.values["fix"])
+            assert "TS824" not in warnings_of(right_text), right_text
         for other in (f"{move};R(0.2, 60)", f"IF(LIGHT_L > 9);S;ENDIF;{move}", f"{move};BREAK"):
             assert "TS824" not in warnings_of(f"WHILE(DISTANCE {sign} 20);{other};END_WHILE"), other
         assert "TS824" not in warnings_of(f"IF(DISTANCE < 50);{text};ENDIF")
 
 
 @pytest.mark.parametrize("seconds", ["0.5", "4.9", "5", "10"])
-def test_a_long_move_after_a_look_that_is_over_is_told(seconds: str) -> None:
+def test_a_long_move_after_a_finished_check_is_reported(seconds: str) -> None:
     look, move = "IF(DISTANCE < 15);B(1, 70);ENDIF", f"F({seconds}, 50)"
     is_long = float(seconds) >= 5
     for text in (
@@ -243,7 +248,7 @@ def test_a_long_move_after_a_look_that_is_over_is_told(seconds: str) -> None:
 
 @pytest.mark.parametrize("low", [1, 20, 80, 100])
 @pytest.mark.parametrize("high", [1, 20, 80, 100])
-def test_what_min_and_max_leave_is_one_number_or_many(low: int, high: int) -> None:
+def test_constant_min_max_expressions_are_recognized(low: int, high: int) -> None:
     for outer, inner, is_known in (("MAX", "MIN", high < low), ("MIN", "MAX", high > low)):
         for text in (
             f"{outer}({low}, {inner}({high}, DISTANCE))",
@@ -260,7 +265,7 @@ def test_what_min_and_max_leave_is_one_number_or_many(low: int, high: int) -> No
 
 @pytest.mark.parametrize("past", ["W(9)", "F(4, 60);B(5, 60)", "WHILE(TIME < 9);W(1);END_WHILE"])
 @pytest.mark.parametrize("limit", [5, 9, 10])
-def test_a_clock_that_is_past_is_told_with_what_comes_later(past: str, limit: int) -> None:
+def test_a_past_time_is_reported_with_later_instructions(past: str, limit: int) -> None:
     text = f"{past};WHILE(TIME < {limit});BEEP(1, 440);END_WHILE"
     diagnostics = [it for it in check_text(text, KIT).diagnostics if it.code is codes.KNOWN_ANSWER]
     assert bool(diagnostics) is (limit <= 9), text
@@ -278,19 +283,21 @@ def test_a_clock_that_is_past_is_told_with_what_comes_later(past: str, limit: in
 @pytest.mark.parametrize("value", ["DISTANCE", "D", "DISTANCE - LIGHT_L"])
 @pytest.mark.parametrize(("first", "second"), [(50, 50), (50, 40), (50, -50)])
 @pytest.mark.parametrize("signs", ["> <", "< >", "> >", "< <", ">= <", "> <=", "<= >", ">= <="])
-def test_an_else_between_two_numbers_has_room(
+def test_an_else_between_two_bounds_is_reachable(
     signs: str, value: str, first: int, second: int
 ) -> None:
-    one, other = signs.split()
-    arms = f"IF({value} {one} {first});F(1, 60);ELSEIF({value} {other} {second});L(1, 60)"
+    first_sign, second_sign = signs.split()
+    arms = (
+        f"IF({value} {first_sign} {first});F(1, 60);ELSEIF({value} {second_sign} {second});L(1, 60)"
+    )
     text = f"LOOP(3);D = DISTANCE;{arms};ELSE;R(1, 60);ENDIF;END_LOOP;SHOW(D)"
-    is_exact = first == second and {one, other} == {"<", ">"}
+    is_exact = first == second and {first_sign, second_sign} == {"<", ">"}
     assert ("TS825" in warnings_of(text)) is is_exact, text
     assert "TS825" not in warnings_of(text.replace(";ELSE;R(1, 60)", ""))
 
 
 @pytest.mark.parametrize("throw", ["RANDOM(1, 3)", "RANDOM(0, 10)"])
-def test_a_number_is_thrown_anew_at_each_random(throw: str) -> None:
+def test_each_random_call_draws_a_new_number(throw: str) -> None:
     arms = f"IF({throw} = 1);F(1, 60);ELSEIF({throw} = 2);L(1, 60);ENDIF"
     assert "TS843" in warnings_of(arms)
     two_throws = f"SHOW({throw});LOOP({throw});W(1);END_LOOP"

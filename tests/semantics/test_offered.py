@@ -66,21 +66,21 @@ def repairs_with_new_messages(text: str) -> list[tuple[str, str]]:
     """Return the repairs of a program's warnings that make a new warning or mistake, with those."""
     diagnostics = check(text)
     counter_before = Counter(diagnostic.code for diagnostic in diagnostics)
-    wrong = []
+    wrong_repairs = []
     for diagnostic in diagnostics:
         text_after = "" if diagnostic.is_mistake else repair(text, diagnostic)
-        new = (
-            Counter(other.code for other in check(text_after)) - counter_before
+        new_codes = (
+            Counter(diagnostic.code for diagnostic in check(text_after)) - counter_before
             if text_after
             else Counter()
         )
-        new -= Counter(CODES_UNCOVERED.get(diagnostic.code, ()))
-        wrong += [(text_after, code.number) for code in new]
-    return wrong
+        new_codes -= Counter(CODES_UNCOVERED.get(diagnostic.code, ()))
+        wrong_repairs += [(text_after, code.number) for code in new_codes]
+    return wrong_repairs
 
 
 def test_no_repair_of_a_warning_makes_a_new_one() -> None:
-    offered = [(text, wrong) for text in PROGRAMS for wrong in repairs_with_new_messages(text)]
+    offered = [(text, repair) for text in PROGRAMS for repair in repairs_with_new_messages(text)]
     assert not offered, f"{len(offered)}, the first: {offered[0]}"
 
 
@@ -103,7 +103,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
         ("BEEP(1, NOTA)", "Which number is NOTA?"),
     ],
 )  # fmt: skip
-def test_what_is_offered(text: str, fix: str) -> None:
+def test_the_expected_fix_is_offered(text: str, fix: str) -> None:
     offers = [message(diagnostic, Source(text), "en").fix for diagnostic in check(text)]
     assert fix in offers[-1]
 
@@ -115,7 +115,7 @@ def test_what_is_offered(text: str, fix: str) -> None:
         ("F(1, 80) // voy; W(2); compro; STOP", ["W(2)", "STOP"]),
     ],
 )
-def test_all_the_instructions_of_a_note_are_offered(text: str, rows: list[str]) -> None:
+def test_all_instructions_in_a_comment_are_offered(text: str, rows: list[str]) -> None:
     (warning,) = check(text)
     assert warning.values["rest"] == "; ".join(rows)
     assert check("\n".join(["F(1, 80) // voy", *rows])) == []

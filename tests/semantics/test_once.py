@@ -49,7 +49,7 @@ def diagnostics_of(code: codes.Code, text: str) -> list[Diagnostic]:
 @pytest.mark.parametrize("template", SURROUNDINGS)
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_a_question_that_is_asked_once_is_told(template: str, read: str, question: str) -> None:
+def test_a_condition_checked_only_once_is_reported(template: str, read: str, question: str) -> None:
     asked_text = read.format(q=question)
     text = template.format(asked_text)
     (diagnostic,) = diagnostics_of(codes.ASKED_ONCE, text)
@@ -64,7 +64,7 @@ def test_a_question_that_is_asked_once_is_told(template: str, read: str, questio
 
 @pytest.mark.parametrize("value", ["PAD_X", "ABS(PAD_Y) + 5"])
 @pytest.mark.parametrize("text", VALUES)
-def test_a_stick_that_is_read_once_is_told_in_each_place_of_a_value(text: str, value: str) -> None:
+def test_a_stick_read_only_once_is_reported_in_any_value(text: str, value: str) -> None:
     assert len(diagnostics_of(codes.ASKED_ONCE, text.format(v=value))) == 1
 
 
@@ -72,13 +72,13 @@ def test_a_stick_that_is_read_once_is_told_in_each_place_of_a_value(text: str, v
 @pytest.mark.parametrize("template", REPEATED)
 @pytest.mark.parametrize("read", READ)
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_what_is_asked_again_or_waited_for_is_not_told(
+def test_repeated_and_awaited_conditions_are_not_reported(
     template: str, read: str, question: str
 ) -> None:
     assert not diagnostics_of(codes.ASKED_ONCE, template.format(read.format(q=question)))
 
 
-def test_several_are_told_once_and_the_loop_is_around_all() -> None:
+def test_several_conditions_are_reported_once_with_a_loop_around_all() -> None:
     text = "SI|IF(KEY_UP)\nF(0.2, 60)\nENDIF\nIF(KEY_DOWN)\nB(0.2, 60)\nENDIF"
     (diagnostic,) = check(text)
     assert diagnostic.repair is not None and not diagnostic.repair.is_sure
@@ -91,7 +91,7 @@ def test_a_variable_with_the_name_of_a_key_is_not_a_key() -> None:
     assert not diagnostics_of(codes.ASKED_ONCE, "KEY_A = 3;LOOP(KEY_A);S;END_LOOP;SHOW(KEY_A)")
 
 
-def test_no_right_program_of_the_examples_asks_once_or_is_a_lone_task() -> None:
+def test_no_example_has_a_single_check_or_a_lone_task() -> None:
     places = [*(ROOT / "examples").glob("*.ts")]
     assert places
     for place in places:
@@ -109,9 +109,7 @@ BEEP = "BEEP(5, 440)"
 @pytest.mark.parametrize("separator", [";", "\n"])
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("move", MOVES)
-def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
-    move: str, order: int, separator: str
-) -> None:
+def test_one_action_of_a_lone_task_is_moved_outside(move: str, order: int, separator: str) -> None:
     inside = [move, BEEP][:: -1 if order else 1]
     text = f"SI|{separator.join(['TASK', *inside, 'END_TASK'])}"
     (diagnostic,) = diagnostics_of(codes.LONE_TASK, text)
@@ -125,14 +123,14 @@ def test_of_a_lone_task_that_drives_and_beeps_one_goes_outside(
 @pytest.mark.parametrize("inside", [*MOVES, f"F(1, 50);{BEEP};S", "LOOP(FOREVER);F(1, 50);END_LOOP",
                                     f"{BEEP} // F\nF(1, 50)"])  # fmt: skip
 @pytest.mark.parametrize("text_before", ["SI|", "N = 3;", "DEF A;S;END_DEF;"])
-def test_each_task_with_nothing_beside_it_is_told(inside: str, text_before: str) -> None:
+def test_each_lone_task_is_reported(inside: str, text_before: str) -> None:
     text = f"{text_before}TASK\n{inside}\nEND_TASK"
     assert "fix" not in diagnostics_of(codes.LONE_TASK, text)[0].values
 
 
 @pytest.mark.parametrize("other_statement", ["S", "F(1, 50)", "TASK;W(9);END_TASK", "SHOW(1)",
                                              "WHEN(DISTANCE < 9);S;W(1);END_WHEN"])  # fmt: skip
-def test_a_task_with_anything_beside_it_is_not_told(other_statement: str) -> None:
+def test_a_task_beside_anything_is_not_reported(other_statement: str) -> None:
     for text in (
         f"TASK;{BEEP};END_TASK;{other_statement}",
         f"{other_statement};TASK;F(5, 50);END_TASK",

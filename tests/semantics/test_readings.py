@@ -29,7 +29,7 @@ def reads_before_show(text: str) -> bool:
     return lines[-2] == "Read 2"
 
 
-def test_a_name_takes_a_reading_before_its_instruction_once_a_sensor() -> None:
+def test_a_sensor_is_read_once_before_its_instruction() -> None:
     assert meaning("SHOW(DISTANCE + LIGHT_L * DISTANCE)") == [
         "Read 2", "Read 1", "Show s2 s1 s2 MUL ADD",
     ]  # fmt: skip
@@ -56,7 +56,7 @@ def test_readings_of_an_instruction_are_not_kept_for_the_next() -> None:
         "DISTANCE;F(1, 80) UNTIL(DISTANCE < 5)",
     ],
 )
-def test_what_is_surely_read_is_kept(text_before: str) -> None:
+def test_definitely_read_values_are_kept(text_before: str) -> None:
     assert not reads_before_show(f"{text_before};S;SHOW(DISTANCE)")
 
 
@@ -76,7 +76,7 @@ def test_what_is_surely_read_is_kept(text_before: str) -> None:
         "DEF LOOK;DISTANCE;END_DEF;IF(TIME > 1);LOOK;ENDIF",
     ],
 )
-def test_what_one_way_does_not_read_is_not_kept(text_before: str) -> None:
+def test_values_not_read_on_every_branch_are_not_kept(text_before: str) -> None:
     assert reads_before_show(f"{text_before};S;SHOW(DISTANCE)")
 
 
@@ -95,12 +95,12 @@ def test_what_one_way_does_not_read_is_not_kept(text_before: str) -> None:
         ("DISTANCE;DEF A;SHOW(DISTANCE);END_DEF;A", True),
     ],
 )
-def test_what_a_block_begins_with(text: str, reads: bool) -> None:
+def test_a_block_begins_with_the_known_readings(text: str, reads: bool) -> None:
     lines = meaning(text)
     assert (lines[lines.index("Show s2") - 1] == "Read 2") == reads
 
 
-def test_a_check_takes_its_own_readings_whatever_is_kept() -> None:
+def test_a_check_takes_its_own_readings() -> None:
     assert meaning("DISTANCE;F(1, 80) UNTIL(DISTANCE + LIGHT_R < 5)") == [
         "Read 2", "Move F 1 80", f"until ({DISTANCE}, {LIGHT_R}) s2 s0 ADD 5 LT",
     ]  # fmt: skip
@@ -109,7 +109,7 @@ def test_a_check_takes_its_own_readings_whatever_is_kept() -> None:
     ]  # fmt: skip
 
 
-def test_an_arm_takes_what_the_arms_before_it_have_not() -> None:
+def test_a_branch_reads_only_values_not_read_by_earlier_ones() -> None:
     text = "LIGHT_L;IF(DISTANCE < 1);S;ELSEIF(LIGHT_R + DISTANCE < 2);S;ELSEIF(LIGHT_L < 3);S;ENDIF"
     assert meaning(text) == [
         "Read 1", "Read 2", "If", "arm () s2 1 LT", "Stop",

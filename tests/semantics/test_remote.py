@@ -45,24 +45,28 @@ def codes_of(compilation: Compilation) -> list[str]:
 # -- older programs and the remote control ---------------------------------------------------------
 
 
-def test_the_contract_has_eight_in_this_order() -> None:
+def test_the_contract_has_eight_readings_in_this_order() -> None:
     keys = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B"]
     assert [*keys, "PAD_X", "PAD_Y"] == NAMES
     assert [device.is_yes_no for device in REMOTE] == [True] * 6 + [False] * 2
     assert {(device.low, device.high) for device in REMOTE[6:]} == {(-100 * ONE, 100 * ONE)}
 
 
-def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
+def test_a_program_without_remote_readings_has_an_unchanged_image(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Byte for byte that of a robot without a remote control."""
-    texts = [old for old in released_programs() if not re.search("(?i)KEY_|PAD_", old.text)]
+    texts = [
+        released
+        for released in released_programs()
+        if not re.search("(?i)KEY_|PAD_", released.text)
+    ]
     assert len(texts) > 300
 
     def images() -> list[tuple[bytes, bytes]]:
         image_pairs = []
-        for old in texts:
-            compilation = compile_text(old.text, robots.load(old.robot).kit)
+        for released in texts:
+            compilation = compile_text(released.text, robots.load(released.robot).kit)
             plain = b"" if compilation.program is None else plain_code(compilation.program).code
             image_pairs.append((compilation.image, plain if compilation.is_right else b""))
         return image_pairs
@@ -78,7 +82,7 @@ def test_a_program_that_asks_none_of_them_has_the_image_that_it_had(
 
 
 @pytest.mark.parametrize("name", robots.names())
-def test_they_come_after_the_sensors_of_each_robot(name: str) -> None:
+def test_remote_readings_follow_the_sensors_of_each_robot(name: str) -> None:
     kit = robots.load(name).kit
     compilation = compile_text("; ".join(f"SHOW({name})" for name in NAMES), kit)
     assert compilation.is_right and compilation.verdict is not None
@@ -90,7 +94,7 @@ def test_they_come_after_the_sensors_of_each_robot(name: str) -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, 8])
-def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
+def test_a_kit_with_room_has_remote_readings_on_both_machines(count: int) -> None:
     from tiniscript.vm.wasm import WasmImage
 
     kit = kit_of(count)
@@ -107,7 +111,7 @@ def test_a_kit_with_room_has_them_on_both_machines(count: int) -> None:
 
 
 @pytest.mark.parametrize("count", [9, 16, 32])
-def test_a_kit_without_room_has_none_of_them(count: int) -> None:
+def test_a_kit_without_room_has_no_remote_readings(count: int) -> None:
     kit = kit_of(count)
     assert kit.readings == kit.sensors and kit.hashes == kit_of(count).hashes
     for name in NAMES:
@@ -117,14 +121,16 @@ def test_a_kit_without_room_has_none_of_them(count: int) -> None:
 
 
 @pytest.mark.parametrize(("more", "is_told"), [(5, False), (6, True)])
-def test_the_check_of_a_profile_says_that_it_has_no_room(
+def test_the_check_of_a_profile_reports_missing_room(
     tsc: Tsc, tmp_path: Path, more: int, is_told: bool
 ) -> None:
     text = (Path(robots.__file__).parent / "grabber.toml").read_text(encoding="utf-8")
-    own = "".join(f'[[kit.sensors]]\nname = "S{k}"\nkind = "yes/no"\n\n' for k in range(more))
+    more_sensors = "".join(
+        f'[[kit.sensors]]\nname = "S{k}"\nkind = "yes/no"\n\n' for k in range(more)
+    )
     wired = (f'[board.sensors.S{k}]\ndriver = "digital"\npin = {36 + k}\n' for k in range(more))
     path = tmp_path / "my.toml"
-    profile = text.replace("[[kit.sensors]]", f"{own}[[kit.sensors]]", 1)
+    profile = text.replace("[[kit.sensors]]", f"{more_sensors}[[kit.sensors]]", 1)
     path.write_text("\n".join([profile, *wired]), encoding="utf-8")
     result = tsc("firmware", "--board", path, "-o", tmp_path / "own.h")
     assert result.code == 0 and ("more than 8 sensors" in result.err) == is_told, result
@@ -135,7 +141,7 @@ def test_the_check_of_a_profile_says_that_it_has_no_room(
 
 
 @pytest.mark.parametrize("is_actuator", [False, True])
-def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None:
+def test_a_word_of_the_profile_keeps_its_meaning(is_actuator: bool) -> None:
     """A robot of before may have a sensor or a lamp that is called so."""
     device = Device("KEY_A", YES_NO, "", 0, 1)
     kit = Kit((), (device,)) if is_actuator else Kit((device,))
@@ -144,12 +150,12 @@ def test_a_word_of_the_profile_stays_what_it_is_there(is_actuator: bool) -> None
     assert compilation.verdict.uses == (("actuator" if is_actuator else "sensor", 0),)
     wanted_code = codes.ACTUATOR_SET if is_actuator else codes.SENSOR_SET
     assert codes_of(compile_text("KEY_A = TRUE", kit)) == [wanted_code.number]
-    other = compile_text("SHOW(KEY_B)", kit)
-    assert other.verdict is not None
-    assert other.verdict.uses == (("sensor", 5 if is_actuator else 6),)
+    other_compilation = compile_text("SHOW(KEY_B)", kit)
+    assert other_compilation.verdict is not None
+    assert other_compilation.verdict.uses == (("sensor", 5 if is_actuator else 6),)
 
 
-def test_an_image_is_refused_where_its_numbers_mean_something_else() -> None:
+def test_an_image_whose_numbers_have_other_meanings_is_refused() -> None:
     image = compile_text("SHOW(KEY_UP)", TINIBOT).image
     assert load_image(image, TINIBOT).devices == TINIBOT.hashes[3]
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
@@ -193,7 +199,7 @@ def fill_in_name(text: str, name: str) -> str:
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", SHADOWING_PROGRAMS)
-def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
+def test_programs_that_compiled_before_still_compile(role: str, name: str) -> None:
     """There is a warning where the name first appears, and the code is that of any other name."""
     text = fill_in_name(SHADOWING_PROGRAMS[role], name)
     compilation = compile_text(text, TINIBOT)
@@ -211,7 +217,7 @@ def test_what_compiled_before_compiles_still(role: str, name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("role", REFUSED_PROGRAMS)
-def test_what_was_no_name_before_is_the_remote_control(role: str, name: str) -> None:
+def test_previously_invalid_names_are_remote_readings(role: str, name: str) -> None:
     text, wanted_codes = REFUSED_PROGRAMS[role]
     compilation = compile_text(fill_in_name(text, name), TINIBOT)
     assert codes_of(compilation) == [code.number for code in wanted_codes]
@@ -227,7 +233,7 @@ def test_a_word_of_0_2_0_never_gives_way(name: str) -> None:
         )
 
 
-def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
+def test_a_shadowed_name_belongs_to_the_whole_program() -> None:
     compilation = compile_text(
         "DEF DO_IT(KEY_A);SHOW(KEY_A);END_DEF;DO_IT(1);IF(KEY_A);S;ENDIF", TINIBOT
     )
@@ -241,7 +247,7 @@ def test_a_name_is_the_programs_own_in_the_whole_of_it() -> None:
 
 
 @pytest.mark.parametrize("flags", [(), NO_DEFS])
-def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
+def test_a_robot_reads_the_names_like_tsc(flags: tuple[str, ...]) -> None:
     """Each role, each name: the reader makes the code that the model has, or refuses it, too."""
     reader = TextReader(TINIBOT, flags=flags)
     texts = [*SHADOWING_PROGRAMS.values(), *(text for text, _ in REFUSED_PROGRAMS.values()),
@@ -263,7 +269,7 @@ def test_a_robot_reads_them_as_tsc_does(flags: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("text", "kind"), [("SHOW(KEY_A)", "SENSOR"), ("KEY_A = 1;SHOW(KEY_A)", "NAME")]
 )
-def test_a_block_of_a_name_is_that_of_a_variable(text: str, kind: str) -> None:
+def test_a_shadowed_name_has_a_variable_block(text: str, kind: str) -> None:
     show = block_reading.read_blocks(text, TINIBOT).body[-1]
     assert show.values == (((kind, "KEY_A"),),)
 
@@ -271,7 +277,7 @@ def test_a_block_of_a_name_is_that_of_a_variable(text: str, kind: str) -> None:
 # -- the command --------------------------------------------------------------------------------
 
 
-def test_a_run_takes_their_readings(tsc: Tsc) -> None:
+def test_a_run_uses_remote_readings(tsc: Tsc) -> None:
     text = "WHILE(NOT KEY_UP);SHOW(PAD_X);W(0.1);END_WHILE"
     result = tsc("run", "-e", text, "--sensor", "KEY_UP=FALSE,TRUE", "--sensor", "pad_x=-12.5")
     want = ["READ KEY_UP FALSE", "READ PAD_X -12.5", "SHOW -12.5"]
@@ -289,7 +295,7 @@ def test_a_sketch_has_no_remote_control(tsc: Tsc) -> None:
 
 @pytest.mark.parametrize(("robot", "has"), [("tinibot", True), ("grabber", True), ("liner", True),
                                             ("tinibot2", False), ("tinibot32", True)])  # fmt: skip
-def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
+def test_a_robot_without_room_is_reported_before_anything_is_sent(
     tsc: Tsc, robot: str, has: bool
 ) -> None:
     """This is an Uno with discs; commands that send nothing accept the program."""
@@ -308,7 +314,7 @@ def test_a_robot_without_room_for_it_is_told_before_anything_is_sent(
     assert mine.is_right and mine.image
 
 
-def test_the_example_runs_and_is_that_of_the_documents() -> None:
+def test_the_example_runs_and_matches_the_documents() -> None:
     text = (ROOT / "examples" / "remote.ts").read_text(encoding="utf-8")
     shown_trace = run(text, sensors={"PAD_Y": 60, "PAD_X": [0, 20], "KEY_A": [False, True, False]},
                 max_time=0.06)  # fmt: skip
@@ -325,7 +331,7 @@ def test_the_example_runs_and_is_that_of_the_documents() -> None:
         assert compile_text(shown_there, TINIBOT).image == image
 
 
-def test_a_stick_at_rest_may_be_asked_for() -> None:
+def test_a_stick_at_rest_may_be_compared() -> None:
     """At rest it reads exactly 0, and hardly ever any other number."""
     asked_text = "LOOP(FOREVER);IF(PAD_X = {});SHOW(1);ENDIF;W(1);END_LOOP"
     assert not compile_text(asked_text.format(0), TINIBOT).diagnostics

@@ -16,18 +16,18 @@ def list_offers(text: str) -> list[object]:
 
 
 @pytest.mark.parametrize(("length", "fix"), [(78, "X = 6"), (80, "X = 6"), (81, None), (82, None)])
-def test_a_short_question_is_asked_again_of_the_second_number(length: int, fix: object) -> None:
+def test_a_shortened_condition_is_completed_for_the_second_number(length: int, fix: object) -> None:
     digits = "1" if length % 2 else "11"
-    left = "X = " + "1+" * ((length - 5) // 2) + digits
-    assert len(left) == length
-    assert list_offers(f"X = 1; IF({left} OR 6); S; ENDIF") == [fix]
+    left_side = "X = " + "1+" * ((length - 5) // 2) + digits
+    assert len(left_side) == length
+    assert list_offers(f"X = 1; IF({left_side} OR 6); S; ENDIF") == [fix]
 
 
-def test_where_in_a_program_a_question_stands_does_not_matter() -> None:
+def test_the_position_of_a_condition_does_not_matter() -> None:
     assert list_offers("X = 1;" + "S;" * 50 + "IF(X = 5 OR 6); S; ENDIF") == ["X = 6"]
 
 
-def test_a_name_of_two_sensors_is_told_which_until_there_are_enough_mistakes() -> None:
+def test_an_ambiguous_sensor_name_lists_the_sensors() -> None:
     diagnostics = check_text(";".join(["SHOW(LIGHT)"] * (MOST_DIAGNOSTICS + 3)), KIT).diagnostics
     assert len(diagnostics) == MOST_DIAGNOSTICS + 1
     assert (

@@ -56,7 +56,7 @@ def texts_with_beep() -> list[str]:
     return [text for text in texts if re.search(r"\bBEEP\b", text)]
 
 
-def test_another_word_with_the_row_of_beep_is_looked_at_like_it() -> None:
+def test_another_word_with_the_row_of_beep_is_checked_alike() -> None:
     calls = [f"BEEP({time}, {tone})" for time, tone in product(TIMES, TONES)]
     calls += ["BEEP(4)", "BEEP(3, 440, 5)", "BEEP", "BEEP(TRUE, 440)"]
     texts = texts_with_beep()
@@ -64,8 +64,8 @@ def test_another_word_with_the_row_of_beep_is_looked_at_like_it() -> None:
     texts += ["SI|X = DISTANCE;" + place.format(call) for place, call in product(PLACES, calls)]
     codes = set()
     for text in texts:
-        theirs = codes_in(text)
-        assert codes_in(re.sub(r"\bBEEP\b", TOOT.text, text)) == theirs, text
+        beep_codes = codes_in(text)
+        assert codes_in(re.sub(r"\bBEEP\b", TOOT.text, text)) == beep_codes, text
         codes |= codes_of(text)
     assert len(codes) > 15, codes
 
@@ -85,5 +85,5 @@ def test_another_word_with_the_row_of_beep_is_looked_at_like_it() -> None:
          {"TS834"}),
     ],
 )  # fmt: skip
-def test_a_sound_that_takes_no_time_is_not_waited_for(text: str, codes: set[str]) -> None:
+def test_a_sound_of_zero_length_is_not_waited_for(text: str, codes: set[str]) -> None:
     assert codes_of(f"SI|{text}") == codes

@@ -131,9 +131,7 @@ def test_a_holder_that_falls_silent_is_given_up(monkeypatch: pytest.MonkeyPatch,
 
 
 @pytest.mark.parametrize("takes_s", [DEAF_S * 3, LONG_S])
-def test_a_request_that_takes_long_is_answered(
-    monkeypatch: pytest.MonkeyPatch, takes_s: float
-) -> None:
+def test_a_slow_request_is_answered(monkeypatch: pytest.MonkeyPatch, takes_s: float) -> None:
     holder = Holder(lambda: 0.1)
     line = open_shared_connection(monkeypatch, holder)
     request: PendingRequest[EmptyReply] = line.begin(lambda session: session.name(b"Pia"))
@@ -149,7 +147,7 @@ HELLO_VALUES: JsonMessage = {
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_client_knows_what_its_holder_has_told_and_why_it_has_ended(
+def test_a_client_knows_its_holders_events_and_end(
     monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     """Requests are answered in any order, each once; the end comes after the events before it."""

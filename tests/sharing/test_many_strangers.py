@@ -145,7 +145,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Usage, Usage, Usage]]:
 
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", KINDS)
-def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
+def test_strangers_cause_no_growth_and_a_stop_gets_through(kind: str) -> None:
     for name, usage_before, usage_during, usage_after in attack(kind, CONNECTION_COUNT):
         assert usage_during.files <= usage_before.files + FILES, name
         assert usage_after.files <= usage_before.files + 3, name
@@ -196,7 +196,7 @@ def attack_studio(count: int) -> list[tuple[str, Usage, Usage, Usage]]:
     return children
 
 
-def test_the_studio_gives_its_page_among_many_who_come() -> None:
+def test_the_studio_serves_its_page_among_many_strangers() -> None:
     for kind, usage_before, usage_during, usage_after in attack_studio(CONNECTION_COUNT):
         assert usage_during.files <= usage_before.files + MOST_CONNECTIONS + 3, kind
         assert usage_after.files <= usage_before.files + 3, kind

@@ -302,13 +302,15 @@ def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_the_next_client_is_as_the_first_one(part: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_next_client_is_treated_like_the_first(
+    part: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     counts = Counter(check(seed, monkeypatch) for seed in range(part * 12, (part + 1) * 12))
     assert counts["little"] < 6, counts
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_of_several_clients_the_one_that_has_begun_a_run_ends_it(
+def test_a_run_ends_with_the_client_that_started_it(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It does so by leaving or by its silence, and others do not. A stop ends it, and another run
@@ -357,7 +359,7 @@ DROPPED_EVENTS: dict[str, Event] = {
 
 
 @pytest.mark.parametrize("name", [*DROPPED_EVENTS, "others"])
-def test_who_reads_nothing_has_little_waiting_and_is_let_go_where_nothing_can_be_left_out(
+def test_a_client_that_reads_nothing_has_a_bounded_queue_or_is_dropped(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     event = DROPPED_EVENTS.get(name, StoppedEvent(1))

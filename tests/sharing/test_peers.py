@@ -46,7 +46,7 @@ peer.close()
 
 
 @linux
-def test_the_end_of_a_connection_has_its_user() -> None:
+def test_the_peer_of_a_connection_has_its_user() -> None:
     own_end, other_end = connected_pair()
     with own_end, other_end:
         owner = peers._socket_owner(own_end.getpeername(), own_end.getsockname())
@@ -57,7 +57,7 @@ def test_the_end_of_a_connection_has_its_user() -> None:
 
 
 @linux
-def test_whoever_has_hung_up_can_have_been_anybody() -> None:
+def test_a_closed_peer_has_an_unknown_user() -> None:
     own_end, other_end = connected_pair()
     with own_end:
         other_end.sendall(LINE)
@@ -67,7 +67,7 @@ def test_whoever_has_hung_up_can_have_been_anybody() -> None:
 
 
 @linux
-def test_the_kernel_reports_an_end_that_nobody_owns() -> None:
+def test_the_kernel_reports_an_unowned_socket() -> None:
     with pytest.raises(FileNotFoundError):
         peers._socket_owner(("127.0.0.1", 1), ("127.0.0.1", 2))
 
@@ -84,7 +84,7 @@ def test_the_kernel_reports_an_end_that_nobody_owns() -> None:
     (0, 0, 0, False),
     (0, NOBODY_UID, 5, False),
 ])  # fmt: skip
-def test_which_ends_are_let_in(
+def test_only_sockets_of_the_same_user_are_admitted(
     monkeypatch: pytest.MonkeyPatch, own_uid: int, user: int, inode: int, is_let_in: bool
 ) -> None:
     monkeypatch.setattr(os, "geteuid", lambda: own_uid)
@@ -96,7 +96,7 @@ def test_which_ends_are_let_in(
         assert peers.is_of_this_user(own_end) == is_let_in
 
 
-def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_system_without_socket_owners_admits_all(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing_owner(number: int) -> object:
         def other_end(peer: object, own_address: object) -> peers.SocketOwner:
             raise OSError(number, "no")
@@ -116,7 +116,7 @@ def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) ->
 @linux
 @pytest.mark.root
 @pytest.mark.parametrize("attack", ["stays", "leaves", "reset"])
-def test_another_user_moves_nothing(attack: str) -> None:
+def test_another_user_cannot_drive(attack: str) -> None:
     with robot("--listen", "0") as running_robot:
         number = running_robot.port.rpartition(":")[2]
         words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, attack, LINE.hex()]
@@ -149,7 +149,7 @@ while True:
 
 
 @linux
-def test_whoever_listens_at_a_port_has_its_user(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_listening_port_has_its_user(monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         assert not peers.is_of_another_user(number)
@@ -188,7 +188,7 @@ def test_a_port_at_which_another_user_listens_is_not_a_robot(
 
 @linux
 @pytest.mark.root
-def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
+def test_the_owner_of_a_killed_robots_port_is_checked() -> None:
     running_robot = Robot("--listen", "0")
     running_robot.kill()
     listener = Command(running_robot.port.rpartition(":")[2], code=LISTENER_SCRIPT)
@@ -201,7 +201,7 @@ def test_the_port_of_a_robot_that_was_killed_is_asked_whose_it_is() -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
-def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pseudo_terminal_is_private_to_its_user(monkeypatch: pytest.MonkeyPatch) -> None:
     import pty
 
     open_pty = pty.openpty
@@ -242,7 +242,7 @@ def test_the_token_is_in_one_private_file() -> None:
     assert not [data for data in places for secret in secrets if secret in data]
 
 
-def test_files_of_dead_commands_go_and_those_of_servers_stay() -> None:
+def test_files_of_dead_commands_are_removed_and_those_of_servers_kept() -> None:
     with socket.socket() as server:
         server.bind(("127.0.0.1", 0))
         server.listen()
@@ -258,7 +258,7 @@ def test_files_of_dead_commands_go_and_those_of_servers_stay() -> None:
 
 
 @linux
-def test_a_port_whose_server_has_just_gone_is_free() -> None:
+def test_a_port_whose_server_has_just_ended_is_free() -> None:
     """Connections that it has closed are remembered by the system for a minute."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
@@ -271,7 +271,7 @@ def test_a_port_whose_server_has_just_gone_is_free() -> None:
 
 
 @pytest.mark.parametrize("has_third", [False, True])
-def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_third: bool) -> None:
+def test_a_file_replaced_during_its_removal_is_kept(tmp_path: Path, has_third: bool) -> None:
     """A server writes its own between our look and our hands; a third one may come meanwhile."""
     path = tmp_path / "port.json"
     path.write_text("of the next server")
@@ -288,7 +288,7 @@ def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_t
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_whoever_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> None:
+def test_releasing_a_port_leaves_the_next_holders_file(tmp_path: Path) -> None:
     """Somebody has removed ours meanwhile, and another command has the port."""
     path = tmp_path / "port"
     for is_others in (False, True):
@@ -301,7 +301,7 @@ def test_whoever_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) 
         assert path.exists() == is_others
 
 
-def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_believed() -> None:
+def test_a_readable_folder_is_made_private_and_its_contents_distrusted() -> None:
     registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
     registry.write(registration)
     folder = files.cache_folder() / "held"
@@ -313,7 +313,7 @@ def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_belie
     assert registry.find_registration("/dev/x") == registration
 
 
-def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
+def test_a_registration_made_during_a_removal_is_kept(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The port was taken again between looking at the note and removing it."""

@@ -85,9 +85,7 @@ def each_line(
 
 
 @pytest.mark.parametrize("other_action", ["tidies", "leaves"])
-def test_a_server_that_registers_while_another_command_removes_is_found(
-    number: int, other_action: str
-) -> None:
+def test_a_server_registered_during_a_removal_is_found(number: int, other_action: str) -> None:
     live_registration = registration(number, "live")
 
     def prepare() -> tuple[Callable[[], object], Callable[[], object]]:
@@ -128,7 +126,7 @@ def check_one_owner(owners: list[IO[bytes] | None]) -> None:
     assert not registry.lock_path(PORT).exists()
 
 
-def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
+def test_a_lock_has_one_owner_in_any_interleaving() -> None:
     def leftover() -> None:
         registry.lock_path(PORT).write_bytes(b"")  # left by a command that was killed
 
@@ -168,7 +166,7 @@ def test_a_lock_has_one_owner_whatever_others_do_meanwhile() -> None:
                 check_one_owner(owners)
 
 
-def test_whoever_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one() -> None:
+def test_releasing_a_lock_without_its_file_leaves_the_next_holders() -> None:
     """Somebody has emptied the cache."""
     old_lock = lock()
     registry.lock_path(PORT).unlink()
@@ -180,7 +178,7 @@ def test_whoever_lets_a_lock_go_whose_file_is_gone_leaves_that_of_the_next_one()
 
 @pytest.mark.parametrize("other_host", ["school2", "school-2", "s", "school.local"])
 @pytest.mark.parametrize("action_name", ["tidies", "finds", "registers", "leaves"])
-def test_a_computer_leaves_what_another_one_has_written_in_a_shared_home(
+def test_a_computer_leaves_another_ones_files_in_a_shared_home(
     action_name: str, other_host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Only the other computer can check whether a server listens at that port number."""

@@ -56,7 +56,7 @@ REQUESTS = (
 
 
 @pytest.mark.parametrize("request_case", REQUESTS, ids=str)
-def test_it_is_asked_of_the_session_as_of_the_client(request_case: MethodCall) -> None:
+def test_a_request_reaches_the_session_like_the_client(request_case: MethodCall) -> None:
     session = Mock()
     request = request_maker(request_case.message(), 700)(session)
     ((name, passed_arguments, keyword_arguments),) = session.method_calls
@@ -104,12 +104,12 @@ BAD_MESSAGES: tuple[dict[str, Any], ...] = (
 
 
 @pytest.mark.parametrize("message", BAD_MESSAGES, ids=lambda message: str(message)[:60])
-def test_what_no_session_may_be_asked_is_refused(message: dict[str, Any]) -> None:
+def test_invalid_requests_to_a_session_are_refused(message: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
         request_maker(message, 700)
 
 
-def test_a_client_of_2_0_names_no_needs() -> None:
+def test_a_client_of_version_2_0_sends_no_needs() -> None:
     message = of("upload", IMAGE)
     del message["needs"]
     session = Mock()

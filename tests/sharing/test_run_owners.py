@@ -117,9 +117,7 @@ START_REQUESTS: list[Callable[[Requester], PendingRequest[Any]]] = [
 
 
 @pytest.mark.parametrize("start_index", range(len(START_REQUESTS)))
-def test_nothing_of_what_starts_reaches_a_robot_that_was_just_stopped(
-    line: FakeLine, start_index: int
-) -> None:
+def test_no_start_reaches_a_robot_that_was_just_stopped(line: FakeLine, start_index: int) -> None:
     """Such requests end, and later ones without a start are sent."""
     with (
         closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
@@ -148,7 +146,7 @@ def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
         assert registration is not None and registration.token == own_registration.token
 
 
-def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
+def test_requests_of_a_leaving_client_are_withdrawn(
     line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     send_start(command, line)
@@ -172,7 +170,7 @@ def test_what_a_client_that_leaves_has_asked_for_is_withdrawn(
         assert line.halted == [7], "the next run is not its"
 
 
-def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
+def test_a_run_ends_with_its_client_without_a_stop_for_all(
     line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     send_start(command, line)
@@ -185,7 +183,7 @@ def test_a_run_whose_client_leaves_ends_without_a_stop_for_all(
 
 
 @pytest.mark.parametrize("end", ["STOPPED", "DONE"])
-def test_an_end_that_is_told_late_takes_no_owner_from_the_next_run(
+def test_a_late_end_event_takes_no_owner_from_the_next_run(
     end: str, line: FakeLine, server: Server, command: SharedConnection
 ) -> None:
     """A stop, and an upload right after it: the server's thread may see both at once."""
@@ -228,7 +226,7 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     assert line.is_closed
 
 
-def test_each_client_presses_keys_of_its_own_and_lets_go_when_it_leaves(
+def test_each_client_has_its_own_keys_and_releases_them_when_it_leaves(
     line: FakeLine, command: SharedConnection
 ) -> None:
     def list_pressed_keys() -> list[tuple[object, object]]:

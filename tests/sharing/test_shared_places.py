@@ -26,7 +26,7 @@ def list_events_until_done(connection: LinkConnection) -> list[Event]:
     raise AssertionError(events)
 
 
-def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
+def test_only_subscribed_clients_get_places() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
     shared_port = SharedLine()
     with shared_port as (pty_robot, _):
@@ -49,7 +49,7 @@ def test_a_client_that_asks_hears_places_and_others_hear_none() -> None:
         other_client.close()
 
 
-def test_whoever_takes_no_events_keeps_the_newest_place_alone() -> None:
+def test_an_unread_backlog_keeps_only_the_newest_place() -> None:
     backlog = Backlog()
     backlog.add_events((k, PlaceEvent(1, 2, k)) for k in range(2 * MOST_EVENTS))
     backlog.add_events([(0, ShownEvent(1, 0))])

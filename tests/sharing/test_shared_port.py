@@ -40,7 +40,7 @@ def hellos(pty_robot: PtyRobot) -> int:
 # -- others' abilities -----------------------------------------------------------------------------
 
 
-def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
+def test_stop_works_while_another_terminal_is_driving(pty_robot: PtyRobot) -> None:
     command = start_endless_upload(pty_robot)
     result = on(pty_robot, "stop")
     assert (result.code, result.out) == (
@@ -51,9 +51,7 @@ def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
     assert hellos(pty_robot) == 1
 
 
-def test_commands_share_a_session_that_is_begun_once(
-    pty_robot: PtyRobot, link: Command, tmp_path: Path
-) -> None:
+def test_commands_share_one_session(pty_robot: PtyRobot, link: Command, tmp_path: Path) -> None:
     result = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)").gives(0, "")
     assert result.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved. The button starts it."]
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
@@ -125,7 +123,7 @@ def test_an_address_is_held_like_a_port(pty_robot: PtyRobot, address: str) -> No
     assert hellos(pty_robot) == 1
 
 
-def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
+def test_a_client_may_use_a_different_robot_profile(pty_robot: PtyRobot) -> None:
     command = Command("monitor", "--port", pty_robot.port, "--robot", "grabber")
     assert command.process.stderr
     command.process.stderr.readline()  # waits until it watches
@@ -137,9 +135,7 @@ def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
     assert command.wait_for_result().code == 0
 
 
-def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
-    pty_robot: PtyRobot, link: Command
-) -> None:
+def test_monitor_shows_live_events_without_bookkeeping(pty_robot: PtyRobot, link: Command) -> None:
     monitor = Command("monitor", "--port", pty_robot.port, "--json")
     assert monitor.process.stderr
     monitor.process.stderr.readline()
@@ -215,7 +211,7 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGHUP, signal.SIGTERM])
-def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
+def test_an_upload_of_a_killed_command_starts_and_blocks_nothing(
     pty_robot: PtyRobot, link: Command, number: int, request: pytest.FixtureRequest
 ) -> None:
     if number != signal.SIGKILL:  # a command that nohup has begun is to outlive SIGHUP
@@ -233,7 +229,7 @@ def test_an_upload_whose_command_is_killed_starts_nothing_and_refuses_nobody(
         assert set(motor_lines) <= {"MOTORS 0 0"}
 
 
-def test_a_program_ends_with_its_command_unless_it_needs_nobody(
+def test_a_program_ends_with_its_command_unless_detached(
     pty_robot: PtyRobot, link: Command
 ) -> None:
     command = start_endless_upload(pty_robot)
@@ -247,7 +243,7 @@ def test_a_program_ends_with_its_command_unless_it_needs_nobody(
     assert not pty_robot.moves
 
 
-def test_a_second_program_ends_the_first_which_holds_the_port_until_its_end(
+def test_a_second_program_ends_the_first_whose_command_keeps_the_port(
     pty_robot: PtyRobot,
 ) -> None:
     """It runs through the first command, whose own work is over."""
@@ -348,14 +344,14 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
     assert not pty_robot.moves
 
 
-def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Command) -> None:
+def test_a_pulled_cable_is_reported_to_all_clients(pty_robot: PtyRobot, link: Command) -> None:
     command = start_endless_upload(pty_robot)
     pty_robot.pull()
     for held_command in (command, link):
         held_command.wait_for_result().gives(3, "is gone")
 
 
-def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
+def test_a_lost_robot_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
     pty_robot.switch_off()
     link.until("Looking for it")
     pty_robot.switch_on()
@@ -364,7 +360,7 @@ def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command
 
 
 @pytest.mark.parametrize("place", ["port", "address"])
-def test_of_three_who_want_a_place_one_gets_it(
+def test_one_of_three_competing_commands_gets_the_port(
     pty_robot: PtyRobot, place: str, request: pytest.FixtureRequest
 ) -> None:
     port = pty_robot.port if place == "port" else request.getfixturevalue("address")
@@ -382,7 +378,7 @@ def test_of_three_who_want_a_place_one_gets_it(
     assert (result.code, result.err) == (0, "\n")
 
 
-def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
+def test_simultaneous_commands_are_all_served(pty_robot: PtyRobot) -> None:
     """A client is notified when its server leaves, and connects again."""
 
     def start_command(*words: str) -> Command:
@@ -416,7 +412,7 @@ def is_idle_once_released(client: SharedConnection) -> bool:
     return bool(status.values.state == STATE_IDLE)
 
 
-def test_a_run_that_begins_after_its_client_has_left_ends_and_nobody_else_is_refused() -> None:
+def test_a_run_begun_after_its_client_left_ends_and_blocks_nobody() -> None:
     """The frame that starts it was under way."""
     with SharedLine() as (robot, _), ExitStack() as stack:
         other_client = join(robot.port, "show --port")

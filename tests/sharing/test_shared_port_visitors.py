@@ -40,7 +40,7 @@ def is_let_go(peer: socket.socket) -> bool:
         return True
 
 
-def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_silent_visitors_drop_the_oldest(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
     with SharedLine() as (_, registration), ExitStack() as opened_exit_stack:
@@ -53,7 +53,7 @@ def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPa
             silent_peers[10].recv(1)
 
 
-def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
+def test_only_the_user_is_admitted(pty_robot: PtyRobot, link: Command) -> None:
     registration = registry.find_registration(pty_robot.port)
     assert registration is not None
     folder = registry._folder()
@@ -74,7 +74,7 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
         peer.close()
 
 
-def test_wrong_messages_of_a_client_end_its_visit_alone() -> None:
+def test_wrong_messages_of_a_client_end_only_its_connection() -> None:
     """`test_requests.py` lists the wrong messages."""
     with SharedLine() as (pty_robot, registration):
         for wrong_message in (
@@ -100,7 +100,7 @@ def _receive_rest(peer: socket.socket) -> bytes:
         return b""
 
 
-def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
+def test_a_slow_reader_misses_values_and_delays_nobody() -> None:
     shared_port = SharedLine()
     with shared_port as (pty_robot, registration), visitor(registration) as peer:
         peer.sendall(greeting(registration))
@@ -125,7 +125,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
         )
 
 
-def test_nothing_is_shared_where_nothing_can_be_written(
+def test_nothing_is_shared_without_a_writable_folder(
     tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     blocked_path = tmp_path / "file"
@@ -135,7 +135,7 @@ def test_nothing_is_shared_where_nothing_can_be_written(
     tsc("monitor", "--hold", "--port", pty_robot.port).gives(3, "cannot be shared")
 
 
-def test_a_file_that_says_nothing_is_not_a_server(pty_robot: PtyRobot) -> None:
+def test_an_invalid_file_is_not_a_server(pty_robot: PtyRobot) -> None:
     with SharedLine() as (shared_robot, registration):
         path = registry._path(shared_robot.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
@@ -162,7 +162,7 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(
     assert registry.find_registration(pty_robot.port) is None
 
 
-def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
+def test_an_internal_error_in_a_thread_is_raised_in_its_waiter() -> None:
     for part in ("session", "server"):
         shared_port = SharedLine()
         with shared_port as (_, registration), visitor(registration) as peer:
@@ -177,7 +177,7 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
             assert is_let_go(peer)
 
 
-def test_a_lock_that_is_given_back_leaves_no_file(tmp_path: Path) -> None:
+def test_a_released_lock_leaves_no_file(tmp_path: Path) -> None:
     path = tmp_path / "port.lock"
     lock = registry._try_lock(path)
     assert lock is not None and path.exists()

@@ -10,7 +10,7 @@ from tests.support.port_strangers import say_all
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 
 
-def test_no_bytes_of_a_stranger_end_a_run_or_its_server(pty_robot: PtyRobot, link: Command) -> None:
+def test_no_bytes_of_a_stranger_end_a_run_or_the_server(pty_robot: PtyRobot, link: Command) -> None:
     """The heartbeat of the command that has started it continues."""
     command = start_endless_upload(pty_robot)
     say_all(pty_robot.port, 14, 1500)

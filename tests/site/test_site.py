@@ -73,9 +73,9 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
     context = browser.new_context(service_workers="block")
     opened_page = context.new_page()
     questions: list[str] = []
-    wrong: list[str] = []
+    errors: list[str] = []
     opened_page.on("request", lambda request: questions.append(request.url))
-    opened_page.on("pageerror", lambda failure: wrong.append(str(failure)))
+    opened_page.on("pageerror", lambda failure: errors.append(str(failure)))
     yield opened_page
     context.close()
     assert questions
@@ -84,10 +84,10 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
         for address_asked in questions
         if not address_asked.startswith((address, "data:"))
     ] == []
-    assert wrong == []
+    assert errors == []
 
 
-def test_every_document_is_on_the_site_and_in_a_part_of_it(site_folder: Path) -> None:
+def test_every_document_is_on_the_site_in_a_section(site_folder: Path) -> None:
     listed_documents = documents(ROOT, built_texts())
     sources = {source for document in listed_documents for source in document.sources.values()}
     paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
@@ -110,7 +110,7 @@ def clone(tmp_path: Path) -> Path:
     return tmp_path / "clone"
 
 
-def test_a_link_that_leads_nowhere_ends_the_build(
+def test_a_broken_internal_link_fails_the_build(
     clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = [
@@ -126,15 +126,15 @@ def test_a_link_that_leads_nowhere_ends_the_build(
         site.build(clone, tmp_path / "site", has_studio=False)
     # Files that Sphinx reads itself.
     store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
-    with pytest.raises(CannotMake) as why:
+    with pytest.raises(CannotMake) as error_info:
         site.build(clone, tmp_path / "site", has_studio=False)
-    assert "elsewhere" in str(why.value)
-    assert "strange" in str(why.value)
-    assert len(str(why.value).splitlines()) <= 4, why.value
+    assert "elsewhere" in str(error_info.value)
+    assert "strange" in str(error_info.value)
+    assert len(str(error_info.value).splitlines()) <= 4, error_info.value
     assert not (tmp_path / "site").exists()
 
 
-def test_a_dead_link_ends_the_build(
+def test_a_dead_link_fails_the_build(
     tmp_path: Path, site_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """These links Sphinx does not check: those between the languages, and in templates."""
@@ -149,7 +149,7 @@ def test_a_dead_link_ends_the_build(
         site.build(ROOT, tmp_path / "site", has_studio=False)
 
 
-def test_links_lead_to_pages_and_copies() -> None:
+def test_links_point_to_pages_and_copies() -> None:
     texts = built_texts()
     on = shelf(ROOT, documents(ROOT, texts), texts)
     for language in ("en", "es", "pt"):  # each leads to wiring in its own language
@@ -162,18 +162,18 @@ def test_links_lead_to_pages_and_copies() -> None:
     assert "docs/pictures/wiring/liner.en.svg" in on.pictures
 
 
-def test_a_clone_keeps_what_a_person_reads_there_and_no_more() -> None:
+def test_a_clone_contains_only_generated_files_that_readers_need() -> None:
     paths = (*ROOT.glob("docs/*/wiring/*"), *ROOT.glob("docs/*/command.md"))
     names = {path.relative_to(ROOT).as_posix() for path in paths}
     assert names == set(makers_of_kept()) < set(built_texts())
 
 
-def test_code_is_left_as_it_is(clone: Path) -> None:
+def test_code_is_left_unchanged(clone: Path) -> None:
     (clone / "docs" / "develop" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
     assert "[x](nowhere.md)" in page("docs/develop/store.md", shelf(clone, documents(clone)))
 
 
-def test_programs_have_colours() -> None:
+def test_programs_are_highlighted() -> None:
     tokens = TiniScriptLexer().get_tokens("si|F(2.5, 80) // go")
     kinds = [str(kind).removeprefix("Token.") for kind, text in tokens if text.strip()]
     assert kinds == ["Keyword.Namespace", "Operator", "Name.Builtin", "Punctuation",
@@ -207,7 +207,7 @@ def _is_too_wide(page: Page) -> bool:
     return bool(page.evaluate("document.documentElement.scrollWidth > window.innerWidth"))
 
 
-def test_a_word_is_found(visitor: Page, address: str) -> None:
+def test_the_search_finds_a_word(visitor: Page, address: str) -> None:
     for language, word, title in (
         ("en", "heartbeat", "The link"),
         ("es", "obstáculos", "lenguaje"),
@@ -232,7 +232,7 @@ def test_each_language_links_to_the_other(visitor: Page, address: str) -> None:
 
 
 @each_row("name", ["class", "index", "search", "lessons/01_first_line_pupil"])
-def test_what_is_around_a_spanish_page_is_spanish(site_folder: Path, name: str) -> None:
+def test_the_frame_of_a_spanish_page_is_spanish(site_folder: Path, name: str) -> None:
     english, spanish = (
         _texts_around_article(site_folder / language / f"{name}.html") for language in ("en", "es")
     )
@@ -255,7 +255,7 @@ def test_the_studio_is_on_the_site(visitor: Page, address: str, site_folder: Pat
     assert visitor.url.startswith(f"{address}studio/")
 
 
-def test_a_folder_with_something_in_it_is_left_alone(
+def test_a_folder_with_other_contents_is_left_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "mine.txt").write_text("mine")
@@ -264,7 +264,7 @@ def test_a_folder_with_something_in_it_is_left_alone(
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
 
 
-def test_a_studio_that_is_not_built_is_said(
+def test_an_unbuilt_studio_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(studio_build, "unusable_reason", lambda: "the page is not built.")
@@ -272,7 +272,7 @@ def test_a_studio_that_is_not_built_is_said(
     assert capsys.readouterr().err == "site: the page is not built. Without it:  --no-studio\n"
 
 
-def test_a_sphinx_that_is_missing_is_said(
+def test_a_missing_sphinx_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(site, "find_spec", lambda name: None)

@@ -119,32 +119,32 @@ def parse_trace(trace: str) -> Wanted:
     expected = Wanted([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
     for line in trace.splitlines():
         ms, what, *words = line.split()
-        at = float(ms)
+        at_msart_ms = float(ms)
         if what == "MOTORS":
-            expected.motors.append((at, (int(words[0]), int(words[1]))))
+            expected.motors.append((at_msart_ms, (int(words[0]), int(words[1]))))
         elif what == "BEEP" and int(words[1]):
-            expected.tones.append((at, (int(words[0]),)))
-            expected.tones.append((at + int(words[1]), (0,)))
+            expected.tones.append((at_msart_ms, (int(words[0]),)))
+            expected.tones.append((at_msart_ms + int(words[1]), (0,)))
         elif what == "SET":
             value = {"TRUE": 1, "FALSE": 0}.get(words[1]) if words[1].isalpha() else int(words[1])
             assert value is not None
-            expected.settings.setdefault(words[0], [(0.0, (0,))]).append((at, (value,)))
+            expected.settings.setdefault(words[0], [(0.0, (0,))]).append((at_msart_ms, (value,)))
         elif what == "SHOW":
-            expected.lines.append((at, words[0]))
+            expected.lines.append((at_msart_ms, words[0]))
         elif what == "FAULT":
-            expected.lines.append((at, line.split(" ", 1)[1]))
-        expected = expected._replace(end_ms=at, is_cut=what == "LIMIT")
+            expected.lines.append((at_msart_ms, line.split(" ", 1)[1]))
+        expected = expected._replace(end_ms=at_msart_ms, is_cut=what == "LIMIT")
     if not expected.is_cut:
         expected.motors.append((expected.end_ms, (0, 0)))
     return expected
 
 
 def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...]]]:
-    ends = [at for at, _ in signal[1:]] + [end]
+    end_times_ms = [start_ms for start_ms, _ in signal[1:]] + [end]
     return [
-        (at, until, value)
-        for (at, value), until in zip(signal, ends, strict=True)
-        if at < until and at < end
+        (start_ms, end_ms, value)
+        for (start_ms, value), end_ms in zip(signal, end_times_ms, strict=True)
+        if start_ms < end_ms and start_ms < end
     ]
 
 
@@ -156,19 +156,23 @@ def signal_differences(
     def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
         return all(abs(x - y) <= apart * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
 
-    wrong = []
-    ours, theirs = spans(want, end), spans(actual, end)
-    for at, until, value in ours:
-        inner = [v for a, u, v in theirs if a < until - near and u > at + near]
-        if until - at > 2 * near and not all(agree(value, v) for v in inner):
-            wrong.append(f"{value} from {at} to {until}, but {inner[:4]}")
-    for at, until, value in theirs:
-        values_around = [v for a, u, v in ours if a < until + near and u > at - near]
-        if at > end - near:  # events after the end
+    differences_found = []
+    expected_spans, actual_spans = spans(want, end), spans(actual, end)
+    for start_ms, end_ms, value in expected_spans:
+        inner = [v for a, u, v in actual_spans if a < end_ms - near and u > start_ms + near]
+        if end_ms - start_ms > 2 * near and not all(agree(value, v) for v in inner):
+            differences_found.append(f"{value} from {start_ms} to {end_ms}, but {inner[:4]}")
+    for start_ms, end_ms, value in actual_spans:
+        values_around = [
+            v for a, u, v in expected_spans if a < end_ms + near and u > start_ms - near
+        ]
+        if start_ms > end - near:  # events after the end
             continue
-        if until - at > 2 * near and not any(agree(value, v) for v in values_around):
-            wrong.append(f"{value} from {at:.1f} to {until:.1f} is not in the trace")
-    return wrong
+        if end_ms - start_ms > 2 * near and not any(agree(value, v) for v in values_around):
+            differences_found.append(
+                f"{value} from {start_ms:.1f} to {end_ms:.1f} is not in the trace"
+            )
+    return differences_found
 
 
 def nearness(trace: str, echo_us: float = 0) -> float:
@@ -178,7 +182,7 @@ def nearness(trace: str, echo_us: float = 0) -> float:
 
 def shift_signal(signal: Signal, by: float, first: tuple[int, ...]) -> Signal:
     """Return a signal from the start of the program on."""
-    return [(0.0, first), *((max(0.0, at - by), value) for at, value in signal)]
+    return [(0.0, first), *((max(0.0, start_ms - by), value) for start_ms, value in signal)]
 
 
 def differences(
@@ -193,8 +197,10 @@ def differences(
     want = parse_trace(trace)
     end = want.end_ms
     motors = [*want.motors]
-    wrong = signal_differences(motors, shift_signal(run.motors, start_ms, (0, 0)), end, near)
-    wrong += signal_differences(
+    differences_found = signal_differences(
+        motors, shift_signal(run.motors, start_ms, (0, 0)), end, near
+    )
+    differences_found += signal_differences(
         want.tones, shift_signal(run.tones, start_ms, (0,)), end, near, 0.02
     )
     for device, wiring in zip(robot.kit.actuators, robot.board.actuators, strict=True):
@@ -202,11 +208,15 @@ def differences(
         asked_signal = want.settings.get(device.name, [(0.0, (0,))])
         if wiring.driver == "digital":
             low = wiring.settings["yes_is_low"]
-            levels: Signal = [(at, ((value[0] ^ low) * 255,)) for at, value in asked_signal]
-            wrong += signal_differences(levels, signal, end, near)
+            levels: Signal = [
+                (start_ms, ((value[0] ^ low) * 255,)) for start_ms, value in asked_signal
+            ]
+            differences_found += signal_differences(levels, signal, end, near)
         elif wiring.driver == "servo":
-            wrong += pulses(device.low, device.high, wiring.settings, asked_signal, signal, end)
-    return wrong + compare_shows(want, run, apart, near)
+            differences_found += pulses(
+                device.low, device.high, wiring.settings, asked_signal, signal, end
+            )
+    return differences_found + compare_shows(want, run, apart, near)
 
 
 def pulses(
@@ -218,23 +228,23 @@ def pulses(
     end: float,
 ) -> list[str]:
     """Return the pulses of a servo that do not match its settings."""
-    wrong, first, last = [], settings["low_us"], settings["high_us"]
-    for k, (at, until, value) in enumerate(spans(asked_signal, end)):
+    differences_found, low_us, high_us = [], settings["low_us"], settings["high_us"]
+    for k, (start_ms, end_ms, value) in enumerate(spans(asked_signal, end)):
         lengths_us = [
             1000 * (gone - came)
             for came, gone, level in spans(signal, end)
-            if level[0] and came > at + 30 and gone < until - 2
+            if level[0] and came > start_ms + 30 and gone < end_ms - 2
         ]
         if k == 0 and (len(asked_signal) == 1 or asked_signal[1][0] > 0):
             if lengths_us:
-                wrong.append(f"pulses before a SET: {lengths_us[:3]}")
+                differences_found.append(f"pulses before a SET: {lengths_us[:3]}")
             continue
-        us = first + (value[0] - low / ONE) * (last - first) / ((high - low) / ONE)
-        if until - at > 60 and (
+        us = low_us + (value[0] - low / ONE) * (high_us - low_us) / ((high - low) / ONE)
+        if end_ms - start_ms > 60 and (
             not lengths_us or any(abs(length_us - us) > 20 for length_us in lengths_us)
         ):
-            wrong.append(f"{value} is {us} us, but {lengths_us[:4]}")
-    return wrong
+            differences_found.append(f"{value} is {us} us, but {lengths_us[:4]}")
+    return differences_found
 
 
 def compare_shows(want: Wanted, run: Ran, apart: float, near: float) -> list[str]:
@@ -244,7 +254,7 @@ def compare_shows(want: Wanted, run: Ran, apart: float, near: float) -> list[str
     common = min(len(lines), len(questions))
     least = len(questions)
     if want.is_cut:
-        least = sum(at < want.end_ms - near for at, _ in want.lines)
+        least = sum(start_ms < want.end_ms - near for start_ms, _ in want.lines)
     is_same = all(map(_is_line, lines[:common], questions[:common], [apart] * common))
     if is_same and len(lines) >= least and (want.is_cut or len(lines) == least):
         return []
@@ -324,5 +334,7 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
     reads = example.trace.count(" READ DISTANCE ")
     run = board.run_for(start + want.end_ms + (0 if want.is_cut else PLAIN_MS + 30 * reads))
     near = nearness(example.trace)
-    wrong = differences(example.trace, run, robot, start, near)
-    assert not wrong, f"seed {example.seed}: {wrong[:3]}\n{example.text}\n{example.trace[:3000]}"
+    differences_found = differences(example.trace, run, robot, start, near)
+    assert not differences_found, (
+        f"seed {example.seed}: {differences_found[:3]}\n{example.text}\n{example.trace[:3000]}"
+    )

@@ -93,8 +93,8 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
     want = parse_trace(trace)
     run = board.run_for(start + want.end_ms + (0 if want.is_cut else 400))
     near = nearness(trace, echo_us)
-    wrong = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
-    assert not wrong, f"{wrong[:3]}\n{text}\n{trace[:2000]}"
+    differences_found = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
+    assert not differences_found, f"{differences_found[:3]}\n{text}\n{trace[:2000]}"
 
 
 @pytest.mark.sampled("echo_us", "path", keep=3)
@@ -107,7 +107,7 @@ def test_examples(path: Path, echo_us: float) -> None:
 
 @pytest.mark.sampled("number", keep=len(ANSWERS) // 10)
 @pytest.mark.parametrize("number", range(len(ANSWERS)), ids=lambda n: ANSWERS[n][0])
-def test_answers_of_lessons(number: int) -> None:
+def test_sketches_of_lesson_answers_agree(number: int) -> None:
     text = ANSWERS[number][1]
     liner = robots.load("liner").kit
     robot = robots.load("liner" if not compile_text(text, ROBOT.kit).is_right else "tinibot")
@@ -132,9 +132,9 @@ POWERS = [(80, 80), (-40, -40), (50, -100), (0, 0)]
 
 
 @pytest.mark.parametrize("name", sorted(DRIVERS))
-def test_drivers_of_motors(name: str) -> None:
+def test_motor_drivers_work_in_a_sketch(name: str) -> None:
     motors = shift_signal(run_sketch(MOVES, 400, robot_with_driver(name)).motors, START_MS, (0, 0))
-    lasting = [value for at, until, value in spans(motors, 399) if until - at > 5]
+    lasting = [value for start_ms, end_ms, value in spans(motors, 399) if end_ms - start_ms > 5]
     assert lasting == POWERS
 
 
@@ -143,7 +143,10 @@ def test_a_tb6612_is_awake_while_it_drives() -> None:
     board = SketchBoard(robot, sketch("SI|F(0.1, 80)", robot))
     standby = robot.board.motors.pins["standby"]
     levels = shift_signal(board.run_for(150).pins[standby], START_MS, (0,))
-    assert [value for at, until, value in spans(levels, 149) if until - at > 2] == [(255,), (0,)]
+    assert [value for start_ms, end_ms, value in spans(levels, 149) if end_ms - start_ms > 2] == [
+        (255,),
+        (0,),
+    ]
     assert BRIDGE_STATES  # the states of the other pins are those of the drivers above
 
 
@@ -156,22 +159,24 @@ def test_servos_that_turn_get_their_pulses() -> None:
     for side, driving, still in (("left", 2010, 1500), ("right", 970, 1480)):
         signal = run.pins[robot.board.motors.pins[f"{side}_pin"]]
         pulse_list = [
-            (at, 1000 * (gone - at)) for at, gone, level in spans(signal, 1899) if level[0]
+            (start_ms, 1000 * (gone - start_ms))
+            for start_ms, gone, level in spans(signal, 1899)
+            if level[0]
         ]
-        assert all(abs(us - driving) < 25 for at, us in pulse_list if 25 < at < 190)
-        assert all(abs(us - still) < 25 for at, us in pulse_list if at > 230)
-        assert 48 <= sum(at > 210 for at, _ in pulse_list) <= 51
-        assert sum(at < 200 for at, _ in pulse_list) >= 8
+        assert all(abs(us - driving) < 25 for start_ms, us in pulse_list if 25 < start_ms < 190)
+        assert all(abs(us - still) < 25 for start_ms, us in pulse_list if start_ms > 230)
+        assert 48 <= sum(start_ms > 210 for start_ms, _ in pulse_list) <= 51
+        assert sum(start_ms < 200 for start_ms, _ in pulse_list) >= 8
 
 
-def test_a_gripper_and_a_lamp_of_a_mega() -> None:
+def test_gripper_and_lamp_of_a_mega_are_set() -> None:
     robot = robots.load("grabber")
     agrees(
         "SI|GRIPPER(90);LED(TRUE);W(0.2);GRIPPER(0);LED(FALSE);W(0.2)", robot, NO_ECHO_US, 100, 1
     )
 
 
-def test_a_pwm_actuator() -> None:
+def test_a_pwm_actuator_is_set() -> None:
     from tests.support.edited_robots import TEXTS
     from tiniscript.robots.reader import read
 
@@ -181,11 +186,14 @@ def test_a_pwm_actuator() -> None:
     robot = read(text, "test")
     run = run_sketch("SI|GRIPPER(90);W(0.1);X = 180;GRIPPER(X);W(1)", 190, robot)
     signal = shift_signal(run.pins[11], START_MS, (0,))
-    assert [value for at, until, value in spans(signal, 189) if until - at > 5] == [(128,), (255,)]
+    assert [value for start_ms, end_ms, value in spans(signal, 189) if end_ms - start_ms > 5] == [
+        (128,),
+        (255,),
+    ]
 
 
 @pytest.mark.parametrize("distance_cm", [3, 20, 50, 150])
-def test_an_echo_is_a_distance(distance_cm: int) -> None:
+def test_an_echo_is_converted_to_a_distance(distance_cm: int) -> None:
     robot = robots.load("tinibot")
     board = SketchBoard(robot, sketch("SI|DISTANCE;SHOW(DISTANCE)", robot))
     pins = robot.board.sensors[2].pins
@@ -231,14 +239,18 @@ def test_a_button_starts_and_stops() -> None:
     for ms, is_high in ((100, False), (200, True), (500, False), (600, True)):
         board.level(ms, button, is_high)
     run = board.run_for(900)
-    assert [value for at, until, value in spans(run.motors, 899) if until - at > 5] == [
-        (0, 0), (50, 50), (0, 0),
-    ]  # fmt: skip
-    on, off = (at for at, value in run.motors if value in ((50, 50), (0, 0)) and at > 100)
+    assert [
+        value for start_ms, end_ms, value in spans(run.motors, 899) if end_ms - start_ms > 5
+    ] == [(0, 0), (50, 50), (0, 0)]
+    on, off = (
+        start_ms for start_ms, value in run.motors if value in ((50, 50), (0, 0)) and start_ms > 100
+    )
     assert 228 < on < 235 and 499 < off < 502
     lamp = run.pins[pins[2]]
     assert lamp[-1][1] == (0,) and 499 < lamp[-1][0] < 502  # a stop turns it off
-    assert not any(level[0] and at > 505 for at, _, level in spans(run.pins[pins[0]], 899))
+    assert not any(
+        level[0] and start_ms > 505 for start_ms, _, level in spans(run.pins[pins[0]], 899)
+    )
     assert run.text == ""
 
 
@@ -252,9 +264,11 @@ def test_a_spike_starts_nothing() -> None:
 
 def test_a_program_that_has_ended_plays_its_tune() -> None:
     tones = spans(run_sketch("SI|F(0.1, 50)", 500).tones, 499)
-    assert [(round(until - at, -1), value[0] // 10) for at, until, value in tones if value[0]] == [
-        (120, 105), (120, 157),
-    ]  # fmt: skip
+    assert [
+        (round(end_ms - start_ms, -1), value[0] // 10)
+        for start_ms, end_ms, value in tones
+        if value[0]
+    ] == [(120, 105), (120, 157)]
 
 
 @pytest.mark.parametrize(("text", "name"), [
@@ -262,14 +276,14 @@ def test_a_program_that_has_ended_plays_its_tune() -> None:
     ("SI|M(50, 50);X = 0;SHOW(1 / X)", "FAULT DIVIDE_BY_ZERO"),
     ("SI|M(50, 50);X = 0;SHOW(1 % X)", "FAULT DIVIDE_BY_ZERO"),
 ])  # fmt: skip
-def test_a_fault_stops_the_motors_and_says_its_name(text: str, name: str) -> None:
+def test_a_fault_stops_the_motors_and_prints_its_name(text: str, name: str) -> None:
     run = run_sketch(text, 60)
     assert run.text == name + "\r\n"
     assert run.motors[-1][1] == (0, 0) and (50, 50) in [value for _, value in run.motors]
 
 
 @pytest.mark.parametrize("text", ["PING|check_connection", "", "SI|"])
-def test_a_program_that_does_nothing(text: str) -> None:
+def test_a_sketch_of_an_empty_program_does_nothing(text: str) -> None:
     run = run_sketch(text, 50)
     assert {value for _, value in run.motors} == {(0, 0)} and run.text == ""
 

@@ -34,7 +34,7 @@ def part(text: str, header: str) -> list[str]:
     return [re.sub(r"  +//.*", "", row) for row in body.splitlines()[1:]]
 
 
-def test_each_instruction_has_its_tiniscript_beside_it() -> None:
+def test_each_instruction_has_its_tiniscript_as_a_comment() -> None:
     text = sketch("SI|f( 2 , 80 );\nIF(LIGHT_R > 100); S; ELSE; W(1); ENDIF")
     rows = text.splitlines()
     for code, comment in (
@@ -63,20 +63,22 @@ def test_a_variable_that_a_def_copies_from_below_is_a_yes_no() -> None:
     assert "bool q = false;" in text and "bool seen = false;" in text
 
 
-def test_what_is_not_used_is_not_written() -> None:
+def test_unused_helpers_are_not_written() -> None:
     text = sketch("SI|F(2, 80)")
     for word in ("tone(int", "analogRead", "beep(", "backward(", "TRIGGER", "Number", "moveLasts"):
         assert word not in text
 
 
-def test_a_loop_at_the_end_is_loop() -> None:
+def test_a_final_loop_becomes_the_loop_function() -> None:
     text = sketch("SI|W(1);LOOP(FOREVER);F(1, 80);END_LOOP")
     assert part(text, "void loop()") == ["  forward(1, 80);"]
-    left = sketch("SI|LOOP(FOREVER);F(1, 80);BREAK;END_LOOP")
-    assert part(left, "void loop()") == [] and "  while (true) {" in part(left, "void setup()")
+    broken_sketch = sketch("SI|LOOP(FOREVER);F(1, 80);BREAK;END_LOOP")
+    assert part(broken_sketch, "void loop()") == [] and "  while (true) {" in part(
+        broken_sketch, "void setup()"
+    )
 
 
-def test_a_while_takes_its_reading_where_it_asks() -> None:
+def test_a_while_takes_its_reading_in_its_condition() -> None:
     text = sketch(
         "SI|WHILE(DISTANCE > 10);W(0.1);END_WHILE;WHILE(DISTANCE > 10 AND TRUE);END_WHILE"
     )
@@ -84,7 +86,7 @@ def test_a_while_takes_its_reading_where_it_asks() -> None:
     assert "    if (!(distance > 10 && true)) break;" in text
 
 
-def test_brackets_are_those_that_cpp_needs() -> None:
+def test_only_necessary_brackets_are_written() -> None:
     text = sketch(
         "X = 1;X = (X + 2) * 3 - (X - (4 - X));X = 7 / 2;X = --X;X = -(-5);"
         "Y = NOT (X = 1 OR X < 2);"
@@ -99,22 +101,22 @@ def test_brackets_are_those_that_cpp_needs() -> None:
         assert f"  {line}" in part(text, "void setup()"), line
 
 
-def test_random_is_asked_from_left_to_right() -> None:
+def test_random_is_called_from_left_to_right() -> None:
     text = sketch("X = RANDOM(1, 6) - RANDOM(1, 3);M(RANDOM(1, 2), RANDOM(3, 4))")
     assert "x = (first1 = randomFrom(1, 6), first1 - randomFrom(1, 3));" in text
     assert "motors(limited(first2, -100, 100), limited(randomFrom(3, 4), -100, 100));" in text
     assert "first2 = randomFrom(1, 2);" in text and "Number first1, first2;" in text
 
 
-def test_comments_stay_where_they_were() -> None:
+def test_comments_keep_their_places() -> None:
     text = sketch(
         "// one\nSI|F(1, 50) // two\nIF(LIGHT_R > 1)\n// three\nS\nENDIF // four\n// five"
     )
     rows = [row.strip() for row in text.splitlines()]
-    at = [rows.index(f"// {word}") for word in ("one", "two", "three", "four", "five")]
-    assert at == sorted(at)
-    assert rows[at[1] + 1].startswith("forward(1, 50);")
-    assert rows[at[2] + 1].startswith("stopMotors();")
+    row_indices = [rows.index(f"// {word}") for word in ("one", "two", "three", "four", "five")]
+    assert row_indices == sorted(row_indices)
+    assert rows[row_indices[1] + 1].startswith("forward(1, 50);")
+    assert rows[row_indices[2] + 1].startswith("stopMotors();")
 
 
 @pytest.mark.parametrize("comment", ["ends in \\", "??/", "*/ /* */", "ñandú ¿qué? \t x", "\\"])
@@ -212,7 +214,7 @@ def test_no_name_of_a_helper_is_in_the_other_language() -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
+def test_the_first_lines_name_the_limits(language: str) -> None:
     def limits(text: str) -> set[str]:
         first = " ".join(
             row.lstrip("/ ") for row in sketch(text, language).split("#include")[0].splitlines()
@@ -231,7 +233,7 @@ def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
     assert limits("PING|check_connection") == {"limit_ping"}
 
 
-def test_texts_are_there_in_both_languages() -> None:
+def test_texts_exist_in_both_languages() -> None:
     for language in LANGUAGES:
         texts = all_said(language, "sketch")
         names = [text for key, text in texts.items() if key.startswith("name/")]
@@ -262,5 +264,5 @@ def test_the_sketch_on_the_page_is_what_tsc_writes(language: str) -> None:
     assert "\n" + text_after.partition("```")[0] in sketch(program, language)
 
 
-def test_each_loop_inside_others_has_a_counter_of_its_own() -> None:
+def test_each_nested_loop_has_its_own_counter() -> None:
     assert [counter(depth) for depth in range(6)] == ["i", "j", "k", "i4", "i5", "i6"]

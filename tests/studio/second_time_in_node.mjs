@@ -4010,9 +4010,9 @@ const PARTS = {
           if (!group && random() < 0.2) presses('undo');
           await passes(random.below(random.of([2, 120])));
           blocks.isBusy = false;
-          const line = random() < 0.7 ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
+          const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
-          if (line !== `b${count}`) mine = mine.filter((item) => item !== line);
+          if (!isNew) mine = mine.filter((item) => item !== line);
           else {
             mine.push(line);
             blocks.form.body.push({ text: line, kind: 'word', bodies: [] });

@@ -12,7 +12,7 @@ SCRIPT = Path(__file__).parent / "beginnings_in_node.mjs"
 SECONDS = 90
 
 
-def test_no_picture_of_the_start_shows_a_robot_that_bumps(tmp_path: Path) -> None:
+def test_no_start_picture_shows_a_collision(tmp_path: Path) -> None:
     (row,) = in_node(SCRIPT)
     beginnings = json.loads(row)
     assert len(beginnings) > 5

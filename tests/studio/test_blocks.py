@@ -52,7 +52,7 @@ def words(text: str) -> list[str]:
 
 
 @each_row("program", programs())
-def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
+def test_every_program_survives_conversion_to_blocks(program: Program) -> None:
     """Programs of the paper, of all documents and cases, and the examples."""
     kit = robots.load(program.robot).kit
     if compile_text(program.text, kit).is_right:
@@ -63,14 +63,14 @@ def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
 
 @pytest.mark.sampled("first_seed")
 @pytest.mark.parametrize("first_seed", range(0, 1000, 250))
-def test_random_programs_are_the_same_from_their_blocks(first_seed: int) -> None:
+def test_random_programs_survive_conversion_to_blocks(first_seed: int) -> None:
     for seed in range(first_seed, first_seed + 250):
         oracle_kit, kit = KITS[seed % len(KITS)]
         check_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit)
 
 
 @pytest.mark.parametrize("first_seed", range(0, 500, 250))
-def test_nothing_of_a_broken_text_is_lost(first_seed: int) -> None:
+def test_no_part_of_a_broken_text_is_lost(first_seed: int) -> None:
     for seed in range(first_seed, first_seed + 250):
         rng = random.Random(seed)
         oracle_kit, kit = KITS[seed % len(KITS)]
@@ -81,7 +81,7 @@ def test_nothing_of_a_broken_text_is_lost(first_seed: int) -> None:
             assert words(format_blocks(read_blocks(text, kit)).text) == words(text), text
 
 
-def test_what_pupils_write_becomes_blocks_and_text() -> None:
+def test_pupils_programs_become_blocks_and_text() -> None:
     for text in sorted({entry.program for entry in corpus.entries()}):
         form = read_blocks(text, TINIBOT)
         round_tripped = format_blocks(read_blocks(format_blocks(form).text, TINIBOT)).text
@@ -128,7 +128,7 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
             check_blocks(f"{actuator.name}({'TRUE' if actuator.is_yes_no else 1})", kit)
 
 
-def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_shape_of_each_kind_matches_the_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
     omitted_roles = ("later", "setup", "alias")
     text = ";".join(
@@ -171,11 +171,11 @@ def test_the_shape_of_each_kind_is_what_is_read(monkeypatch: pytest.MonkeyPatch)
         ("F(1, // fast\n 80)", "F(1, 80)  // fast\n"),
     ],
 )  # fmt: skip
-def test_what_blocks_are_as_text(text: str, printed_text: str) -> None:
+def test_blocks_are_printed_as_text(text: str, printed_text: str) -> None:
     assert format_blocks(touched_form(read_blocks(text, TINIBOT))).text == printed_text
 
 
-def test_whoever_changes_a_block_changes_its_line_alone() -> None:
+def test_changing_a_block_changes_only_its_line() -> None:
     text = (
         "IF(1.50 > (X));  // a\n  F((1), 080);\nELSEIF((X) > 2);  // b\n  S;\n"
         "ELSE;  // c\nENDIF;  // d\n"
@@ -207,7 +207,7 @@ def test_a_line_that_does_not_parse_is_a_grey_block() -> None:
 
 
 @pytest.mark.parametrize("text", ["F(1)", "S(2)", "S UNTIL(TRUE)", "HOP(1, 2)", "F(1, 2, 3)"])
-def test_what_no_block_has_room_for_is_grey(text: str) -> None:
+def test_unsupported_instructions_become_grey_blocks(text: str) -> None:
     assert kinds(text) == ["grey"]
     printed_text = format_blocks(read_blocks(f"{text} // no", TINIBOT)).text
     assert printed_text.split() == [*text.split(), "//", "no"]
@@ -219,7 +219,7 @@ def test_a_header_that_is_never_closed_keeps_its_lines() -> None:
     assert kinds("ENDIF\nS") == ["grey", "stop"]
 
 
-def test_blocks_that_hang_on_nothing_are_kept() -> None:
+def test_loose_blocks_are_kept() -> None:
     text = (
         "SI|S\n\n/// F(1, 80);  // later\n/// IF(DISTANCE < 10);\n///   S;\n/// ENDIF;\n///\n"
         "/// = DISTANCE < 10\n///\n/// X = 5\n"
@@ -241,7 +241,7 @@ def test_other_comments_with_three_signs_stay_comments(text: str) -> None:
     assert comment_words(format_blocks(form).text) == comment_words(text)
 
 
-def test_what_is_typed_into_a_field_stays_in_its_line() -> None:
+def test_text_typed_into_a_field_stays_in_its_line() -> None:
     body = (Block("comment", "a\r\nS"), Block("assign", "X\n", ((("NUMBER", "1"),),)),
             Block("stop", "S", note="b\nF(1, 80)\0"), Block("grey", "  \n "),
             Block("grey", "a\nb"))  # fmt: skip
@@ -250,7 +250,7 @@ def test_what_is_typed_into_a_field_stays_in_its_line() -> None:
     )
 
 
-def test_empty_places_are_said_by_the_compiler() -> None:
+def test_empty_places_are_reported_by_the_compiler() -> None:
     nothing = (("NOTHING", ""),)
     body = (Block("if", "", (nothing,), ((),)), Block("move", "F", (nothing, nothing)))
     text = format_blocks(Form("SI", "", False, body, ())).text
@@ -258,7 +258,7 @@ def test_empty_places_are_said_by_the_compiler() -> None:
     assert compile_text(text, TINIBOT).diagnostics
 
 
-def test_the_page_asks_for_blocks_and_for_text() -> None:
+def test_the_page_requests_blocks_and_text() -> None:
     text = "SI|GRIPPER(90); // ¡abre!\nHOP"
     form = json.loads(answer('{"do": "blocks", "robot": "grabber"}', text.encode()))
     assert form["body"][0]["note"] == "¡abre!"
@@ -278,7 +278,7 @@ def test_a_very_long_program_stays_text() -> None:
 
 
 @each_row("program", programs())
-def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> None:
+def test_the_beginning_of_a_program_shows_its_first_blocks(program: Program) -> None:
     form = read_blocks(program.text, robots.load(program.robot).kit)
     all_blocks = in_order(form.body)
     for max_blocks in (1, 2, 7, 40, size_of(form)):
@@ -297,7 +297,7 @@ def test_the_beginning_of_a_program_is_of_its_first_blocks(program: Program) -> 
         ]
 
 
-def test_the_page_asks_for_the_beginning() -> None:
+def test_the_page_requests_the_beginning() -> None:
     text = ";".join(["SHOW(1)"] * (2 * MOST_BLOCKS))
     request = {"do": "blocks", "robot": "tinibot"}
     assert set(json.loads(answer(json.dumps(request), text.encode()))) == {"size"}

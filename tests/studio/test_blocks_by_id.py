@@ -166,7 +166,7 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_what_others_do_meanwhile_stays(seed: int) -> None:
+def test_concurrent_changes_of_others_are_kept(seed: int) -> None:
     """Two changes of blocks that were shown before; others have changed the program twice."""
     rng = Random(seed)
     program = program_of()
@@ -189,7 +189,7 @@ def test_what_others_do_meanwhile_stays(seed: int) -> None:
     assert last_id not in program.tree or program.tree[last_id].text != "W(2)"
 
 
-def test_an_empty_place_is_nobody_elses() -> None:
+def test_an_empty_place_belongs_to_its_own_block() -> None:
     program = program_of()
     ana = Ana(program)
     ana.form["body"][0]["values"][0] = [["NOTHING", ""]]
@@ -205,7 +205,7 @@ def test_an_empty_place_is_nobody_elses() -> None:
     assert ana.text == text_of(program.tree)
 
 
-def test_a_deleted_block_that_somebody_has_put_something_into_stays() -> None:
+def test_a_deleted_block_with_new_contents_is_kept() -> None:
     program = program_of()
     ana = Ana(program)
     loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
@@ -221,7 +221,7 @@ def test_a_deleted_block_that_somebody_has_put_something_into_stays() -> None:
     assert "LOOP" not in ana.text
 
 
-def test_of_two_that_are_equal_the_one_is_changed_that_was_touched() -> None:
+def test_of_two_equal_blocks_the_touched_one_is_changed() -> None:
     program = program_of("W(1);\nB(1, 40);\nB(1, 40);\nW(2);\n")
     [_, changed_id, other_id, _] = (id for id in program.tree[ROOT].children if id != START)
     ana = Ana(program)

@@ -41,7 +41,7 @@ def page() -> Path:
     return studio.PAGE
 
 
-def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
+def test_packages_are_pinned_without_a_fixed_registry() -> None:
     package_fields = json.loads((SOURCES / "package.json").read_text(encoding="utf-8"))
     for version in (
         *package_fields["dependencies"].values(),
@@ -54,7 +54,7 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
         assert not name or package["integrity"].startswith("sha512-"), name
 
 
-def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
+def test_no_unused_module_is_packed(page: Path) -> None:
     modules = []
     for archive in page.glob("*.zip"):
         with zipfile.ZipFile(archive) as zip_file:
@@ -65,7 +65,7 @@ def test_no_part_is_packed_of_what_no_browser_has(page: Path) -> None:
     ]
 
 
-def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_node_trusts_the_system_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
     """For example those of a school's proxy; the environment may override it."""
     node_command = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
     monkeypatch.delenv("NODE_USE_SYSTEM_CA", raising=False)
@@ -75,7 +75,7 @@ def test_node_trusts_the_certificates_of_the_system(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize("language", languages()[1:])
-def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
+def test_a_text_has_the_gaps_of_the_english_one(language: str) -> None:
     """`%1` and so on, which Blockly and the page fill; gaps are checked of all catalogues."""
     for entry in merged_catalogue("studio", language).entries.values():
         places = sorted(re.findall(r"%[\d%]", entry.english))
@@ -84,7 +84,7 @@ def test_a_text_has_the_places_of_the_english_one(language: str) -> None:
         )
 
 
-def test_every_sentence_is_said_somewhere() -> None:
+def test_every_text_is_used() -> None:
     """The code has its name, or a name in two parts: `why_${reason}` and the reason's name."""
     sources = "".join(PAGE_SOURCES.values())
     names = set(re.findall(r"['\"]([\w/]+)['\"]", sources))
@@ -103,7 +103,7 @@ def test_every_sentence_is_said_somewhere() -> None:
             assert base_key in names or words & {base_key, *rest}, key
 
 
-def test_every_block_says_something_and_nothing_else_does() -> None:
+def test_every_block_has_a_text_and_every_block_text_a_block() -> None:
     keys = set(page_texts(SOURCE_LANGUAGE))
     words = [*KINDS, *(word for kind in KINDS.values() for word in kind.words)]
     words += [unit for kind in KINDS.values() for unit in kind.units.values()]
@@ -127,7 +127,7 @@ def test_a_plural_has_the_form_of_its_number() -> None:
             assert texts["mistakes"][int(form)] == wanted_text, (language, number)
 
 
-def test_nothing_makes_markup_of_a_text() -> None:
+def test_no_text_is_inserted_as_markup() -> None:
     for path in (SOURCES / "src").rglob("*.js"):
         source = path.read_text(encoding="utf-8")
         for word in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(",
@@ -153,7 +153,7 @@ def weights_of(page: Path) -> dict[str, int]:
     return {name: int(packed.replace(",", "")) for _, packed, name in rows}
 
 
-def test_what_a_group_fetches_is_small_enough(page: Path) -> None:
+def test_the_files_of_a_group_are_small_enough(page: Path) -> None:
     """Though this counts all that a class has, its wall, too."""
     weights = weights_of(page)
     names = [name for name in weights if name.startswith(("together.", "classroom-", "class."))]
@@ -161,13 +161,13 @@ def test_what_a_group_fetches_is_small_enough(page: Path) -> None:
     assert sum(weights[name] for name in names) <= GROUP_LARGEST
 
 
-def test_the_page_has_its_policy_and_no_code_of_its_own(page: Path) -> None:
+def test_the_page_has_its_policy_and_no_inline_code(page: Path) -> None:
     html = (page / "index.html").read_text(encoding="utf-8")
     assert POLICY in html
     assert not re.search(r"<script(?![^>]*\bsrc=)|\son\w+=|\sstyle=|<style|https?://", html)
 
 
-def test_the_page_brings_the_licences_of_what_is_in_it(page: Path) -> None:
+def test_the_page_contains_the_licences_of_its_parts(page: Path) -> None:
     licences = (page / studio.LICENCES_FILE).read_text(encoding="utf-8")
     for name in (
         "@codemirror/view 6.",
@@ -249,7 +249,7 @@ def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
     assert studio.main(["--check", "-o", str(tmp_path)]) == 2
 
 
-def test_firmware_is_beside_the_page_and_in_no_count(
+def test_firmware_is_beside_the_page_and_not_counted_in_its_size(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`tsc studio` and a static host give the same files, by the same list."""
@@ -273,7 +273,7 @@ def test_firmware_is_beside_the_page_and_in_no_count(
     assert len(studio.size_rows(tmp_path / "page")) == 2  # the head, and the sum
 
 
-def test_only_a_page_that_is_there_is_built_again(
+def test_only_an_existing_page_is_rebuilt(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert studio.main(["--again", "-o", str(tmp_path / "page")]) == 2

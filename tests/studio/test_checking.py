@@ -27,7 +27,7 @@ def test_a_right_program_has_the_image_of_the_command() -> None:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_the_word_that_the_toolbox_offers_is_a_name(language: str) -> None:
+def test_a_new_word_of_the_toolbox_is_a_valid_name(language: str) -> None:
     word = page_texts(language)["new_word"]
     program = f"SI|DEF {word};F(1, 50);END_DEF;{word}"
     assert not checking.check(program.encode(), "tinibot", language).findings
@@ -46,7 +46,7 @@ def test_the_sensors_that_a_program_reads_are_named_by_their_numbers(robot: str)
 @pytest.mark.sampled("first_index", "part")
 @pytest.mark.parametrize("first_index", range(2))
 @pytest.mark.parametrize("part", range(12))
-def test_messages_are_those_of_the_command_and_repairs_help(first_index: int, part: int) -> None:
+def test_messages_match_the_command_and_repairs_help(first_index: int, part: int) -> None:
     """Languages alternate; no offered repair makes a program worse."""
     offered = 0
     for k, entry in enumerate(corpus.entries()[part::12]):
@@ -74,12 +74,12 @@ def test_messages_are_those_of_the_command_and_repairs_help(first_index: int, pa
     [("SI|S\n/// W(1)\n", 1), ("SI|S\n/// LOOP(2)\n///   W(1)\n/// END_LOOP\n///\n/// = 5 < 6", 3),
      ("SI|S // /// W(1)\n/// not a program", 0), ("F(-2, 80)\n/// W(1)", 1)],
 )  # fmt: skip
-def test_what_hangs_on_nothing_is_counted(text: str, loose_count: int) -> None:
+def test_loose_blocks_are_counted(text: str, loose_count: int) -> None:
     asked_text = '{"do": "check", "robot": "tinibot", "language": "en"}'
     assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose_count
 
 
-def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
+def test_a_program_too_large_for_the_robot_is_a_mistake() -> None:
     result = checking.check(b"SI|" + b"F(1, 80);" * 500, "tinibot", "en")
     assert not result.image and result.findings[-1].message.severity == "mistake"
 
@@ -116,7 +116,7 @@ def test_the_first_value_of_a_variable_is_offered_in_place_of_its_declaration() 
         ("SI|R(90, 60)~1A2B", ""),
     ],
 )  # fmt: skip
-def test_a_button_does_what_the_message_names(program: str, wanted_text: str) -> None:
+def test_a_repair_button_does_what_the_message_says(program: str, wanted_text: str) -> None:
     """It changes nothing else; the command repairs none of it, as it is uncertain."""
     finding = checking.check(program.encode(), "tinibot", "en").findings[0]
     repair = buttons(program)[0]
@@ -148,14 +148,14 @@ def test_some_mistakes_are_not_repaired() -> None:
     assert 0 < sum(map(bool, repairs)) <= MOST_OFFERS < len(repairs)
 
 
-def test_a_file_is_read_as_the_command_reads_it_or_gets_a_sentence() -> None:
+def test_a_file_is_read_like_in_the_command_or_refused_with_a_message() -> None:
     for data in (b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001):
         message = checking.open_text(data, "tinibot", "es")
         assert isinstance(message, Message) and message.message, data[:9]
     assert checking.open_text("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
 
 
-def test_a_robot_is_a_shipped_one() -> None:
+def test_only_shipped_robots_are_accepted() -> None:
     """No name that a page sends becomes a file."""
     with pytest.raises(AssertionError):
         checking.check(b"", "../../etc/passwd.toml", "en")
@@ -178,7 +178,7 @@ LINER_PROGRAM = "// robot: liner\nSI|SHOW(LINE_L)\n"
 CHECK_REQUEST = {"do": "check", "robot": "tinibot", "language": "en"}
 
 
-def test_a_program_names_its_robot_in_the_page_too() -> None:
+def test_a_program_also_names_its_robot_in_the_page() -> None:
     check_answer = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER_PROGRAM.encode()))
     assert (check_answer["robot"], check_answer["names_robot"], check_answer["findings"]) == (
         "liner",
@@ -214,12 +214,12 @@ def test_a_program_names_its_robot_in_the_page_too() -> None:
         LINER_PROGRAM.replace("liner", "linar"),
     ],
 )
-def test_a_robot_that_is_offered_has_a_button(text: str) -> None:
+def test_a_suggested_robot_has_a_button(text: str) -> None:
     (repair,) = buttons(text)
     assert changed_by(text, repair) == LINER_PROGRAM
 
 
-def test_blocks_keep_the_robot() -> None:
+def test_blocks_keep_the_named_robot() -> None:
     form = worker.answer(json.dumps({**CHECK_REQUEST, "do": "blocks"}), LINER_PROGRAM.encode())
     request = {"do": "text", "form": json.loads(form)}
     assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER_PROGRAM
@@ -269,7 +269,7 @@ def changed_by(text: str, changes: tuple[checking.Change, ...]) -> str:
         ),
     ],
 )
-def test_a_variable_is_a_yes_no_however_its_value_gets_there(
+def test_a_yes_no_variable_is_recognized_from_any_assignment(
     program: str, yes_no: list[str]
 ) -> None:
     variables = checking.check(program.encode(), "tinibot", "en").variables
@@ -277,7 +277,7 @@ def test_a_variable_is_a_yes_no_however_its_value_gets_there(
 
 
 @pytest.mark.parametrize("wrong_end", ["", "F(1, 800)"])
-def test_a_letter_costs_one_compilation_and_a_button_two_at_most(
+def test_a_typed_letter_costs_one_compilation_and_a_button_at_most_two(
     monkeypatch: pytest.MonkeyPatch, wrong_end: str
 ) -> None:
     """For a program with a hundred warnings; the buttons' effects are tried during a pause."""

@@ -292,7 +292,7 @@ def numbers(state: Json) -> dict[int, str]:
 
 
 @pytest.mark.parametrize("part", range(4))
-def test_a_class_keeps_its_laws_whatever_has_happened(part: int) -> None:
+def test_a_class_keeps_its_invariants_after_any_history(part: int) -> None:
     for seed in range(part, SEEDS, 4):
         history = History(Random(seed))
         for _ in range(STEPS):
@@ -300,7 +300,7 @@ def test_a_class_keeps_its_laws_whatever_has_happened(part: int) -> None:
             history.look()
 
 
-def test_a_class_that_is_begun_anew_is_as_one_that_was_just_made() -> None:
+def test_a_restarted_class_equals_a_new_one() -> None:
     for seed in range(SEEDS):
         history = History(Random(1000 + seed))
         for _ in range(history.rng.randrange(STEPS)):

@@ -66,7 +66,7 @@ def test_a_page_that_does_not_take_its_turn_loses_it() -> None:
     assert room.checks_in(ana)["place"] == -1
 
 
-def test_a_page_that_did_not_hear_of_its_robot_keeps_the_turn_for_another_connect() -> None:
+def test_a_page_that_missed_its_robot_keeps_the_turn_for_another_connect() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -82,7 +82,7 @@ def test_a_page_that_did_not_hear_of_its_robot_keeps_the_turn_for_another_connec
     assert room.checks_in(luz)["place"] == 0
 
 
-def test_whoever_leaves_in_whatever_way_is_followed_within_three_seconds() -> None:
+def test_a_leaving_pupil_is_succeeded_within_three_seconds() -> None:
     """A closed page gets no turn and keeps none; a pupil who was passed over keeps the place. A
     robot that a page has left before it answered is as good as before."""
     asleep: list[FakeRobot] = []
@@ -120,7 +120,7 @@ def test_whoever_leaves_in_whatever_way_is_followed_within_three_seconds() -> No
     assert room.checks_in(ana)["place"] == 1
 
 
-def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
+def test_a_closed_page_is_passed_over_and_no_longer_waits() -> None:
     room = Room()
     ana, luz, teo = (room.joins(name) for name in ("Ana", "Luz", "Teo"))
     room.checks_in(ana, True)
@@ -137,7 +137,7 @@ def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
     assert room.teaches("class")["pupils"][1]["place"] == 0
 
 
-def test_a_robot_that_is_silent_rests_while_another_is_free() -> None:
+def test_a_silent_robot_is_not_assigned_while_another_is_free() -> None:
     room = Room(2)
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -151,7 +151,7 @@ def test_a_robot_that_is_silent_rests_while_another_is_free() -> None:
     assert room.checks_in(ana)["place"] == 0
 
 
-def test_a_port_that_is_being_left_is_given_to_nobody() -> None:
+def test_a_port_being_released_is_assigned_to_nobody() -> None:
     room = Room()
     ana = room.joins("Ana")
     room.hosting.held_ports.add("port0")
@@ -163,7 +163,7 @@ def test_a_port_that_is_being_left_is_given_to_nobody() -> None:
 # -- hostile pupils
 
 
-def test_another_turn_is_reached_by_no_name() -> None:
+def test_no_name_reaches_another_pupils_turn() -> None:
     room = Room()
     ana, eve = room.joins("Ana"), room.joins("Eve")
     room.checks_in(ana, True)
@@ -188,7 +188,7 @@ def test_another_turn_is_reached_by_no_name() -> None:
     ["ports", "class", "class_over", "class_text", "class_work", "class_bring", "class_give_back",
      "class_forget", "class_anew", "class_hand", "fly", None, ["stop"]],
 )  # fmt: skip
-def test_what_only_the_teacher_may_ask(action: object) -> None:
+def test_some_requests_are_reserved_for_the_teacher(action: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
@@ -202,7 +202,7 @@ def test_what_only_the_teacher_may_ask(action: object) -> None:
      {"do": "undo"}, {}, 5, {"do": ["hello"]}],
     ids=str,
 )  # fmt: skip
-def test_a_robot_stays_the_teachers(message: object) -> None:
+def test_a_robot_taken_by_the_teacher_stays_the_teachers(message: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     room.checks_in(eve, True)
@@ -214,7 +214,7 @@ def test_a_robot_stays_the_teachers(message: object) -> None:
     assert [request["do"] for request in room.hosting.requests] == ["connect"]
 
 
-def test_codes_are_not_guessed() -> None:
+def test_codes_cannot_be_guessed() -> None:
     room = Room()
     code, refused_count = room.classroom.code, 0
     for k in range(5000):
@@ -230,7 +230,7 @@ def test_codes_are_not_guessed() -> None:
     assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_request)
 
 
-def test_a_code_may_be_written_small_and_apart() -> None:
+def test_a_code_may_be_typed_in_lower_case_with_spaces() -> None:
     room = Room()
     code = room.classroom.code.lower()
     given_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
@@ -245,7 +245,7 @@ def test_a_code_may_be_written_small_and_apart() -> None:
      ("Jose\u0301", "Jos\u00e9"), ("<b>x</b>", "<b>x</b>"), ("a\x1b[2J\u202eb", "a?[2J?b"),
      ("x" * 1000, "x" * 24 + "…"), ("ñandú 🤖", "ñandú 🤖")],
 )  # fmt: skip
-def test_names_are_plain(name: str, shown_text: str) -> None:
+def test_names_are_plain_text(name: str, shown_text: str) -> None:
     room = Room()
     room.joins(name)
     assert room.teaches("class")["pupils"][0]["name"] == shown_text
@@ -253,7 +253,7 @@ def test_names_are_plain(name: str, shown_text: str) -> None:
     assert room.teaches("class")["pupils"][1]["name"] == f"{shown_text} (2)"
 
 
-def test_whoever_comes_back_to_a_computer_is_not_a_second_one() -> None:
+def test_a_returning_pupil_is_not_a_second_one() -> None:
     room = Room()
     room.joins("Ana")
     second_token = room.joins("Ana", "198.51.100.1")
@@ -289,7 +289,7 @@ def test_nobody_joins_without_a_name(name: object) -> None:
     assert room.teaches("class")["pupils"] == []
 
 
-def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
+def test_a_full_class_reassigns_places_of_absent_pupils() -> None:
     room = Room()
     token = room.joins("p0")
     room.checks_in(token, True)
@@ -306,7 +306,7 @@ def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     assert room.classroom.most_bytes(token) > 0  # it is her turn
 
 
-def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
+def test_a_flooding_pupil_is_refused_but_can_still_stop() -> None:
     room = Room()
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
@@ -318,7 +318,7 @@ def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
         room.checks_in(eve)
 
 
-def test_a_huge_program_is_cut() -> None:
+def test_a_huge_program_is_truncated() -> None:
     room = Room()
     eve = room.joins("Eve")
     room.checks_in(eve, text="x" * 150_000)
@@ -328,7 +328,7 @@ def test_a_huge_program_is_cut() -> None:
     assert len(room.teaches("class_text", pupil=number)["text"]) == class_keeping.TEXT_CHARACTERS
 
 
-def test_what_a_page_tells_of_its_work_is_small_and_plain() -> None:
+def test_reported_work_is_limited_and_plain() -> None:
     room = Room()
     eve = room.joins("Eve")
     room.checks_in(eve, lessons=["01_first_line"] * 1000, robot="liner", is_right=False, hand=True)
@@ -387,7 +387,7 @@ def take_change(arguments: Json) -> Json:
     return {"key": arguments["key"], "text": arguments["text"]}
 
 
-def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
+def test_only_the_teacher_returns_work_to_a_name() -> None:
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     eve = room.joins("Ana")  # an unknown visitor
@@ -405,7 +405,7 @@ def test_a_name_gets_its_work_from_the_teacher_alone() -> None:
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again
 
 
-def test_work_is_brought_once_and_only_while_there_is_room() -> None:
+def test_work_is_loaded_once_and_only_while_there_is_room() -> None:
     room = Room()
     work = {"name": "Ana", **SENT_WORK}
     for wrong_fields in (
@@ -426,7 +426,7 @@ def test_work_is_brought_once_and_only_while_there_is_room() -> None:
     assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_message)
 
 
-def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
+def test_a_copy_is_kept_until_the_page_confirms_that_text() -> None:
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana, eve = room.joins("Ana"), room.joins("Eve")
@@ -447,7 +447,7 @@ def test_a_copy_stays_until_the_page_says_that_it_has_that_very_text() -> None:
     assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)
 
 
-def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
+def test_a_page_closed_before_receipt_loses_no_work() -> None:
     """It was returned to a closed page, and the pupil joins again from another device."""
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
@@ -467,7 +467,7 @@ def test_a_page_that_is_gone_before_it_has_it_takes_no_work_away() -> None:
 
 
 @pytest.mark.parametrize("turn_s", [None, 120])
-def test_a_class_goes_on_with_its_turns_unless_others_are_given(turn_s: int | None) -> None:
+def test_a_class_keeps_its_turn_length_unless_changed(turn_s: int | None) -> None:
     room = Room()
     room.teaches("class_turn", seconds=300)
     state = json.loads(json.dumps(room.classroom.state_to_keep()))
@@ -476,7 +476,7 @@ def test_a_class_goes_on_with_its_turns_unless_others_are_given(turn_s: int | No
     assert resumed_room.teach({"do": "class"})["turn_s"] == (turn_s or 300)
 
 
-def test_a_crash_between_giving_and_having_loses_no_work(class_file: Path) -> None:
+def test_a_crash_between_sending_and_receipt_loses_no_work(class_file: Path) -> None:
     """This holds whichever state of a class was the last one saved."""
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
@@ -499,7 +499,7 @@ def test_a_crash_between_giving_and_having_loses_no_work(class_file: Path) -> No
             }
 
 
-def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
+def test_the_teacher_chooses_between_pupils_of_the_same_name() -> None:
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     eve, ana = room.joins("Ana", "192.0.2.66"), room.joins("\u0410na")  # with a Cyrillic letter
@@ -515,7 +515,7 @@ def test_the_teacher_chooses_between_an_impostor_and_who_comes_later() -> None:
     assert texts_of(room) == ["F(1, 50)"]
 
 
-def test_no_name_overwrites_the_work_of_who_is_absent() -> None:
+def test_no_name_overwrites_the_work_of_an_absent_pupil() -> None:
     room = Room()
     ana = room.joins("Jos\u00e9")
     room.checks_in(ana, text="F(1, 50)")
@@ -532,7 +532,7 @@ def test_no_name_overwrites_the_work_of_who_is_absent() -> None:
 
 
 @pytest.mark.parametrize("places", [classroom.PLACES_PER_ADDRESS, class_keeping.MOST_PUPILS])
-def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
+def test_no_number_of_names_displaces_kept_work(places: int) -> None:
     """This holds for the names of one address and, if the teacher has allowed it, of a whole
     network."""
     room = Room()
@@ -561,7 +561,7 @@ def test_no_number_of_names_pushes_kept_work_out(places: int) -> None:
         assert room.joins("Luz", "198.51.100.77")
 
 
-def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None:
+def test_a_pupil_returning_with_a_token_has_the_same_work() -> None:
     """A tab was closed, or the teacher has removed the pupil."""
     room = Room()
     ana = room.joins("Ana")
@@ -590,7 +590,7 @@ def test_whoever_comes_back_with_the_token_of_before_has_the_same_work() -> None
     assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_wrong"}
 
 
-def test_who_was_removed_finds_the_work_again() -> None:
+def test_a_removed_pupil_finds_the_work_again() -> None:
     room = Room()
     ana = room.joins("Ana")
     room.checks_in(ana, text="F(1, 50)", robot="tinibot")
@@ -656,7 +656,7 @@ def test_a_crash_ends_no_class(class_file: Path, keeper: Keeper) -> None:
     assert not class_file.exists() and resume_class(Room(), keeper) == 0
 
 
-def test_a_damaged_class_goes_on_with_what_is_whole(class_file: Path, keeper: Keeper) -> None:
+def test_a_damaged_class_continues_with_the_intact_parts(class_file: Path, keeper: Keeper) -> None:
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)", robot="tinibot")
@@ -695,7 +695,7 @@ def test_a_damaged_class_goes_on_with_what_is_whole(class_file: Path, keeper: Ke
     assert works == class_keeping.MOST_WORKS
 
 
-def test_an_invalid_class_file_is_put_aside(class_file: Path, keeper: Keeper) -> None:
+def test_an_invalid_class_file_is_set_aside(class_file: Path, keeper: Keeper) -> None:
     """Another version, or a teacher, may be able to read it."""
     aside = class_file.with_name("class.unread.json")
     for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):
@@ -706,7 +706,7 @@ def test_an_invalid_class_file_is_put_aside(class_file: Path, keeper: Keeper) ->
     assert not aside.exists()  # the class is over
 
 
-def test_a_full_disk_that_has_room_again_is_written_to_at_once(
+def test_a_disk_with_room_again_is_written_to_at_once(
     class_file: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     room = Room()
@@ -724,7 +724,7 @@ def test_a_full_disk_that_has_room_again_is_written_to_at_once(
     assert "F(1, 50)" in class_file.read_text()
 
 
-def test_a_clock_that_is_after_or_jumps_loses_no_work(class_file: Path, keeper: Keeper) -> None:
+def test_a_wrong_or_jumping_clock_loses_no_work(class_file: Path, keeper: Keeper) -> None:
     """A board without a battery begins in the past, and hears the time later."""
     room = Room()
     token = room.joins("Ana")
@@ -760,7 +760,7 @@ def test_a_clock_that_is_after_or_jumps_loses_no_work(class_file: Path, keeper: 
         assert texts_of(room_after) == ["F(1, 50)"]
 
 
-def test_one_class_of_a_user_has_the_file(class_file: Path, keeper: Keeper) -> None:
+def test_only_one_class_of_a_user_has_the_file(class_file: Path, keeper: Keeper) -> None:
     keeper.keep(Room().classroom.state_to_keep())
     with pytest.raises(class_keeping.ClassTaken):
         Keeper()
@@ -772,7 +772,7 @@ def test_one_class_of_a_user_has_the_file(class_file: Path, keeper: Keeper) -> N
         assert class_file.exists()
 
 
-def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
+def test_a_class_runs_without_a_writable_folder(
     class_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Once there is room, it gets its file, unless another class has it."""
@@ -794,7 +794,7 @@ def test_a_class_whose_folder_cannot_be_written_is_held_all_the_same(
 # -- the teacher
 
 
-def test_the_teacher_sees_stops_and_takes_back() -> None:
+def test_the_teacher_watches_stops_and_reclaims_robots() -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True, text="F(1, 50)")
@@ -820,7 +820,7 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     assert room.hosting.requests[-1] == {"do": "stop_all"}
 
 
-def test_robots_come_and_go() -> None:
+def test_robots_can_be_added_and_removed() -> None:
     room = Room(0)
     ana = room.joins("Ana")
     assert room.checks_in(ana, True)["robots"] == 0
@@ -835,7 +835,7 @@ def test_robots_come_and_go() -> None:
             room.teaches("class_robot", port=port, gives=True)
 
 
-def test_a_new_code_and_another_turn() -> None:
+def test_the_teacher_changes_code_and_turn_length() -> None:
     room = Room()
     old_code = room.classroom.code
     assert room.teaches("class_code")["code"] == room.classroom.code != old_code
@@ -849,7 +849,7 @@ def test_a_new_code_and_another_turn() -> None:
 
 
 @pytest.mark.parametrize(("erases", "end_reason"), [(True, "erased"), (False, "kept")])
-def test_the_end_reaches_every_page(erases: bool, end_reason: str) -> None:
+def test_the_end_of_a_class_reaches_every_page(erases: bool, end_reason: str) -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -868,7 +868,7 @@ def test_the_end_reaches_every_page(erases: bool, end_reason: str) -> None:
     assert room.classroom.answer("", PUPIL_ADDRESS, late_request) == {"failure": "class_over"}
 
 
-def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
+def test_the_rate_limit_remembers_a_thousand_names() -> None:
     rate = Rate(1, 0)
     assert rate.take_amount("a", 0) and not rate.take_amount("a", 0)
     for k in range(rate_of.MOST_NAMES):
@@ -876,7 +876,7 @@ def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
     assert rate.take_amount("a", 0)
 
 
-def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stops_and_heartbeats_do_not_wait_for_port_names(monkeypatch: pytest.MonkeyPatch) -> None:
     """A list of ports may take seconds, and a robot drives meanwhile."""
     room = Room()
     ana = room.joins("Ana")
@@ -902,7 +902,7 @@ def test_no_stop_and_no_beat_waits_for_the_names_of_ports(monkeypatch: pytest.Mo
     assert [robot["name"] for robot in state["robots"]] == ["", "NINE"]
 
 
-def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() -> None:
+def test_an_address_has_at_most_three_places_unless_allowed() -> None:
     """Someone who has read the code on the board cannot fill the class with fake pupils."""
     room = Room()
 
@@ -929,7 +929,7 @@ def test_an_address_has_three_places_at_once_unless_the_teacher_allows_more() ->
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_teacher_hears_of_each_change_and_a_hand_keeps_its_place(seed: int) -> None:
+def test_the_teacher_gets_each_change_and_a_raised_hand_keeps_its_place(seed: int) -> None:
     """Repeated reports of pages do not matter: only changed work gets a new version, and a raised
     hand keeps its place."""
     rng, room = Random(seed), Room()
@@ -966,7 +966,7 @@ def give_run_part(
     room.classroom.answer(token, PUPIL_ADDRESS, request)
 
 
-def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
+def test_the_teacher_gets_the_newest_run_of_the_requested_pupil() -> None:
     room = Room()
     ana, ben = room.joins("Ana"), room.joins("Ben")
     assert "run" not in room.checks_in(ana)
@@ -998,7 +998,7 @@ def test_the_teacher_gets_the_newest_run_of_the_pupil_who_was_asked() -> None:
         {"part": "x" * (recordings.MOST_BYTES + 1)},
     ],
 )  # fmt: skip
-def test_parts_that_do_not_fit_are_refused(wrong_fields: Json) -> None:
+def test_mismatched_parts_of_a_run_are_refused(wrong_fields: Json) -> None:
     room = Room()
     ana = room.joins("Ana")
     ask_for_run(room, 1, True)

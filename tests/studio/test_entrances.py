@@ -88,7 +88,7 @@ def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
     assert doors.is_owner(doors.token, peer) and not doors.is_owner(code, peer)
 
 
-def test_the_code_of_a_browser_is_valid_for_a_while(peer: socket.socket) -> None:
+def test_the_code_of_a_browser_is_valid_for_a_limited_time(peer: socket.socket) -> None:
     clock = Clock()
     doors = Entrances(clock)
     early_code, late_code, printed_text = (
@@ -103,7 +103,7 @@ def test_the_code_of_a_browser_is_valid_for_a_while(peer: socket.socket) -> None
     assert doors.token_for(printed_text, peer) == doors.token
 
 
-def test_a_code_that_comes_again_ends_what_it_has_given(
+def test_a_reused_code_revokes_its_token(
     peer: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If no system identifies the user, another one may have been faster than the browser."""
@@ -121,7 +121,7 @@ def test_a_code_that_comes_again_ends_what_it_has_given(
 
 
 @pytest.mark.usefixtures("of_another")
-def test_another_user_has_neither_code_nor_token(peer: socket.socket) -> None:
+def test_another_user_gets_neither_code_nor_token(peer: socket.socket) -> None:
     doors = Entrances()
     for is_for_here in (True, False):
         code = doors.new_code(is_for_here)
@@ -129,7 +129,7 @@ def test_another_user_has_neither_code_nor_token(peer: socket.socket) -> None:
     assert not doors.is_owner(doors.token, peer)
 
 
-def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
+def test_a_browsers_code_is_local_and_the_printed_one_is_not(
     peer: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     doors = Entrances()
@@ -141,7 +141,7 @@ def test_a_browser_s_code_is_for_this_computer_and_the_printed_one_is_not(
     assert doors.is_owner(doors.token, peer)
 
 
-def test_which_addresses_are_here(peer: socket.socket) -> None:
+def test_local_addresses_are_recognized(peer: socket.socket) -> None:
     assert peers.is_on_this_computer(peer)
 
     class Elsewhere:
@@ -183,7 +183,7 @@ def post(
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")
 @pytest.mark.root
 @pytest.mark.parametrize("is_class", [False, True])
-def test_another_user_reads_the_browser_s_command_line_and_gets_nothing(
+def test_the_browsers_command_line_gives_another_user_no_access(
     tmp_path: Path, is_class: bool
 ) -> None:
     browser = tmp_path / "browser"

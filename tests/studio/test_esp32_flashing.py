@@ -77,9 +77,7 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
         ({"heldUntil": "cancel"}, "flash_not_begun"),
     ],
 )
-def test_a_board_that_is_not_the_one_stays_as_it_is(
-    options: dict[str, Any], ended_text: str
-) -> None:
+def test_a_different_board_is_not_changed(options: dict[str, Any], ended_text: str) -> None:
     outcome = flash("esp32dev", image("esp32dev", 20_000), **options)
     assert (outcome["ended"], outcome["is_untouched"]) == (ended_text, True)
 
@@ -93,7 +91,7 @@ def test_a_board_that_is_not_the_one_stays_as_it_is(
         ({"spoils": True}, "flash_differs"),
     ],
 )
-def test_half_a_firmware_is_never_called_a_whole_one(
+def test_a_partial_firmware_is_never_reported_as_complete(
     options: dict[str, Any], ended_text: str
 ) -> None:
     assert flash("esp32dev", image("esp32dev", 20_000), **options)["ended"] == ended_text
@@ -148,7 +146,7 @@ def teacher_page(browser: Browser, folder: Path) -> Iterator[Page]:
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-def test_a_page_without_firmware_never_offers_it(browser: Browser, tmp_path: Path) -> None:
+def test_a_page_without_firmware_does_not_offer_it(browser: Browser, tmp_path: Path) -> None:
     (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(b"nothing")
     with teacher_page(browser, tmp_path) as page:
         page.locator("#keys_import").wait_for()

@@ -49,7 +49,7 @@ SLOW_SCRIPT = Path(__file__).with_name("slow_board_in_node.mjs")
 TRY_COUNT, SYNC_MS, ANSWER_MS = 8, 250, 1000  # values in the page's code
 
 
-def test_what_goes_on_is_written_and_what_does_not_ends_soon() -> None:
+def test_a_progressing_write_is_finished_and_a_stalled_one_is_ended() -> None:
     """A board is found that answers one of eight times; then each answer may take its second."""
     rows = [json.loads(line) for line in in_node(SLOW_SCRIPT, "120")]
     assert len(rows) == 120
@@ -90,7 +90,7 @@ def test_a_new_board_becomes_a_robot(
         assert identified.out.startswith(f"tinibot on {uno.pty}")
 
 
-def test_a_board_with_a_sketch_and_no_bootloader_stays_as_it_is(
+def test_a_board_with_a_sketch_but_no_bootloader_is_not_changed(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     skip_unless_available()
@@ -176,7 +176,7 @@ def changed_answer(
     return change_answer
 
 
-def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
+def test_all_bytes_are_written_and_verified(tmp_path: Path) -> None:
     data = bytes(k * 7 % 251 for k in range(1000))
     board = FakeBoard()
     with plug_in(board) as port:
@@ -205,7 +205,7 @@ def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
     ids=["silent", "noise", "other chip", "half", "pulled early", "pulled", "hangs", "refuses",
          "pulled while reading", "differs", "begins at once"],
 )  # fmt: skip
-def test_how_it_may_end(
+def test_each_failure_of_a_write_is_reported(
     bends: Callable[[int, bytes], bytes | None], ended_text: str, tmp_path: Path
 ) -> None:
     board = FakeBoard(bends)
@@ -215,7 +215,7 @@ def test_how_it_may_end(
         assert set(board.flash) == {255}  # no byte was written
 
 
-def test_it_can_be_cancelled(tmp_path: Path) -> None:
+def test_a_write_can_be_cancelled(tmp_path: Path) -> None:
     """Before the first byte the board stays as it is; in the middle it is left without firmware;
     after the last byte it cannot be cancelled any more."""
     file = hex_file(tmp_path, b"\x01" * 1000)
@@ -228,7 +228,7 @@ def test_it_can_be_cancelled(tmp_path: Path) -> None:
         assert page_count == {"-1": 0, "0.25": 4}.get(part, 8)
 
 
-def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:
+def test_firmware_does_not_overlap_the_bootloader(tmp_path: Path) -> None:
     board = FakeBoard()
     with plug_in(board) as port:
         assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 0x7E01)) == "flash_large"

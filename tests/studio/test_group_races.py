@@ -176,7 +176,7 @@ def race(count: int, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_a_stop_of_any_pupil_wins_in_every_order(seed: int) -> None:
+def test_any_pupils_stop_wins_in_every_order(seed: int) -> None:
     race(3, seed)
 
 

@@ -112,7 +112,7 @@ class Page:
 
 
 @pytest.mark.parametrize("seed", range(50))
-def test_each_hears_each_run_in_its_order(seed: int) -> None:
+def test_each_member_gets_each_run_in_order(seed: int) -> None:
     """Whatever a robot reports, and however rarely a page polls, events arrive once, begins and
     ends alternate, the newest place is the robot's, and missing values can be counted.
     """
@@ -214,7 +214,7 @@ def count_values(page: Page) -> int:
     return sum(numbers)
 
 
-def test_whoever_comes_hears_of_what_runs_and_of_nothing_before() -> None:
+def test_a_new_member_gets_only_the_current_run() -> None:
     runs = GroupRuns(lambda: 0.0)
     started_event = {"event": "STARTED", "program": "a", "is_program": True}
     value = {"event": "SHOW", "value": "5"}
@@ -232,13 +232,13 @@ def test_whoever_comes_hears_of_what_runs_and_of_nothing_before() -> None:
 
 
 @pytest.mark.parametrize("claimed_state", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
-def test_what_a_page_claims_to_know_breaks_nothing(claimed_state: object) -> None:
+def test_false_claims_of_a_page_do_no_harm(claimed_state: object) -> None:
     runs = GroupRuns(lambda: 0.0)
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
     assert [item["event"] for item in runs.news_after(claimed_state, "teo")[1]] == ["STARTED"]
 
 
-def test_news_have_the_time_of_their_run() -> None:
+def test_events_have_the_time_of_their_run() -> None:
     clock_s = [10.0]
     runs = GroupRuns(lambda: clock_s[0])
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])

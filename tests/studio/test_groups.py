@@ -133,7 +133,7 @@ def test_pupils_of_a_group_have_one_program(school: School) -> None:
     assert school.checks_in(teo)["groups"] == [{"name": "Red", "members": ["Ana", "Luz"]}]
 
 
-def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
+def test_others_see_a_pupils_cursor_and_typing(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.sends(at="i.3", writes=True)
     [pupil] = luz.sends()["others"]
@@ -145,7 +145,7 @@ def test_others_see_where_a_pupil_is_and_writes(school: School) -> None:
             ana.sends(at=place)
 
 
-def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -> None:
+def test_a_group_has_four_places_and_silent_pupils_lose_theirs(school: School) -> None:
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
     late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
@@ -157,7 +157,7 @@ def test_four_have_room_and_who_is_silent_gives_the_place_away(school: School) -
     assert members[0].asks("group", **members[0].request()) == {"left": True}
 
 
-def test_anything_but_a_program_begins_no_group(school: School) -> None:
+def test_only_a_program_can_start_a_group(school: School) -> None:
     token = school.joins("Ana")
 
     def begin_group(name: str, text: str) -> Json:
@@ -178,7 +178,7 @@ def test_anything_but_a_program_begins_no_group(school: School) -> None:
     assert begin_group("One more", TEXT) == {"failure": "group_many"}
 
 
-def test_a_group_that_nobody_has_changed_goes_with_its_last_pupil(school: School) -> None:
+def test_an_unchanged_group_ends_with_its_last_pupil(school: School) -> None:
     ana = Member(school, "Ana")
     ana.asks("group_leave")
     assert school.teaches("class")["groups"] == []
@@ -191,7 +191,7 @@ def test_a_group_that_nobody_has_changed_goes_with_its_last_pupil(school: School
     assert "F(1, 95)" in Member(school, "Teo", text="S\n").text  # a new member gets the program
 
 
-def test_a_page_that_waits_hears_at_once_and_holds_nobody_up(
+def test_a_waiting_page_is_notified_at_once_and_delays_nobody(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
@@ -233,7 +233,7 @@ def test_a_held_request_ends(school: School, monkeypatch: pytest.MonkeyPatch) ->
     assert ana.asks("group", **ana.request(waits=True))["changes"] == []
 
 
-def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
+def test_a_waiting_page_gets_robot_events_without_delaying_the_robot(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(groups, "MOST_HELD_S", 10 * HANG_LIMIT_S)
@@ -263,7 +263,7 @@ def test_a_page_that_waits_hears_of_the_robot_which_waits_for_nobody(
     assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
 
 
-def test_only_the_group_of_who_drives_sees_what_the_robot_tells(school: School) -> None:
+def test_only_the_drivers_group_gets_the_robots_events(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     eva = Member(school, "Eva", "Blue")
     school.checks_in(ana.token, True)
@@ -311,7 +311,7 @@ def members_hold(school: School, member: Member) -> int:
     return group.member_by_token[member.token].hold_count
 
 
-def test_a_pupil_sends_so_much_and_no_more(school: School) -> None:
+def test_the_amount_that_a_pupil_sends_is_limited(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     burst_count, per_s = groups.CHANGE_RATE
     for k in range(round(burst_count) + 20):
@@ -353,7 +353,7 @@ def test_nobody_sends_as_another_page(school: School) -> None:
     assert ana.asks("group", **{**ana.request(), "page": luz.page.name}) == {"left": True}
 
 
-def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
+def test_a_hostile_pupil_affects_only_the_own_group(school: School) -> None:
     """Each message is refused or makes a valid program; other groups, and the class, do not
     notice."""
     rng = Random(3)
@@ -394,7 +394,7 @@ def test_a_hostile_pupil_spoils_the_own_group_alone(school: School) -> None:
     assert {group["name"] for group in school.teaches("class")["groups"]} >= {"Red"}
 
 
-def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
+def test_groups_continue_after_a_crash_without_loss(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.types("80", "95")
     ana.sends()
@@ -414,7 +414,7 @@ def test_after_a_crash_groups_go_on_and_nothing_is_lost(school: School) -> None:
     assert luz.joins("Red", old_token=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
 
 
-def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School) -> None:
+def test_a_group_survives_another_lesson_without_its_pupils(school: School) -> None:
     ana = Member(school, "Ana")
     ana.types("80", "95")
     ana.sends()
@@ -426,7 +426,7 @@ def test_after_another_lesson_a_group_is_there_without_its_pupils(school: School
 
 
 @pytest.mark.parametrize("end", ["class_over", "class_anew"])
-def test_with_the_class_its_groups_are_over(school: School, end: str) -> None:
+def test_groups_end_with_their_class(school: School, end: str) -> None:
     ana = Member(school, "Ana")
     ana.types("80", "95")
     ana.sends()
@@ -439,7 +439,7 @@ def test_with_the_class_its_groups_are_over(school: School, end: str) -> None:
     assert groups_there.answer(ana.token, ana.request()) == {"left": True}
 
 
-def test_the_teacher_sees_a_group_as_one_and_reads_its_program(school: School) -> None:
+def test_the_teacher_sees_a_group_as_one_entry_and_its_program(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     [group_seen] = school.teaches("class")["groups"]
     assert group_seen["pupils"] == [school.number("Ana"), school.number("Luz")]
@@ -454,7 +454,7 @@ def test_the_teacher_sees_a_group_as_one_and_reads_its_program(school: School) -
     assert luz.sends()["others"] == []
 
 
-def test_the_teacher_takes_part_and_leaves(school: School) -> None:
+def test_the_teacher_joins_and_leaves_a_group(school: School) -> None:
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
@@ -477,7 +477,7 @@ def test_the_teacher_takes_part_and_leaves(school: School) -> None:
     assert teacher.asks("group", **teacher.request()) == {"left": True}
 
 
-def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
+def test_the_teacher_takes_no_pupils_place(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
@@ -490,7 +490,7 @@ def test_the_teacher_takes_no_place_of_a_pupil(school: School) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed: int) -> None:
+def test_a_participating_teacher_has_no_share_in_the_robot(tmp_path: Path, seed: int) -> None:
     """Whatever the teacher's page does there, turns, places and robots are as without it."""
     rng = Random(seed)
     schools = [School(tmp_path / str(k), robots=2) for k in range(2)]
@@ -527,7 +527,7 @@ def test_a_teacher_who_takes_part_has_no_part_in_the_robot(tmp_path: Path, seed:
         assert schools[0].teaches("class")["robots"] == schools[1].teaches("class")["robots"]
 
 
-def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
+def test_a_teacher_with_a_silent_page_counts_as_absent(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
@@ -540,7 +540,7 @@ def test_a_teacher_whose_page_is_silent_is_not_there(school: School) -> None:
     assert [member["name"] for member in ana.sends()["others"]] == ["Teacher"]
 
 
-def test_whoever_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: School) -> None:
+def test_a_watching_teacher_is_invisible_and_cannot_be_impersonated(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     sends_before = ana.sends()
@@ -566,7 +566,7 @@ def test_whoever_looks_is_not_seen_and_no_pupil_visits_as_the_teacher(school: Sc
 # -- one robot for the group ----------------------------------------------------------------------
 
 
-def test_a_group_has_one_place_and_one_turn(school: School) -> None:
+def test_a_group_has_one_place_in_the_queue_and_one_turn(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     teo, eva = school.joins("Teo"), school.joins("Eva")
     school.checks_in(teo, True)
@@ -586,7 +586,7 @@ def test_a_group_has_one_place_and_one_turn(school: School) -> None:
     assert places == {0, -1}
 
 
-def test_whoever_joins_a_group_brings_the_earlier_place(school: School) -> None:
+def test_a_joining_pupil_brings_an_earlier_place_in_the_queue(school: School) -> None:
     teo = school.joins("Teo")
     school.checks_in(teo, True)
     school.connects(teo)
@@ -601,7 +601,7 @@ def test_whoever_joins_a_group_brings_the_earlier_place(school: School) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: int) -> None:
+def test_a_group_waits_once_or_drives_one_robot(tmp_path: Path, seed: int) -> None:
     """This holds whoever joins, leaves, waits or drives, in any order."""
     rng, school = Random(seed), School(tmp_path, robots=2)
     members = [Member(school, name, name) for name in NAMES]
@@ -630,7 +630,7 @@ def test_a_group_waits_in_one_place_or_drives_one_robot(tmp_path: Path, seed: in
             assert len(turns) + len(waiting_mates) <= 1, f"step {step}: {action} {member.name}"
 
 
-def test_each_of_a_group_may_drive_and_each_may_stop(school: School) -> None:
+def test_each_member_of_a_group_may_drive_and_stop(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     eve = school.joins("Eve")
     school.checks_in(ana.token, True)
@@ -750,7 +750,7 @@ def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
     assert members[0].text != members[1].text
 
 
-def test_the_teacher_sees_what_was_done_and_by_whom_whoever_has_gone(school: School) -> None:
+def test_the_teacher_sees_all_changes_and_authors_even_of_absent_pupils(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     ana.types("80", "95")
     ana.sends()

@@ -15,7 +15,7 @@ SCRIPT = Path(__file__).with_name("hats_in_node.mjs")
 SEEDS = 3000
 
 
-def test_hats_are_written_where_they_stand_and_before_their_calls() -> None:
+def test_hat_blocks_are_written_in_place_and_before_their_calls() -> None:
     rows = [json.loads(row) for row in in_node(SCRIPT, str(SEEDS))]
     assert len(rows) == SEEDS
     for seed, row in enumerate(rows, 1):

@@ -52,7 +52,7 @@ def steps(text: str, simulation: Simulation, max_count: int = 100) -> Iterable[s
         simulation.step(5000)
 
 
-def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
+def test_steps_go_through_every_part_and_into_defined_words() -> None:
     simulation = started_simulation(COUNTING_PROGRAM, is_held=True)
     assert simulation.state()["events"] == [[simulation.robot.now_ms, "START", -1]]
     assert list(steps(COUNTING_PROGRAM, simulation)) == STEPS
@@ -62,7 +62,7 @@ def test_steps_go_through_every_part_and_into_words_of_ones_own() -> None:
     assert list(steps(text, started_simulation(text, is_held=True))) == wanted_texts
 
 
-def test_variables_are_told_where_it_is_held() -> None:
+def test_variables_are_reported_at_a_halt() -> None:
     simulation = started_simulation(COUNTING_PROGRAM, is_held=True)
     values = []
     while simulation.held_at is not None:
@@ -75,9 +75,7 @@ def test_variables_are_told_where_it_is_held() -> None:
 
 @pytest.mark.parametrize("mode", ["steps", "breakpoints"])
 @pytest.mark.parametrize(("name", "robot", "world"), EXAMPLES)
-def test_a_program_that_was_held_does_the_same(
-    name: str, robot: str, world: str, mode: str
-) -> None:
+def test_a_held_program_does_the_same(name: str, robot: str, world: str, mode: str) -> None:
     """The events and times are the same, with steps and at 1,000 breakpoints."""
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
     plain_simulation = Simulation(robot, worlds.load(world), result.image)
@@ -101,7 +99,7 @@ def test_a_program_that_was_held_does_the_same(
     assert held_simulation.robot.pose == plain_simulation.robot.pose
 
 
-def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
+def test_a_held_program_takes_its_calculation_time() -> None:
     """It resumes in the tick in which it paused, with the remaining instructions."""
     text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
     runs = []
@@ -115,7 +113,7 @@ def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
 
 
 @pytest.mark.parametrize("text", REPEATING_PROGRAMS)
-def test_breakpoints_hold_alike_whenever_they_are_set(text: str) -> None:
+def test_breakpoints_work_alike_whenever_they_are_set(text: str) -> None:
     """A run in which they change at random moments, and in which somebody steps, is held where and
     when one is that has had a breakpoint everywhere from the beginning.
     """
@@ -164,7 +162,7 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], rng: Random) -> i
     return pauses
 
 
-def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
+def test_a_breakpoint_is_reached_once_however_long_the_halt_lasts() -> None:
     """The looks of an UNTIL, fifty in a second, are one stay."""
     text = "LOOP(2);\n  W(1) UNTIL(DISTANCE < 3);\nEND_LOOP"
     simulation = started_simulation(text, held_parts=(1,))
@@ -177,7 +175,7 @@ def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
     assert len(times) == 2 and times[1] - times[0] == 1000
 
 
-def test_nothing_passes_while_it_is_held() -> None:
+def test_time_does_not_pass_during_a_halt() -> None:
     simulation = started_simulation("F(1, 80);\nR(1, 60)", held_parts=(1,))
     simulation.advance(5000)
     state = simulation.state()
@@ -198,7 +196,7 @@ def test_a_stop_ends_a_held_program() -> None:
     assert not state["is_held"] and state["at"] is None and state["motors"] == [0, 0]
 
 
-def test_a_program_that_never_waits_is_held_too() -> None:
+def test_a_program_that_never_waits_can_be_held() -> None:
     simulation = started_simulation(
         "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), held_parts=(1,)
     )
@@ -212,7 +210,7 @@ def test_a_program_that_never_waits_is_held_too() -> None:
     assert simulation.held_at is None and simulation.robot.is_running
 
 
-def test_its_button_starts_a_program_that_can_be_held_again() -> None:
+def test_a_program_restarted_by_its_button_can_be_held_again() -> None:
     simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", held_parts=(1,))
     for end_action in (simulation.stop, simulation.go_on):
         simulation.advance(100)
@@ -224,7 +222,7 @@ def test_its_button_starts_a_program_that_can_be_held_again() -> None:
         assert not simulation.robot.is_running
 
 
-def test_offsets_outside_of_the_program_hold_nothing() -> None:
+def test_offsets_outside_the_program_cause_no_halt() -> None:
     simulation = started_simulation("F(0.1, 80)")
     simulation.set_breakpoints([-1, 5000, 70_000, 1 << 40])
     simulation.advance(2000)

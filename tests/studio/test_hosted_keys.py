@@ -98,9 +98,7 @@ def lesson(pty_robots: list[PtyRobot]) -> Iterator[Class]:
     classroom.hosting.close()
 
 
-def test_a_pupil_drives_the_own_robot_and_no_other(
-    lesson: Class, pty_robots: list[PtyRobot]
-) -> None:
+def test_a_pupil_drives_only_the_assigned_robot(lesson: Class, pty_robots: list[PtyRobot]) -> None:
     ana, beto = lesson.pupil("Ana"), lesson.pupil("Beto")
     for hand in (ana, beto):
         assert hand.asks("connect") == {}
@@ -115,7 +113,7 @@ def test_a_pupil_drives_the_own_robot_and_no_other(
     beto.drives(pty_robots[1], 0)
 
 
-def test_who_has_no_turn_drives_nothing(lesson: Class, pty_robots: list[PtyRobot]) -> None:
+def test_a_pupil_without_a_turn_cannot_drive(lesson: Class, pty_robots: list[PtyRobot]) -> None:
     """Waiting pupils and those whose turn is over get a message."""
     ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
     assert ana.asks("connect") == {}
@@ -141,7 +139,7 @@ def test_who_has_no_turn_drives_nothing(lesson: Class, pty_robots: list[PtyRobot
     assert power_of(pty_robots[0]) == 0
 
 
-def test_a_teachers_stop_is_not_a_key_of_a_pupils(
+def test_a_pupils_key_cannot_release_a_teachers_stop(
     lesson: Class, pty_robots: list[PtyRobot]
 ) -> None:
     """Earlier keys are void, and held keys start no program."""
@@ -172,7 +170,7 @@ def hand(pty_robots: list[PtyRobot]) -> Iterator[Hand]:
         hosting.close()
 
 
-def test_a_page_that_falls_silent_holds_nothing(hand: Hand, pty_robots: list[PtyRobot]) -> None:
+def test_a_silent_page_holds_no_keys(hand: Hand, pty_robots: list[PtyRobot]) -> None:
     """This holds even if the run is not its own, so that it continues."""
     robot = pty_robots[0]
     image = compile(STICK_PROGRAM.replace("SI|", "SB|")).image.hex()
@@ -188,7 +186,7 @@ def test_a_page_that_falls_silent_holds_nothing(hand: Hand, pty_robots: list[Pty
     until(lambda: power_of(robot) == 0, f"after {ATTENDED_S} s and a little")
 
 
-def test_what_nobody_can_hold_is_refused_and_the_next_word_is_heard(hand: Hand) -> None:
+def test_impossible_key_states_are_refused_and_the_next_message_is_accepted(hand: Hand) -> None:
     answer = hand.answer_to(hand.says(do="keys", keys=0, x=0, y=101))
     assert answer["failure"] == "bad_request"
     assert hand.answer_to(hand.holds(60))["ok"]

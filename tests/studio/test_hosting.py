@@ -103,7 +103,7 @@ def start_drive(page: Page, robot: PtyRobot) -> None:
     robot.until(lambda: robot.moves, "it drives")
 
 
-def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -> None:
+def test_a_program_runs_and_its_values_arrive(page: Page, robot: PtyRobot) -> None:
     text = "SHOW(2.5);\nSHOW(1 < 2);\nF(0.1, 80)"
     receipt = page.upload(text)
     assert receipt["ok"] and receipt["program"] == f"{compile(text).checksum:08x}"
@@ -113,7 +113,7 @@ def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -
     assert "MOTORS 80 80" in robot.actions
 
 
-def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
+def test_an_answer_precedes_its_consequences(page: Page) -> None:
     image = compile("SHOW(1)").image.hex()
     for number in range(5):
         page.news.clear()
@@ -124,7 +124,7 @@ def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
         assert order == [number + 1, "STARTED", "SHOW", "DONE"]
 
 
-def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
+def test_a_start_event_tells_whether_the_program_is_the_pages(page: Page) -> None:
     """A page records programs, but not a line that is tried."""
     image = compile("SHOW(1)").image.hex()
     for action, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
@@ -136,7 +136,7 @@ def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
         page.until(lambda item: item.get("event") == "DONE")
 
 
-def test_a_fault_says_where(page: Page) -> None:
+def test_a_fault_reports_its_place(page: Page) -> None:
     page.upload("X = 0;\nSHOW(1 / X)")
     fault = page.until(lambda item: item.get("event") == "FAULT")
     assert fault["fault"] == "DIVIDE_BY_ZERO" and fault["at"] > 0
@@ -155,7 +155,7 @@ def check_stopped(robot: PtyRobot) -> None:
 
 
 @pytest.mark.usefixtures("always_attended")
-def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+def test_a_silent_page_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     start_s = time.monotonic()
     page.beat()
@@ -176,7 +176,7 @@ def test_a_silent_page_is_noticed_after_a_reset(page: Page, robot: PtyRobot) -> 
     check_stopped(robot)
 
 
-def test_a_page_that_is_heard_goes_on(page: Page, robot: PtyRobot) -> None:
+def test_a_responsive_page_continues(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
     for _ in range(20):
         page.beat()
@@ -184,7 +184,7 @@ def test_a_page_that_is_heard_goes_on(page: Page, robot: PtyRobot) -> None:
     assert robot.moves
 
 
-def test_nobody_pings_for_a_page_that_is_silent(
+def test_no_pings_are_sent_for_a_silent_page(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds even if the thread that should stop the robot hangs."""
@@ -194,7 +194,7 @@ def test_nobody_pings_for_a_page_that_is_silent(
     assert robot.stands_after_ms(robot.robot_ms) < SILENT_MS  # stopped by its dead-man timer
 
 
-def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
+def test_stop_stops_and_is_reported(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
     """Also one that counts wrongly, before it is refused."""
     start_drive(page, robot)
     page.beat(action="stop")
@@ -208,7 +208,7 @@ def test_stop_stops_and_says_so(hosting: Hosting, page: Page, robot: PtyRobot) -
         assert not robot.moves, stops
 
 
-def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None:
+def test_a_stop_by_another_command_is_reported(page: Page, robot: PtyRobot) -> None:
     start_drive(page, robot)
     from threading import Thread
 
@@ -232,7 +232,7 @@ def test_the_end_of_a_page_and_of_the_server_stops_robots(
     assert not robot.moves
 
 
-def test_what_a_command_has_started_through_it_goes_on_when_its_page_leaves(
+def test_a_run_of_another_command_continues_when_the_page_leaves(
     hosting: Hosting, page: Page, robot: PtyRobot
 ) -> None:
     """The next client reaches the robot through the holder of the port, and only the end of the
@@ -288,7 +288,7 @@ def test_a_port_has_one_page(
     other_page.until(lambda item: "connected" in item)
 
 
-def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
+def test_a_page_gets_the_reason_when_another_one_takes_its_robot(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)
@@ -301,7 +301,7 @@ def test_a_page_hears_why_it_is_over_when_another_one_has_its_robot(
 
 
 @pytest.mark.parametrize("is_silent", [False, True])
-def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
+def test_the_stop_at_the_end_of_a_turn_is_settled_within_the_turn(
     hosting: Hosting, page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, is_silent: bool
 ) -> None:
     """The person who ends the server is told about a silent robot."""
@@ -320,7 +320,7 @@ def test_a_stop_at_the_end_of_a_turn_is_confirmed_or_not_before_it_is_over(
     assert hosting.close() == ([robot.port] if is_silent else [])
 
 
-def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
+def test_the_studio_shares_a_port_held_by_a_command(hosting: Hosting) -> None:
     with SharedLine() as (robot, _):
         page = Page(hosting)
         page.connect(robot.port)
@@ -331,7 +331,7 @@ def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
         hosting.close()
 
 
-def test_a_refusal_has_its_sentence(page: Page) -> None:
+def test_a_refusal_has_its_message(page: Page) -> None:
     response = page.upload("SHOW(LINE_L)", robot="liner")
     assert response["failure"] == "WRONG_KIT" and "kit" in response["said"]
     assert page.ask("start")["failure"] == "NO_PROGRAM"
@@ -343,7 +343,7 @@ def test_a_refusal_has_its_sentence(page: Page) -> None:
     assert page.ask("trim")["trim"] == {**trim, "pace": unmeasured}
 
 
-def test_a_port_that_does_not_open_or_is_pulled_out_is_a_sentence(
+def test_an_unopenable_or_unplugged_port_gives_a_message(
     hosting: Hosting, page: Page, robot: PtyRobot
 ) -> None:
     for port in ("/dev/nothing", "socket://127.0.0.1:1", "no such port"):
@@ -390,7 +390,7 @@ def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
         {"do": ["identify"]},
     ],
 )
-def test_a_wrong_request_harms_nothing(page: Page, request: dict[str, Any]) -> None:
+def test_a_wrong_request_does_no_harm(page: Page, request: dict[str, Any]) -> None:
     """It does not harm the request after it in the same beat either."""
     wrong_id = page.count + 1
     page.count += 2
@@ -399,7 +399,7 @@ def test_a_wrong_request_harms_nothing(page: Page, request: dict[str, Any]) -> N
     assert page.until(lambda item: item.get("id") == page.count)["ok"]
 
 
-def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
+def test_a_request_sent_before_a_stop_but_received_after_it_is_void(
     hosting: Hosting, page: Page, robot: PtyRobot
 ) -> None:
     hosting.answer({"do": "stop", "page": "page", "stops": 1})
@@ -413,7 +413,7 @@ def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
     assert answer.get("ok"), answer
 
 
-def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) -> None:
+def test_a_duplicate_request_is_executed_once(page: Page, robot: PtyRobot) -> None:
     image = compile("SHOW(1)").image.hex()
     live_request = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
     page.beat(live_request)
@@ -425,7 +425,7 @@ def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) ->
     assert [item["event"] for item in page.news if "event" in item] == ["STARTED", "SHOW"]
 
 
-def test_what_a_page_does_not_fetch_is_bounded() -> None:
+def test_the_unread_event_queue_is_bounded() -> None:
     robot = hosted_robot.HostedRobot("socket://127.0.0.1:1", "tinibot", "en")
     robot.attending.queue_news([{"event": "SHOW", "value": str(k)} for k in range(3000)])
     robot.attending.queue_news([{"event": "DONE"}])

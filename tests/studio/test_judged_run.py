@@ -39,7 +39,7 @@ def judge(number: int, program: str) -> tuple[dict[str, object], page_lessons.Ju
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", NUMBERS)
-def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
+def test_the_steps_of_a_lesson_are_written_for_the_page(number: int, language: str) -> None:
     steps = page_lessons.steps(number, language)
     assert len(steps) >= 4 and all(step["blocks"] for step in steps)
     assert steps[-1]["hint"]
@@ -52,7 +52,7 @@ def test_the_steps_are_written_for_the_page(number: int, language: str) -> None:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 @pytest.mark.parametrize("number", NUMBERS)
-def test_what_is_packed_of_a_page_has_the_same_steps(
+def test_packed_lesson_pages_have_the_same_steps(
     number: int, language: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole_steps = page_lessons.steps(number, language)
@@ -75,7 +75,7 @@ def test_what_is_packed_of_a_page_has_the_same_steps(
     [(1, "SI|F(5, 80)", 3.0, True), (1, "SI|F(2.5, 80)", 2.5, False),
      (7, "SB|F(4, 80)", None, True), (10, "M(40, 40); W(20)", 11.5, True)],
 )  # fmt: skip
-def test_the_run_that_was_judged_is_the_one_that_is_seen(
+def test_the_judged_run_is_the_shown_one(
     number: int, program: str, seconds: float | None, touches: bool
 ) -> None:
     """Also where chance moves sensors, motors and walls: it ends where the judge saw it."""
@@ -91,7 +91,7 @@ def test_the_run_that_was_judged_is_the_one_that_is_seen(
         assert round(run_s, 1) == seconds
 
 
-def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
+def test_a_run_with_the_judges_keys_is_shown_with_them() -> None:
     """No one else presses keys."""
     drive_program = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
     answer, judged_run = judge(18, drive_program)
@@ -107,7 +107,7 @@ def test_a_run_whose_keys_the_judge_presses_is_seen_with_them() -> None:
     assert judged_run.state()["pose"][:2] == [160, 160]
 
 
-def test_the_goals_of_a_task_are_where_its_judge_looks() -> None:
+def test_the_shown_goals_match_the_judges() -> None:
     (garage,) = page_lessons.goal_shapes(1, 1)
     assert garage["is_flag"] and garage["around"] == [[95, 25], [150, 25], [150, 75], [95, 75]]
     shop, home = page_lessons.goal_shapes(2, 1)

@@ -227,7 +227,7 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
 
 
 @pytest.mark.parametrize("runs", [True, False])
-def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
+def test_a_stop_of_the_previous_connection_works_unless_a_run_followed_it(
     stepped_hosting: Hosting, runs: bool
 ) -> None:
     def send_request(action: str, connection: int, *requests: Json, **fields: object) -> None:
@@ -260,7 +260,7 @@ def test_a_stop_of_the_connection_before_stops_unless_a_run_came_after_it(
 PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
 
 
-def test_each_ask_of_a_page_ends_once_whatever_is_lost() -> None:
+def test_each_request_of_a_page_is_answered_once_whatever_is_lost() -> None:
     """No event follows its end, and no beat comes sooner than it may. If a few in a row are lost,
     each is still done once, and the page's next connection is like that of a fresh page.
     """
@@ -317,7 +317,7 @@ def asker(
     hosting.close()
 
 
-def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
+def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
     asker: AskingPage, robot: PtyRobot
 ) -> None:
     def has_news(stops: int) -> bool:
@@ -345,9 +345,7 @@ def test_a_beat_brings_a_stop_that_was_lost_and_no_old_one_undoes_a_run(
         start_drive(1)
 
 
-def test_a_connect_whose_answer_is_lost_is_offered_again(
-    asker: AskingPage, robot: PtyRobot
-) -> None:
+def test_a_connect_with_a_lost_answer_is_repeated(asker: AskingPage, robot: PtyRobot) -> None:
     """The same one is offered, or the page's next one takes over its port; a late one has no
     effect.
     """

@@ -59,7 +59,7 @@ def sign(number: float) -> int:
     return (number > 0) - (number < 0)
 
 
-def test_it_looks_where_it_drives_and_the_same_when_somebody_looks_back() -> None:
+def test_the_face_looks_ahead_and_is_the_same_on_rewinding() -> None:
     runs = [make_states(random.Random(seed)) for seed in range(20)]
     moods = set()
     for states, (frames, looked_back) in zip(runs, faces(*runs), strict=True):
@@ -73,7 +73,7 @@ def test_it_looks_where_it_drives_and_the_same_when_somebody_looks_back() -> Non
     assert moods == set(MOODS)
 
 
-def test_it_is_as_what_happens_to_it() -> None:
+def test_the_mood_follows_the_events() -> None:
     """Dizzy after a crash, glad at a flag, tired while it waits, and calm again."""
     crash, flag, wait, pause, drive = (
         run("F(9, 80)", "obstacles", 4500),

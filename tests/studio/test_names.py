@@ -26,7 +26,7 @@ def test_names_that_look_alike_are_one_name(name: str, other_name: str) -> None:
     [("Ana", "Anna"), ("José", "Jose"), ("Ana", "Ana 2"), ("Núria", "Nuria"), ("Luz", "Lua"),
      ("张伟", "王伟"), ("Ана", "Яна"), ("p1", "p2"), ("🤖", "🐈")],
 )  # fmt: skip
-def test_others_are_others(name: str, other_name: str) -> None:
+def test_dissimilar_names_are_different(name: str, other_name: str) -> None:
     assert not are_alike(name, other_name)
 
 
@@ -41,7 +41,7 @@ def test_invisible_characters_are_not_a_name_nor_part_of_one(blank: str) -> None
     assert are_alike(unicodedata.normalize("NFD", shown_text).rstrip("\u0301"), "Ana")
 
 
-def test_a_name_that_is_taken_gets_a_number() -> None:
+def test_a_duplicate_name_gets_a_number() -> None:
     assert free_name("Ana", []) == "Ana"
     assert free_name("Ana", ["Luz", "Аna", "ANA (2)"]) == "Ana (3)"
     used_names: list[str] = []
@@ -50,7 +50,7 @@ def test_a_name_that_is_taken_gets_a_number() -> None:
     assert used_names == ["Ana", "ana (2)", "Ana (3)", "ana (4)", "Ana (5)"]
 
 
-def test_the_table_is_unicodes() -> None:
+def test_the_table_matches_unicode() -> None:
     """Each row's sign folds to its look-alike, and the look-alike to itself."""
     table = names._table()
     assert len(table) > 2500

@@ -13,7 +13,7 @@ __all__ = ["page_data"]
 SCRIPT = Path(__file__).with_name("number_field_in_node.mjs")
 
 
-def test_a_comma_and_a_point_are_decimal_signs_and_groups_of_thousands_may_have_commas(
+def test_commas_and_points_are_accepted_as_decimal_and_group_separators(
     page_data: Path,
 ) -> None:
     rng = random.Random(1)

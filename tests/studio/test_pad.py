@@ -38,7 +38,7 @@ def sent_to_robot(path: Path, *story: Any) -> list[Any]:
     return [[ms, *held_keys] for ms, _, *held_keys in play_story(path, *story)["told"]]
 
 
-def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -> None:
+def test_held_keys_are_sent_at_each_change_and_repeatedly(page_data: Path) -> None:
     packets = sent_to_robot(
         page_data, DRIVING_OFFER, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
         ["up", "KEY_UP", 1], ["passes", 2000],
@@ -52,7 +52,7 @@ def test_it_is_said_at_each_change_and_again_while_it_is_held(page_data: Path) -
     ]
 
 
-def test_a_stick_goes_where_the_finger_is_and_returns_with_it(page_data: Path) -> None:
+def test_a_stick_follows_the_finger_and_returns_when_released(page_data: Path) -> None:
     packets = sent_to_robot(
         page_data, DRIVING_OFFER, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
         ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
@@ -69,7 +69,7 @@ def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: P
     assert packets == [[0, 0, 0, 100], [0, A_KEY, 0, 100], [0, A_KEY, 0, 0], [0, *NO_KEYS]]
 
 
-def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data: Path) -> None:
+def test_keyboard_keys_are_keys_and_arrows_move_a_lone_stick(page_data: Path) -> None:
     key_events = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
     assert sent_to_robot(page_data, DRIVING_OFFER, *key_events) == [
         [0, UP_KEY, 0, 0], [0, UP_KEY | A_KEY, 0, 0], [0, A_KEY, 0, 0], [0, *NO_KEYS],
@@ -84,7 +84,9 @@ def test_keys_of_a_keyboard_are_keys_and_its_arrows_move_a_stick_alone(page_data
 
 
 @pytest.mark.parametrize("fields", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
-def test_keys_that_are_somebody_elses(page_data: Path, fields: dict[str, Any]) -> None:
+def test_keys_typed_into_other_elements_are_ignored(
+    page_data: Path, fields: dict[str, Any]
+) -> None:
     """Keys of a text field, of the browser, or held before."""
     assert (
         sent_to_robot(page_data, DRIVING_OFFER, ["keydown", "ArrowUp", fields], ["passes", 500])
@@ -92,7 +94,7 @@ def test_keys_that_are_somebody_elses(page_data: Path, fields: dict[str, Any]) -
     )
 
 
-def test_a_button_that_has_the_focus_is_held_by_the_space_bar(page_data: Path) -> None:
+def test_the_space_bar_holds_a_focused_button(page_data: Path) -> None:
     on = {"on": "KEY_A"}
     assert sent_to_robot(page_data, DRIVING_OFFER, ["keydown", " ", on], ["keyup", " ", on]) == [
         [0, A_KEY, 0, 0],
@@ -116,7 +118,7 @@ RELEASES = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
 
 
 @pytest.mark.parametrize("end", RELEASES, ids=str)
-def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: list[Any]) -> None:
+def test_releasing_everything_requires_new_presses(page_data: Path, end: list[Any]) -> None:
     gamepad = ["gamepads", [[0, -1], [0]]]
     packets = sent_to_robot(
         page_data, DRIVING_OFFER, gamepad, ["event", "gamepadconnected"],
@@ -132,7 +134,7 @@ def test_all_is_let_go_at_once_and_has_to_be_pressed_anew(page_data: Path, end: 
     assert [held_keys for _, *held_keys in packets[let_go + 1 :]] == [[32, 0, 0]]
 
 
-def test_a_key_whose_end_nobody_sees_is_not_held_with_the_next_one(page_data: Path) -> None:
+def test_a_key_with_a_missed_release_is_dropped_at_the_next_one(page_data: Path) -> None:
     """The key was released in another window."""
     story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
     helds = [held_keys for _, *held_keys in sent_to_robot(page_data, DRIVING_OFFER, *story)]
@@ -149,7 +151,7 @@ def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
     assert packets[1][0] - packets[0][0] <= 20, "it need not be told of"
 
 
-def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> None:
+def test_only_controls_that_the_program_reads_are_shown(page_data: Path) -> None:
     for readings in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
         offer = ["offer", "driving", {"reads": readings}]
         parts = [reading for reading in readings if reading.startswith("KEY")]
@@ -160,7 +162,7 @@ def test_what_the_program_reads_is_there_and_nothing_else(page_data: Path) -> No
     assert play_story(page_data, hidden_offer)["shown"] == []
 
 
-def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> None:
+def test_a_robot_without_a_remote_control_gets_no_key_messages(page_data: Path) -> None:
     deaf = ["offer", "link", {"reads": ALL_READINGS, "isDeaf": True}]
     outcome = play_story(
         page_data, ["side", "side_real"], deaf, ["keydown", "ArrowUp"], ["passes", 500], ["stop"],
@@ -170,7 +172,7 @@ def test_a_robot_without_a_remote_control_is_told_nothing(page_data: Path) -> No
     assert outcome["said"].startswith("This robot has no remote control.")
 
 
-def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
+def test_a_newly_shown_robot_gets_only_later_presses(
     page_data: Path,
 ) -> None:
     """The one before hears that all is let go."""
@@ -187,7 +189,7 @@ def test_a_robot_that_comes_to_be_seen_is_told_what_is_pressed_from_then_on(
     ]  # fmt: skip
 
 
-def test_the_same_robot_that_is_offered_again_is_held_on(page_data: Path) -> None:
+def test_the_same_robot_keeps_its_held_keys(page_data: Path) -> None:
     packets = sent_to_robot(
         page_data,
         DRIVING_OFFER,
@@ -200,7 +202,7 @@ def test_the_same_robot_that_is_offered_again_is_held_on(page_data: Path) -> Non
 
 
 @pytest.mark.parametrize("stick_kind", ["host", "direct"])
-def test_a_stick_that_moves_all_the_time_is_said_as_it_is_now(
+def test_a_constantly_moving_stick_is_sent_with_its_current_position(
     page_data: Path, stick_kind: str
 ) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""

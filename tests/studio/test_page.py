@@ -49,7 +49,7 @@ def checks(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(6))
-def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> None:
+def test_every_program_gives_the_same_image_as_the_command(page: Page, part: int) -> None:
     """Programs of the paper, of all documents and cases, and the examples."""
     sample = programs()[part::6]
     assert len(sample) > 50
@@ -67,7 +67,7 @@ def test_every_program_gets_the_image_of_the_command(page: Page, part: int) -> N
 @pytest.mark.sampled("first_index", "part")
 @pytest.mark.parametrize("first_index", range(2))
 @pytest.mark.parametrize("part", range(24))
-def test_every_wrong_program_gets_the_words_of_the_command(
+def test_every_wrong_program_gives_the_same_messages_as_the_command(
     page: Page, first_index: int, part: int
 ) -> None:
     """Languages alternate. This also detects missing parts of the package."""
@@ -86,13 +86,13 @@ def test_every_wrong_program_gets_the_words_of_the_command(
         assert findings == expected, text
 
 
-def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
+def test_an_internal_error_is_reported_with_its_name(page: Page) -> None:
     """The packed Python knows no lines of its sources; its tracebacks are made all the same."""
     with pytest.raises(Exception, match=r"in _request_handler\nKeyError: 'nonsense'"):
         ask_worker(page, [{"do": "nonsense", "text": ""}])
 
 
-def test_what_is_typed_is_compiled_and_not_called_right_before(page: Page) -> None:
+def test_typed_text_is_reported_as_correct_only_after_compilation(page: Page) -> None:
     write(page, "SI|F(3, 70);\nS")
     assert image(page) == compile("SI|F(3, 70);\nS").image
     assert page.inner_text("#status") == "The program is correct: 4 bytes."
@@ -136,7 +136,7 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
          "CONTADOR = 0\ncontador = contador + 1\nF(contador, 50)"),
     ],
 )  # fmt: skip
-def test_a_button_does_what_its_message_names(page: Page, program: str, wanted_text: str) -> None:
+def test_a_button_does_what_its_message_says(page: Page, program: str, wanted_text: str) -> None:
     """Undo reverts it."""
     write(page, program)
     page.locator("#messages .repair").click()
@@ -178,7 +178,7 @@ def test_words_of_the_language_have_colors(page: Page) -> None:
     assert len({colors[text] for text in ("SI", "F", "2", "DISTANCE", "// F")}) == 5
 
 
-def test_languages_change_everything(page: Page) -> None:
+def test_changing_the_language_changes_all_texts(page: Page) -> None:
     write(page, "FF(2, 80)")
     english = page.inner_text("body")
     speak(page, "es")
@@ -189,7 +189,7 @@ def test_languages_change_everything(page: Page) -> None:
     assert check("FF(2, 80)", language="es")[0].message in spanish
 
 
-def test_work_is_kept(page: Page, only_page: tuple[Pages, Page]) -> None:
+def test_a_program_is_kept_across_visits(page: Page, only_page: tuple[Pages, Page]) -> None:
     page.select_option("#robot", "grabber")
     speak(page, "es")
     page.click("#words")
@@ -219,7 +219,7 @@ DAMAGED_WORK = (
 )
 
 
-def test_damaged_work_does_no_harm(page: Page, pytestconfig: pytest.Config) -> None:
+def test_damaged_stored_programs_do_no_harm(page: Page, pytestconfig: pytest.Config) -> None:
     for stored_text in sample_of(pytestconfig, "damaged work", DAMAGED_WORK):
         page.evaluate(
             "kept => { for (const s of [sessionStorage, localStorage])"
@@ -271,7 +271,7 @@ HOSTILE = """<img src=x onerror="document.title='taken'"><script>document.title=
 F(javascript:alert(1), "</script>");${1}{{1}}\u202e\u0007 %s%n ../../ \U0001f4a9"""
 
 
-def test_a_hostile_program_is_only_text(page: Page, tmp_path: Path) -> None:
+def test_a_hostile_program_is_shown_as_text(page: Page, tmp_path: Path) -> None:
     path = tmp_path / "<img src=x onerror=alert(1)>.ts"
     path.write_text(HOSTILE, encoding="utf-8")
     page.set_input_files("#file", path)
@@ -284,7 +284,7 @@ def test_a_hostile_program_is_only_text(page: Page, tmp_path: Path) -> None:
     assert wanted_messages[0].message in page.inner_text("#messages")
 
 
-def test_the_address_brings_nothing_into_the_page(page: Page, address: str) -> None:
+def test_the_address_injects_nothing_into_the_page(page: Page, address: str) -> None:
     write(page, "SI|F(1, 80)")
     page.goto(address + "?code=SI|F(9,9)#<img src=x onerror=alert(1)>")
     wait_until_checked(page)
@@ -303,7 +303,7 @@ def test_a_long_program_is_compiled_while_it_is_typed(page: Page) -> None:
     assert image(page) == compile(text + "S;" * 2).image
 
 
-def test_numbers_of_json_stay_whole(page: Page) -> None:
+def test_numbers_in_json_stay_exact(page: Page) -> None:
     """Places of instructions come as lists of whole numbers."""
     (answer,) = checks(page, [{"text": "SI|F(2, 80)", "robot": "tinibot", "language": "en"}])
     assert json.dumps(answer["places"]) == "[[0, 1, 4, 1, 12]]"

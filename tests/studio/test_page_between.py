@@ -385,7 +385,7 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
               f" {slowest.took_s:.1f} ({slowest.fault}) |")  # fmt: skip
 
 
-def test_a_sample_of_what_is_pressed_keeps_the_laws(
+def test_a_sample_of_button_presses_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
     rng = Random(sampling.seed(request.config))
@@ -396,7 +396,7 @@ def test_a_sample_of_what_is_pressed_keeps_the_laws(
 
 
 @pytest.mark.long
-def test_a_sample_of_what_is_pressed_in_a_class_keeps_the_laws(
+def test_a_sample_of_button_presses_in_a_class_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
     rng = Random(sampling.seed(request.config))

@@ -78,7 +78,7 @@ def page(page: Page) -> Page:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(10))
-def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None:
+def test_blocks_of_the_page_match_python(pages: Pages, part: int) -> None:
     """Every tenth program of the documents and 30 random ones: the visible blocks are those read.
 
     It gets its own page: its test blocks would take the undo keys from the page's blocks. And
@@ -105,7 +105,7 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages, part: int) -> None
     assert compare(page, SAMPLE_SIZE, seed=1000) > SAMPLE_SIZE * 0.9
 
 
-def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
+def test_a_program_can_be_built_and_run_with_blocks_alone(pages: Pages) -> None:
     """It works with the mouse, and on a small screen with a finger."""
     page = pages.open(view="blocks", locale="es-PE", has_touch=True)
     page.locator("#level").wait_for()
@@ -141,7 +141,7 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     wait_for(page, lambda: "B(2, 80)" in text_of(page), "a finger has dragged a block")
 
 
-def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
+def test_blocks_and_text_share_one_undo_history(page: Page) -> None:
     drag(page, "Move", "back", block(page, "forward"))
     text_after = text_of(page)
     assert text_after == "SI|F(2, 80);\nB(2, 80);\nS;\n"
@@ -175,7 +175,7 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
 
 
 @sampled
-def test_an_undo_keeps_the_place(page: Page) -> None:
+def test_an_undo_keeps_the_scroll_position(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
     long_program = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
     start(page, long_program)
@@ -214,7 +214,7 @@ def test_an_undo_keeps_the_place(page: Page) -> None:
     wait_for_blocks(page)
 
 
-def test_looking_at_blocks_changes_no_text(page: Page) -> None:
+def test_viewing_blocks_does_not_change_the_text(page: Page) -> None:
     text = "// mine\nsi|f( 2,80 )\n\n\n  s // stop"
     start(page, text)
     page.click("#view_text")
@@ -241,7 +241,7 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
 
 
 @sampled
-def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(page: Page) -> None:
+def test_a_block_snaps_near_a_connection_and_otherwise_stays_loose(page: Page) -> None:
     """Also one without values."""
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
     wait_for_text(page, "SI|F(2, 80);\nS;\nB(2, 80);\n")
@@ -256,7 +256,7 @@ def test_a_block_is_joined_near_its_place_and_stays_where_it_hangs_on_nothing(pa
     assert box_of(block(page, "forever")) == pytest.approx(place, abs=1)
 
 
-def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
+def test_a_block_with_a_body_encloses_following_blocks(page: Page) -> None:
     """The preview before the drop shows it; a block that already has content does not do this."""
     text_before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
     start(page, text_before)
@@ -290,7 +290,7 @@ def test_a_block_with_room_takes_in_what_follows(page: Page) -> None:
     wait_for_text(page, "SI|LOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\nF(2, 80);\n")
 
 
-def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
+def test_a_loose_block_is_kept(page: Page) -> None:
     drag(page, "Move", "forward", None)
     wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert image(page) == compile("SI|F(2, 80);S").image
@@ -340,7 +340,7 @@ def test_blocks_wait_while_a_text_is_being_typed(page: Page) -> None:
     assert text_of(page).endswith("F(1, 50)\nF(")
 
 
-def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
+def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
     """When blocks are shown, it names code as blocks do."""
     start(page, "SI|S;\nLOOP(2);\n  F(-2, 80);\nEND_LOOP;\n")
     icons = page.locator("#blocks .blocklyWarningIcon, #blocks .blockly-icon-warning")
@@ -380,7 +380,7 @@ def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
 
 
 @sampled
-def test_a_message_stands_on_no_block(page: Page) -> None:
+def test_a_message_covers_no_block(page: Page) -> None:
     """A message without room is hidden."""
     bubble = page.locator("#blocks .blocklyBubble")
     for width, height in ((1366, 768), (1024, 600), (390, 844)):
@@ -446,7 +446,7 @@ def texts_on_blocks(page: Page) -> set[str]:
 
 
 @sampled
-def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) -> None:
+def test_blocks_can_show_the_words_of_the_text(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert texts_on_blocks(page) == {
         "when it starts", "repeat", "times", "if", "distance sensor", "<", "stop", "else",
@@ -470,7 +470,7 @@ def test_the_words_of_the_text_come_to_the_blocks_of_who_wants_them(page: Page) 
 
 
 @sampled
-def test_a_move_is_so_long_or_so_far(page: Page) -> None:
+def test_a_move_has_a_time_or_a_distance(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
     for field, choice, block_texts, text in (
         ("s", "cm", {"forward", "cm"}, "F(2 CM, 80)"),
@@ -613,7 +613,7 @@ def test_a_lesson_offers_its_words_while_it_is_open(
 
 
 @pytest.mark.long
-def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> None:
+def test_a_condition_dragged_out_checks_the_distance(page: Page) -> None:
     """If the robot can measure it: in the first world it stops before the wall."""
     for robot in robots.names():
         page.select_option("#robot", robot)
@@ -642,7 +642,7 @@ def test_a_question_that_is_dragged_out_asks_for_what_is_ahead(page: Page) -> No
 
 
 @sampled
-def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
+def test_switchable_devices_have_a_yes_no_choice(page: Page) -> None:
     """Dragged out, chosen later, and back; a number stays where it still fits."""
     page.select_option("#robot", "grabber")
     start(page, "SI|S;\n")
@@ -658,7 +658,7 @@ def test_what_a_robot_switches_has_a_yes_or_no(page: Page) -> None:
 
 
 @sampled
-def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
+def test_a_hat_block_cannot_be_nested_or_stacked(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
     for group, words, hat_text in (
         ("Events", "each time", "WHEN(DISTANCE < 20);\nEND_WHEN;\n"),
@@ -679,7 +679,7 @@ def test_a_hat_is_put_in_no_other_block_and_stands_on_none(page: Page) -> None:
 
 
 @sampled
-def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page) -> None:
+def test_hat_blocks_are_written_from_top_to_bottom_after_a_move(page: Page) -> None:
     first_hat, second_hat = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
     text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{second_hat}"
     start(page, text, "usual")
@@ -707,7 +707,7 @@ def test_hats_are_written_from_top_to_bottom_once_somebody_moves_one(page: Page)
 
 
 @sampled
-def test_a_hat_that_comes_back_is_put_where_it_is_seen(page: Page) -> None:
+def test_a_restored_hat_block_is_placed_in_view(page: Page) -> None:
     """An existing hat stays if somebody put it, even out of sight."""
     word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
 
@@ -764,7 +764,7 @@ BLOCKS_BY_LESSON = {
 @pytest.mark.long
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", BLOCKS_BY_LESSON)
-def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, number: int) -> None:
+def test_a_lesson_about_tasks_can_be_solved_with_blocks(pages: Pages, number: int) -> None:
     """A beginner can do it by dragging."""
     page = pages.open(view="blocks", viewport={"width": 1366, "height": 900})
     page.locator("#level").wait_for()
@@ -797,7 +797,7 @@ def test_a_lesson_about_several_things_at_once_is_done_in_blocks(pages: Pages, n
 
 
 @sampled
-def test_more_cases_of_an_if(page: Page) -> None:
+def test_an_if_block_can_get_more_branches(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
     for name, wanted_text in (
         ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
@@ -834,7 +834,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
 
 
 @sampled
-def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
+def test_a_defined_word_has_at_most_the_languages_number_of_values(page: Page) -> None:
     text = "SI|DEF A{};\n  F(1, 50);\nEND_DEF;\n"
     start(page, text.format(""), "usual")
     names = [*"CDEGH"][:PARAMETERS]
@@ -845,7 +845,7 @@ def test_a_word_has_at_most_the_values_of_the_language(page: Page) -> None:
         wait_for_text(page, text.format(f"({', '.join(names[:count])})"))
 
 
-def test_keys_alone_add_a_block(page: Page) -> None:
+def test_a_block_can_be_added_by_keyboard(page: Page) -> None:
     page.locator(".search input").focus()
     page.keyboard.press("Tab")
     page.keyboard.press("t")
@@ -867,7 +867,7 @@ UNUSED_MESSAGE = re.compile(
 )
 
 
-def test_the_catalogue_has_what_blockly_says() -> None:
+def test_all_blockly_texts_are_in_the_catalogue() -> None:
     """It has all names in Blockly's core except LACKS: the page uses none of Blockly's ready-made
     blocks."""
     need("" if BLOCKLY.is_dir() else unusable_reason() or f"there is no {BLOCKLY}")
@@ -885,13 +885,13 @@ def test_the_catalogue_has_what_blockly_says() -> None:
     }
 
 
-def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
+def test_the_sources_contain_no_emoji_faces() -> None:
     for path in filter(Path.is_file, (ROOT / "tools" / "studio" / "src").rglob("*")):
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
 
 
 @sampled
-def test_a_fault_is_said_at_its_block(page: Page) -> None:
+def test_a_fault_is_reported_at_its_block(page: Page) -> None:
     start(page, "X = 0;\nSHOW(1 / X);\nS;\n")
     page.select_option("#speed", "20")
     page.click("#run")
@@ -910,7 +910,7 @@ def test_a_fault_is_said_at_its_block(page: Page) -> None:
     assert fault.count() == 0 and page.locator(f"{PROGRAM} .blocklyIconGroup").count() == 0
 
 
-def test_whoever_changes_a_block_changes_its_line_alone(page: Page) -> None:
+def test_changing_a_block_changes_only_its_line(page: Page) -> None:
     head = "SI|F(1.50, (80));  // first\n\n"
     end = "IF((X) > 2);\n  S;\nELSE;  // else\n  W(2.0);\nENDIF;  // end\n"
     start(page, f"{head}B(1.50, 80);\n{end}")

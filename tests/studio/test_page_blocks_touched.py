@@ -88,7 +88,7 @@ END_DEF;
 """
 
 
-def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -> None:
+def test_a_clicked_block_runs_alone_with_its_contents(page: Page) -> None:
     """Its defined words work too; a value is shown, and a hat runs the blocks below it."""
     runs = run_names(page)
     page.click("#runs_close")
@@ -113,7 +113,7 @@ def test_a_block_that_is_clicked_runs_alone_and_with_what_is_in_it(page: Page) -
 
 
 @sampled
-def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
+def test_a_block_that_cannot_run_alone_gives_the_reason(page: Page) -> None:
     start(page, LONG_PROGRAM)
     page.select_option("#speed", "1")
     touch(page, "forward")
@@ -125,7 +125,7 @@ def test_a_block_that_does_not_run_alone_says_why(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .alone").count() == 0
 
 
-def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> None:
+def test_a_click_ends_no_run_and_moves_no_hidden_robot(page: Page) -> None:
     start(page, "SI|LOOP(FOREVER);\n  F(1, 80);\nEND_LOOP;\n")
     page.click("#run")
     wait_for_phase(page, "running")
@@ -143,7 +143,7 @@ def test_a_click_ends_no_run_and_moves_no_robot_that_is_not_seen(page: Page) -> 
 
 @pytest.mark.sampled("try_action")
 @pytest.mark.parametrize("try_action", ["keys", "menu"])
-def test_keys_and_the_menu_try_a_block_on_a_phone_too(pages: Pages, try_action: str) -> None:
+def test_keyboard_and_menu_also_try_a_block_on_a_phone(pages: Pages, try_action: str) -> None:
     page = pages.open(viewport={"width": 390, "height": 844})
     start(page, "SI|BEEP(0.2, 440);\nS;\n")
     touch(page, "beep")  # the block stays in the program
@@ -190,7 +190,7 @@ def test_a_phone_shows_the_robot_in_a_corner_while_a_block_is_tried(pages: Pages
     assert page.locator("html[data-peek]").count() == 0
 
 
-def test_a_block_that_is_tried_goes_on_where_the_robot_is(page: Page) -> None:
+def test_a_tried_block_starts_at_the_robots_current_pose(page: Page) -> None:
     """It goes on until it touches something; the program begins at the start."""
     start(page, "SI|F(0.5, 60);\n")
     page.select_option("#world", "obstacles")
@@ -255,7 +255,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
 
 
 @sampled
-def test_an_editor_stands_over_its_own_field(page: Page) -> None:
+def test_an_editor_opens_over_its_own_field(page: Page) -> None:
     start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
     for k in range(6):
         field = page.locator(f"{PROGRAM} .blocklyNumberField").nth(k)
@@ -303,7 +303,7 @@ def test_a_message_is_at_its_block(page: Page) -> None:
 
 
 @sampled
-def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None:
+def test_warnings_stay_collapsed_until_opened(pages: Pages) -> None:
     """An unfinished program has many of them, so blocks keep their size."""
     for size in ((1366, 768), (390, 844)):
         page = pages.open(viewport={"width": size[0], "height": size[1]})
@@ -332,7 +332,7 @@ def test_warnings_wait_at_their_blocks_until_somebody_asks(pages: Pages) -> None
 # -- a piano ---------------------------------------------------------------------------------------
 
 
-def test_the_keys_are_those_of_a_piano() -> None:
+def test_the_tone_editor_has_piano_keys() -> None:
     """Each has its whole hertz, in equal steps around A at 440; an arrow leads to the next tone."""
     (row,) = in_node(SCRIPT)
     tones = json.loads(row)
@@ -392,7 +392,7 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
     speak(page, "en")
 
 
-def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Page) -> None:
+def test_escape_reverts_a_field_in_block_and_text(page: Page) -> None:
     """Otherwise a later change would bring it back."""
     text = "// one\nSI|BEEP(0.5, 440);\nF(5, 80);\n"
     start(page, text)
@@ -411,7 +411,7 @@ def test_escape_takes_back_in_the_text_what_it_takes_back_in_the_block(page: Pag
 
 
 @sampled
-def test_arrow_keys_go_from_tone_to_tone(page: Page) -> None:
+def test_arrow_keys_move_between_tones(page: Page) -> None:
     start(page, "SI|BEEP(0.5, 440);\nS;\n")
     pitch(page).first.click()
     page.keyboard.press("ArrowUp")
@@ -472,9 +472,7 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
 
 @pytest.mark.sampled("flyout_action")
 @pytest.mark.parametrize("flyout_action", ["search", "group"])
-def test_a_list_of_blocks_goes_with_the_block_that_is_dragged_out_of_it(
-    page: Page, flyout_action: str
-) -> None:
+def test_a_flyout_closes_when_a_block_is_dragged_out(page: Page, flyout_action: str) -> None:
     start(page, "SI|S;\n", "few")
     if flyout_action == "search":
         page.fill(".search input", "repeat")
@@ -501,7 +499,7 @@ IS_SEEN_SCRIPT = """(path) => {
 
 
 @sampled
-def test_a_pile_that_is_tried_hides_no_smaller_one(page: Page) -> None:
+def test_a_tried_stack_hides_no_smaller_one(page: Page) -> None:
     start(page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all")
     value, pile = block(page, "distance"), block(page, "new word")
     a, b = box_of(value), box_of(pile)
@@ -543,7 +541,7 @@ COVERED_SCRIPT = """() => {
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (820, 1180), (390, 844)], ids=str)
-def test_no_control_lies_over_a_block_of_a_program(page: Page, size: tuple[int, int]) -> None:
+def test_no_control_covers_a_block_of_the_program(page: Page, size: tuple[int, int]) -> None:
     """This also holds if the blocks fill the visible area."""
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.evaluate(SETTLED_SCRIPT)
@@ -577,7 +575,7 @@ def take_block(page: Page, words: str) -> None:
     page.keyboard.press("Enter")
 
 
-def test_a_block_that_keys_take_goes_where_the_focus_was(page: Page) -> None:
+def test_a_block_inserted_by_keyboard_goes_to_the_focus(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\n")
     touch(page, "forward")
     wait_for_phase(page, "ended")

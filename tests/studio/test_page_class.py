@@ -230,7 +230,7 @@ def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
     assert all("ERR_FAILED" in error or "500" in error for error in errors)
 
 
-def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
+def test_features_missing_in_plain_http_are_not_offered(ana: Page) -> None:
     if not ana.evaluate("isSecureContext"):  # true on a computer without a network
         for name in ("serial", "bluetooth", "serviceWorker", "clipboard"):
             assert not ana.evaluate(f"'{name}' in navigator && !!navigator.{name}")
@@ -246,7 +246,7 @@ def test_what_plain_http_has_not_is_not_offered(ana: Page) -> None:
 
 
 @pytest.mark.parametrize("size", [(1366, 768), (390, 844)], ids=str)
-def test_whoever_opens_the_address_of_a_class_joins_it_at_once(
+def test_opening_the_address_of_a_class_shows_its_entrance(
     pages: Pages, shared_class: Class, size: tuple[int, int]
 ) -> None:
     """Code and name come before everything else; the focus is in the code."""
@@ -277,7 +277,7 @@ def test_whoever_opens_the_address_of_a_class_joins_it_at_once(
     remove_all_but_ana(shared_class)
 
 
-def test_a_wrong_code_is_said_and_a_pupil_is_removed(
+def test_a_wrong_code_is_reported_and_a_pupil_can_be_removed(
     pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
     page = pages.open(locale="es-AR")
@@ -312,7 +312,7 @@ def test_a_wrong_code_is_said_and_a_pupil_is_removed(
 
 
 @sampled
-def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_class: Class) -> None:
+def test_a_late_answer_does_not_readmit_a_removed_pupil(teacher: Page, shared_class: Class) -> None:
     """A wall that looks while a pupil is removed does not show the pupil again."""
     room = shared_class.room
     for name in ("Eva", "Noa"):
@@ -345,7 +345,7 @@ def test_an_answer_that_comes_late_brings_nobody_back(teacher: Page, shared_clas
 
 
 @sampled
-def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Class) -> None:
+def test_thirty_tiles_fit_without_scrolling(teacher: Page, shared_class: Class) -> None:
     """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
     room = shared_class.room
     room.teach({"do": "class_places", "places": 60})
@@ -371,7 +371,7 @@ def test_thirty_tiles_are_seen_without_scrolling(teacher: Page, shared_class: Cl
 
 
 @sampled
-def test_a_picture_is_seen_large_while_the_next_one_is_made(
+def test_an_enlarged_picture_stays_while_the_next_is_drawn(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
     remove_all_but_ana(shared_class)
@@ -406,7 +406,7 @@ SIZE = "async (each) => { await each.decode(); return [each.naturalWidth, each.n
 
 
 @pytest.mark.long
-def test_a_long_program_is_drawn_in_slices_and_not_to_its_end(
+def test_a_long_program_is_drawn_in_slices_and_truncated(
     first: Page, pages: Pages, shared_class: Class
 ) -> None:
     """Therefore STOP ALL need not wait for it: `tools.bench.studio` measures the wait."""
@@ -444,7 +444,9 @@ COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
 
 
 @sampled
-def test_a_pupil_has_one_picture_a_second(first: Page, pages: Pages, shared_class: Class) -> None:
+def test_a_pupils_picture_is_drawn_once_a_second(
+    first: Page, pages: Pages, shared_class: Class
+) -> None:
     """Whatever the page writes meanwhile, the newest is drawn then. Others have no wait."""
     teacher = open_teacher_page(pages, shared_class)
     remove_all_but_ana(shared_class)
@@ -509,7 +511,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
 
 
 @sampled
-def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -> None:
+def test_robots_are_assigned_and_withdrawn(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     click_ask(ana)
     wait_for_link(ana, "Connected: ")
     teacher.click("#class_settings")
@@ -525,14 +527,14 @@ def test_robots_are_given_and_taken(ana: Page, teacher: Page, robot: PtyRobot) -
 
 
 @sampled
-def test_a_robot_that_is_off_is_said(ana: Page, robot: PtyRobot) -> None:
+def test_a_switched_off_robot_is_reported(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     click_ask(ana)
     wait_for_link(ana, "Nothing responds.")
     wait_for_status(ana, "You are in the class, ")
 
 
-def test_everything_is_seen_and_axe_finds_nothing(
+def test_every_element_is_visible_and_axe_finds_nothing(
     ana: Page, teacher: Page, pages: Pages, shared_class: Class, pytestconfig: pytest.Config
 ) -> None:
     long_name_page = join_class(pages, shared_class, "A" * 24)
@@ -627,7 +629,7 @@ LOSE_ANSWERS_SCRIPT = """() => { window.own = fetch; window.fetch = (where, what
   what?.body?.includes('"took"') ? Promise.reject(new TypeError('lost')) : own(where, what); }"""
 
 
-def test_work_is_kept_until_the_page_has_said_that_it_has_it(
+def test_work_is_kept_until_the_page_confirms_receipt(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
     """Its word is lost, and the page is loaded again: it gets the same once more."""
@@ -660,7 +662,7 @@ def opened_row(teacher: Page, name: str) -> Locator:
 
 
 @sampled
-def test_whoever_closes_the_page_and_comes_back_is_the_same_pupil(
+def test_a_pupil_who_reopens_the_page_is_the_same_pupil(
     pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
     page = join_class(pages, shared_class, "Noa")
@@ -709,7 +711,7 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
 
 @sampled
 @pytest.mark.parametrize("erases", [True, False])
-def test_the_end(browser: Browser, erases: bool) -> None:
+def test_the_end_of_a_class_is_shown(browser: Browser, erases: bool) -> None:
     with studio.serve_class([]) as class_:
         pages = Pages(browser, class_.server.address)
         ends(pages, class_, erases)

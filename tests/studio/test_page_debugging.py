@@ -40,7 +40,7 @@ def wait_until_stopped(page: Page, line: int) -> None:
     page.locator("#doing").filter(has_text=f"Stopped before line {line}.").wait_for()
 
 
-def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> None:
+def test_a_run_halts_at_a_breakpoint_each_time_and_shows_values(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     press_margin(page, 5)
     page.click("#run")
@@ -57,7 +57,7 @@ def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> 
 
 
 @sampled
-def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page: Page) -> None:
+def test_a_breakpoint_on_an_empty_line_moves_to_the_next_part(page: Page) -> None:
     """Only the left button sets one."""
     write(page, COUNTING_PROGRAM)
     numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
@@ -75,7 +75,7 @@ def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page
 
 
 @sampled
-def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
+def test_a_breakpoint_moves_and_disappears_with_its_text(page: Page) -> None:
     write(page, "F(0.1, 80);\nSHOW(7);\nB(0.1, 80)")
     page.keyboard.press("Control+Home")
     page.keyboard.press("ArrowDown")
@@ -93,7 +93,7 @@ def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
 
 
 @sampled
-def test_one_line_has_several_breakpoints(page: Page) -> None:
+def test_one_line_may_have_several_breakpoints(page: Page) -> None:
     write(page, "SI|SHOW(1);SHOW(2);SHOW(3)")
     for _ in range(2):
         page.keyboard.press("F9")  # no part begins after the last one, so that one gets it
@@ -109,7 +109,7 @@ def test_one_line_has_several_breakpoints(page: Page) -> None:
 
 
 @sampled
-def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
+def test_breakpoints_are_shown_and_set_at_blocks(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     press_margin(page, 3)
     page.click("#view_blocks")
@@ -131,7 +131,7 @@ def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
 
 
 @sampled
-def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> None:
+def test_a_breakpoint_can_be_set_and_removed_while_running(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  F(0.2, 80);\n  SHOW(1);\nEND_LOOP")
     page.click("#run")
     wait_for_running(page)
@@ -145,7 +145,7 @@ def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> Non
 
 
 @sampled
-def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_changes(
+def test_breakpoints_of_a_running_program_are_unaffected_by_edits(
     page: Page,
 ) -> None:
     """Its lines are others then; and one that is taken away no longer stops it."""
@@ -172,7 +172,7 @@ def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_
 
 
 @sampled
-def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: Page) -> None:
+def test_a_breakpoint_can_be_removed_after_an_edit(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  W(0.1);\n  SHOW(3);\nEND_LOOP")
     press_margin(page, 3)
     page.click("#run")
@@ -191,7 +191,7 @@ def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: 
 
 
 @sampled
-def test_a_breakpoint_in_every_line_is_not_a_hurdle(page: Page) -> None:
+def test_breakpoints_on_every_line_work(page: Page) -> None:
     """In a program of the largest size, and after its end; the first ones work."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
     press_ms = page.locator(".cm-content").evaluate(
@@ -209,7 +209,7 @@ def test_a_breakpoint_in_every_line_is_not_a_hurdle(page: Page) -> None:
 
 
 @sampled
-def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> None:
+def test_curves_of_sensors_variables_and_values_are_drawn(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     page.click("#seen_plot")
     page.click("#run")

@@ -85,7 +85,7 @@ def test_blocks_and_text_are_the_same_program(page: Page) -> None:
     assert image(page) == compile(PROGRAM).image
 
 
-def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
+def test_a_mistake_is_reported_in_spanish_and_repaired(page: Page) -> None:
     speak(page, "es")
     write(page, "F(-2, 80)")
     assert page.inner_text("#status") == "1 error"
@@ -94,7 +94,7 @@ def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
     assert image(page) == compile("B(2, 80)").image
 
 
-def test_a_run_is_that_of_the_command(page: Page) -> None:
+def test_a_run_matches_the_command(page: Page) -> None:
     dances_like_the_command(page)
 
 
@@ -111,7 +111,7 @@ def test_a_world_is_changed_and_saved(page: Page) -> None:
     page.click("#world_done")
 
 
-def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
+def test_programs_are_shared_kept_and_saved_as_pictures(page: Page) -> None:
     write(page, PROGRAM)
     link = share(page)
     assert "#program=" in link and PROGRAM.split("\n")[0] in " ".join(list_programs(page))
@@ -125,7 +125,7 @@ def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
     assert content(page).rstrip() == PROGRAM
 
 
-def test_it_works_without_its_server(firefox: Browser) -> None:
+def test_the_page_works_offline(firefox: Browser) -> None:
     context = firefox.new_context()
     page = context.new_page()
     with studio.serve_page() as server:

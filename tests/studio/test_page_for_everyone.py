@@ -79,7 +79,7 @@ THEMES = {"dark": "[data-dark]", "light": ":not([data-dark])"}
 @pytest.mark.sampled("language", "theme")
 @pytest.mark.parametrize("language", ["en", "es"])
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_each_screen_is_seen_whole_and_axe_finds_nothing(
+def test_each_screen_is_fully_visible_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
     """At two sizes, others in each commit; the class is in `test_page_class.py`."""
@@ -124,7 +124,9 @@ def test_each_screen_is_seen_whole_and_axe_finds_nothing(
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_one_row_is_over_the_program_whatever_the_robots_name(page: Page, language: str) -> None:
+def test_the_bar_above_the_program_stays_in_one_row_for_any_robot_name(
+    page: Page, language: str
+) -> None:
     speak(page, language)
     for width in (1000, 1024, 1366):
         page.set_viewport_size({"width": width, "height": 600})
@@ -135,7 +137,7 @@ def test_one_row_is_over_the_program_whatever_the_robots_name(page: Page, langua
     speak(page, "en")
 
 
-def test_it_is_dark_where_the_system_is_or_somebody_wants_it(page: Page) -> None:
+def test_the_dark_theme_follows_the_system_or_the_users_choice(page: Page) -> None:
     """The contrast is as good; a person's choice takes precedence, and is kept."""
 
     def wait_for_theme(theme: str) -> None:
@@ -184,7 +186,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
     assert image(page) == compile("B(2, 80)").image
 
 
-def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
+def test_a_screen_reader_gets_all_messages(page: Page) -> None:
     write(page, "F(-2, 80)")
     assert page.get_by_role("status").first.inner_text() == "1 mistake"
     sentence = "Line 1: -2 is out of range: here F takes 0 or more. Try: B(2, 80)"
@@ -217,7 +219,7 @@ TRY_REQUEST_SCRIPT = """async (address) => {
 }"""
 
 
-def test_the_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
+def test_the_content_security_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     """The page does not reach another address, and no text becomes code."""
     errors = only_page[0].errors
     with socket.create_server(("127.0.0.1", 0)) as other_server:
@@ -238,7 +240,7 @@ WAIT_FOR_FILES_SCRIPT = """async (names) => {
 }"""
 
 
-def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> None:
+def test_the_page_works_offline(playwright: Playwright, tmp_path: Path) -> None:
     """After one visit, the server is shut down, and the browser was closed in between."""
 
     def visit(address: str, text: str) -> bytes:
@@ -267,7 +269,7 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
+def test_an_update_does_not_disturb_an_open_page(browser: Browser) -> None:
     """A newer build waits until no tab has the old one, and is there then."""
     need(studio.missing())
     page = serving.files()

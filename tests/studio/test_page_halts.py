@@ -133,7 +133,7 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
 
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_it_halts_where_the_virtual_robot_does_and_has_its_values(page: Page, name: str) -> None:
+def test_halts_and_values_match_the_virtual_robot(page: Page, name: str) -> None:
     text, lines = PROGRAMS[name]
     write_with_breakpoints(page, text, lines)
     expected = virtual_states(text, lines, steps=False)
@@ -156,7 +156,7 @@ def halts(page: Page, line: int) -> None:
 
 
 @sampled
-def test_it_tells_where_the_other_tasks_are(page: Page) -> None:
+def test_a_halt_reports_where_the_other_tasks_are(page: Page) -> None:
     tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
     write_with_breakpoints(
         page, tasks + "TASK;\nW(0.05);\nB(1, 60);\nEND_TASK;\nW(0.1);\nN = 3;\nS", (13,)
@@ -175,7 +175,7 @@ LOOP_PROGRAM = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 
 
 @sampled
-def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: PtyRobot) -> None:
+def test_a_breakpoint_is_set_and_removed_while_the_robot_runs(page: Page, robot: PtyRobot) -> None:
     """It stays while the text changes; a waiting or restarted program has it too."""
     write_with_breakpoints(page, LOOP_PROGRAM, ())
     page.click("#link_upload")
@@ -203,7 +203,7 @@ def test_a_breakpoint_is_set_and_taken_away_while_it_runs(page: Page, robot: Pty
 
 
 @sampled
-def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
+def test_a_line_run_in_between_removes_no_breakpoint(page: Page) -> None:
     write_with_breakpoints(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
     page.click("#link_upload")
     halts(page, 3)
@@ -218,7 +218,7 @@ def test_a_line_that_runs_between_takes_no_breakpoint_away(page: Page) -> None:
 
 
 @sampled
-def test_a_robot_has_the_first_four(page: Page) -> None:
+def test_a_robot_gets_the_first_four_breakpoints(page: Page) -> None:
     write_with_breakpoints(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
     page.click("#link_upload")
     note = page.locator("#link_breakpoints")
@@ -232,7 +232,7 @@ def test_a_robot_has_the_first_four(page: Page) -> None:
 
 
 @sampled
-def test_a_robot_that_cannot_halt_says_so_and_runs(
+def test_a_robot_that_cannot_halt_is_reported_and_runs(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     note = page.locator("#link_breakpoints")
@@ -320,7 +320,9 @@ def connect_again(page: Page, robot: PtyRobot) -> None:
 
 @pytest.mark.sampled("end_kind", keep=2)
 @pytest.mark.parametrize("end_kind", ["stop", "Escape", "button", "restart"])
-def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, end_kind: str) -> None:
+def test_a_halted_program_ends_like_a_running_one(
+    page: Page, robot: PtyRobot, end_kind: str
+) -> None:
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     page.click("#link_upload")
     halts(page, 4)
@@ -339,7 +341,7 @@ def test_what_is_halted_ends_as_what_runs_does(page: Page, robot: PtyRobot, end_
 
 
 @pytest.mark.parametrize("end_kind", ["upload", "break"])
-def test_a_program_that_is_stopped_on_its_way_never_starts(
+def test_a_program_stopped_during_upload_never_starts(
     page: Page, robot: PtyRobot, end_kind: str
 ) -> None:
     """Its places come between the program and its start."""
@@ -367,7 +369,7 @@ def test_a_program_that_is_stopped_on_its_way_never_starts(
 
 
 @pytest.mark.long
-def test_a_recording_of_a_halted_program_is_as_long_as_one_that_was_not(page: Page) -> None:
+def test_a_recording_does_not_include_the_time_of_halts(page: Page) -> None:
     write_with_breakpoints(page, "SHOW(1);\nW(0.3);\nSHOW(2);\nW(0.3);\nSHOW(3)", (3,))
     page.click("#link_upload")
     halts(page, 3)

@@ -84,12 +84,12 @@ def with_serial(pages: Pages, server: serving.Server, has_clock: bool = False) -
     return page
 
 
-def test_what_tells_of_no_progress_ends_when_it_does_not_come() -> None:
+def test_a_stalled_download_times_out() -> None:
     assert json.loads(in_node(SCRIPT)[0]) == ["TimeoutError 1", "AbortError", "there", "0 false"]
 
 
 @sampled
-def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
+def test_a_stalled_firmware_download_is_reported_cancelled_and_given_up(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
@@ -111,7 +111,7 @@ def test_a_firmware_that_does_not_come_is_told_cancelled_and_given_up(
 
 
 @sampled
-def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
+def test_a_stalled_esp32_flasher_is_reported_and_cancelled(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
@@ -129,7 +129,7 @@ def test_what_writes_onto_an_esp32_is_told_where_it_does_not_come_and_cancelled(
 
 
 @sampled
-def test_a_port_that_takes_no_bytes_is_closed_and_may_be_tried_again(
+def test_a_port_that_accepts_no_bytes_is_closed_and_can_be_retried(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server)
@@ -213,7 +213,7 @@ def check_dance_goes_on(page: Page) -> None:
 
 
 @pytest.mark.long
-def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes(
+def test_any_stalled_file_of_a_run_is_reported_until_it_arrives(
     visits: Pages,
 ) -> None:
     page = visits.blank(is_alone=True)
@@ -252,9 +252,7 @@ def test_whatever_file_of_a_run_is_held_is_told_and_the_run_begins_when_it_comes
 
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", COMPILER_FILES)
-def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
-    visits: Pages, name: str
-) -> None:
+def test_an_abandoned_compiler_is_loaded_again_by_the_next_run(visits: Pages, name: str) -> None:
     """The first retry fails, the next succeeds."""
     page = visits.blank(is_alone=True)
     page.add_init_script(RECORDING_SCRIPT)
@@ -279,7 +277,7 @@ def test_a_compiler_that_is_given_up_is_tried_again_by_the_next_run(
     wait_until_checked(page)
 
 
-def test_whoever_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visits: Pages) -> None:
+def test_a_stop_while_the_compiler_loads_cancels_the_run(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
     held_robot = HeldRequests(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)
@@ -298,7 +296,7 @@ def test_whoever_stops_while_the_compiler_is_held_has_no_run_when_it_comes(visit
 
 
 @sampled
-def test_a_robots_run_tries_the_compiler_again(visits: Pages) -> None:
+def test_a_run_on_a_robot_retries_the_compiler(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
     page.context.route("**/tiniscript.zip", lambda route: route.abort())
     page.goto(visits.address)
@@ -308,7 +306,7 @@ def test_a_robots_run_tries_the_compiler_again(visits: Pages) -> None:
     wait_until_checked(page)
 
 
-def test_a_stop_that_nobody_hears_says_so_at_once_and_is_tried_on(pages: Pages) -> None:
+def test_an_unanswered_stop_is_reported_at_once_and_retried(pages: Pages) -> None:
     with studio.serve_robots() as server:
         page = pages.blank(is_alone=True)
         page.clock.install()

@@ -43,7 +43,7 @@ def open_lesson(page: Page, number: int, step: int = 0) -> None:
 
 
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(language: str) -> None:
+def test_each_kind_of_block_is_introduced_by_the_first_lesson_that_names_it(language: str) -> None:
     """Each lesson has a block to look for; no later lesson removes a block."""
     taught_words: set[str] = set()
     for number in LESSONS:
@@ -58,14 +58,14 @@ def test_each_kind_of_block_is_new_in_the_first_lesson_that_speaks_of_it(languag
         assert set(page_lessons.offered_kinds(number, language)) == taught_words
 
 
-def test_a_piece_is_what_somebody_looks_for() -> None:
+def test_similar_blocks_count_as_one_piece() -> None:
     assert piece_of("move", "L DEG") == "move L"
     assert piece_of("sensor", "KEY_A") == piece_of("sensor", "KEY_UP") == "sensor KEY"
     assert piece_of("sensor", "BUTTON") == "sensor BUTTON"
     assert piece_of("compare", "LT") == "compare"
 
 
-def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
+def test_the_level_rises_to_a_lessons_needs_and_never_falls(
     page: Page, pytestconfig: pytest.Config
 ) -> None:
     """Each kind that it needs is there without the lesson, one level below some are missing. A page
@@ -93,7 +93,7 @@ def test_the_level_rises_to_what_a_lesson_needs_and_never_falls(
     assert page.input_value("#level") == "usual"
 
 
-def test_each_lesson_has_a_block_that_glows_at_a_first_visit(page: Page) -> None:
+def test_each_lesson_highlights_a_block_at_the_first_visit(page: Page) -> None:
     for number in LESSONS:
         open_lesson(page, number)
         page.locator(FRESH_CATEGORY).first.wait_for()
@@ -101,7 +101,7 @@ def test_each_lesson_has_a_block_that_glows_at_a_first_visit(page: Page) -> None
         page.locator(".blocklyFlyout:visible .blocklyBlockCanvas > .fresh").first.wait_for()
 
 
-def test_a_lesson_takes_no_block_away(page: Page) -> None:
+def test_a_lesson_removes_no_block(page: Page) -> None:
     """The best solution of lesson 13 uses a block of lesson 7."""
     open_lesson(page, 13)
     page.select_option("#level", "few")
@@ -109,7 +109,7 @@ def test_a_lesson_takes_no_block_away(page: Page) -> None:
 
 
 @sampled
-def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
+def test_a_new_block_is_highlighted_until_it_is_used(page: Page) -> None:
     start(page, "SI|F(1, 80);\n")
     open_lesson(page, 6)
     locator = page.locator(FRESH_CATEGORY)
@@ -131,7 +131,7 @@ def test_a_new_block_glows_until_it_is_in_the_program(page: Page) -> None:
 
 
 @sampled
-def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
+def test_the_highlight_respects_reduced_motion(pages: Pages) -> None:
     page = pages.open(view="blocks", reduced_motion="reduce")
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
@@ -142,7 +142,7 @@ def test_a_glow_moves_for_nobody_who_wants_it_still(pages: Pages) -> None:
 
 
 @sampled
-def test_a_lesson_speaks_as_its_reader_writes(page: Page) -> None:
+def test_a_lesson_matches_its_readers_blocks_or_text(page: Page) -> None:
     """Its programs are drawn, and its words are those on blocks, while blocks are seen; a screen
     reader has the text of both."""
     for language, label, word in (
@@ -189,7 +189,7 @@ NO_LABEL = re.compile(r"%\d|\{|undefined|\w\(|;|\bEND|^\s*$")
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
+def test_lessons_use_the_texts_of_the_blocks(
     page: Page, language: str, pytestconfig: pytest.Config
 ) -> None:
     """It contains no program text, except for names that a program defines."""
@@ -213,7 +213,7 @@ def test_what_a_lesson_names_of_a_block_is_what_the_block_says(
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_what_a_check_finds_is_said_as_its_reader_writes(page: Page, language: str) -> None:
+def test_findings_match_their_readers_blocks_or_text(page: Page, language: str) -> None:
     speak(page, language)
     start(page, "SI|W(1)\n")
     open_lesson(page, 1)
@@ -234,9 +234,7 @@ def test_what_a_check_finds_is_said_as_its_reader_writes(page: Page, language: s
 @pytest.mark.long
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
-def test_what_is_below_of_a_step_is_announced_by_a_shadow(
-    page: Page, size: tuple[int, int]
-) -> None:
+def test_a_shadow_indicates_more_text_below(page: Page, size: tuple[int, int]) -> None:
     page.set_viewport_size({"width": size[0], "height": size[1]})
     page.evaluate(SETTLED_SCRIPT)
     if page.locator("html[data-phone]").count():

@@ -47,7 +47,7 @@ def page(page: Page) -> Page:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(6))
-def test_each_lesson_says_of_a_wrong_answer_what_the_command_says(page: Page, part: int) -> None:
+def test_each_lesson_judges_wrong_answers_like_the_command(page: Page, part: int) -> None:
     """The results of `tsc lesson check` are tested with the lessons."""
     for number, folder in list(enumerate(FOLDERS, 1))[part::6]:
         _, wrong_answers = catalogue.answers(folder)
@@ -106,7 +106,7 @@ def test_a_check_can_be_ended(page: Page) -> None:
 
 
 @sampled
-def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
+def test_the_judged_run_is_shown_until_it_fails(page: Page) -> None:
     """The robot stays at the wall that it touched; then the answer appears."""
     choose_lesson(page, 1)
     write(page, "SI|F(5, 80)")
@@ -123,7 +123,7 @@ def test_the_run_that_is_judged_is_seen_until_it_fails(page: Page) -> None:
 
 
 @sampled
-def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
+def test_the_shown_run_can_be_skipped_to_the_verdict(page: Page) -> None:
     choose_lesson(page, 2)
     write(page, "F(3, 80); W(9)")
     page.select_option("#speed", "1")
@@ -135,7 +135,7 @@ def test_who_has_seen_enough_gets_the_answer_at_once(page: Page) -> None:
         assert page.locator("#lesson_end").is_hidden()
 
 
-def test_nothing_is_lit_once_a_run_is_over(page: Page, pytestconfig: pytest.Config) -> None:
+def test_no_highlight_remains_after_a_run(page: Page, pytestconfig: pytest.Config) -> None:
     """It may have ended, or was skipped or stopped."""
     choose_lesson(page, 4)
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
@@ -204,7 +204,7 @@ PAGES = {
 @pytest.mark.long
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", PAGES, ids=lambda size: "x".join(map(str, size)))
-def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]) -> None:
+def test_a_step_and_the_robot_are_visible_together(page: Page, size: tuple[int, int]) -> None:
     """On a laptop each step is fully visible, elsewhere six lines of it."""
     page.set_viewport_size({"width": size[0], "height": size[1]})
     turn(page, "robot")
@@ -237,7 +237,7 @@ def test_a_step_and_the_robot_are_seen_at_once(page: Page, size: tuple[int, int]
     page.set_viewport_size({"width": 1366, "height": 768})
 
 
-def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
+def test_a_verdict_applies_to_the_current_program(page: Page) -> None:
     choose_lesson(page, 1)
     right_answers, _ = catalogue.answers(FOLDERS[0])
     assert check_answer(page, right_answers[0].program)[0] == "passed"
@@ -255,7 +255,7 @@ def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
 
 
 @sampled
-def test_the_world_where_it_failed_is_seen(page: Page) -> None:
+def test_the_world_of_a_failure_is_shown(page: Page) -> None:
     choose_lesson(page, 12)
     _, wrong_answers = catalogue.answers(FOLDERS[11])
     assert check_answer(page, wrong_answers[0].program)[0] == "failed"
@@ -280,7 +280,7 @@ def test_the_world_where_it_failed_is_seen(page: Page) -> None:
 
 
 @sampled
-def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
+def test_a_lesson_page_is_available_in_spanish_with_usable_programs(page: Page) -> None:
     choose_lesson(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
     speak(page, "es")
@@ -296,7 +296,7 @@ def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: P
     assert page.locator(".cm-content").inner_text().startswith("SI|LOOP(4)\n  F(1, 60)")
 
 
-def test_lessons_come_later_if_they_did_not_and_what_is_done_is_kept(
+def test_lessons_can_be_loaded_later_and_progress_is_kept(
     pages: Pages, pytestconfig: pytest.Config
 ) -> None:
     page = pages.open()
@@ -364,7 +364,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
 
 
 @sampled
-def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
+def test_the_start_screen_leads_to_the_lessons_from_anywhere(page: Page) -> None:
     """Also from a page with a drawn floor, and with Back from a panel in front of it."""
     page.click("#side_virtual")
     page.click("#world_draw:enabled")
@@ -376,7 +376,7 @@ def test_the_start_leads_from_any_place_to_the_lessons(page: Page) -> None:
 
 
 @pytest.mark.parametrize("number", [1, 11])
-def test_a_lesson_begins_right_whatever_robot_the_program_was_for(page: Page, number: int) -> None:
+def test_a_lesson_starts_correctly_whatever_robot_was_selected(page: Page, number: int) -> None:
     """It brings its own robot and an empty program; the other program returns after the lesson."""
     robot, program = (
         ("liner", "SI|IF(LINE_L);S;END_IF") if number == 1 else ("tinibot", "SI|SHOW(DISTANCE)")
@@ -439,7 +439,7 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
 
 
 @sampled
-def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(page: Page) -> None:
+def test_switching_lessons_reports_where_the_previous_program_is(page: Page) -> None:
     """Programs of lessons are in the list; the person's own program returns."""
     program, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
     write(page, program)
@@ -465,7 +465,7 @@ def test_whoever_goes_from_lesson_to_lesson_is_told_where_the_program_before_is(
 
 
 @sampled
-def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
+def test_returning_to_a_lesson_restores_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
     own_text, first_text, second_text = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
@@ -502,7 +502,7 @@ def test_whoever_comes_back_to_a_lesson_finds_its_program(page: Page) -> None:
     editor.filter(has_text=own_text).wait_for()
 
 
-def test_a_program_that_suits_the_lesson_stays(page: Page) -> None:
+def test_a_program_that_suits_the_lesson_is_kept(page: Page) -> None:
     """Wrong programs stay unchanged too, and so do those that name their robot."""
     for program in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
         write(page, program)

@@ -75,7 +75,7 @@ def page() -> Page:
     return made_page
 
 
-def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> None:
+def test_a_returning_page_stops_its_robot(page: Page) -> None:
     page.upload(FOREVER)
     page.advance(300)
     assert page.robot.is_running
@@ -94,7 +94,7 @@ def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> Non
     assert not page.robot.is_running
 
 
-def test_a_page_that_is_back_is_told_of_its_stop_however_long_it_was_away(page: Page) -> None:
+def test_a_returning_page_gets_its_stop_after_any_absence(page: Page) -> None:
     for away_ms in (ATTENDED_MS + 50, 3000, 20_000, ATTENDED_MS + 50):
         assert page.upload(FOREVER)["ok"]
         page.advance(300)
@@ -105,7 +105,7 @@ def test_a_page_that_is_back_is_told_of_its_stop_however_long_it_was_away(page: 
         assert events[-1] == "STOPPED" and "LOST" not in events, away_ms
 
 
-def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
+def test_only_the_owner_drives_a_claimed_robot_from_the_page(page: Page) -> None:
     for _ in range(50):
         page.advance(1)
     page.robot.press()
@@ -150,7 +150,7 @@ def ask(data: bytes, **fields: object) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_concurrent_pages_lose_no_key(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Keys from a list, here or in another tab, or from a claim: the page keeps the newest of each
     robot and person, and so does the session with a connected robot.
     """
@@ -204,7 +204,7 @@ def test_a_page_loses_no_key_whenever_it_comes(seed: int, monkeypatch: pytest.Mo
         assert not page_line._robot or page_line._robot.keys.keys_of_robot(None) == kept_keys
 
 
-def test_tabs_lose_no_key_of_each_other_and_store_one_before_a_robot_has_it(
+def test_tabs_lose_no_keys_and_store_one_before_the_robot_does(
     page_data: Path,
 ) -> None:
     rows = [json.loads(line) for line in in_node(TABS_SCRIPT, str(page_data), str(TABS_SEEDS))]
@@ -220,7 +220,7 @@ def test_anything_but_a_file_of_keys_changes_nothing(data: bytes) -> None:
     assert ask(data, do="import_keys", kept=kept_text) == {"count": None}
 
 
-def test_kept_keys_that_are_damaged_do_not_keep_a_robot_out() -> None:
+def test_damaged_stored_keys_do_not_block_a_robot() -> None:
     assert ask(b"damaged", do="connect", robot="tinibot", language="es") == {}
     answer = ask(b"", do="link", now_ms=5, asked=[{"do": "hello", "id": 1}])
     assert answer["send"] and answer["news"] == []
@@ -231,7 +231,7 @@ def test_every_shipped_robot_can_be_named() -> None:
         assert PageRobot(name, "en", PageKeys(b"")).advance(b"", 0, [])["send"] == ""
 
 
-def test_a_page_is_told_where_its_program_is(page: Page) -> None:
+def test_a_page_gets_the_place_of_its_program(page: Page) -> None:
     page.upload(FOREVER)
     page.advance(500)
     assert "PLACE" in {item.get("event") for item in page.news}
@@ -244,7 +244,7 @@ def hold_keys(page: Page, keys: int = 0, x: int = 0, y: int = 0) -> dict[str, An
     return page.ask("keys", keys=keys, x=x, y=y)
 
 
-def test_a_stick_is_read_until_it_returns_or_nobody_says_anything(page: Page) -> None:
+def test_a_stick_is_held_until_it_returns_or_times_out(page: Page) -> None:
     assert page.ask("hello")["robot"]["has_remote"]
     page.upload(STICK)
     for _ in range(4):
@@ -261,7 +261,7 @@ def test_a_stick_is_read_until_it_returns_or_nobody_says_anything(page: Page) ->
     assert round(page.robot.driving.left) == 0 and page.robot.is_running
 
 
-def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
+def test_a_hanging_page_holds_no_keys(page: Page) -> None:
     page.upload(STICK)
     hold_keys(page, y=60)
     page.advance(100)
@@ -269,7 +269,7 @@ def test_a_page_that_hangs_holds_nothing(page: Page) -> None:
     assert round(page.robot.driving.left) == 0
 
 
-def test_keys_after_a_stop_start_nothing_and_are_read_by_the_next_program(page: Page) -> None:
+def test_keys_after_a_stop_start_nothing_but_reach_the_next_program(page: Page) -> None:
     page.upload(STICK)
     hold_keys(page, y=60)
     page.ask("stop")
@@ -284,7 +284,7 @@ def test_keys_after_a_stop_start_nothing_and_are_read_by_the_next_program(page: 
     assert round(page.robot.driving.left) == 60
 
 
-def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
+def test_keys_neither_end_nor_displace_an_upload(page: Page) -> None:
     image = compile("SI|" + "SHOW(1);" * 60).image.hex()
     upload_request = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
     page.advance(1, *({"do": "keys", "id": 100 + k, "keys": 0, "x": 0, "y": k} for k in range(60)))
@@ -308,12 +308,12 @@ def test_keys_end_no_upload_and_take_no_place_of_it(page: Page) -> None:
     [{"keys": 64}, {"keys": -1}, {"x": 101}, {"y": -101}, {"x": 1.5}, {"keys": True}, {"y": None}],
     ids=str,
 )
-def test_what_nobody_can_hold_is_refused(page: Page, wrong_fields: dict[str, Any]) -> None:
+def test_impossible_key_states_are_refused(page: Page, wrong_fields: dict[str, Any]) -> None:
     with pytest.raises(BadRequest):
         page.page.link.ask({"do": "keys", "id": 1, "keys": 0, "x": 0, "y": 0, **wrong_fields})
 
 
-def test_a_robot_without_a_remote_control_is_told_nothing(page: Page) -> None:
+def test_a_robot_without_a_remote_control_gets_no_key_messages(page: Page) -> None:
     robot = page.page.line.robot
     assert robot is not None
     values = robot.values._replace(features=robot.values.features & ~REMOTE)

@@ -81,7 +81,7 @@ def test_a_program_and_a_line_are_sent_and_run(page: Page, robot: PtyRobot) -> N
     page.locator(".cm-activeLine").filter(has_text="SHOW").wait_for()
 
 
-def test_a_robot_that_restarts_is_told(page: Page, robot: PtyRobot) -> None:
+def test_a_restart_of_the_robot_is_reported(page: Page, robot: PtyRobot) -> None:
     start_drive(page, robot)
     robot.switch_off()
     robot.switch_on()
@@ -108,7 +108,7 @@ def test_stop_stops(page: Page, robot: PtyRobot) -> None:
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
 
 
-def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
+def test_a_hanging_hidden_or_offline_page_stops_its_robot(
     first: tuple[Pages, Page], page: Page, robot: PtyRobot
 ) -> None:
     start_drive(page, robot)
@@ -135,7 +135,9 @@ def test_a_page_that_hangs_is_hidden_or_reaches_nothing_stops_its_robot(
 
 
 @sampled
-def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: PtyRobot) -> None:
+def test_two_tabs_do_not_compete_for_a_robot(
+    first: tuple[Pages, Page], page: Page, robot: PtyRobot
+) -> None:
     other_page = first[0].another(page)
     other_page.click("#side_real")
     other_page.locator("#link_port option").first.wait_for(state="attached")
@@ -151,7 +153,7 @@ def test_two_tabs_do_not_fight(first: tuple[Pages, Page], page: Page, robot: Pty
 
 
 @sampled
-def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
+def test_identify_name_and_trim_work(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
     wait_for_message(page, BLINKING_MESSAGE)
     page.click("#link_teacher summary")
@@ -184,7 +186,7 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
 
 
 @sampled
-def test_everything_is_seen_and_axe_finds_nothing(
+def test_every_element_is_visible_and_axe_finds_nothing(
     page: Page, robot: PtyRobot, pytestconfig: pytest.Config
 ) -> None:
     screens = sample_of(pytestconfig, "screens of a link", SCREENS, 2)
@@ -204,7 +206,7 @@ def test_everything_is_seen_and_axe_finds_nothing(
     assert axe(page) == []
 
 
-def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -> None:
+def test_no_text_of_a_robot_becomes_markup(page: Page, robot: PtyRobot) -> None:
     page.evaluate("window.before = document.querySelectorAll('script, b, img').length")
     robot.say(b"<script>window.taken = 1</script>\r\n<b>\x1b[2J\xe2\x80\xae\r\n")
     page.locator("#link_shown").filter(has_text="<script>").wait_for()
@@ -223,7 +225,7 @@ def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -
     assert page.locator("#link img").count() == 0
 
 
-def test_why_there_is_no_connection(pages: Pages) -> None:
+def test_the_reason_for_a_failed_connection_is_shown(pages: Pages) -> None:
     with PtyRobot(KIT) as robot:
         known_ports.remember(robot.port, "TINI")
         page = pages.open()
@@ -249,7 +251,7 @@ def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> 
     assert page.locator("#link_ports").is_visible()  # a tab keeps it
 
 
-def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None:
+def test_running_a_wrong_program_stops_the_current_run(page: Page, robot: PtyRobot) -> None:
     start_drive(page, robot)
     write(page, "F(2, 80")
     with page.expect_request(lambda request: '"do":"stop"' in (request.post_data or "")):
@@ -258,7 +260,7 @@ def test_run_with_a_mistake_stops_what_runs(page: Page, robot: PtyRobot) -> None
     wait_for_message(page, "The robot was stopped. Fix the program first.")
 
 
-def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
+def test_an_address_grants_access_once_per_run_of_tsc_studio(
     pages: Pages, server: serving.Server, robot: PtyRobot
 ) -> None:
     """A closed page stops its robot."""
@@ -283,7 +285,7 @@ def test_an_address_opens_the_robots_once_for_one_run_of_tsc_studio(
 
 
 @sampled
-def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
+def test_values_of_the_robot_have_the_names_of_their_shows(page: Page) -> None:
     """This holds next to another text, too; a line of the same code has its own names."""
     shown_element = page.locator("#link_shown")
     write(page, "X = 3;\nSHOW(X);\nSHOW(DISTANCE < -1);\nSHOW(x);\nW(1)")
@@ -299,7 +301,7 @@ def test_what_the_robot_shows_has_the_name_of_its_show(page: Page) -> None:
 
 
 @sampled
-def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> None:
+def test_a_run_keeps_its_names_until_the_next_program_starts(page: Page) -> None:
     """The next one has the same code, and is sent before the last values of the one before come."""
     shown_element = page.locator("#link_shown")
     late_news: list[dict[str, Any]] = []
@@ -336,7 +338,7 @@ def test_what_runs_keeps_its_names_until_the_next_program_begins(page: Page) -> 
 
 
 @sampled
-def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
+def test_a_line_and_a_lost_link_do_not_change_a_recording(page: Page) -> None:
     write(page, "SHOW(5);\nW(60);\nSHOW(6)")
     upload_until_it_runs(page)
     page.locator("#record_play:visible").wait_for()
@@ -369,7 +371,7 @@ def test_a_program_of_the_button_is_recorded_from_its_first_event(
     assert events(page) == ["SHOW 5", "SHOW 6", "DONE"]
 
 
-def test_a_recording_has_what_the_program_read(page: Page) -> None:
+def test_a_recording_contains_the_programs_readings(page: Page) -> None:
     """Therefore calculations from it are the same on the virtual robot, in another world."""
     write(page, "X = LIGHT_L + 5;\nSHOW(X);\nSHOW(X + LIGHT_R)")
 
@@ -383,7 +385,7 @@ def test_a_recording_has_what_the_program_read(page: Page) -> None:
     assert page.locator("#record_lacks").is_hidden()
 
 
-def test_a_robot_that_does_not_tell_readings_says_so_where_the_program_has_some(
+def test_missing_reading_reports_are_noted_if_the_program_reads_sensors(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(robot_link, "READINGS", 0)
@@ -414,7 +416,7 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
 
 
 @sampled
-def test_a_run_is_recorded_and_played_on_the_virtual_robot_beside(page: Page) -> None:
+def test_a_run_is_recorded_and_replayed_beside_the_virtual_robot(page: Page) -> None:
     write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
 
     def run() -> None:
@@ -457,7 +459,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
 
 
 @sampled
-def test_an_edit_takes_the_mark_away_and_its_undo_brings_it_back(page: Page) -> None:
+def test_an_edit_removes_the_mark_and_its_undo_restores_it(page: Page) -> None:
     write(page, "F(600, 80)")
     page.click("#link_upload")
     wait_for_running(page)
@@ -494,7 +496,7 @@ def upload_until_told(page: Page, place: int) -> None:
 
 
 @sampled
-def test_a_place_outside_of_the_program_marks_nothing(page: Page) -> None:
+def test_a_place_outside_the_program_marks_nothing(page: Page) -> None:
     write(page, "F(60, 80)")
     upload_until_told(page, 60_000)
     assert running(page) == ""

@@ -69,7 +69,7 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     pages.errors.clear()  # a browser complains of each lost request
 
 
-def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobot) -> None:
+def test_a_lost_stop_is_delivered_with_the_next_heartbeat(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):
         start_drive(page, robot)
@@ -82,7 +82,7 @@ def test_a_stop_that_is_lost_stops_with_the_next_beat(page: Page, robot: PtyRobo
 
 
 @sampled
-def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> None:
+def test_a_transport_error_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
     torn_requests = tear_requests(page, "beat", refuse, times=2)
@@ -98,7 +98,7 @@ def test_an_error_on_the_way_ends_no_connection(page: Page, robot: PtyRobot) -> 
 
 @pytest.mark.sampled("tear")
 @pytest.mark.parametrize("tear", [lose_answer, refuse, lambda route: route.abort()])
-def test_a_connect_that_is_lost_comes_again(
+def test_a_lost_connect_is_retried(
     page: Page, robot: PtyRobot, tear: Callable[[Route], None]
 ) -> None:
     torn_requests = tear_requests(page, "connect", tear)
@@ -108,9 +108,7 @@ def test_a_connect_that_is_lost_comes_again(
 
 
 @sampled
-def test_a_connect_after_lost_ones_takes_over_what_they_have_made(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_a_connect_after_lost_ones_takes_over_their_connection(page: Page, robot: PtyRobot) -> None:
     tear_requests(page, "connect", lose_answer, times=3)
     page.click("#side_real")
     page.click("#link_look")
@@ -157,7 +155,7 @@ class EventFilter:
 
 @pytest.mark.sampled("stop_action")
 @pytest.mark.parametrize("stop_action", ["button", "hidden"])
-def test_a_stop_is_said_once_and_only_what_has_become_of_it(
+def test_only_the_outcome_of_a_stop_is_reported_once(
     page: Page, robot: PtyRobot, stop_action: str
 ) -> None:
     connect(page, robot)
@@ -189,7 +187,7 @@ def test_a_stop_is_said_once_and_only_what_has_become_of_it(
 
 
 @sampled
-def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None:
+def test_two_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
         start_drive(page, robot)
@@ -207,9 +205,7 @@ def test_whoever_presses_twice_is_told_once(page: Page, robot: PtyRobot) -> None
 
 
 @sampled
-def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_five_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
     start_drive(page, robot)
@@ -226,7 +222,7 @@ def test_whoever_presses_five_times_stops_once_more_and_is_told_once(
     assert robot.moves
 
 
-def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot(
+def test_a_page_reloaded_before_its_stop_is_answered_stops_its_robot(
     page: Page, robot: PtyRobot
 ) -> None:
     for has_come in (False, True):
@@ -243,7 +239,7 @@ def test_a_page_that_is_loaded_again_before_its_stop_is_answered_stops_its_robot
         page.click("#side_real")
 
 
-def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
+def test_a_silent_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
     robot.switch_off()
@@ -255,7 +251,7 @@ def test_a_silent_robot_gets_one_answer(page: Page, robot: PtyRobot) -> None:
 
 
 @sampled
-def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
+def test_a_lost_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     """Its requests and the link end. A slow page, which is not heard for a while, first stops the
     run under way, and reports that, too.
     """
@@ -272,9 +268,7 @@ def test_a_robot_that_is_lost_is_told_once(page: Page, robot: PtyRobot) -> None:
 
 
 @sampled
-def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_a_request_to_a_silent_robot_is_reported_as_waiting(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     EventFilter(page, "LOST")
     robot.switch_off()
@@ -285,7 +279,7 @@ def test_whoever_asks_something_else_of_a_silent_robot_is_told_that_it_waits(
 
 
 @sampled
-def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
+def test_a_timed_out_page_gets_the_reason_for_its_disconnection(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
@@ -297,7 +291,7 @@ def test_a_page_that_was_not_heard_is_told_why_it_is_disconnected(
 
 
 @sampled
-def test_an_end_before_the_word_of_a_stop_says_that_there_is_none(
+def test_a_disconnection_before_confirmation_reports_an_unconfirmed_stop(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)

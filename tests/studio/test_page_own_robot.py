@@ -44,7 +44,7 @@ def store(page: Page, place: str, value: object) -> None:
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages) -> None:
+def test_colour_and_name_of_a_robot_are_shown_everywhere_and_kept(pages: Pages) -> None:
     page = pages.open()
     assert GREEN_COLOUR in colors_of(page, "#arena")
     text_before = page.inner_text("#doing")
@@ -78,7 +78,7 @@ def test_a_colour_and_a_name_are_seen_wherever_a_robot_is_and_kept(pages: Pages)
         {"<b>": 1},
     ],
 )
-def test_what_is_kept_may_be_damaged(pages: Pages, value: object) -> None:
+def test_damaged_stored_data_does_no_harm(pages: Pages, value: object) -> None:
     page = pages.open("start")
     for place in (OWN_ROBOT_KEY, STARS_KEY):
         store(page, place, value)
@@ -92,7 +92,7 @@ def test_what_is_kept_may_be_damaged(pages: Pages, value: object) -> None:
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
+def test_name_and_face_do_not_affect_a_run(pages: Pages) -> None:
     page = pages.open()
     traces = []
     for name in ("", "Pip"):
@@ -108,7 +108,7 @@ def test_a_name_and_a_face_leave_a_run_as_it_is(pages: Pages) -> None:
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
 @pytest.mark.parametrize("motion", ["seen and heard", "muted", "still"])
-def test_a_lesson_that_is_solved_is_celebrated(pages: Pages, motion: str) -> None:
+def test_a_solved_lesson_is_celebrated(pages: Pages, motion: str) -> None:
     """The stars of all lessons are added up, once each."""
     page = pages.open(reduced_motion="reduce" if motion == "still" else "no-preference")
     store(page, LESSONS_KEY, ["01_first_line"])

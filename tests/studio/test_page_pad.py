@@ -72,7 +72,7 @@ def middle(page: Page, place: str) -> tuple[float, float]:
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["phone", "desk"])
-def test_a_picture_of_the_start_is_driven_at_once(pages: Pages, size: dict[str, int]) -> None:
+def test_a_start_picture_can_be_driven_at_once(pages: Pages, size: dict[str, int]) -> None:
     """One finger drives, another one may hold A; releasing it stops the robot."""
     page = pages.visit(pages.entrance(), "start", viewport=size, has_touch=True)
     page.click("[data-begin=drive]")
@@ -118,7 +118,7 @@ def test_the_picture_opens_the_example(pages: Pages) -> None:
 
 
 @sampled
-def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: Pages) -> None:
+def test_a_resumed_or_restarted_run_reads_the_currently_held_keys(pages: Pages) -> None:
     page = pages.open()
     write(page, STICK_PROGRAM)
     page.click("#run")
@@ -154,7 +154,7 @@ def test_a_run_that_is_held_stopped_or_run_again_reads_what_is_held_then(pages: 
 
 
 @sampled
-def test_a_robot_that_hears_no_keys_is_told_none_and_the_page_says_so(pages: Pages) -> None:
+def test_a_robot_without_key_support_gets_none_and_the_page_reports_it(pages: Pages) -> None:
     sensors = tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(9))
     with PtyRobot(Kit(sensors)) as robot:
         known_ports.remember(robot.port, "OLDER")
@@ -175,7 +175,7 @@ def test_a_robot_that_hears_no_keys_is_told_none_and_the_page_says_so(pages: Pag
 
 
 @sampled
-def test_everybody_can_use_what_drives_a_real_robot(pages: Pages) -> None:
+def test_the_controls_of_a_real_robot_are_accessible(pages: Pages) -> None:
     with PtyRobot(robots.load("tinibot").kit) as robot:
         known_ports.remember(robot.port, "TINI")
         page = pages.open()
@@ -187,7 +187,7 @@ def test_everybody_can_use_what_drives_a_real_robot(pages: Pages) -> None:
 
 
 @sampled
-def test_a_run_of_the_judges_is_driven_by_nobody_else(pages: Pages) -> None:
+def test_a_judged_run_accepts_no_other_keys(pages: Pages) -> None:
     page = pages.open()
     write(page, f"// robot: tinibot\n{KEYS}")
     page.click("#side_lessons")
@@ -234,7 +234,7 @@ def press_until_driven(
     raise AssertionError(f"stopped {UPLOADS} times")
 
 
-def test_a_real_robot_is_driven_and_stands_when_the_page_is_not_seen(pages: Pages) -> None:
+def test_a_real_robot_is_driven_and_stops_when_the_page_is_hidden(pages: Pages) -> None:
     with PtyRobot(robots.load("tinibot").kit) as robot:
         known_ports.remember(robot.port, "TINI")
         page = pages.open(has_touch=True)

@@ -68,7 +68,7 @@ def shown_half(page: Page) -> str:
 
 
 @sampled
-def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
+def test_six_blocks_are_visible_beside_a_message(phone: Page) -> None:
     write(phone, NINE_BLOCKS)
     phone.click("#view_blocks")
     wait_for_blocks(phone)
@@ -78,7 +78,7 @@ def test_six_blocks_are_seen_while_one_is_wrong(phone: Page) -> None:
 
 
 @sampled
-def test_the_messages_can_be_put_away(phone: Page) -> None:
+def test_the_messages_can_be_collapsed(phone: Page) -> None:
     for wrong_text in ("F(-2, 80)", "F(-3, 80)"):
         write(phone, wrong_text)
         assert phone.locator("#messages li").is_visible() == (wrong_text == "F(-2, 80)")
@@ -97,7 +97,7 @@ def test_the_messages_can_be_put_away(phone: Page) -> None:
 
 
 @pytest.mark.parametrize("size", [(390, 844), (844, 390)], ids=["upright", "lying"])
-def test_run_and_stop_are_on_both_screens(phone: Page, size: tuple[int, int]) -> None:
+def test_run_and_stop_are_on_both_phone_screens(phone: Page, size: tuple[int, int]) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.set_viewport_size({"width": size[0], "height": size[1]})
     for screen_name in ("program", "robot"):
@@ -112,7 +112,7 @@ def test_run_and_stop_are_on_both_screens(phone: Page, size: tuple[int, int]) ->
         assert shown_half(phone) == screen_name
 
 
-def test_run_shows_the_virtual_robot_unless_the_real_one_is_seen(phone: Page) -> None:
+def test_run_shows_the_virtual_robot_unless_the_real_one_is_shown(phone: Page) -> None:
     write(phone, "SI|F(0.2, 80)")
     turn(phone, "robot")
     phone.click("#side_lessons")
@@ -179,7 +179,7 @@ TRANSPARENT = "rgba(0, 0, 0, 0)"
 
 
 @sampled
-def test_what_is_chosen_and_runs_is_seen_without_backgrounds(page: Page) -> None:
+def test_selected_and_running_items_are_visible_in_forced_colors(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.emulate_media(forced_colors="active")
     width = "(e) => parseFloat(getComputedStyle(e).outlineWidth)"
@@ -222,7 +222,7 @@ F(5, 60) UNTIL(DISTANCE < 10);
 
 @sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> None:
+def test_blocks_on_a_phone_are_readable_and_touchable(pages: Pages, language: str) -> None:
     """Letters are 12 pixels high, touch targets 24, and a long question has more rows: the whole
     program is visible, except for a question in a question.
     """
@@ -250,7 +250,7 @@ def test_blocks_of_a_phone_are_read_and_touched(pages: Pages, language: str) -> 
 
 @sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_moves_and_messages_of_a_phone_are_seen_whole(pages: Pages, language: str) -> None:
+def test_moves_and_messages_on_a_phone_are_fully_visible(pages: Pages, language: str) -> None:
     """They are below one row of buttons: a move gets a second row if it needs one, and no scrollbar
     covers a message."""
     for size in ((390, 844), (360, 740)):
@@ -292,7 +292,7 @@ UNDER_STOP_SCRIPT = """() => {
 
 
 @sampled
-def test_a_new_program_is_begun_from_the_bar_of_a_phone(phone: Page) -> None:
+def test_a_new_program_can_be_started_from_the_bar_of_a_phone(phone: Page) -> None:
     """Its button shares one row with the rest of the bar, in every language."""
     bar = phone.locator("body > header")
     for language in ("en", "es", "pt"):

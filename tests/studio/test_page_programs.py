@@ -48,7 +48,7 @@ sampled = pytest.mark.sampled(of="details of programs", keep=2)
 TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 
 
-def test_a_link_brings_the_program_and_runs_nothing(pages: Pages, page: Page) -> None:
+def test_a_link_opens_the_program_without_running_it(pages: Pages, page: Page) -> None:
     page.select_option("#robot", "grabber")
     write(page, TEXT)
     wanted_bytes = image(page)
@@ -87,7 +87,7 @@ ADDRESSES_BY_REACH = {
 
 
 @sampled
-def test_a_program_gets_a_name(page: Page) -> None:
+def test_a_program_can_be_named(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
     page.fill("#program_name", ' my/ <b>dance: "2" ')
@@ -129,7 +129,7 @@ def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     page.click("#programs_close")
 
 
-def test_a_link_says_from_where_it_opens() -> None:
+def test_a_link_states_where_it_can_be_opened() -> None:
     addresses = [word for row in ADDRESSES_BY_REACH.values() for word in row.split()]
     code = f"import {{ reachOf }} from './src/programs/reach.js';\n{json.dumps(addresses)}"
     completed = subprocess.run(
@@ -162,7 +162,7 @@ WRONG_LINKS = {
 
 @sampled
 @each_row("name", WRONG_LINKS)
-def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
+def test_a_wrong_link_leaves_the_program_unchanged(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
     image_before = image(page)
     page.evaluate("document.querySelector('#note').textContent = ''")
@@ -175,7 +175,7 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
 
 
 @sampled
-def test_what_cannot_be_shared_says_why(page: Page) -> None:
+def test_an_unshareable_program_gives_the_reason(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
     rng = random.Random(1)
@@ -204,7 +204,7 @@ def test_what_cannot_be_shared_says_why(page: Page) -> None:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(4))
-def test_every_line_is_that_of_the_command(page: Page, part: int) -> None:
+def test_every_line_matches_the_command(page: Page, part: int) -> None:
     sample = programs()[part::4]
     requests = [
         {"text": program.text, "robot": program.robot, "language": "es"} for program in sample
@@ -256,7 +256,7 @@ def read_picture(page: Page) -> str:
 
 
 @sampled
-def test_the_pictures_hold_what_is_shared(page: Page) -> None:
+def test_the_pictures_contain_the_shared_program(page: Page) -> None:
     """A phone cannot open an address that only this computer has, so such a link gets no
     picture."""
     write(page, TEXT)
@@ -296,7 +296,7 @@ def test_the_window_opens_on_programs(page: Page) -> None:
 
 
 @pytest.mark.parametrize("button", ["#bar_new", "#new"])
-def test_a_new_program_is_one_press_away_and_keeps_the_one_before(page: Page, button: str) -> None:
+def test_a_new_program_takes_one_press_and_keeps_the_previous_one(page: Page, button: str) -> None:
     write(page, "SI|F(7, 70)")
     if button == "#new":
         page.click("#my_programs")
@@ -349,7 +349,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
 
 
 @sampled
-def test_what_is_shared_can_be_copied(page: Page) -> None:
+def test_a_shared_program_can_be_copied(page: Page) -> None:
     write(page, "SI|F(1, 80)")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     shared_text = share(page, "line")
@@ -367,7 +367,7 @@ def test_what_is_shared_can_be_copied(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-def test_earlier_programs_come_back(page: Page) -> None:
+def test_earlier_programs_can_be_restored(page: Page) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
     write(page, "SI|F(1, 10)")
     page.click("#run")  # a program that has run is kept
@@ -403,7 +403,7 @@ SAME_PROGRAMS = (
 OTHER_PROGRAMS = ("SI|F(1, 10)\nB(2, 2 0)", "SI|F(1, 10) // B(2, 20)", "SI|F(1, 10)\n// B(2, 20)")
 
 
-def test_a_program_is_kept_once_however_it_is_written(page: Page) -> None:
+def test_equal_programs_are_kept_once(page: Page) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
     for text in SAME_PROGRAMS:
         write(page, text)
@@ -428,7 +428,7 @@ def test_programs_that_begin_alike_have_titles_of_their_own(page: Page) -> None:
     page.click("#view_text")
 
 
-def test_a_program_is_deleted_and_brought_back(page: Page) -> None:
+def test_a_program_is_deleted_and_restored(page: Page) -> None:
     """All but the one in the editor, which would come again by itself."""
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
     texts = [f"SI|F({seconds}, 10)" for seconds in range(1, 5)]
@@ -458,7 +458,7 @@ def test_a_program_is_deleted_and_brought_back(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-def test_no_more_is_kept_than_has_room(page: Page) -> None:
+def test_kept_programs_are_limited_by_storage(page: Page) -> None:
     write(page, "SI|F(4, 44)")  # saved when someone opens the list of programs
     kept_state = page.evaluate(
         """() => {
@@ -491,7 +491,7 @@ def test_damaged_programs_do_no_harm(page: Page, kept_text: str) -> None:
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
 
 
-def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
+def test_a_browser_without_storage_is_reported(page: Page) -> None:
     write(page, "SI|F(1, 11)")
     page.evaluate(
         "() => { window.kept = Storage.prototype.setItem;"
@@ -503,7 +503,7 @@ def test_a_browser_that_keeps_nothing_says_so(page: Page) -> None:
     page.click("#stop")
 
 
-def test_a_stop_is_in_reach(page: Page) -> None:
+def test_the_stop_button_is_in_reach(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.click("#run")
     wait_for_phase(page, "running")

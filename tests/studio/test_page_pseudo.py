@@ -73,7 +73,7 @@ def _answer(route: Route) -> None:
 
 
 @pytest.mark.sampled(of="longer texts")
-def test_longer_texts_fit_into_every_screen(pages: Pages) -> None:
+def test_longer_texts_fit_on_every_screen(pages: Pages) -> None:
     page = pages.blank(reduced_motion="reduce")
     page.route("**/texts.en.json", _answer)
     page.goto(pages.address)

@@ -48,7 +48,9 @@ FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
         ("line", "liner", "line"),
     ],
 )
-def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, world: str) -> None:
+def test_a_run_on_the_page_equals_one_without(
+    page: Page, name: str, robot: str, world: str
+) -> None:
     """The browser's WebAssembly and floating point, and Python's in wasmtime: to the last digit."""
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
     image = compile(text, robot).image
@@ -69,7 +71,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
         assert answer == expected
 
 
-def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
+def test_the_trace_list_matches_the_command(page: Page) -> None:
     wanted_texts = dances_like_the_command(page)
     assert page.inner_text("#doing") == "It has ended."
     page.click("#seen_trace")
@@ -80,7 +82,7 @@ def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
 
 
 @each_row("how, is_paused", product(("button", "Escape", "Escape in the editor"), (False, True)))
-def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
+def test_stop_stops_the_run(page: Page, how: str, is_paused: bool) -> None:
     write(page, FOREVER)
     page.click("#run")
     wait_for_running(page)
@@ -121,7 +123,7 @@ def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
     assert float(value(page, "Time").split()[0]) < 49
 
 
-def test_a_change_of_the_text_ends_the_mark(page: Page) -> None:
+def test_an_edit_removes_the_mark(page: Page) -> None:
     write(page, FOREVER)
     page.click("#step")
     wait_for_running(page)
@@ -192,7 +194,7 @@ PLACES_SCRIPT = """() =>
 
 @pytest.mark.sampled("screen")
 @pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
-def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
+def test_the_layout_does_not_shift_when_a_run_begins(page: Page, screen: tuple[int, int]) -> None:
     """Nor does anything jump when it ends; a task's sentence is the longest one above the values.
 
     Next to a program, the first run in a world makes room for the robot and keeps it.
@@ -224,7 +226,7 @@ def test_nothing_jumps_when_a_run_begins(page: Page, screen: tuple[int, int]) ->
     page.set_viewport_size({"width": 1366, "height": 768})
 
 
-def test_a_fault_is_named_where_it_is(page: Page) -> None:
+def test_a_fault_is_shown_at_its_place(page: Page) -> None:
     write(page, "X = 0;\nSHOW(1 / X)")
     page.select_option("#speed", "20")
     page.click("#run")
@@ -234,7 +236,7 @@ def test_a_fault_is_named_where_it_is(page: Page) -> None:
     wait_for_nothing_running(page)
 
 
-def test_another_world_or_robot_begins_again(page: Page) -> None:
+def test_changing_the_world_or_robot_restarts(page: Page) -> None:
     write(page, FOREVER)
     page.click("#run")
     wait_for_running(page)
@@ -248,7 +250,7 @@ def test_another_world_or_robot_begins_again(page: Page) -> None:
     assert len(colors_of(page, "#arena")) > 5  # floor, border, line
 
 
-def test_run_with_a_mistake_stops_what_runs(page: Page) -> None:
+def test_running_a_wrong_program_stops_the_current_run(page: Page) -> None:
     write(page, FOREVER)
     page.click("#run")
     wait_for_phase(page, "running")

@@ -69,7 +69,7 @@ def open_run(page: Page, data: bytes | str, file: Path) -> None:
 
 
 @sampled
-def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> None:
+def test_an_earlier_run_is_replayed_and_the_newest_restored(page: Page) -> None:
     run_to_end(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
     pose = page.locator("#where").text_content()
     run_to_end(page, "SI|Y = 8;\nSHOW(Y)", "SHOW 8")
@@ -87,7 +87,7 @@ def test_an_earlier_run_is_seen_again_and_the_newest_comes_back(page: Page) -> N
 
 
 @sampled
-def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
+def test_only_the_newest_ten_runs_are_kept(page: Page) -> None:
     for number in range(12):
         run_to_end(page, f"SI|SHOW({number})", f"SHOW {number}")
     rows = run_names(page)
@@ -98,9 +98,7 @@ def test_of_more_than_ten_runs_the_newest_ten_are_kept(page: Page) -> None:
     page.click("#runs_close")
 
 
-def test_a_saved_run_is_the_same_again_in_the_page_and_on_the_command_line(
-    page: Page, tmp_path: Path
-) -> None:
+def test_a_saved_run_replays_alike_in_page_and_command_line(page: Page, tmp_path: Path) -> None:
     page.select_option("#speed", "1")
     write(
         page,
@@ -147,7 +145,7 @@ def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path
 
 
 @sampled
-def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
+def test_a_real_run_is_replayed_beside_the_virtual_one_with_divergences_marked(
     page: Page, tmp_path: Path
 ) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
@@ -187,7 +185,7 @@ def test_a_real_run_is_played_beside_and_where_they_part_is_a_mark(
     ],
     ids=["letter", "cut", "older", "newer", "huge"],
 )
-def test_a_file_that_is_not_a_run_says_why_and_nothing_is_lost(
+def test_a_file_that_is_not_a_run_is_refused_with_a_reason(
     page: Page, tmp_path: Path, data: bytes, message: str
 ) -> None:
     run_to_end(page, "SI|SHOW(77)", "SHOW 77")
@@ -203,7 +201,7 @@ def test_a_file_that_is_not_a_run_says_why_and_nothing_is_lost(
 
 
 @sampled
-def test_a_file_that_is_dropped_is_opened(page: Page) -> None:
+def test_a_dropped_file_is_opened(page: Page) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     drop = """([name, data]) => {
         const files = new DataTransfer();

@@ -119,9 +119,7 @@ def seen_runs(page: Page) -> list[str]:
     return runs
 
 
-def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_gauges_show_sensor_values_without_announcing_them(page: Page, robot: PtyRobot) -> None:
     """No motor turns, no value is shown as a program's, and no run is kept."""
     count_before = len(robot.actions)
     runs = seen_runs(page)
@@ -137,7 +135,7 @@ def test_the_gauges_say_what_the_robot_senses_and_nobody_hears_of_it(
     assert seen_runs(page) == runs
 
 
-def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: PtyRobot) -> None:
+def test_during_a_run_gauges_show_the_programs_readings(page: Page, robot: PtyRobot) -> None:
     """Other sensors are not shown."""
     watch_senses(page)
     senses(page, robot, 3, 4, 5)
@@ -152,7 +150,7 @@ def test_while_a_program_runs_the_gauges_say_what_it_reads(page: Page, robot: Pt
 
 
 @sampled
-def test_a_program_comes_first_and_the_gauges_after_it(page: Page, robot: PtyRobot) -> None:
+def test_a_program_takes_precedence_over_the_gauges(page: Page, robot: PtyRobot) -> None:
     watch_senses(page)
     write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
     upload_until_it_runs(page)
@@ -197,7 +195,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
 
 
 @sampled
-def test_the_robots_button_ends_them_and_then_starts_its_program(
+def test_the_robots_button_ends_the_gauges_and_then_starts_its_program(
     page: Page, robot: PtyRobot
 ) -> None:
     write(page, "LOOP(FOREVER);F(9, 80);END_LOOP")
@@ -211,7 +209,7 @@ def test_the_robots_button_ends_them_and_then_starts_its_program(
     robot.until(lambda: robot.moves, "it drives")
 
 
-def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot) -> None:
+def test_a_stop_also_stops_the_gauges_until_requested(page: Page, robot: PtyRobot) -> None:
     for start in (watch_senses, lambda page: start_drive(page, robot)):
         start(page)
         page.click("#stop")
@@ -224,9 +222,7 @@ def test_a_stop_is_a_stop_until_somebody_wants_more(page: Page, robot: PtyRobot)
 
 
 @sampled
-def test_they_come_by_themselves_where_somebody_has_wanted_them(
-    page: Page, robot: PtyRobot
-) -> None:
+def test_requested_gauges_return_automatically(page: Page, robot: PtyRobot) -> None:
     watch_senses(page)
     page.click("#link_leave")
     page.locator("html:not([data-robot=connected])").wait_for(state="attached")
@@ -251,7 +247,7 @@ def test_they_come_by_themselves_where_somebody_has_wanted_them(
 
 
 @sampled
-def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> None:
+def test_the_robots_action_is_described_without_numbers(page: Page, robot: PtyRobot) -> None:
     """The text is in the chosen language, for every action."""
     wait_for_action(page, "still")
     start_drive(page, robot)
@@ -269,7 +265,7 @@ def test_what_it_does_is_said_without_a_number(page: Page, robot: PtyRobot) -> N
     assert not re.search(r"\d", page.locator("#link_said").inner_text())
 
 
-def test_a_port_where_nothing_answers_says_so_within_three_seconds(
+def test_a_silent_port_is_reported_within_three_seconds(
     open_page: tuple[Pages, Page], robot: PtyRobot
 ) -> None:
     page = open_page[0].blank()

@@ -81,7 +81,9 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     assert robot.stands_after_ms(start_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
 
 
-def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRobot) -> None:
+def test_two_tabs_do_not_compete_for_a_robot(
+    context: BrowserContext, page: Page, robot: PtyRobot
+) -> None:
     other_page = context.new_page()
     enter(other_page, page.url)
     other_page.click("#side_real")
@@ -102,13 +104,13 @@ def test_a_page_that_is_closed_stops_its_robot(
     enter(page, address)
 
 
-def test_what_a_reload_has_left_is_met_again(page: Page) -> None:
+def test_a_reload_reconnects_to_the_previous_port(page: Page) -> None:
     page.click("#link_leave")
     wait_for_message(page, "Disconnected.")
     page.click("#link_connect")
     wait_for_message(page, "Connected: ")
 
 
-def test_a_cable_that_is_pulled_is_said(page: Page, robot: PtyRobot) -> None:
+def test_a_pulled_cable_is_shown(page: Page, robot: PtyRobot) -> None:
     robot.pull()
     wait_for_message(page, "The cable is unplugged. The")

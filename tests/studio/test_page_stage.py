@@ -78,7 +78,7 @@ def choose(page: Page, camera: str) -> None:
 
 @pytest.mark.sampled("world")
 @pytest.mark.parametrize("world", ["obstacles", "light", "delivery", "free"])
-def test_what_drives_has_a_third_of_a_page_and_is_seen(page: Page, world: str) -> None:
+def test_the_robot_view_takes_a_third_of_the_page(page: Page, world: str) -> None:
     page.reload()  # a chosen camera is kept
     page.select_option("#world", world)
     write(page, FOREVER)
@@ -121,7 +121,7 @@ def see_last_step(page: Page, size: tuple[int, int]) -> float:
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
-def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
+def test_in_a_lesson_the_robot_view_is_large_until_the_next_step(
     page: Page, size: tuple[int, int]
 ) -> None:
     """The step comes back by the lesson's own buttons, the check is in reach all the time."""
@@ -152,9 +152,7 @@ def test_what_drives_in_a_lesson_is_large_until_somebody_reads_on(
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
-def test_a_run_that_is_judged_is_as_large_until_it_is_told(
-    page: Page, size: tuple[int, int]
-) -> None:
+def test_a_judged_run_is_large_until_its_verdict(page: Page, size: tuple[int, int]) -> None:
     large_area = see_last_step(page, size)
     for is_still in (False, True):
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
@@ -170,7 +168,7 @@ def test_a_run_that_is_judged_is_as_large_until_it_is_told(
     turn(page, "program")
 
 
-def test_a_finger_drags_the_block_that_it_touches_after_a_run(pages: Pages) -> None:
+def test_a_finger_drags_the_touched_block_after_a_run(pages: Pages) -> None:
     """The program gets its room back once the finger has left: a group would come under it, which
     takes blocks away."""
     page = pages.open(viewport={"width": 1024, "height": 768}, has_touch=True)
@@ -233,7 +231,7 @@ END_WHEN;
 
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600)], ids=str)
-def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None:
+def test_each_running_block_is_scrolled_into_view(page: Page, size: tuple[int, int]) -> None:
     """However narrow a large robot leaves the program, and wherever somebody has put a hat; then
     all is as it was."""
     page.set_viewport_size({"width": size[0], "height": size[1]})
@@ -274,7 +272,7 @@ def test_each_block_that_runs_is_seen(page: Page, size: tuple[int, int]) -> None
     page.click("#view_text")
 
 
-def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
+def test_a_pressed_block_stays_under_the_mouse_after_a_run(page: Page) -> None:
     """However the mouse comes there. Once it lets go, or rests on no block, the room is there
     again."""
     page.select_option("#world", "free")
@@ -325,7 +323,7 @@ def test_what_a_mouse_presses_after_a_run_stays_under_it(page: Page) -> None:
     page.click("#view_text")
 
 
-def test_whoever_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page) -> None:
+def test_scrolling_during_a_run_is_respected(page: Page) -> None:
     """This lasts beyond the end of the run; the next run scrolls into view again."""
     page.select_option("#world", "free")
     write(page, "SI|LOOP(FOREVER)\n" + "F(0.1, 60)\n" * 30 + "END_LOOP")
@@ -352,7 +350,7 @@ def test_whoever_scrolls_the_blocks_during_a_run_sees_what_they_chose(page: Page
     page.click("#view_text")
 
 
-def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
+def test_a_newly_chosen_world_is_fully_visible(page: Page) -> None:
     """For example a lesson's world, whose goal would be out of sight."""
     write(page, "SI|F(0.1, 20);\n")
     page.select_option("#world", "free")
@@ -365,7 +363,7 @@ def test_another_world_is_seen_whole_whatever_ran_before(page: Page) -> None:
 
 @pytest.mark.sampled("language")
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
+def test_the_block_selector_stays_in_one_row_beside_a_large_robot(
     page: Page, language: str
 ) -> None:
     page.set_viewport_size({"width": 1280, "height": 768})
@@ -383,7 +381,7 @@ def test_what_chooses_blocks_has_its_arrow_in_one_row_beside_a_large_robot(
     page.click("#view_text")
 
 
-def test_full_screen_comes_with_a_key_and_goes_with_it(page: Page) -> None:
+def test_a_key_toggles_full_screen(page: Page) -> None:
     """The button works as well, and typing an F does not. STOP stays in reach, Escape leaves it."""
     write(page, FOREVER)
     page.locator(".cm-content").focus()
@@ -427,7 +425,7 @@ def test_a_camera_follows_from_above_and_from_behind(page: Page) -> None:
     choose(page, "whole")
 
 
-def test_what_stands_on_the_floor_has_sides_from_behind_the_robot(page: Page) -> None:
+def test_objects_have_sides_in_the_view_from_behind(page: Page) -> None:
     write(page, "SI|S;\n")
     for world, raised_text in (("obstacles", "156,115,70"), ("maze", "138,101,68")):
         page.select_option("#world", world)
@@ -464,7 +462,7 @@ def test_each_start_picture_leads_to_its_world(page: Page) -> None:
         wait_for_phase(page, "ended")
 
 
-def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> None:
+def test_a_city_has_lawns_and_streets_with_a_centre_line(page: Page) -> None:
     lawn, street = "207,227,194", "223,226,230"
     for world in ("delivery", "free"):
         page.select_option("#world", world)
@@ -477,7 +475,7 @@ def test_a_city_has_lawns_and_streets_with_a_line_in_the_middle(page: Page) -> N
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("is_lesson", [False, True], ids=["own program", "lesson"])
 @pytest.mark.parametrize("size", [(1024, 600), (390, 844)], ids=str)
-def test_cameras_and_the_whole_page_are_there_on_small_screens(
+def test_cameras_and_full_page_view_work_on_small_screens(
     page: Page, size: tuple[int, int], is_lesson: bool
 ) -> None:
     if is_lesson:

@@ -86,7 +86,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
 
 
 @sampled
-def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
+def test_late_files_do_not_disturb_a_run(pages: Pages) -> None:
     """The robot moves before the blocks are fetched, and continues when the lessons arrive."""
     page = pages.blank()
     fetched: list[str] = []
@@ -118,7 +118,7 @@ def test_what_comes_late_leaves_a_run_alone(pages: Pages) -> None:
     page.locator("#world option:checked", has_text="Lesson 1").wait_for(state="attached")
 
 
-def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> None:
+def test_missing_files_are_reported_and_no_empty_page_is_shown(pages: Pages) -> None:
     """Before the texts arrive, the page shows nothing; a missing compiler is reported next to the
     robot."""
     page = pages.blank()
@@ -141,7 +141,7 @@ def test_what_does_not_come_is_told_and_nothing_empty_is_seen(pages: Pages) -> N
 
 
 @sampled
-def test_the_address_says_which_screen_is_seen(start: Page) -> None:
+def test_the_address_selects_the_screen(start: Page) -> None:
     start.click("#start_write")
     assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
     start.reload()
@@ -213,7 +213,7 @@ def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
 
 
 @sampled
-def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
+def test_earlier_programs_are_listed_with_pictures(start: Page) -> None:
     start.click("[data-begin=dance]")
     start.click("#view_text")
     write(start, "SI|LOOP(2)\n  F(1, 80)\n  BEEP(0.1, 440)\nEND_LOOP")
@@ -233,7 +233,7 @@ def test_earlier_programs_are_there_with_a_picture(start: Page) -> None:
     assert image(start) == compile("SI|LOOP(2)\nF(1, 80)\nBEEP(0.1, 440)\nEND_LOOP").image
 
 
-def test_a_program_without_a_name_is_called_by_its_first_block(start: Page) -> None:
+def test_an_unnamed_program_is_called_by_its_first_block(start: Page) -> None:
     start.click("#start_write")
     start.click("#view_text")
     for program in ("SI|F(2.5, 80)", "// a\nSB|LOOP(FOREVER); F(20 CM, 50); END_LOOP", "A = 3",
@@ -263,7 +263,7 @@ def test_a_program_without_a_name_is_called_by_its_first_block(start: Page) -> N
     ]
 
 
-def test_a_world_that_is_solved_is_celebrated_and_its_stars_are_kept(start: Page) -> None:
+def test_a_solved_world_is_celebrated_and_its_stars_are_kept(start: Page) -> None:
     start.evaluate(NOTES_CONFETTI)
     start.click("[data-begin=line]")
     start.select_option("#speed", "20")
@@ -276,7 +276,7 @@ def test_a_world_that_is_solved_is_celebrated_and_its_stars_are_kept(start: Page
     assert start.locator("#start_badge").inner_text().startswith(f"★ {stars}")
 
 
-def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
+def test_a_new_program_puts_the_robot_at_its_start(start: Page) -> None:
     """Neither the path on the floor nor a crash remains from the program before."""
     start.click("[data-begin=obstacle]")
     start.locator("#values dd").first.filter(has_text="1.").wait_for()
@@ -293,7 +293,7 @@ def test_a_new_program_finds_the_robot_at_its_start(start: Page) -> None:
 
 
 @sampled
-def test_a_second_press_is_not_for_what_comes_to_the_place_of_the_first(start: Page) -> None:
+def test_a_double_press_does_not_hit_a_moved_control(start: Page) -> None:
     start.dblclick("#start_write")
     assert start.get_attribute("#side_real", "aria-pressed") == "false"
     wait_for_blocks(start)

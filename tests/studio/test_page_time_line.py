@@ -50,7 +50,7 @@ def seconds(page: Page) -> float:
 
 
 @sampled
-def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
+def test_events_can_be_stepped_backward_and_forward(page: Page) -> None:
     start_run(page, COUNTING_PROGRAM)
     wait_for_phase(page, "ended")
     page.focus("#time_at")
@@ -77,9 +77,7 @@ def test_each_event_is_seen_again_backward_and_forward(page: Page) -> None:
 
 @pytest.mark.sampled("button")
 @pytest.mark.parametrize("button", ["pause", "step", "stop"])
-def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
-    page: Page, button: str
-) -> None:
+def test_a_run_pauses_while_rewound_and_resumes_from_the_present(page: Page, button: str) -> None:
     start_run(page, "SI|X = 0;\nLOOP(999);\nX = X + 1;\nSHOW(X);\nF(0.3, 60);\nEND_LOOP")
     wait_for_phase(page, "running")
     page.locator("#trace", has_text="SHOW 3").wait_for(state="attached")
@@ -97,7 +95,7 @@ def test_what_runs_stands_still_while_somebody_looks_back_and_goes_on_from_now(
 
 
 @sampled
-def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
+def test_shift_steps_through_each_executed_part(page: Page) -> None:
     start_run(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
     wait_for_phase(page, "ended")
     page.focus("#time_at")
@@ -110,7 +108,7 @@ def test_with_shift_each_part_that_has_run_is_seen(page: Page) -> None:
 
 
 @sampled
-def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
+def test_a_new_run_has_its_own_time_line(page: Page) -> None:
     start_run(page, COUNTING_PROGRAM)
     wait_for_phase(page, "ended")
     page.focus("#time_at")
@@ -126,7 +124,7 @@ def test_a_new_run_has_a_line_of_its_own(page: Page) -> None:
 
 
 @sampled
-def test_the_part_that_ran_is_named_with_the_values_of_what_it_names(page: Page) -> None:
+def test_the_executed_part_is_shown_with_its_values(page: Page) -> None:
     start_run(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
     wait_for_phase(page, "ended")
     page.focus("#time_at")
@@ -141,7 +139,7 @@ CODE_PATTERN = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
 @sampled
-def test_the_line_is_as_long_until_it_is_let_go(page: Page) -> None:
+def test_the_time_line_keeps_its_length_while_dragged(page: Page) -> None:
     """Else what a finger drags runs away under it."""
     start_run(page, "F(0.4, 60)")
     wait_for_phase(page, "ended")
@@ -159,7 +157,7 @@ def test_the_line_is_as_long_until_it_is_let_go(page: Page) -> None:
 
 
 @sampled
-def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> None:
+def test_why_explains_the_condition_and_its_readings(page: Page) -> None:
     """It also names the task that had the motors. No extra click is needed at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
     start_run(page, f"SI|TASK;\n{task};\nEND_TASK;\nW(2)")
@@ -188,7 +186,7 @@ def test_why_tells_what_was_asked_and_what_had_been_read_then(page: Page) -> Non
 
 @sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
-def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> None:
+def test_block_users_get_messages_about_blocks(page: Page, language: str) -> None:
     """At each moment of a run: no code and no line; users of text are told about text."""
     loop = "LOOP(3)\nIF(DISTANCE > 3)\nF(0.4, 60) UNTIL(DISTANCE < 2)\nENDIF\nW(0.1)\nEND_LOOP"
     start_run(
@@ -220,7 +218,7 @@ def test_whoever_sees_blocks_is_told_of_blocks(page: Page, language: str) -> Non
 
 
 @sampled
-def test_a_when_that_begins_is_a_mark(page: Page) -> None:
+def test_a_starting_when_is_marked_on_the_time_line(page: Page) -> None:
     for begins_s, is_marked in ((0.5, True), (90, False)):
         body = "W(0.3);\nW(9);\nEND_WHEN;\nSHOW(1);\nW(1.5);\nSHOW(2)"
         start_run(page, f"SI|WHEN(TIME > {begins_s});\n{body}")

@@ -91,7 +91,7 @@ def show_program_on_both(two: tuple[Page, Page]) -> None:
         wait_for_lines(page, *ROWS)
 
 
-def test_both_type_at_once_and_have_the_same_program(page_pair: tuple[Page, Page]) -> None:
+def test_two_pupils_typing_at_once_get_the_same_program(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
     go_to_line(ana, "F(1, 80)")
@@ -112,7 +112,7 @@ def test_both_type_at_once_and_have_the_same_program(page_pair: tuple[Page, Page
 
 
 @sampled
-def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(
+def test_a_half_typed_value_stays_local_and_unchanged(
     page_pair: tuple[Page, Page],
 ) -> None:
     ana, luz = page_pair
@@ -131,7 +131,7 @@ def test_a_half_typed_value_stays_in_its_page_and_is_not_touched(
 
 
 @sampled
-def test_undo_takes_back_what_the_own_page_has_typed(page_pair: tuple[Page, Page]) -> None:
+def test_undo_reverts_only_local_changes(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
     go_to_line(ana, "S;")
@@ -148,7 +148,7 @@ def test_undo_takes_back_what_the_own_page_has_typed(page_pair: tuple[Page, Page
 
 
 @sampled
-def test_undo_leaves_what_another_one_has_changed_since(page_pair: tuple[Page, Page]) -> None:
+def test_undo_keeps_later_changes_of_others(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
     for page, text in ((ana, "95)\n"), (luz, "70)\n")):
@@ -178,7 +178,7 @@ def test_undo_leaves_what_another_one_has_changed_since(page_pair: tuple[Page, P
 
 
 @sampled
-def test_each_sees_where_the_other_is(page_pair: tuple[Page, Page]) -> None:
+def test_each_pupil_sees_the_others_cursor(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
     go_to_line(ana, "B(1, 40)")
@@ -190,7 +190,7 @@ def test_each_sees_where_the_other_is(page_pair: tuple[Page, Page]) -> None:
 
 
 @sampled
-def test_whoever_loads_the_page_again_is_in_the_group_with_all(
+def test_a_reloaded_page_is_still_in_the_group(
     page_pair: tuple[Page, Page],
 ) -> None:
     ana, luz = page_pair
@@ -230,7 +230,7 @@ def test_a_broken_network_loses_nothing(page_pair: tuple[Page, Page]) -> None:
         )
 
 
-def test_each_drives_and_each_stops_the_robot_of_the_group(
+def test_each_member_drives_and_stops_the_robot_of_the_group(
     page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = page_pair
@@ -256,7 +256,7 @@ def test_each_drives_and_each_stops_the_robot_of_the_group(
             page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
-def test_all_of_a_group_see_what_its_robot_does(
+def test_all_members_see_the_actions_of_the_groups_robot(
     page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = page_pair
@@ -298,7 +298,7 @@ def test_all_of_a_group_see_what_its_robot_does(
             wait_for_nothing_running(page)
 
 
-def test_another_program_is_the_group_s_only_if_somebody_wants_that(
+def test_another_program_becomes_the_groups_only_on_request(
     page_pair: tuple[Page, Page],
 ) -> None:
     ana, luz = page_pair
@@ -352,9 +352,7 @@ def test_returned_work_goes_to_my_programs_if_the_pupil_keeps_it_out_of_the_grou
     luz.click("#programs_close")
 
 
-def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
-    page_pair: tuple[Page, Page], shared_class: Class
-) -> None:
+def test_an_outdated_change_is_reported(page_pair: tuple[Page, Page], shared_class: Class) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
     ana.context.set_offline(True)
@@ -375,7 +373,7 @@ def test_a_change_that_cannot_be_made_any_more_is_told_in_a_sentence(
         )
 
 
-def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_seconds(
+def test_remote_changes_wait_up_to_two_seconds_for_a_composition(
     page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
     ana, luz = page_pair
@@ -401,7 +399,9 @@ def test_what_others_change_waits_for_a_composition_but_no_longer_than_two_secon
 
 
 @sampled
-def test_whoever_leaves_keeps_the_program_and_hears_no_more(page_pair: tuple[Page, Page]) -> None:
+def test_a_leaving_pupil_keeps_the_program_without_further_changes(
+    page_pair: tuple[Page, Page],
+) -> None:
     ana, luz = page_pair
     show_program_on_both(page_pair)
     luz.click("#side_class")  # the page was reloaded
@@ -421,7 +421,7 @@ def test_whoever_leaves_keeps_the_program_and_hears_no_more(page_pair: tuple[Pag
 
 
 @sampled
-def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
+def test_the_teacher_sees_a_group_as_one_tile_with_its_history(
     page_pair: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = page_pair
@@ -445,7 +445,7 @@ def test_the_teacher_sees_a_group_as_one_tile_and_what_was_done(
     teacher_pages.close()
 
 
-def test_the_teacher_takes_part_and_leaves(
+def test_the_teacher_joins_and_leaves_a_group(
     page_pair: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
     ana, luz = page_pair

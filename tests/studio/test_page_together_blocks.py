@@ -137,7 +137,7 @@ def change_rows(*pairs: tuple[str, str]) -> list[str]:
     return [dict(pairs).get(row, row) for row in ROWS]
 
 
-def test_a_changed_field_is_a_change_of_its_line_alone(page_pair: tuple[Page, Page]) -> None:
+def test_a_changed_field_changes_only_its_line(page_pair: tuple[Page, Page]) -> None:
     ana, _ = page_pair
     field(ana, "back")
     type_slowly(ana, "7\n")
@@ -145,7 +145,7 @@ def test_a_changed_field_is_a_change_of_its_line_alone(page_pair: tuple[Page, Pa
 
 
 @sampled
-def test_a_half_typed_field_is_none_and_stays_open(page_pair: tuple[Page, Page]) -> None:
+def test_a_half_typed_field_is_not_a_change_and_stays_open(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "6")
@@ -161,7 +161,7 @@ def test_a_half_typed_field_is_none_and_stays_open(page_pair: tuple[Page, Page])
 
 
 @sampled
-def test_what_is_dragged_while_others_write_comes_to_its_place(
+def test_a_block_dragged_during_remote_edits_lands_in_its_place(
     page_pair: tuple[Page, Page],
 ) -> None:
     ana, luz = page_pair
@@ -179,7 +179,7 @@ def test_what_is_dragged_while_others_write_comes_to_its_place(
 
 
 @sampled
-def test_of_two_of_one_block_the_later_one_wins_whole(page_pair: tuple[Page, Page]) -> None:
+def test_the_later_of_two_changes_of_a_block_wins(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "6")
@@ -190,7 +190,7 @@ def test_of_two_of_one_block_the_later_one_wins_whole(page_pair: tuple[Page, Pag
 
 
 @sampled
-def test_what_hangs_on_nothing_is_on_the_own_page_alone(page_pair: tuple[Page, Page]) -> None:
+def test_loose_blocks_exist_only_on_the_local_page(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     drag(ana, "Move", "left", None)
     go_to_line(luz, "S;")
@@ -213,7 +213,7 @@ def test_what_hangs_on_nothing_is_on_the_own_page_alone(page_pair: tuple[Page, P
 
 
 @sampled
-def test_undo_in_blocks_takes_back_the_own_change(page_pair: tuple[Page, Page]) -> None:
+def test_undo_in_blocks_reverts_the_local_change(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "7\n")
@@ -235,7 +235,7 @@ def test_undo_in_blocks_takes_back_the_own_change(page_pair: tuple[Page, Page]) 
 
 
 @sampled
-def test_each_sees_at_which_block_the_other_is(page_pair: tuple[Page, Page]) -> None:
+def test_each_pupil_sees_the_others_block(page_pair: tuple[Page, Page]) -> None:
     ana, luz = page_pair
     go_to_line(luz, "B(1, 40)")
     mark = block(ana, "back").locator("> .mate_mark")
@@ -307,12 +307,12 @@ def race(members: Sequence[Page], count: int, seed: int) -> None:
         assert block_count >= len([row for row in text.splitlines() if row and "END_" not in row])
 
 
-def test_both_end_with_the_same_program(page_pair: tuple[Page, Page]) -> None:
+def test_two_pages_end_with_the_same_program(page_pair: tuple[Page, Page]) -> None:
     race(page_pair, 12, 1)
 
 
 @pytest.mark.long
-def test_four_end_with_the_same_program(
+def test_four_pages_end_with_the_same_program(
     page_pair: tuple[Page, Page], pages: Pages, shared_class: Class
 ) -> None:
     other_pages = others_of(pages, shared_class)

@@ -52,7 +52,7 @@ PASTE_SCRIPT = """(count) => {
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
+def test_changes_in_another_tab_become_one_previous_world(pages: Pages) -> None:
     """They precede this tab's own undo steps, and remove none of them."""
 
     def open_world(tab: Page, width_cm: int) -> None:
@@ -91,7 +91,7 @@ def test_changes_in_another_tab_are_one_world_before(pages: Pages) -> None:
     assert other_world.start.x_cm == 45  # without any earlier step
 
 
-def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
+def test_programs_of_both_tabs_are_kept(pages: Pages) -> None:
     page = pages.open()
     other_page = pages.another(page)
     for k in (1, 2):
@@ -123,7 +123,7 @@ def test_work_of_two_tabs_is_kept_of_both(pages: Pages) -> None:
     assert [text.count("[[walls]]") for text in (newest, *older_texts)] == [2, 1]
 
 
-def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:
+def test_a_program_of_a_hidden_tab_is_kept(page: Page) -> None:
     """A phone ends hidden pages, which hear nothing of it."""
     write(page, "SI|F(9, 91)")
     page.evaluate(
@@ -133,7 +133,7 @@ def test_a_program_of_a_tab_that_is_hidden_is_kept(page: Page) -> None:
     assert "SI|F(9, 91)" in page.evaluate("localStorage['tiniscript.versions']")
 
 
-def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Pages) -> None:
+def test_a_browser_without_storage_reports_it_and_otherwise_works(pages: Pages) -> None:
     """Otherwise the next tab would begin with an older program for no visible reason."""
     page = pages.open(is_alone=True)
     page.evaluate(FULL_STORAGE_SCRIPT, ["localStorage"])
@@ -158,7 +158,7 @@ def test_a_browser_without_room_or_storage_says_so_and_does_all_else(pages: Page
     page.locator("#versions").wait_for()
 
 
-def test_a_program_that_is_too_long_to_be_kept_says_so(page: Page) -> None:
+def test_an_overlong_program_is_reported_as_not_kept(page: Page) -> None:
     """450,000 characters are kept as the work; a million is more than the compiler reads."""
     for count in (30_000, 70_000):
         write(page, "")

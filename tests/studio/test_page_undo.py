@@ -92,7 +92,7 @@ ACTIONS: tuple[Callable[[Page, random.Random], None], ...] = (
 
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(12))
-def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -> None:
+def test_each_undo_restores_the_text_and_every_position(page: Page, seed: int) -> None:
     """Each redo does the same, even if only the text or a place had changed."""
     dice = random.Random(seed)
     page.select_option("#robot", "tinibot32")
@@ -110,7 +110,7 @@ def test_each_undo_brings_back_the_text_and_every_place(page: Page, seed: int) -
         wait_for_state(page, wanted_state)
 
 
-def test_undo_moves_a_hat_back_and_keeps_it(page: Page) -> None:
+def test_undo_moves_a_hat_block_back(page: Page) -> None:
     """After it was dragged in, or the program was written as text: in the blocks and by the key."""
     start(page, "SI|F(2, 80);\n")
     drag(page, "Events", "each time", None)

@@ -107,7 +107,7 @@ def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(heard_page: Pag
     assert page.evaluate("window.heard") == [550]
 
 
-def test_each_show_of_a_run_has_a_row_of_its_own(page: Page) -> None:
+def test_each_show_of_a_run_has_its_own_row(page: Page) -> None:
     run(page, "X = 2; SHOW(X * X); X = 3; SHOW(X * X)\nSHOW(7); SHOW(X)")
     rows = page.locator("#values > div").evaluate_all(
         "rows => rows.map((row) => [...row.children].map((cell) => cell.textContent).join(': '))"
@@ -118,7 +118,7 @@ def test_each_show_of_a_run_has_a_row_of_its_own(page: Page) -> None:
     assert "SHOW 9" in (page.locator("#trace").text_content() or ""), "values alone"
 
 
-def test_what_a_program_reads_comes_before_what_it_does_not(page: Page) -> None:
+def test_values_that_a_program_reads_are_listed_first(page: Page) -> None:
     run(page, "X = DISTANCE; SHOW(X)")
     names = page.locator("#values dt").all_inner_texts()
     assert names[:3] == ["Time", "Motors", "Collisions"]
@@ -131,7 +131,7 @@ def test_what_a_program_reads_comes_before_what_it_does_not(page: Page) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "SI|", "// F(1)", "SI|;;"])
-def test_an_empty_program_says_so_before_and_after_its_run(page: Page, text: str) -> None:
+def test_an_empty_program_is_reported_before_and_after_its_run(page: Page, text: str) -> None:
     sentence = "The program is empty: put a block or a line into it, then press Run."
     write(page, text)
     page.locator("#status", has_text=sentence).wait_for()
@@ -144,7 +144,7 @@ def test_an_empty_program_says_so_before_and_after_its_run(page: Page, text: str
 
 
 @sampled
-def test_no_sound_is_open_at_rest(pages: Pages) -> None:
+def test_no_audio_context_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. A page must wait before it closes
     this."""
     page = pages.blank(is_alone=True)
@@ -165,7 +165,7 @@ def test_no_sound_is_open_at_rest(pages: Pages) -> None:
 
 
 @sampled
-def test_stop_and_pause_silence_it(heard_page: Page) -> None:
+def test_stop_and_pause_silence_the_buzzer(heard_page: Page) -> None:
     page = heard_page
     write(page, "BEEP(30, 440)")
     for button, phase in (("pause", "paused"), ("stop", "ended")):
@@ -180,7 +180,7 @@ def test_stop_and_pause_silence_it(heard_page: Page) -> None:
 
 
 @sampled
-def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(heard_page: Page) -> None:
+def test_a_crash_is_heard_reported_with_its_place_and_shaken(heard_page: Page) -> None:
     page = heard_page
     noted_text = "[window.heard.length, window.started, window.shaken]"
     page.evaluate(
@@ -200,7 +200,7 @@ def test_a_crash_is_heard_and_said_with_where_it_was_and_shakes(heard_page: Page
 
 
 @sampled
-def test_nothing_shakes_for_who_wants_it_still(heard_page: Page) -> None:
+def test_shaking_respects_reduced_motion(heard_page: Page) -> None:
     page = heard_page
     page.emulate_media(reduced_motion="reduce")
     run(page, CRASH_PROGRAM)
@@ -210,7 +210,7 @@ def test_nothing_shakes_for_who_wants_it_still(heard_page: Page) -> None:
 
 
 @sampled
-def test_ways_stay_until_they_are_erased(heard_page: Page) -> None:
+def test_paths_stay_until_they_are_erased(heard_page: Page) -> None:
     page = heard_page
     page.select_option("#world", "obstacles")
     assert count(page, WAY_COLOUR) == 0
@@ -244,7 +244,7 @@ y_cm = 50
 
 
 @sampled
-def test_flags_points_and_stars_are_seen_and_heard(heard_page: Page) -> None:
+def test_flags_points_and_stars_are_shown_and_heard(heard_page: Page) -> None:
     page = heard_page
     page.set_input_files(
         "#world_file", {"name": "task.toml", "mimeType": "", "buffer": TASK.encode()}
@@ -284,7 +284,7 @@ RIVAL_COLOUR, DARK_COLOUR = "9a4fc0", "3b434c"
 
 
 @sampled
-def test_a_bout_is_seen_and_heard_and_how_it_ends(heard_page: Page) -> None:
+def test_a_bout_and_its_result_are_shown_and_heard(heard_page: Page) -> None:
     page = heard_page
     page.set_input_files(
         "#world_file",

@@ -133,7 +133,7 @@ def check_own_worker(page: Page, server: serving.Server) -> None:
 @pytest.mark.sampled("name", "options")
 @pytest.mark.parametrize("name", ["evil.js", serving.WORKER_FILE])
 @pytest.mark.parametrize("options", [{}, {"updateViaCache": "all"}], ids=["", "kept by browsers"])
-def test_no_worker_of_a_stranger_hears_the_code(
+def test_no_foreign_service_worker_gets_the_code(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> None:
     """This holds for any name of the worker, and however long a browser keeps it."""
@@ -151,7 +151,7 @@ def test_no_worker_of_a_stranger_hears_the_code(
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-def test_the_own_worker_stays(context: BrowserContext) -> None:
+def test_the_pages_own_service_worker_stays(context: BrowserContext) -> None:
     """A page with a code loads once if there is the server's own worker, or none."""
     with serve_robots() as server:
         loads: list[str] = []
@@ -164,7 +164,7 @@ def test_the_own_worker_stays(context: BrowserContext) -> None:
         assert len(loads) == 2
 
 
-def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: Stranger) -> None:
+def test_a_service_worker_that_stays_gets_no_code(context: BrowserContext, loot: Stranger) -> None:
     port = leave_worker(context, loot, "evil.js", {})
     with serve_robots(port) as server:
         page = context.new_page()
@@ -177,7 +177,7 @@ def test_a_worker_that_does_not_go_gets_no_code(context: BrowserContext, loot: S
     assert loot.loot == []
 
 
-def test_a_browser_that_asks_for_a_strangers_worker_is_told_that_it_goes() -> None:
+def test_a_request_for_a_foreign_service_worker_unregisters_it() -> None:
     page = {
         "index.html": serving.File(b"x", "text/html"),
         serving.WORKER_FILE: serving.File(b"y", "z"),

@@ -57,7 +57,7 @@ def floor(page: Page) -> Page:
     return page
 
 
-def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
+def test_world_parts_are_added_moved_and_deleted_by_mouse(floor: Page) -> None:
     shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
     assert floor.locator("#world_add_boxes").get_attribute("aria-pressed") == "true"
@@ -81,7 +81,7 @@ def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
 
 
 @sampled
-def test_an_undo_while_a_finger_moves_a_part_puts_it_back(floor: Page) -> None:
+def test_an_undo_during_a_drag_puts_the_part_back(floor: Page) -> None:
     shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (170, 80)])
@@ -111,7 +111,7 @@ def picture(page: Page) -> str:
 
 
 @sampled
-def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
+def test_a_cancelled_stroke_disappears(floor: Page) -> None:
     start = save_world(floor).start
     floor.keyboard.down("Control")
     drag(floor, [(56, 82.5), (56, 90)])  # a press with Ctrl is the menu of a Mac
@@ -138,7 +138,7 @@ def test_a_stroke_that_is_let_go_is_not_seen(floor: Page) -> None:
 
 
 @sampled
-def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
+def test_each_kind_of_part_is_drawn_and_selectable(floor: Page) -> None:
     floor.click("#world_add_walls")
     drag(floor, [(60, 30), (100, 60)])
     floor.click("#world_add_lines")
@@ -160,7 +160,7 @@ def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
     assert [(round(x), round(y)) for x, y in save_world(floor).walls[0]] == [(60, 50), (100, 60)]
 
 
-def test_keys_alone_are_enough(floor: Page) -> None:
+def test_the_world_editor_works_by_keyboard(floor: Page) -> None:
     press = floor.keyboard.press
     floor.click("#world_done")
     floor.locator("#world_draw").focus()
@@ -203,7 +203,7 @@ def test_keys_alone_are_enough(floor: Page) -> None:
 
 
 @sampled
-def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
+def test_a_handle_turns_the_robot_and_flags_can_be_placed(floor: Page) -> None:
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (200, 80)])
     drag(floor, [(210, 70), (205, 105), (170, 110)])  # the handle of a part that is long
@@ -230,7 +230,7 @@ def test_a_handle_turns_the_robot_and_a_flag_is_put(floor: Page) -> None:
 
 @sampled
 @pytest.mark.parametrize("step", ["world_undo", "world_redo"])
-def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> None:
+def test_undo_steps_of_a_world_do_not_affect_another(floor: Page, step: str) -> None:
     drag(floor, [(56, 82.5), (56, 90)])
     floor.click("#world_undo")
     if step == "world_undo":
@@ -243,7 +243,7 @@ def test_no_step_of_a_world_is_made_in_another_one(floor: Page, step: str) -> No
 
 
 @sampled
-def test_nothing_leaves_the_floor(floor: Page) -> None:
+def test_no_part_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
     assert save_world(floor).start[:2] == (0, 200)
     wait_for_status(floor, "does not fit there")
@@ -284,7 +284,7 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     assert abs(redrawn.start.y_cm - 100) <= 1 and redrawn.lines == world.lines
 
 
-def test_the_floor_is_seen_where_the_curves_were(page: Page) -> None:
+def test_the_floor_replaces_the_curves(page: Page) -> None:
     page.click("#seen_plot")
     page.click("#world_draw")
     assert page.locator("#arena").is_visible() and not page.locator("#plot").is_visible()
@@ -337,7 +337,7 @@ es = "aula"
 
 
 @sampled
-def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
+def test_a_file_is_opened_or_refused_with_a_reason(floor: Page) -> None:
     open_world_file(floor, OWN_WORLD)
     wait_for_status(floor, "Opened: own.toml")
     wanted_world = read(OWN_WORLD.decode(), "own")

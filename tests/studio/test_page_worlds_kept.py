@@ -41,7 +41,7 @@ def walls_of(page: Page, label: str) -> int:
     return count
 
 
-def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
+def test_a_world_is_not_overwritten_by_the_next(pages: Pages) -> None:
     page = pages.open()
     draw_wall(page)
     page.select_option("#world", "obstacles")
@@ -69,7 +69,7 @@ def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
 
 
 @sampled
-def test_changes_of_one_world_make_no_other(page: Page) -> None:
+def test_changes_of_one_world_create_no_other(page: Page) -> None:
     draw_wall(page)
     count = len(list_own_worlds(page))
     drag(page, [OBSTACLES_START, (56, 90)])
@@ -80,7 +80,7 @@ def test_changes_of_one_world_make_no_other(page: Page) -> None:
     assert len(list_own_worlds(page)) == count
 
 
-def test_five_worlds_before_are_kept(page: Page) -> None:
+def test_five_previous_worlds_are_kept(page: Page) -> None:
     page.click("#world_draw")
     for k in range(8):
         open_world_file(page, NO_BORDER, f"w{k}.toml")
@@ -95,7 +95,7 @@ def test_five_worlds_before_are_kept(page: Page) -> None:
 
 
 @sampled
-def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
+def test_damaged_previous_worlds_do_no_harm(page: Page) -> None:
     draw_wall(page)
     page.click("#world_draw")
     save_world(page)
@@ -113,7 +113,7 @@ def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
 
 
 @sampled
-def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
+def test_nothing_is_drawn_before_the_kept_world_is_loaded(page: Page) -> None:
     draw_wall(page)
     page.select_option("#world", "obstacles")
     own_worlds = list_own_worlds(page)
@@ -137,7 +137,7 @@ def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
 
 
 @sampled
-def test_a_drag_ends_where_another_world_begins(page: Page) -> None:
+def test_a_drag_ends_when_another_world_is_opened(page: Page) -> None:
     page.mouse.move(*screen_position(page, OBSTACLES_START))
     page.mouse.down()
     page.mouse.move(*screen_position(page, (56, 100)), steps=3)
@@ -149,7 +149,7 @@ def test_a_drag_ends_where_another_world_begins(page: Page) -> None:
 
 
 @sampled
-def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
+def test_an_abandoned_run_moves_nothing(page: Page) -> None:
     write(page, "F(30, 80)")
     page.select_option("#speed", "20")
     page.click("#run")
@@ -169,7 +169,7 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
 
 
 @sampled
-def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
+def test_the_robot_stays_on_the_floor_at_any_size(page: Page) -> None:
     page.click("#world_draw")
     open_world_file(page, NO_BORDER)
     wait_for_status(page, "Opened")
@@ -180,7 +180,7 @@ def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
     assert save_world(page).start[:2] == (120.06, 80)
 
 
-def test_a_world_that_cannot_be_written_is_told(page: Page) -> None:
+def test_an_unwritable_world_is_reported(page: Page) -> None:
     """A mistake of ours: the page asks for the text of a world whose robot is off its floor."""
     page.click("#world_draw")
     page.evaluate(

@@ -56,17 +56,17 @@ def recording_of(*events: tuple[int, str], text: str = SHOW_PROGRAM) -> tuple[st
     return parting(*events, text=text)[:3]
 
 
-def test_readings_of_the_recording_are_those_of_the_virtual_sensors() -> None:
+def test_recorded_readings_are_fed_to_the_virtual_sensors() -> None:
     """Its world has nothing at 17.5 cm: calculations from the reading agree, too."""
     assert parting(*LINES) == Divergence("same", 5)
 
 
-def test_what_is_pressed_is_known_where_the_program_shows_it() -> None:
+def test_pressed_keys_are_known_where_the_program_shows_them() -> None:
     assert parting(*LINES, text=SHOW_PROGRAM.replace("DISTANCE", "PAD_Y")) == Divergence("same", 5)
 
 
 @pytest.mark.parametrize("value", ["17.5", "38.7"])
-def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -> None:
+def test_no_divergence_is_marked_after_an_unrecorded_reading(value: str) -> None:
     """This holds whether the rest is the same or not."""
     text = "SHOW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
     lines = [(20, "SHOW 1"), (40, f"SHOW {value}"), (60, "SHOW 2"), (61, "DONE")]
@@ -78,7 +78,7 @@ def test_after_a_reading_that_is_not_recorded_no_parting_is_marked(value: str) -
 
 
 @pytest.mark.parametrize("value", ["TRUE", "FALSE"])
-def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(value: str) -> None:
+def test_a_recorded_reading_holds_from_its_time_on(value: str) -> None:
     text = "W(1);\nIF(KEY_A);SHOW(1);ENDIF;W(1);\nSHOW(DISTANCE * 2)"
     show_rows = [(1017, "SHOW 1")] if value == "TRUE" else []
     rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *show_rows,
@@ -88,7 +88,7 @@ def test_a_reading_that_is_recorded_is_that_of_the_virtual_sensor_from_then_on(v
     assert recording_of(*rows, text=text) == ("value", len(show_rows), 3)
 
 
-def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
+def test_the_first_divergence_is_reported_with_its_line() -> None:
     divergence = parting(*LINES[:3], (2060, "SHOW 9"), LINES[4])
     assert (divergence.what, divergence.agreed, divergence.line) == ("value", 3, 5)
     assert divergence.robot == Row(2060, "SHOW 9")
@@ -97,12 +97,12 @@ def test_the_first_value_or_time_that_differs_is_told_with_its_line() -> None:
     assert recording_of(*late_rows) == ("time", 2, 3)
 
 
-def test_a_quarter_of_a_second_and_a_twentieth_of_the_time_are_the_same_time() -> None:
+def test_time_differences_within_tolerance_are_ignored() -> None:
     assert recording_of((281, "SHOW 1"), text="SHOW(1)")[0] == "same"  # the virtual one: 17
     assert recording_of((282, "SHOW 1"), text="SHOW(1)")[0] == "time"
 
 
-def test_whoever_goes_on_alone_is_told() -> None:
+def test_a_robot_that_continues_longer_is_reported() -> None:
     assert recording_of(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
     divergence = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
     assert divergence[:2] == ("value", 1)  # DONE in place of the second one
@@ -120,7 +120,7 @@ def test_a_recording_that_ends_early_is_compared_as_far_as_it_goes(
     assert recording_of(LINES[0], (1020, "SHOW 36"), *end)[:2] == ("value", 1)
 
 
-def test_what_did_not_arrive_ends_the_comparison() -> None:
+def test_missed_events_end_the_comparison() -> None:
     assert parting(*LINES[:2], (2060, "MISSED")) == Divergence("missed", 2)
     assert parting((9, "MISSED")) == Divergence("missed", 0)
     assert recording_of(LINES[0], (1020, "SHOW 36"), (2060, "MISSED"))[0] == "value"
@@ -128,7 +128,7 @@ def test_what_did_not_arrive_ends_the_comparison() -> None:
 
 
 @pytest.mark.parametrize("waited_ms", [0, 100, 7000])
-def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
+def test_a_button_program_is_compared_from_its_first_event(
     waited_ms: int,
 ) -> None:
     """A hand is slow, and no robot tells when its program begins."""
@@ -152,7 +152,7 @@ def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
         ("SB|W(30);SHOW(5)", ((4000, "STOPPED"),)),
     ],
 )
-def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
+def test_the_virtual_robot_runs_only_as_long_as_compared(
     text: str, events: tuple[tuple[int, str], ...]
 ) -> None:
     played_run = play(prepare(decode(file(*events, text=text, was_started_by_button=True))))
@@ -160,13 +160,13 @@ def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
     assert played_run.robot.now_ms < 8700
 
 
-def test_a_number_that_no_sensor_reads_is_as_near_as_it_can() -> None:
+def test_an_impossible_reading_is_approximated() -> None:
     divergence = parting((1000, "SHOW 9999999"), text="W(1);SHOW(DISTANCE)")
     assert divergence.what == "value" and divergence.virtual is not None
     assert divergence.virtual.event == "SHOW 400"
 
 
-def test_a_program_that_means_something_else_now_is_not_played() -> None:
+def test_a_program_with_a_changed_meaning_is_not_replayed() -> None:
     for text in ("SHOW(1)", "SHOW("):
         with pytest.raises(BadRecording, match="other_program"):
             prepare(
@@ -219,7 +219,7 @@ VIRTUAL = {"robot_kind": recordings.VIRTUAL}
         (b"{" + b" " * 1_000_000, "too_long", 1),
     ],
 )  # fmt: skip
-def test_files_of_anybody_are_refused_with_a_reason(data: bytes, reason: str, line: int) -> None:
+def test_foreign_files_are_refused_with_a_reason(data: bytes, reason: str, line: int) -> None:
     with pytest.raises(BadRecording) as exception_info:
         decode(data)
     assert (exception_info.value.reason, exception_info.value.line) == (reason, line)
@@ -283,7 +283,7 @@ def test_a_recording_has_a_reading_where_it_changes_and_nothing_after_its_end(se
 # -- a virtual robot's run is the same again ------------------------------------------------------
 
 
-def test_each_row_that_is_another_one_is_told() -> None:
+def test_each_differing_row_is_reported() -> None:
     data, rows = record_run(3)
     assert play(prepare(decode(data))).divergence == Divergence("again", len(rows))
     lines = data.decode().splitlines()
@@ -300,11 +300,11 @@ def test_each_row_that_is_another_one_is_told() -> None:
 
 @pytest.mark.parametrize("number", range(12))
 @pytest.mark.parametrize("is_held", [False, True])
-def test_a_run_is_the_same_again(number: int, is_held: bool) -> None:
+def test_a_run_is_reproduced(number: int, is_held: bool) -> None:
     assert differs(number, is_held) is None
 
 
-def test_a_played_run_takes_nothing_of_who_looks_on() -> None:
+def test_a_replay_accepts_no_input_from_the_viewer() -> None:
     data, rows = record_run(5)
     played_run = PlayedRun(prepare(decode(data)))
     while not played_run.is_over:
@@ -320,7 +320,7 @@ UNTOLD_TEXT = "SHOW(1);\nX = DISTANCE + 0;\nW(1);\nX = DISTANCE + 0;\nSHOW(X);\n
 
 @pytest.mark.parametrize("value", ["8", "9"])
 @pytest.mark.parametrize("is_known_again", [False, True])
-def test_behind_a_reading_that_was_not_told_no_parting_is_marked(
+def test_no_divergence_is_marked_after_an_unreported_reading(
     value: str, is_known_again: bool
 ) -> None:
     rows = [(0, "READ DISTANCE 8"), (1, "UNREAD DISTANCE"), (20, "SHOW 1"), (1040, f"SHOW {value}"),
@@ -334,7 +334,7 @@ def test_behind_a_reading_that_was_not_told_no_parting_is_marked(
     assert wrong.what == "value", "before it"
 
 
-def test_a_sensor_that_is_shown_is_known_there_also_where_others_of_it_were_not_told() -> None:
+def test_a_shown_sensor_value_is_known_despite_unreported_readings() -> None:
     rows = [(0, "READ DISTANCE 8"), (1, "UNREAD DISTANCE"), (1020, "SHOW 9"), (1040, "DONE")]
     assert parting(*rows, text="X = DISTANCE + 0;W(1);\nSHOW(DISTANCE)").what == "same"
     text = "X = DISTANCE + 0;W(1);\nSHOW(DISTANCE);\nX = DISTANCE + 0;W(1)"
@@ -342,7 +342,7 @@ def test_a_sensor_that_is_shown_is_known_there_also_where_others_of_it_were_not_
     assert (divergence.what, divergence.line) == ("unread", 3)
 
 
-def test_a_reading_may_stand_after_rows_that_are_later() -> None:
+def test_a_reading_may_follow_later_rows() -> None:
     text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
     rows = [(1020, "SHOW 8"), (3, "READ DISTANCE 8"), (1021, "DONE")]
     assert parting(*rows, text=text) == Divergence("same", 2)
@@ -350,13 +350,13 @@ def test_a_reading_may_stand_after_rows_that_are_later() -> None:
         parting((1020, "SHOW 8"), (3, "SHOW 8"), text=text)
 
 
-def test_a_reading_that_no_sensor_has_is_the_nearest_that_it_has() -> None:
+def test_an_out_of_range_reading_becomes_the_nearest_valid_one() -> None:
     text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
     rows = [(3, "READ DISTANCE 9999999"), (4, "READ NOBODY 1"), (1020, "SHOW 400"), (1021, "DONE")]
     assert parting(*rows, text=text) == Divergence("same", 2)
 
 
-def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
+def test_readings_have_the_robots_time_whenever_they_arrive() -> None:
     """Also where more than 65 s go by between two of them, and each is 300 ms under way."""
     kit, rng = TINIBOT.kit, random.Random(1)
     for _ in range(200):
@@ -376,7 +376,7 @@ def test_readings_have_the_time_of_the_robot_whenever_they_come() -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_readings_of_each_run_of_a_connection_are_timed_from_its_own_start(seed: int) -> None:
+def test_readings_of_each_run_are_timed_from_its_start(seed: int) -> None:
     rng, events, now_ms = random.Random(seed), list[tuple[int, ReadingEvent]](), 0
     connection: Any = SimpleNamespace(
         robot=SimpleNamespace(kit=TINIBOT.kit.fingerprint),

@@ -25,7 +25,7 @@ def state_after(text: str, robot: str, ms: int) -> dict[str, Any]:
     return json.loads(json.dumps(simulation.state()))  # type: ignore[no-any-return]
 
 
-def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
+def test_a_sensor_on_a_servo_faces_the_servos_direction() -> None:
     """A servo with a sensor has no jaws."""
     robot_by_name = {robot["name"]: robot for robot in description()["robots"]}
     grabber = json.loads(json.dumps(robot_by_name["grabber"]))
@@ -52,7 +52,7 @@ def test_a_sensor_on_a_servo_looks_where_that_is_turned() -> None:
     assert len(jaws[0]) == len(jaws[1]) + 2
 
 
-def test_wheels_turn_as_far_as_they_have_rolled() -> None:
+def test_wheels_are_drawn_turned_by_the_rolled_distance() -> None:
     still_drawing, ahead_drawing, backward, turning, turned = drawings_of(
         *(("tinibot", None, {**STANDING_STILL, "rolled": rolled})
           for rolled in ([0, 0], [0.5, 0.5], [-0.5, -0.5], [1.6, 1.6], [0.5, 0]))
@@ -77,7 +77,7 @@ def test_wheels_turn_as_far_as_they_have_rolled() -> None:
     assert treads(turned, False) == treads(still_drawing, False)
 
 
-def test_what_is_on_is_seen() -> None:
+def test_active_devices_are_drawn() -> None:
     """A lamp, the robot's own light where its button would start it, and the buzzer's sound."""
     of_rows = (
         ("grabber", state_after("LED(TRUE);W(1)", "grabber", 300), STANDING_STILL),
@@ -93,7 +93,7 @@ def test_what_is_on_is_seen() -> None:
     assert shapes(loud, "stroke", WAVE_COLOUR) and not shapes(silent_drawing, "stroke", WAVE_COLOUR)
 
 
-def test_the_jaws_are_as_open_as_they_are() -> None:
+def test_the_jaws_are_drawn_with_their_opening() -> None:
     def gap(drawing: Drawing) -> float:
         right_jaw, left = shapes(drawing, "stroke", "#37434f")
         return left[-1] - right_jaw[-1]
@@ -106,7 +106,7 @@ def test_the_jaws_are_as_open_as_they_are() -> None:
     assert half - closed == pytest.approx(wide_gap - half)
 
 
-def test_a_cone_is_as_long_as_what_is_read() -> None:
+def test_a_cone_is_drawn_with_the_length_of_its_reading() -> None:
     state = state_after("W(1)", "tinibot", 300)
     [drawing] = drawings_of(("tinibot", state, STANDING_STILL))
     [cone] = shapes(drawing, "fill", "#e0452f33")
@@ -122,7 +122,7 @@ def test_a_cone_is_as_long_as_what_is_read() -> None:
     assert dim[0] < bright[0] and dim[1] == bright[1]  # the other one has not changed
 
 
-def test_a_robot_tells_where_it_touches_something() -> None:
+def test_contact_points_of_a_robot_are_reported() -> None:
     """It turns right into a box, whose left side is 184 cm from the left wall."""
     assert state_after("F(1, 80)", "tinibot", 300)["touches"] is None
     state = state_after("F(9, 80)", "tinibot", 4000)

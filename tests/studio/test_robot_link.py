@@ -81,7 +81,7 @@ class Robot:
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_a_page_leaves_its_own_run_alone_to_be_stopped(seed: int) -> None:
+def test_the_run_of_a_page_is_tracked_until_its_end(seed: int) -> None:
     """Earlier runs, whoever started them, and late messages do not matter: its run counts until it
     ends, or another one begins."""
     rng = random.Random(seed)

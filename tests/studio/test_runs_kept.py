@@ -40,7 +40,7 @@ def trimmed(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
     return runs
 
 
-def test_the_newest_runs_are_kept_as_far_as_there_is_room_and_the_oldest_goes_first() -> None:
+def test_the_newest_runs_are_kept_while_there_is_room() -> None:
     """One of which nothing is known goes as soon as another one begins."""
     histories = stories()
     by_count = by_size = by_nothing = 0

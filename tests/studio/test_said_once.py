@@ -108,7 +108,7 @@ def blocks_of_code(text: str) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, language: str) -> None:
+def test_no_lesson_repeats_the_text_of_a_block(page_data: Path, language: str) -> None:
     rows = []
     for number in range(1, len(catalogue.folders()) + 1):
         robot = catalogue.load(catalogue.folder_of(str(number))).robot
@@ -128,7 +128,7 @@ def test_no_lesson_says_beside_a_block_what_the_block_says(page_data: Path, lang
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -> None:
+def test_a_warning_names_code_like_blocks_do(page_data: Path, language: str) -> None:
     """For each code the program in its explanation: no word of the text, and no line."""
     learn = json.dumps({"do": "check", "robot": "tinibot", "language": language})
     warned = [code for code, about in CODES.items() if not about.is_mistake]
@@ -156,7 +156,7 @@ def test_a_warning_names_its_code_as_blocks_do(page_data: Path, language: str) -
     ("write f(2, 80), F(2 80 or X", "write `f(2, 80)`, `F`(2 80 or X"),
     ("A file(s) with 1 MB; the character `, F", "A file(s) with 1 MB; the character `, F"),
 ])  # fmt: skip
-def test_code_in_a_sentence_is_what_is_read_as_a_block(sentence: str, marked_text: str) -> None:
+def test_code_in_a_sentence_matches_the_block_text(sentence: str, marked_text: str) -> None:
     assert block_speech.mark_code(sentence, profile_of("tinibot").kit) == marked_text
 
 
@@ -175,5 +175,5 @@ def test_no_text_has_a_word_twice(language: str) -> None:
     ([(True, "gira a la izquierda"), (False, " gira.")], ["gira"]),
     ([(True, "turn left"), (False, ". Turn the key.")], []),
 ])  # fmt: skip
-def test_what_is_twice_is_found(parts: Parts, repeated_texts: list[str]) -> None:
+def test_repetitions_are_found(parts: Parts, repeated_texts: list[str]) -> None:
     assert list_repetitions(parts) == repeated_texts

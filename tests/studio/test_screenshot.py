@@ -12,7 +12,7 @@ from tools.builds import screenshot
 
 @pytest.mark.parametrize("scene", screenshot.SCENES)
 @pytest.mark.parametrize("language", screenshot.LANGUAGES)
-def test_a_picture_has_words_of_the_page_alone_and_is_shown(language: str, scene: str) -> None:
+def test_a_screenshot_has_only_texts_of_the_page_and_is_shown(language: str, scene: str) -> None:
     assert screenshot.unusable_reason(language, scene) == ""
     with Image.open(screenshot.picture(language, scene)) as image:
         assert image.size == (screenshot.VIEWPORT["width"], screenshot.VIEWPORT["height"])

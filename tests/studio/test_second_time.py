@@ -235,9 +235,7 @@ class ComingPage:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
-    hosting: Hosting, seed: int
-) -> None:
+def test_nothing_starts_after_a_stop_for_all_at_any_time(hosting: Hosting, seed: int) -> None:
     """Neither open pages nor new connections start anything; driving robots stop. After the latch
     time, pages drive again.
     """
@@ -264,7 +262,7 @@ def test_nobody_starts_after_a_stop_for_all_whenever_it_has_come(
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: int) -> None:
+def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed: int) -> None:
     """A new connection waits for all that still have the port, and is made once. A STOP for all
     stops those that drive, and the result of each is soon known. A page's STOP stops its robot even
     after a reload. A page learns why its connection has ended, whoever connects meanwhile, and at
@@ -316,7 +314,7 @@ def test_who_has_had_a_port_matters_to_nobody_after_it(hosting: Hosting, seed: i
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_each_silence_of_a_page_stops_what_it_drives_once(seed: int) -> None:
+def test_each_silence_of_a_page_stops_its_robot_once(seed: int) -> None:
     """However often it was silent before, and whether it drove then; one that is heard goes on."""
     rng = Random(seed)
     attending, link = Attending(Room.clock), NotingLink()
@@ -377,7 +375,7 @@ class HeldClient:
 @pytest.mark.parametrize(
     "lets_go_values", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)]
 )
-def test_a_port_that_is_let_go_once_is_held_for_nobody(
+def test_a_released_port_is_held_for_nobody(
     monkeypatch: pytest.MonkeyPatch, lets_go_values: tuple[int, ...]
 ) -> None:
     """It does not matter who else releases it, before or after: a page, the end of a turn, or the
@@ -450,7 +448,7 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_request_is_answered_as_the_first_one_of_a_connection_is(
+def test_a_request_is_answered_like_the_first_of_a_connection(
     server: serving.Server, ask: Callable[[HTTPConnection, str, int], tuple[int, bytes, bool]],
     seed: int,
 ) -> None:  # fmt: skip

@@ -82,7 +82,7 @@ ENDS_BY_PART = {
 
 @pytest.mark.sampled("part", keep=3)
 @pytest.mark.parametrize("part", ENDS_BY_PART)
-def test_it_is_as_on_a_page_that_was_just_loaded(page_data: Path, part: str) -> None:
+def test_a_used_page_behaves_like_a_fresh_one(page_data: Path, part: str) -> None:
     lines = in_node(SCRIPT, str(page_data), part, str(SEEDS))
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == SEEDS
@@ -99,9 +99,7 @@ ROW = 8  # seeds
 
 @pytest.mark.sampled("first_seed", keep=1)
 @pytest.mark.parametrize("first_seed", range(0, 10 * ROW, ROW))
-def test_whoever_begins_anew_sees_what_a_tab_that_is_loaded_again_shows(
-    page_data: Path, first_seed: int
-) -> None:
+def test_starting_anew_shows_the_same_as_a_reload(page_data: Path, first_seed: int) -> None:
     """Whatever was pressed before, and whatever is pressed then; what the page keeps, both keep.
 
     At rest the page says and shows what is so, and nothing that was typed is lost."""

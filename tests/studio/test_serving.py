@@ -50,7 +50,7 @@ def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: 
     serving.Server(page, first_server.server_port).server_close()
 
 
-def test_the_page_comes_with_its_policy(server_host: str) -> None:
+def test_the_page_is_served_with_its_policy(server_host: str) -> None:
     response, data = ask(server_host, "/?anything=1")
     assert (response.status, data) == (200, b"<!doctype html>")
     policy = response.getheader("Content-Security-Policy") or ""
@@ -75,7 +75,7 @@ def test_the_page_comes_with_its_policy(server_host: str) -> None:
     ["/../secret.txt", "/%2e%2e/secret.txt", "//etc/passwd", "/inside/deep.js", "/build.json",
      "/notes.unknown", "/nothing", "/..\\secret.txt"],
 )  # fmt: skip
-def test_nothing_but_the_page_is_given(server_host: str, path: str) -> None:
+def test_only_the_page_is_served(server_host: str, path: str) -> None:
     response, data = ask(server_host, path)
     assert response.status == 404 and b"secret" not in data
 
@@ -92,20 +92,20 @@ def test_nothing_but_the_page_is_given(server_host: str, path: str) -> None:
         {"Origin": "http://127.0.0.1:1"},
     ],
 )
-def test_another_page_gets_nothing(server_host: str, headers: dict[str, str]) -> None:
+def test_requests_of_other_origins_are_refused(server_host: str, headers: dict[str, str]) -> None:
     port = server_host.partition(":")[2]
     filled = {name: value.replace("PORT", port) for name, value in headers.items()}
     response, data = ask(server_host, "/", headers=filled)
     assert response.status == 403 and b"doctype" not in data
 
 
-def test_its_own_page_gets_it(server_host: str) -> None:
+def test_requests_of_the_own_origin_are_answered(server_host: str) -> None:
     for name in (server_host, server_host.replace(serving.HOST, "localhost")):
         response, _ = ask(server_host, headers={"Host": name, "Origin": f"http://{name}"})
         assert response.status == 200, name
 
 
-def test_nothing_can_be_sent_to_it(server: serving.Server, server_host: str) -> None:
+def test_the_server_accepts_no_uploads(server: serving.Server, server_host: str) -> None:
     """It listens on this computer only."""
     for method in ("PUT", "DELETE", "OPTIONS", "TRACE"):
         assert ask(server_host, "/", method)[0].status == 501, method
@@ -122,7 +122,7 @@ def test_two_host_headers_are_refused(server: serving.Server, server_host: str) 
         assert client.recv(100).startswith(b"HTTP/1.1 403")
 
 
-def test_it_goes_on_until_it_is_ended(folder: Path) -> None:
+def test_the_server_runs_until_it_is_ended(folder: Path) -> None:
     code = (
         "import sys; from pathlib import Path; from tiniscript.studio import serving; "
         f"serving.PAGE = Path({str(folder)!r}); from tiniscript.cli import main; "
@@ -134,7 +134,7 @@ def test_it_goes_on_until_it_is_ended(folder: Path) -> None:
     assert command.wait_for_result().code == 0
 
 
-def test_a_port_that_is_taken_is_a_sentence(
+def test_an_occupied_port_gives_a_message(
     tsc: Tsc, server: serving.Server, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(serving, "PAGE", folder)

@@ -62,7 +62,7 @@ def join_class(class_: Class) -> str:
 @pytest.mark.parametrize(
     "host", ["127.0.0.1", "localhost", "evil.example", HOST, f"{HOST}.", "PORT.127.0.0.2"]
 )
-def test_the_host_is_the_shown_address_exactly(served_class: Class, host: str) -> None:
+def test_the_host_must_be_exactly_the_shown_address(served_class: Class, host: str) -> None:
     port = served_class.server.server_port
     for name in (host, f"{host}:{port}", f"{host}:1"):
         if name == host_header(served_class):
@@ -73,7 +73,7 @@ def test_the_host_is_the_shown_address_exactly(served_class: Class, host: str) -
     assert post(served_class, {"do": "join", "code": "", "name": ""}) == 200
 
 
-def test_the_page_is_packed_marked_and_fetched_once(served_class: Class) -> None:
+def test_the_page_is_compressed_tagged_and_fetched_once(served_class: Class) -> None:
     connection = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     connection.request("GET", "/", headers={"Accept-Encoding": "gzip, deflate"})
     answer = connection.getresponse()
@@ -92,7 +92,7 @@ def test_the_page_is_packed_marked_and_fetched_once(served_class: Class) -> None
     connection.close()
 
 
-def test_a_token_opens_its_own_door_alone(served_class: Class) -> None:
+def test_a_token_grants_only_its_own_access(served_class: Class) -> None:
     ana, teacher = join_class(served_class), served_class.server.entrances.token
     assert post(served_class, {"do": "here"}, ana) == 200
     assert post(served_class, {"do": "class"}, ana) == 400
@@ -103,7 +103,7 @@ def test_a_token_opens_its_own_door_alone(served_class: Class) -> None:
     assert post(served_class, {"do": "here"}, **{serving.TOKEN_HEADER: f"{ana}, {teacher}"}) == 403
 
 
-def test_who_has_no_token_sends_little(served_class: Class) -> None:
+def test_requests_without_a_token_are_small(served_class: Class) -> None:
     request = {"do": "join", "code": "", "name": "x" * 2000}
     assert post(served_class, request) == 400
     ana = join_class(served_class)
@@ -112,7 +112,7 @@ def test_who_has_no_token_sends_little(served_class: Class) -> None:
 
 
 @pytest.mark.parametrize("is_same", [False, True], ids=["another computer", "the same"])
-def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) -> None:
+def test_many_connections_block_nobody(served_class: Class, is_same: bool) -> None:
     """They come from one computer, a pupil's or another, and send nothing or half a request. The
     pupil's connection stays, and a new pupil is answered.
     """
@@ -139,7 +139,7 @@ def test_many_connections_keep_nobody_out(served_class: Class, is_same: bool) ->
     pupil.close()
 
 
-def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) -> None:
+def test_a_slow_stranger_does_not_disconnect_page_loads(served_class: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
     early_client = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     early_client.connect()
@@ -170,7 +170,7 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(served_class: Class) 
     ],
     ids=range(9),
 )
-def test_the_command_says_what_is_wrong(
+def test_the_command_reports_errors(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], code: int,
     message: str,
 ) -> None:  # fmt: skip
@@ -181,7 +181,7 @@ def test_the_command_says_what_is_wrong(
     assert "\x1b" not in result.err
 
 
-def test_the_second_class_of_a_user_is_refused_and_touches_nothing(
+def test_a_users_second_class_is_refused_without_effects(
     tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n')

@@ -48,7 +48,7 @@ def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
 PORTS = b'{"do": "ports"}'
 
 
-def test_its_own_page_is_answered(
+def test_requests_of_the_studios_page_are_answered(
     server: serving.Server, server_host: str, robots: Recorder
 ) -> None:
     status, data = post(server_host, server.entrances.token, PORTS)
@@ -76,7 +76,7 @@ def test_its_own_page_is_answered(
     ],
     ids=str,
 )
-def test_nobody_else_is(
+def test_requests_of_other_pages_are_refused(
     server: serving.Server, server_host: str, robots: Recorder, headers: dict[str, str | None]
 ) -> None:
     assert post(server_host, server.entrances.token, PORTS, headers=headers)[0] == 403
@@ -118,7 +118,7 @@ def test_a_wrong_length_and_two_tokens_are_refused(
     assert robots.requests == []
 
 
-def test_other_addresses_take_nothing(
+def test_other_addresses_accept_no_requests(
     server: serving.Server, server_host: str, robots: Recorder
 ) -> None:
     for path in ("/", "/robots/"):
@@ -126,7 +126,7 @@ def test_other_addresses_take_nothing(
     assert robots.requests == []
 
 
-def test_the_token_is_another_one_each_time_and_in_no_file(
+def test_the_token_differs_each_time_and_is_in_no_file(
     server: serving.Server, server_host: str, tmp_path: Path, robots: Recorder
 ) -> None:
     assert server.entrances.token not in server.entrance()
@@ -138,7 +138,7 @@ def test_the_token_is_another_one_each_time_and_in_no_file(
     assert server.entrances.token not in data.decode() + str(response.getheaders())
 
 
-def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
+def test_a_server_without_robots_offers_none(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<!doctype html>")
     with serves(serving.Server(serving.files(tmp_path), 0)) as server:
         server_host = f"{serving.HOST}:{server.server_port}"
@@ -146,7 +146,7 @@ def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
         assert server.entrance() == server.address
 
 
-def test_a_thousand_connections_keep_nobody_out(server: serving.Server, server_host: str) -> None:
+def test_a_thousand_connections_block_nobody(server: serving.Server, server_host: str) -> None:
     """They send nothing, or half a request; the page's own connection stays."""
     headers = {"Origin": f"http://{server_host}", serving.TOKEN_HEADER: server.entrances.token}
     page = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
@@ -170,7 +170,7 @@ def test_a_thousand_connections_keep_nobody_out(server: serving.Server, server_h
     page.close()
 
 
-def test_pages_that_were_closed_take_no_place(server: serving.Server, server_host: str) -> None:
+def test_closed_pages_take_no_place(server: serving.Server, server_host: str) -> None:
     """However many there were: a new one fetches its files over several connections at once."""
     for _ in range(serving.MOST_CONNECTIONS + 2):
         assert post(server_host, server.entrances.token, PORTS)[0] == 200
@@ -189,7 +189,9 @@ def test_pages_that_were_closed_take_no_place(server: serving.Server, server_hos
 
 
 @pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])
-def test_a_head_ends_at_16_kilobytes(server: serving.Server, server_host: str, line: bytes) -> None:
+def test_a_request_head_is_limited_to_16_kilobytes(
+    server: serving.Server, server_host: str, line: bytes
+) -> None:
     """However its bytes are divided into lines, and whether it ends or not."""
     with socket.create_connection(
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
@@ -248,7 +250,7 @@ def test_the_body_of_a_refused_request_is_no_request(
     assert heard_bytes.count(b"HTTP/1.1 ") <= 1 and b" 200 " not in heard_bytes, heard_bytes
 
 
-def test_the_page_that_has_asked_last_is_kept(
+def test_the_most_recently_active_page_is_kept(
     server: serving.Server, server_host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If all have shown the token, the one idle for longest is closed."""

@@ -28,7 +28,7 @@ from tiniscript.virtual.robot import VirtualRobot
         ("line", "liner", "line"),
     ],
 )
-def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -> None:
+def test_a_simulated_run_matches_the_virtual_robot(name: str, robot: str, world: str) -> None:
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
     simulation = Simulation(robot, worlds.load(world), compile(text, robot).image)
     simulation.advance(8000)
@@ -41,7 +41,7 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
     assert shorter > 10 and page_trace[:shorter] == virtual_trace[:shorter]
 
 
-def test_it_is_told_which_part_of_the_text_runs() -> None:
+def test_the_running_part_of_the_text_is_reported() -> None:
     text = "F(1, 80);\nR(0.5, 60);\nS"
     simulation = started_simulation(text)
     simulation.advance(300)
@@ -68,7 +68,7 @@ END_TASK
 """
 
 
-def test_it_is_told_where_each_task_is() -> None:
+def test_the_place_of_each_task_is_reported() -> None:
     """The parts that wait; an ended task has none."""
     simulation = started_simulation(TASKS, robot="tinibot32")
     places = check(TASKS.encode(), "tinibot32", "en").places
@@ -94,7 +94,7 @@ def test_it_is_told_where_each_task_is() -> None:
 
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
-def test_tasks_that_are_held_do_the_same_as_others(parts: Iterable[int]) -> None:
+def test_held_tasks_do_the_same_as_unheld_ones(parts: Iterable[int]) -> None:
     free, simulation = (
         started_simulation(TASKS, held_parts, robot="tinibot32") for held_parts in ((), parts)
     )
@@ -128,7 +128,7 @@ BUTTON_PROGRAM = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)
 
 
 @pytest.mark.parametrize("seed", range(16))
-def test_a_run_after_any_pushes_steps_and_stops_is_the_first_one(seed: int) -> None:
+def test_a_run_after_any_history_equals_the_first(seed: int) -> None:
     """Each stop counts, whatever stopped the robot before."""
     rng = random.Random(seed)
     fresh_simulation, simulation = (
@@ -183,7 +183,7 @@ def test_a_fault_is_named() -> None:
 STICK = "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP"
 
 
-def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
+def test_a_remote_control_is_read_until_it_times_out() -> None:
     """For half a second of the robot's time, however long that takes."""
     simulation = started_simulation(STICK)
     for _ in range(5):
@@ -200,7 +200,7 @@ def test_a_remote_control_is_read_until_nobody_says_anything() -> None:
     assert round(simulation.robot.driving.left) == 0
 
 
-def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> None:
+def test_keys_held_during_a_halt_count_when_the_run_continues() -> None:
     simulation = started_simulation(STICK, held_parts=(1,))
     simulation.advance(100)
     assert simulation.held_at is not None
@@ -219,7 +219,7 @@ def test_what_is_held_while_it_is_held_or_stopped_counts_when_it_goes_on() -> No
     assert round(simulation.robot.driving.left) == 0 and not simulation.robot.is_running
 
 
-def test_the_page_says_what_is_held_of_a_remote_control() -> None:
+def test_the_page_sends_the_held_keys() -> None:
     """A new run begins without held keys."""
 
     def motors(action: str, data: bytes = b"", **fields: object) -> object:
@@ -241,7 +241,7 @@ def test_the_page_says_what_is_held_of_a_remote_control() -> None:
     assert motors("go", duration_ms=300) == [0, 0]
 
 
-def test_the_page_asks_for_all_of_it() -> None:
+def test_the_page_requests_the_whole_simulation() -> None:
     def ask(data: bytes = b"", **fields: object) -> dict[str, object]:
         answer: dict[str, object] = json.loads(worker.answer(json.dumps(fields), data))
         return answer

@@ -106,11 +106,11 @@ def race(count: int, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_stop_latches_whatever_is_on_its_way(seed: int) -> None:
+def test_a_stop_latches_whatever_is_in_transit(seed: int) -> None:
     race(10, seed)
 
 
-def test_afterwards_a_page_drives_again() -> None:
+def test_a_page_drives_again_after_a_stop() -> None:
     meeting = Meeting(5)
     meeting.upload(0)
     meeting.advance(1500)
@@ -125,7 +125,7 @@ def test_afterwards_a_page_drives_again() -> None:
     assert meeting.answer(late_request)["ok"] and meeting.robot.is_running
 
 
-def test_a_robot_that_hears_no_stop_is_told() -> None:
+def test_a_robot_that_misses_a_stop_is_reported() -> None:
     meeting = Meeting(6)
     meeting.upload(0)
     meeting.advance(1500)
@@ -168,7 +168,7 @@ class LateLink:
 
 @pytest.mark.parametrize("end", ["latch", "part"])
 @pytest.mark.parametrize("seed", range(10))
-def test_no_stop_of_before_confirms_the_newest_one(
+def test_no_earlier_stop_confirms_the_newest_one(
     monkeypatch: pytest.MonkeyPatch, seed: int, end: str
 ) -> None:
     """This holds for any number of stops, from any source, confirmed or not."""
@@ -196,7 +196,7 @@ def test_no_stop_of_before_confirms_the_newest_one(
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_what_is_known_of_a_stop_is_final_once_its_connection_has_ended(seed: int) -> None:
+def test_the_outcome_of_a_stop_is_final_once_its_connection_has_ended(seed: int) -> None:
     """A cable may be pulled at any time: no page waits in vain."""
     rng = Random(seed)
     link = LateLink(rng)

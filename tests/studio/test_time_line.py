@@ -15,7 +15,7 @@ SCRIPT = Path(__file__).with_name("moments_in_node.mjs")
 SEEDS = 60
 
 
-def test_each_moment_is_what_it_was() -> None:
+def test_each_past_moment_is_reproduced() -> None:
     rows = [json.loads(row) for row in in_node(SCRIPT, str(SEEDS))]
     assert len(rows) == SEEDS
     for seed, row in enumerate(rows, 1):

@@ -59,13 +59,13 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
         ("DEF GO;IF(DISTANCE > 3);S;ENDIF;END_DEF\nGO", "GO", []),
     ],
 )  # fmt: skip
-def test_the_conditions_around_an_instruction_are_told_with_their_values(
+def test_enclosing_conditions_are_explained_with_their_values(
     text: str, wanted_text: str, values: list[Any]
 ) -> None:
     assert explanations((f"N = 0;{text}", wanted_text))[0]["told"] == values
 
 
-def test_any_nesting_is_told_from_the_outside() -> None:
+def test_any_nesting_is_explained_from_the_outside() -> None:
     for seed in range(12):
         rng = random.Random(seed)
         text, wanted_texts = "W(0.5)", list[Any]()
@@ -108,7 +108,7 @@ def expression(rng: random.Random, depth: int, *, is_question: bool) -> str:
     return form
 
 
-def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
+def test_the_explained_result_follows_from_the_values() -> None:
     rng = random.Random(3)
     words = {"AND": "and", "OR": "or", "NOT": "not", "=": "==", "<>": "!=", "TRUE": "1 == 1"}
     words |= {"FALSE": "1 == 2", "KEY_UP": "1 == 1", "ABS": "abs", "MIN": "min", **{
@@ -123,7 +123,7 @@ def test_the_answer_is_what_the_values_make_of_the_condition() -> None:
         assert row["told"][0][3] == eval(exact, {"Fraction": Fraction}), condition
 
 
-def test_the_task_is_told_that_an_instruction_is_in() -> None:
+def test_the_explanation_names_the_task_of_an_instruction() -> None:
     text = "W(1)\nTASK\nF(1, 20)\nEND_TASK\nWHEN(DISTANCE < 4)\nS\nEND_WHEN"
     rows = explanations((text, "W(1)"), (text, "F(1, 20)"), (text, "S"), (text, "WHEN"))
     assert [row["tasks"] for row in rows] == [[], [2], [5], [5]]

@@ -117,7 +117,7 @@ HOSTILE_VALUES = {
 
 
 @pytest.mark.parametrize("name", HOSTILE_VALUES)
-def test_a_file_that_is_not_a_world_says_why(name: str) -> None:
+def test_a_file_that_is_not_a_world_is_refused_with_a_reason(name: str) -> None:
     data, message = HOSTILE_VALUES[name]
     for language in ("en", "es"):
         answer = open_world(data, language=language)
@@ -127,7 +127,7 @@ def test_a_file_that_is_not_a_world_says_why(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["a.toml", ".toml", "", "x" * 5000 + ".toml", "\x1b[31m\n.toml"])
-def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
+def test_files_of_any_name_can_be_opened_and_written(name: str) -> None:
     opened_world = open_world(GOOD_WORLD, name)
     request = {
         "do": "write_world",
@@ -140,7 +140,7 @@ def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
     assert read(answer["text"], "own").start == (30, 30, 0)
 
 
-def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
+def test_a_robot_that_does_not_fit_or_is_off_the_floor_is_reported() -> None:
     world = open_world(GOOD_WORLD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
     request = {"do": "write_world", "form": world, "robot": "tinibot", "language": "en"}
     assert json.loads(worker.answer(json.dumps(request)))["is_blocked"]
@@ -155,7 +155,7 @@ def test_a_robot_that_does_not_fit_or_is_off_its_floor_is_told() -> None:
         assert set(answer) == {"refused"} and expected in answer["refused"][0]
 
 
-def test_a_robot_begins_where_it_is_to_if_it_has_room_there() -> None:
+def test_a_robot_begins_at_its_start_if_there_is_room() -> None:
     world = open_world(GOOD_WORLD)["world"]
     start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
     image = compile("SI|S").image

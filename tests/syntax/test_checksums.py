@@ -29,7 +29,7 @@ def messages(text: str) -> list[tuple[str, str]]:
     ]
 
 
-def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:
+def test_the_checksum_is_the_crc_32_of_the_line() -> None:
     assert with_checksum(LINE) == LINE_WITH_CHECKSUM
     assert checksum_of("// ñ") == crc32("// ñ".encode())
 
@@ -47,7 +47,7 @@ def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:
         "\n" + LINE_WITH_CHECKSUM,
     ],
 )
-def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
+def test_a_line_with_its_checksum_means_the_same(text: str) -> None:
     assert messages(text) == []
     assert compile_program(text).image == compile_program(LINE).image
 
@@ -57,7 +57,7 @@ def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_each_line_has_a_checksum_of_its_own_or_none(end: str) -> None:
+def test_any_subset_of_lines_may_have_checksums(end: str) -> None:
     lines = ["LOOP(2)", "  F(1, 50)  ", "END_LOOP // twice", "", "S"]
     want = compile_program("\n".join(lines)).image
     for which in range(2 ** len(lines)):
@@ -66,19 +66,19 @@ def test_each_line_has_a_checksum_of_its_own_or_none(end: str) -> None:
         assert messages(end.join([*rows[:-1], "R~00000000"])) != []
 
 
-@pytest.mark.parametrize("at", range(len(LINE)))
-def test_a_line_that_has_changed_is_a_mistake(at: int) -> None:
-    changed_text = LINE[:at] + chr(ord(LINE[at]) ^ 1) + LINE[at + 1 :]
+@pytest.mark.parametrize("index", range(len(LINE)))
+def test_a_changed_line_is_a_mistake(index: int) -> None:
+    changed_text = LINE[:index] + chr(ord(LINE[index]) ^ 1) + LINE[index + 1 :]
     assert ("TS058", "~B77E7BD9") in messages(f"{changed_text}~B77E7BD9")
     assert not compile_program(f"{changed_text}~B77E7BD9").image
 
 
-def test_spaces_before_the_sign_count() -> None:
+def test_spaces_before_the_checksum_sign_count() -> None:
     assert messages(f"{LINE} ~B77E7BD9") == [("TS058", "~B77E7BD9")]
     assert messages(with_checksum(f"{LINE} ")) == []
 
 
-def test_a_line_of_comment_has_a_checksum_too() -> None:
+def test_a_comment_line_may_have_a_checksum() -> None:
     """Therefore a line in which two signs became `//` does not pass for a comment."""
     assert messages(with_checksum("// a square")) == []
     assert messages("// a square~00000000") == [("TS058", "~00000000")]
@@ -101,12 +101,12 @@ def test_a_sign_that_is_not_a_checksum_is_a_mistake(text: str, place: str) -> No
     assert ("TS059", place) in messages(text)
 
 
-def test_in_a_comment_it_is_a_sign_like_others() -> None:
+def test_a_checksum_sign_inside_a_comment_is_ordinary() -> None:
     assert messages("S // ~5 cm, ~12345678 or so") == []
     assert messages("S // ~5 cm ~12345678") == []  # the first one counts
 
 
-def test_a_formatted_text_has_no_checksums_for_it_is_another_text() -> None:
+def test_formatting_removes_checksums() -> None:
     rows = [with_checksum("s // stop"), "// ~5", with_checksum("f(1,50)")]
     text = format_source(Source("\n".join(rows)))
     assert text == "S;  // stop\n// ~5\nF(1, 50);\n"

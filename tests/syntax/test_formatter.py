@@ -137,7 +137,7 @@ LAYOUTS: dict[str, tuple[str, str]] = {
 
 
 @pytest.mark.parametrize(("text", "layout"), LAYOUTS.values(), ids=LAYOUTS.keys())
-def test_layout(text: str, layout: str) -> None:
+def test_the_layout_is_as_expected(text: str, layout: str) -> None:
     """Check that the layout is the expected one, and that formatting it again changes nothing."""
     assert not has_mistakes(text)
     assert formatted(text) == layout
@@ -229,9 +229,11 @@ def with_other_layout(rng: random.Random, text: str) -> str:
     brackets, text_before = 0, ""
     for kind, written_text in code_of(text):
         if kind == ";":
-            ends = [rng.choice((";", line_end(), line_end()))]
-            ends += [rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)]
-            out += ends
+            line_ends = [rng.choice((";", line_end(), line_end()))]
+            line_ends += [
+                rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)
+            ]
+            out += line_ends
         else:
             if (text_before[-1:].isalnum() or text_before[-1:] == "_") and written_text[
                 0
@@ -265,7 +267,7 @@ def test_every_program_stays_the_same_program(chunk: int) -> None:
             check_compiled(with_other_layout(rng, text), of)
 
 
-def test_one_line_stays_one_line_and_several_stay_several() -> None:
+def test_a_single_line_stays_single_and_several_stay_several() -> None:
     """However much stands on it. Several lines have one instruction on each."""
     rng = random.Random("lines")
     counts = {True: 0, False: 0}
@@ -282,7 +284,7 @@ def test_one_line_stays_one_line_and_several_stay_several() -> None:
     assert min(counts.values()) > 50
 
 
-def test_texts_with_other_mistakes_are_formatted_too() -> None:
+def test_texts_with_other_mistakes_are_also_formatted() -> None:
     """If the shape is right, names, kinds and ranges may be wrong; the formatter never raises."""
     rng = random.Random("broken")
     checked_count = 0
@@ -311,7 +313,7 @@ def test_work_grows_with_the_text_and_no_faster(unit: str) -> None:
 
 @pytest.mark.sampled("inner", keep=2)
 @pytest.mark.parametrize("inner", ["(", "-", "NOT ", "ABS(", "1+(", "//a\n"])
-def test_depth_exhausts_nothing(inner: str) -> None:
+def test_deep_nesting_exhausts_nothing(inner: str) -> None:
     """An instruction may hold as much as it likes."""
     count = 20_000
     text = "SHOW(" + inner * count + "1" + ")" * (inner.count("(") * count) + ")"

@@ -46,24 +46,24 @@ def test_the_longest_sign_is_taken() -> None:
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_each_kind_of_line_end_is_one_token(end: str) -> None:
+def test_every_line_end_is_one_token(end: str) -> None:
     assert list_tokens(f"S{end}S") == ["word 'S'", r"newline '\n'", "word 'S'"]
     assert scan(f"S{end}S").tokens[1].span == (1, 1 + len(end))
 
 
 @pytest.mark.parametrize("space", [" ", "\t", "\u00a0", "\u2009", "\u200b", "\u3000", "\ufeff"])
-def test_spaces_of_all_kinds_only_part_tokens(space: str) -> None:
+def test_spaces_of_all_kinds_only_separate_tokens(space: str) -> None:
     assert list_tokens(f"{space}S{space}{space}S{space}") == ["word 'S'", "word 'S'"]
     assert scan(f"S{space}S").diagnostics == ()
 
 
 @pytest.mark.parametrize("dash", ["\u2010", "\u2013", "\u2014", "\u2212"])
-def test_the_dashes_of_phones_are_a_minus(dash: str) -> None:
+def test_dashes_typed_on_phones_are_a_minus(dash: str) -> None:
     assert list_tokens(f"{dash}5") == ["-", "number '5'"]
     assert scan(f"{dash}5").diagnostics == ()
 
 
-def test_comments_are_no_tokens_and_end_with_their_line() -> None:
+def test_comments_are_not_tokens_and_end_with_their_line() -> None:
     scanned = scan("S // stop; now\r\nS//")
     assert [(comment.text, comment.start) for comment in scanned.comments] == [
         ("// stop; now", 2),
@@ -72,7 +72,7 @@ def test_comments_are_no_tokens_and_end_with_their_line() -> None:
     assert list_tokens("S // stop; now\r\nS//") == ["word 'S'", r"newline '\n'", "word 'S'"]
 
 
-def test_spans_are_places_in_the_text() -> None:
+def test_spans_index_the_text() -> None:
     tokens = scan("SI|F(2, .5)").tokens
     assert [token.span for token in tokens] == [
         (0, 2), (2, 3), (3, 4), (4, 5), (5, 6), (6, 7), (8, 10), (10, 11), (11, 11),
@@ -100,7 +100,7 @@ def test_an_empty_text_has_only_its_end() -> None:
         ("S~12", ["word 'S'", "odd '~12'"]),
     ],
 )
-def test_what_the_language_does_not_have_is_odd(text: str, tokens: list[str]) -> None:
+def test_unknown_characters_are_odd_tokens(text: str, tokens: list[str]) -> None:
     assert list_tokens(text) == tokens
 
 
@@ -110,7 +110,7 @@ def test_a_unit_is_a_word_of_its_own(text: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["90°", "90º", "90 º", "90deg", "90 Deg"])
-def test_a_sign_of_degrees_is_their_word(text: str) -> None:
+def test_a_degree_sign_is_the_word_for_degrees(text: str) -> None:
     assert list_tokens(text) == ["number '90'", "word 'DEG'"]
     assert list_tokens(f"X{text.lstrip('90')}")[0] != "word 'X90'"
 
@@ -128,14 +128,14 @@ def texts() -> list[str]:
 def test_tokens_and_comments_of_any_text_follow_one_another() -> None:
     for text in texts():
         scanned = scan(text)
-        at = 0
+        position = 0
         for token in sorted((*scanned.tokens, *scanned.comments), key=lambda token: token.start):
-            assert at <= token.start <= token.end <= len(text), text
-            at = token.end
-        assert at == len(text)
+            assert position <= token.start <= token.end <= len(text), text
+            position = token.end
+        assert position == len(text)
 
 
-def test_anything_but_a_space_is_a_token_as_written() -> None:
+def test_everything_but_spaces_becomes_tokens_as_written() -> None:
     for text in texts():
         scanned = scan(text)
         for token in (*scanned.tokens, *scanned.comments):

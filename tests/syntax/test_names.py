@@ -30,7 +30,7 @@ def is_right(text: str, kit: Kit = NO_KIT) -> bool:
     ]
 
 
-def test_a_variable_may_have_such_a_name() -> None:
+def test_a_variable_may_have_an_accented_name() -> None:
     for name in NAMES:
         count = f"{name} = 2;IF({name} > 1 AND {name} < 5);{name} = {name} + 1;ENDIF"
         assert is_right(count), name
@@ -40,14 +40,14 @@ def test_a_variable_may_have_such_a_name() -> None:
         assert is_right(f"Q=3\n{name}=4;LOOP({name});Q={name};END_LOOP;SHOW(Q)"), name
 
 
-def test_a_def_may_have_such_a_name() -> None:
+def test_a_def_may_have_an_accented_name() -> None:
     for name in NAMES:
         assert is_right(f"DEF {name};S;END_DEF;{name};LOOP(2);{name};END_LOOP"), name
         assert is_right(f"DEF {name}\nS\nEND_DEF\n{name}\nIF(TRUE)\n{name}\nENDIF"), name
 
 
 @pytest.mark.parametrize("kind", [NUMBER, YES_NO])
-def test_a_sensor_may_have_such_a_name(kind: str) -> None:
+def test_a_sensor_may_have_an_accented_name(kind: str) -> None:
     for name in NAMES:
         kit = Kit((Device(name, kind, "", 0, 1 if kind == YES_NO else 1000),), ())
         condition = name if kind == YES_NO else f"{name} > 0"
@@ -56,7 +56,7 @@ def test_a_sensor_may_have_such_a_name(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", [NUMBER, YES_NO])
-def test_an_actuator_may_have_such_a_name(kind: str) -> None:
+def test_an_actuator_may_have_an_accented_name(kind: str) -> None:
     value = "TRUE" if kind == YES_NO else "90"
     for name in NAMES:
         kit = Kit((), (Device(name, kind, "", 0, 1 if kind == YES_NO else 180_000),))
@@ -64,7 +64,7 @@ def test_an_actuator_may_have_such_a_name(kind: str) -> None:
         assert is_right(text, kit), name
 
 
-def test_a_word_says_one_word_of_the_language() -> None:
+def test_a_word_means_one_word_of_the_language() -> None:
     assert len(FOREIGN_WORDS) > 300
     for word in FOREIGN_WORDS:
         assert len({entry.kind for entry in lexicon()[word]} & {*WORDS}) == 1, word

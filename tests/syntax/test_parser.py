@@ -130,12 +130,12 @@ def test_each_construct_has_its_node_with_the_text_that_it_spans(text: str) -> N
     ("text", "start"),
     [("S", "SI"), ("SI|S", "SI"), ("\n\n sb |S", "SB"), ("PING|check_connection;\n", "PING")],
 )
-def test_setup_says_how_a_program_starts(text: str, start: str) -> None:
+def test_setup_determines_how_a_program_starts(text: str, start: str) -> None:
     assert parse(Source(text)).program.start == start
     assert list_diagnostics(text) == []
 
 
-def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
+def test_commands_assignments_and_definitions_have_spans() -> None:
     text = "X = (1);F(X, 80) UNTIL(TRUE);DEF A;END_DEF"
     assign, command, definition = parse(Source(text)).program.body
     assert isinstance(assign, ast.Assign) and assign.value is not None
@@ -185,13 +185,13 @@ EXPRESSIONS = {
 
 
 @pytest.mark.parametrize("text", EXPRESSIONS)
-def test_parts_stand_in_the_order_of_a_stack_machine(text: str) -> None:
+def test_parts_are_in_the_order_of_a_stack_machine(text: str) -> None:
     assert outline(f"X = {text}").partition(" «")[0] == f"X = {EXPRESSIONS[text]}"
     assert outline(f"SHOW(\n{text}\n)").partition(" «")[0] == f"SHOW {EXPRESSIONS[text]}"
     assert list_diagnostics(f"X = {text}") == []
 
 
-def test_each_part_of_an_expression_says_where_it_stands() -> None:
+def test_each_part_of_an_expression_has_its_span() -> None:
     text = "X = -1 + MAX(A, -Q)"
     (assign,) = parse(Source(text)).program.body
     assert isinstance(assign, ast.Assign) and assign.value is not None
@@ -247,7 +247,7 @@ MISTAKES: dict[str, tuple[list[str], str]] = {
 
 
 @pytest.mark.parametrize("text", MISTAKES)
-def test_a_mistake_is_reported_once_and_reading_goes_on(text: str) -> None:
+def test_a_mistake_is_reported_once_and_parsing_continues(text: str) -> None:
     diagnostics, tree = MISTAKES[text]
     assert (list_diagnostics(text), outline(text)) == (diagnostics, tree)
 
@@ -258,7 +258,7 @@ def test_blocks_that_are_nested_too_deep_are_reported_once_and_left_out() -> Non
     assert [row.strip().partition(" ")[0] for row in outline(text).split("\n")] == ["loop"] * 16
 
 
-def test_any_name_may_stand_alone() -> None:
+def test_any_name_may_be_an_instruction() -> None:
     assert list_diagnostics("REPETIR;FIN;GO(5)") == []
 
 
@@ -266,7 +266,7 @@ def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
     assert list_diagnostics("DEF FIN;S;END_DEF;FIN") == []
 
 
-def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
+def test_parsing_ends_after_enough_diagnostics() -> None:
     parsed_text = parse(Source("*;" * 5000))
     assert len(parsed_text.diagnostics) == MOST_DIAGNOSTICS + 1
 
@@ -319,10 +319,10 @@ def test_nodes_of_any_text_follow_one_another_inside_their_blocks() -> None:
     for text in broken_programs():
         body = parse(Source(text)).program.body
         for outer, inside in ((Span(0, len(text)), body), *spans(body)):
-            at = outer.start
+            position = outer.start
             for node in inside:
-                assert at <= node.span.start <= node.span.end <= outer.end, text
-                at = node.span.start
+                assert position <= node.span.start <= node.span.end <= outer.end, text
+                position = node.span.start
 
 
 def test_diagnostics_of_any_text_point_into_it() -> None:
@@ -333,7 +333,7 @@ def test_diagnostics_of_any_text_point_into_it() -> None:
             assert 0 <= diagnostic.span.start <= diagnostic.span.end <= len(text), text
 
 
-def test_no_parser_made_of_this_one_has_a_rule_that_its_table_would_not_find() -> None:
+def test_every_rule_of_a_derived_parser_is_found_by_its_table() -> None:
     rules = {rule.__name__ for rule in _RULES.values()} | {"command"}
     assert _Line in Parser.__subclasses__()
     for heir in Parser.__subclasses__():

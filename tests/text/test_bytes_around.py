@@ -62,7 +62,7 @@ def check(seed: int) -> str:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(40))
-def test_a_right_line_runs_or_an_answer_says_why_not(part: int) -> None:
+def test_a_right_line_runs_or_is_answered_with_a_reason(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 100, (part + 1) * 100))
     assert counts["it runs"] > 10 and counts["an answer"] > 10 and counts["no line"] < 4, counts
 

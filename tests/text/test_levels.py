@@ -59,12 +59,12 @@ def test_the_room_of_an_uno_is_that_of_its_firmware() -> None:
     assert re.search(r"port_room\(\) \{ return kStoredCodeBytes; \}", port)
 
 
-def test_levels_lack_words_of_the_language_alone() -> None:
+def test_levels_lack_only_words_of_the_language() -> None:
     for level in LEVELS.values():
         assert level.lacks <= set(WORDS)
 
 
-def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:
+def test_a_word_missing_in_a_level_is_reported_at_each_place() -> None:
     small = Level("small", "uno", 2, frozenset(("RANDOM", "DEF", "END_DEF")))
     text = "DEF A; END_DEF; X = random(1, 6); SHOW(X + RANDOM(1, 2)); A // RANDOM"
     assert problems_of(text, LEVELS["mega"]) == []
@@ -88,7 +88,7 @@ VALUES = "DEF A(X); SHOW(X); END_DEF; DEF C; A({}); END_DEF; {}"
 
 
 @pytest.mark.parametrize("level", ["mega", "esp32"])
-def test_which_values_of_defs_a_reader_takes(level: str) -> None:
+def test_a_reader_accepts_only_supported_values_of_defs(level: str) -> None:
     both = "TASK; C; END_TASK; C; A({})"
     values = {"name": "A"}
     assert problems_of(VALUES.format(1, "C; A(2); TASK; S; END_TASK"), LEVELS[level]) == []
@@ -121,7 +121,7 @@ def test_the_first_instruction_that_does_not_fit_is_the_place() -> None:
     ]  # fmt: skip
 
 
-def test_short_jumps_alone_count() -> None:
+def test_only_short_jumps_count() -> None:
     """A far jump of `tsc` is short in a robot: only the excess must be removed."""
     text = "IF(TRUE);" + "S;" * 300 + "ENDIF"
     assert problems_of(text)[0][2] == {"code": "303", "limit": "255", "over": "48"}
@@ -162,11 +162,11 @@ def most_bytes(text: str, level: Level = UNO) -> int:
         ("F(1°,5)", 4),
     ],
 )
-def test_what_a_reader_needs(text: str, bytes_: int) -> None:
+def test_the_memory_needed_by_a_reader_is_known(text: str, bytes_: int) -> None:
     assert most_bytes(text) == bytes_
 
 
-def test_a_set_of_sensors_is_wider_where_there_may_be_more() -> None:
+def test_sensor_sets_are_wider_on_boards_with_more_sensors() -> None:
     assert most_bytes("LOOP(2);END_LOOP", LEVELS["mega"]) == most_bytes("LOOP(2);END_LOOP") + 3 * 2
     assert most_bytes("DEF A;END_DEF", LEVELS["mega"]) == most_bytes("DEF A;END_DEF") + 4 * 2
 
@@ -186,14 +186,16 @@ def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
         assert reader.code_bytes == plain_code(compilation.program).short_length, (
             compilation.source.text
         )
-        own = (name for procedure in compilation.program.procedures for name in procedure.values)
+        value_names = (
+            name for procedure in compilation.program.procedures for name in procedure.values
+        )
         names = [*reader.variables, *(name + 8 * "?" for name in reader.defs)]
-        names += (compilation.program.variables[k] for k in own)
+        names += (compilation.program.variables[k] for k in value_names)
         assert reader.used_bytes == sum(1 + len(name) for name in names), compilation.source.text
 
 
 @pytest.mark.parametrize("end", ["ENDIF", "ELSE;DISTANCE;ENDIF"])
-def test_what_each_arm_has_read_is_not_read_again(end: str) -> None:
+def test_sensors_read_on_every_branch_are_not_read_again(end: str) -> None:
     compilation = compile_text(f"IF(TRUE);DISTANCE;{end};SHOW(DISTANCE)", TINIBOT)
     assert compilation.program is not None
     reader = Reader(scan(compilation.source.text).tokens, TINIBOT, 2)
@@ -201,10 +203,10 @@ def test_what_each_arm_has_read_is_not_read_again(end: str) -> None:
     assert reader.code_bytes == plain_code(compilation.program).short_length
 
 
-def test_names_take_room_too() -> None:
+def test_names_also_take_room() -> None:
     long = "".join(f"{chr(65 + k)}{'X' * 49}=0;" for k in range(7))
-    before = 6 * (2 + 51)
-    needed = before + 2 * 50 + 1
+    bytes_before = 6 * (2 + 51)
+    needed = bytes_before + 2 * 50 + 1
     values = {"code": str(needed), "limit": str(UNO.room), "over": str(needed - UNO.room)}
     # At the place where the memory is full.
     assert problems_of(long) == [("TS310", "G" + "X" * 49, values)]
@@ -232,7 +234,7 @@ def test_short_programs_fit_each_level(text: str) -> None:
         assert problems_of(text, level) == []
 
 
-def test_a_word_that_no_level_reads_is_kept_from_names_alone(
+def test_a_word_unknown_to_all_levels_is_reserved_only_for_names(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """It is not a command of the reader, but a word of later versions."""
@@ -241,11 +243,11 @@ def test_a_word_that_no_level_reads_is_kept_from_names_alone(
     assert words.index(WORDS["BEEP"]) > words.index(WORDS["SI"])
     packed_text, rows, _ = text_tables.words_tables("a test").split("tini_progmem = {")[1:]
     assert "// BEEP" in packed_text and "// BEEP" not in rows and "// SHOW" in rows
-    before = sum(len(word.text) for word in words[: words.index(WORDS["BEEP"])])
-    assert text_tables.bytes_before("later") == before
+    letters_before = sum(len(word.text) for word in words[: words.index(WORDS["BEEP"])])
+    assert text_tables.bytes_before("later") == letters_before
 
 
-def test_what_the_reader_needs_for_a_new_word_is_said() -> None:
+def test_missing_reader_entries_for_a_new_word_are_reported() -> None:
     with pytest.raises(
         LookupError,
         match=r"READ_ROLES in robots/text_levels\.py.*ROLES of tools/generate/text_tables\.py",

@@ -32,7 +32,7 @@ from tiniscript.syntax.checksums import with_checksum
         ("START\nM(\u2013 5,\u00a06)", "START;M(-5,6)"),
     ],
 )
-def test_what_is_left_of_a_text(text: str, line: str) -> None:
+def test_a_text_is_reduced_to_a_line(text: str, line: str) -> None:
     assert line_of(Source(text)) == with_checksum(line)
 
 
@@ -45,8 +45,10 @@ def test_the_line_of_a_random_program_is_the_same_program(first: int) -> None:
 
 
 def test_the_line_of_each_program_of_the_documents_is_the_same_program() -> None:
-    right = [case for case in CASES if "tiniscript" in case.parts and "mistake" not in case.parts]
-    assert len(right) > 150
-    for case in right:
+    right_cases = [
+        case for case in CASES if "tiniscript" in case.parts and "mistake" not in case.parts
+    ]
+    assert len(right_cases) > 150
+    for case in right_cases:
         robot, _ = robot_and_senses(case)
         check_line(compile_case(case).source.text, robot.kit)

@@ -17,14 +17,14 @@ from tools.generate.remark_tables import rows
 
 @pytest.mark.parametrize("is_small", [False, True])
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_what_a_robot_says_comes_back(language: str, is_small: bool) -> None:
+def test_packed_robot_texts_unpack_unchanged(language: str, is_small: bool) -> None:
     texts = rows(language, is_small)
     data = pack_texts(texts)
     assert unpack_texts(data) == texts
     assert data.size < 0.75 * sum(len(text) + 1 for text in texts)
 
 
-def test_what_a_small_robot_never_says() -> None:
+def test_unused_texts_are_omitted_on_small_robots() -> None:
     """All that it says keeps its number."""
     every, few = rows("en"), rows("en", is_small=True)
     unsaid_texts = [
@@ -41,12 +41,12 @@ def test_what_a_small_robot_never_says() -> None:
     "texts",
     [[""], ["", "A", ""], ["AAAAAAA", "AAA"], ["~"], ["abc" * 20, "bcab" * 9], ["x" * 200, "|}"]],
 )
-def test_texts_come_back(texts: list[str]) -> None:
+def test_packed_texts_unpack_unchanged(texts: list[str]) -> None:
     assert unpack_texts(pack_texts(texts)) == texts
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_pairs_in_pairs_are_not_too_deep(language: str) -> None:
+def test_nested_pairs_are_not_too_deep(language: str) -> None:
     """The robot's stack holds a call for each. No pair has an end."""
     data = pack_texts(rows(language))
 

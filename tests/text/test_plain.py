@@ -118,7 +118,7 @@ def test_each_word_is_its_own_instruction(text: str, says: str) -> None:
 
 
 @each_row("number, code", NUMBER_CODES)
-def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> None:
+def test_a_number_uses_the_first_suitable_push(number: str, code: str) -> None:
     """This also holds in optimized code."""
     assert plain_of(f"SHOW({number})").code.hex(" ") == f"{code} 39"
     assert compile_text(f"SHOW({number})", TINIBOT).code.hex(" ") == f"{code} 39"
@@ -131,8 +131,8 @@ def test_operands_to_7_are_part_of_the_code() -> None:
 
 def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:
     text = "IF(FALSE); C = 1; ENDIF; DEF D; A = 2; END_DEF; E = 3; SHOW(A); SHOW(C)"
-    last = disassemble(plain_of(text).code).splitlines()[-6:]
-    assert [row[25:] for row in last] == [
+    last_rows = disassemble(plain_of(text).code).splitlines()[-6:]
+    assert [row[25:] for row in last_rows] == [
         "PUSH_NUM_3", "SET_VAR_2", "PUSH_VAR_1", "SHOW", "PUSH_VAR_0", "SHOW"
     ]  # fmt: skip
 
@@ -146,7 +146,7 @@ def test_the_length_is_that_with_short_jumps() -> None:
     assert [place.offset for place in code.locations[:3]] == [0, 3, 4]
 
 
-def test_code_that_fits_a_level_has_no_far_jump() -> None:
+def test_code_that_fits_a_level_has_no_far_jumps() -> None:
     code = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
     assert len(code.code) == code.short_length == CODE_BYTES
     assert "FAR" not in disassemble(code.code)

@@ -43,13 +43,13 @@ def add_checksum(line: bytes) -> bytes:
 # -- lines --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("end", [b"\n", b"\r", b"\r\n"])
-def test_line_ends(end: bytes) -> None:
-    answers = read_lines(KIT, end.join([b"F(2, 80)", b"SB|S", b""]))
+@pytest.mark.parametrize("closing", [b"\n", b"\r", b"\r\n"])
+def test_all_line_ends_are_accepted(closing: bytes) -> None:
+    answers = read_lines(KIT, closing.join([b"F(2, 80)", b"SB|S", b""]))
     assert [answer.start for answer in answers] == ["SI", "SB"]
 
 
-def test_a_program_goes_on_until_its_blocks_are_closed() -> None:
+def test_a_program_continues_until_its_blocks_are_closed() -> None:
     answers = read_lines(KIT, b"LOOP(2)\nF(1,\n80)\nEND_LOOP\nS\n")
     assert answers[:3] == [MORE_NEEDED] * 3
     assert answers[3] == answer_to("LOOP(2);F(1,80);END_LOOP")
@@ -73,12 +73,12 @@ def test_a_problem_ends_a_program() -> None:
     assert answers[1].problem == "RANGE" and answers[2] == answer_to("S")
 
 
-def test_an_empty_line_begins_anew_on_this_computer() -> None:
+def test_an_empty_line_starts_a_new_program_on_this_computer() -> None:
     assert read_lines(KIT, b"LOOP(2)\n\nS\n") == [MORE_NEEDED, answer_to("S")]
 
 
 @pytest.mark.parametrize("line", ["", "  ", "// only a note", "SI|", ";;"])
-def test_programs_that_do_nothing(line: str) -> None:
+def test_empty_programs_are_accepted(line: str) -> None:
     reader = TextReader(KIT)
     assert reader.read(line.encode()) == Answer(start="SI")
     reader.close()
@@ -103,11 +103,11 @@ def test_each_line_of_a_program_may_have_a_checksum() -> None:
 
 def test_every_damage_of_one_byte_is_noticed() -> None:
     line = add_checksum(b"F(2, 80);S // note")
-    for at in range(len(line)):
+    for index in range(len(line)):
         for byte in b"~/0aF(\x00\xc2":
-            damaged_bytes = line[:at] + bytes((byte,)) + line[at + 1 :]
+            damaged_bytes = line[:index] + bytes((byte,)) + line[index + 1 :]
             if damaged_bytes.lower() != line.lower():
-                assert not answer_to(damaged_bytes).is_program or at > line.index(b"/"), (
+                assert not answer_to(damaged_bytes).is_program or index > line.index(b"/"), (
                     damaged_bytes
                 )
 
@@ -123,7 +123,7 @@ def test_an_invalid_checksum_is_refused(line: bytes) -> None:
     assert answer_to(line).problem == "CHECKSUM"
 
 
-def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
+def test_a_damaged_line_is_reported_as_damaged_whatever_else_is_wrong() -> None:
     assert answer_to(add_checksum(b"F(2, 80)").replace(b"F", b"G")).problem == "CHECKSUM"
     assert answer_to(add_checksum(b"G(2, 80)")).problem == "UNKNOWN_WORD"
 
@@ -132,7 +132,7 @@ def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
 
 
 @pytest.mark.parametrize("space", "\t\u00a0\u2000\u200b\u202f\u3000\ufeff")
-def test_spaces(space: str) -> None:
+def test_spaces_are_ignored_between_tokens(space: str) -> None:
     assert answer_to(f"F{space}(2,{space}80){space}") == answer_to("F(2,80)")
 
 
@@ -145,12 +145,12 @@ def test_no_control_byte_is_overlooked(line: str, control: str) -> None:
 
 
 @pytest.mark.parametrize("dash", "\u2010\u2013\u2014\u2015\u2212")
-def test_dashes(dash: str) -> None:
+def test_dashes_are_read_as_minus(dash: str) -> None:
     assert answer_to(f"M({dash}5,80)") == answer_to("M(-5,80)")
 
 
 @pytest.mark.parametrize("odd", ["é", "#", "\u2009\u2016", "\U0001f600", "\u00b0", "{", "=="])
-def test_other_characters(odd: str) -> None:
+def test_other_characters_are_refused(odd: str) -> None:
     assert answer_to(f"S{odd}").problem
 
 
@@ -203,7 +203,7 @@ PROBLEM_BY_LINE = {
 
 
 @pytest.mark.parametrize("line", PROBLEM_BY_LINE)
-def test_what_is_wrong_and_where(line: str) -> None:
+def test_problems_have_their_column(line: str) -> None:
     answer = answer_to(line)
     assert (answer.problem, answer.column) == PROBLEM_BY_LINE[line]
 
@@ -227,9 +227,7 @@ RIGHT_LINES = (
 @pytest.mark.sampled("tail")
 @pytest.mark.parametrize("tail", ["", "  ", "// note", " // note"])
 @pytest.mark.parametrize("line", RIGHT_LINES)
-def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
-    line: str, tail: str
-) -> None:
+def test_a_missing_end_is_reported_after_the_last_character(line: str, tail: str) -> None:
     """A correct line cut after any of its tokens lacks only its rest.
 
     It belongs before a comment.
@@ -243,7 +241,7 @@ def test_what_is_missing_at_the_end_is_missing_after_the_last_character(
     assert refused_count > 0
 
 
-def test_columns_from_255_on_are_255() -> None:
+def test_columns_saturate_at_255() -> None:
     assert answer_to(" " * 253 + "5").column == 254
     assert answer_to(" " * 300 + "5").column == 255
     assert answer_to("ñ" * 3).column == 1
@@ -260,7 +258,7 @@ def test_every_problem_has_its_test() -> None:
     assert problems == set(PROBLEMS)
 
 
-def test_a_reader_without_defs_reads_all_else() -> None:
+def test_a_reader_without_defs_reads_everything_else() -> None:
     """It recognizes the words, so that they are no names, and reports the missing feature."""
     small, large = TextReader(KIT, flags=NO_DEFS), TextReader(KIT)
     lacks = LEVELS["uno"].lacks
@@ -277,8 +275,10 @@ def test_a_reader_without_defs_reads_all_else() -> None:
     for text in (*texts, *PROBLEM_BY_LINE, *cases):
         answer, words = small.read(text.encode()), {token.text for token in scan(text).tokens}
         if text in texts or not (lacks | UNREAD_WORDS) & words:
-            other = large.read(text.encode())  # on this robot, FOREVER waits for tasks
-            assert answer == other or (answer.problem == "FOREVER_HERE" and other.problem), text
+            other_answer = large.read(text.encode())  # on this robot, FOREVER waits for tasks
+            assert answer == other_answer or (
+                answer.problem == "FOREVER_HERE" and other_answer.problem
+            ), text
         else:
             assert answer.problem, text
     small.close()
@@ -313,7 +313,7 @@ def chain(calls: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("right", "wrong"),
+    ("right_text", "wrong_text"),
     [
         (";".join(f"V{k}=1" for k in range(32)), ";".join(f"V{k}=1" for k in range(33))),
         (blocks(16), blocks(17)),
@@ -342,17 +342,17 @@ def chain(calls: int) -> str:
          "DEF A(P,Q,T,U);END_DEF;A(1,2,3," + "(1+" * 13 + "1" + ")" * 13 + ")"),
     ],
 )  # fmt: skip
-def test_limits_of_the_language(right: str, wrong: str) -> None:
-    assert answer_to(right).is_program
-    assert answer_to(wrong).problem == "LIMIT"
+def test_limits_of_the_language_are_kept(right_text: str, wrong_text: str) -> None:
+    assert answer_to(right_text).is_program
+    assert answer_to(wrong_text).problem == "LIMIT"
 
 
 def test_a_name_may_begin_in_the_deepest_block() -> None:
     """All that waits makes room for it: 16 blocks that count, and a DEF."""
-    begin, end = "DEF A;" + "LOOP(2);" * 16, "END_LOOP;" * 16 + "END_DEF;A"
+    opening, closing = "DEF A;" + "LOOP(2);" * 16, "END_LOOP;" * 16 + "END_DEF;A"
     early, late = (
-        [row.split()[0] for row in code_of(text + end)]
-        for text in (f"V=1;{begin}S;", f"{begin}V=1;S;")
+        [row.split()[0] for row in code_of(text + closing)]
+        for text in (f"V=1;{opening}S;", f"{opening}V=1;S;")
     )
     opened_count = 2 + 1 + 2 * 16
     assert late == early[2:opened_count] + early[:2] + early[opened_count:]
@@ -369,7 +369,7 @@ def test_at_most_254_brackets_that_are_open() -> None:
     assert answer_to("X=" + "(" * 600 + "1" + ")" * 600).problem == "FULL"
 
 
-def test_names_are_told_apart_to_their_last_letter() -> None:
+def test_names_are_distinguished_to_their_last_letter() -> None:
     name = "A" * 200
     assert code_of(f"{name}1 = 1; {name}2 = 2; {name} = {name}2")[-2:] == [
         "PUSH_VAR_1",
@@ -377,7 +377,7 @@ def test_names_are_told_apart_to_their_last_letter() -> None:
     ]
 
 
-def test_what_lies_in_the_buffer() -> None:
+def test_code_and_waiting_data_share_the_buffer() -> None:
     """Code and waiting data meet: one byte less is too little."""
     text = b"SPEED = 5; IF(SPEED > 1); F(1, SPEED); ENDIF"
     # ten bytes of code, the word that is read, the block that it ends, and the name SPEED
@@ -390,7 +390,7 @@ def test_what_lies_in_the_buffer() -> None:
 # -- tasks --------------------------------------------------------------------------------------
 
 
-def test_a_forever_waits_for_the_tasks_that_let_it_last() -> None:
+def test_forever_is_allowed_only_beside_tasks() -> None:
     """They may follow it, as long as the program continues."""
     move = "SI|F(FOREVER, 60)"
     assert answer_to(f"{move}; TASK; END_TASK").is_program
@@ -418,16 +418,16 @@ def test_a_way_keeps_its_bracket_open() -> None:
 
 
 @each_row("number, code", NUMBER_CODES)
-def test_shortest_push(number: str, code: str) -> None:
+def test_the_shortest_push_is_used(number: str, code: str) -> None:
     assert answer_to(f"SHOW({number})").code.hex(" ") == f"{code} 39"
 
 
 @pytest.mark.parametrize("number", ["2147483.6475", "-2147483.6485", "9999999999999999999999"])
-def test_numbers_that_are_too_big(number: str) -> None:
+def test_too_large_numbers_are_refused(number: str) -> None:
     assert answer_to(f"X = {number}").problem == "TOO_BIG"
 
 
-def test_readings_stand_before_their_instruction() -> None:
+def test_readings_precede_their_instruction() -> None:
     assert code_of("X = TIME > 5 AND DISTANCE < 10 OR LIGHT_R > 5") == [
         "READ_2", "READ_0", "TIME", "PUSH_NUM_5", "GT", "AND_THEN -> 000a", "PUSH_SENSOR_2",
         "PUSH_NUM_10", "LT", "OR_ELSE -> 000f", "PUSH_SENSOR_0", "PUSH_NUM_5", "GT", "SET_VAR_0",
@@ -438,24 +438,24 @@ def readings_of(text: str) -> list[str]:
     return [name for name in code_of(text) if name.startswith("READ")]
 
 
-def test_a_chain_of_arms_takes_a_reading_once() -> None:
+def test_a_chain_of_branches_takes_a_reading_once() -> None:
     assert readings_of("IF(FALSE);ELSEIF(DISTANCE>1);ELSEIF(DISTANCE>2);ENDIF") == ["READ_2"]
     assert readings_of("IF(DISTANCE>0);ELSEIF(DISTANCE>1);S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
 
 
-def test_an_until_reads_in_each_of_its_turns() -> None:
+def test_an_until_reads_at_each_check() -> None:
     """LIGHT_R is the first sensor, DISTANCE the last one."""
     for sensor, reading in (("LIGHT_R", "READ_0"), ("DISTANCE", "READ_2")):
         assert readings_of(f"F({sensor},80)UNTIL({sensor}>1)") == [reading] * 2
 
 
-def test_a_call_makes_surely_read_what_its_body_does() -> None:
+def test_readings_of_a_called_body_count_as_read() -> None:
     assert readings_of("DEF LOOK;DISTANCE;END_DEF;LOOK;X=DISTANCE") == ["READ_2"]
     assert readings_of("DEF LOOK;X=DISTANCE;END_DEF;LOOK;X=DISTANCE") == ["READ_2"] * 2
     assert readings_of("DISTANCE;DEF LOOK;X=DISTANCE;END_DEF;X=DISTANCE") == ["READ_2"] * 2
 
 
-def test_an_if_makes_surely_read_what_all_of_its_arms_do() -> None:
+def test_readings_on_all_branches_count_as_read() -> None:
     both = "IF(TRUE);DISTANCE;ELSE;DISTANCE;ENDIF;X=DISTANCE"
     assert readings_of(both) == ["READ_2"] * 2
     assert readings_of(both.replace("ELSE;", "")) == ["READ_2"] * 3
@@ -474,15 +474,16 @@ def test_the_values_of_a_call_are_set_one_after_the_other() -> None:
 
 
 def test_tasks_may_have_different_defs_with_values() -> None:
-    begin = "DEF A(X);END_DEF;DEF C(X);A(X);END_DEF;DEF G(X);END_DEF;"
-    assert answer_to(begin + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
-    assert answer_to(begin + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
+    opening = "DEF A(X);END_DEF;DEF C(X);A(X);END_DEF;DEF G(X);END_DEF;"
+    assert answer_to(opening + "A(1);C(2);TASK;G(1);END_TASK;A(3)").is_program
+    assert answer_to(opening + "TASK;G(1);G(2);END_TASK;WHEN(TRUE);C(1);END_WHEN").is_program
     assert (
-        answer_to(begin + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem == "ONE_TASK"
+        answer_to(opening + "TASK;C(1);END_TASK;WHEN(TRUE);G(1);END_WHEN;G(3)").problem
+        == "ONE_TASK"
     )
 
 
-def test_a_call_goes_on_in_the_next_line() -> None:
+def test_a_call_may_continue_in_the_next_line() -> None:
     answers = read_lines(KIT, b"DEF A(X,\nP)\nF(X,P)\nEND_DEF;A(1\n+1,\n50)\n")
     assert answers[-1] == answer_to("DEF A(X,P);F(X,P);END_DEF;A(1+1,50)")
 
@@ -500,7 +501,7 @@ def test_a_call_goes_on_in_the_next_line() -> None:
         ("S // note<", "S"), (" " * 260 + "SS<", None),
     ],
 )  # fmt: skip
-def test_backspace_takes_back_what_is_not_done(
+def test_backspace_removes_input_that_has_not_run(
     key: str, typed_text: str, meant_text: str | None
 ) -> None:
     """`<` is the key, and only letters of the word that is typed are not done."""
@@ -511,5 +512,5 @@ def test_backspace_takes_back_what_is_not_done(
         assert answer == answer_to(meant_text) and answer.is_program
 
 
-def test_columns_after_a_backspace_are_those_that_are_seen() -> None:
+def test_columns_after_a_backspace_match_the_visible_text() -> None:
     assert answer_to("FO\b(2, 80); GO").column == answer_to("F(2, 80); GO").column == 11

@@ -111,7 +111,7 @@ def test_random_programs_with_tasks(first: int) -> None:
 
 
 @pytest.mark.parametrize("speed, turn", [(0, 7), (7, 0), (0, 0)])
-def test_a_kit_that_does_not_say_how_fast_it_is(speed: int, turn: int) -> None:
+def test_a_kit_without_speed_agrees(speed: int, turn: int) -> None:
     kit = KITS[1][1]._replace(speed=speed, turn=turn)
     for way, goes in (("F(1 CM,", speed), ("b(1cm,", speed), ("L(1 DEG,", turn), ("r(1°,", turn)):
         answer = check_bytes(f"{way} 60)".encode(), kit)
@@ -132,8 +132,8 @@ def test_random_tokens(first: int) -> None:
 def test_every_byte_and_pair_of_bytes(text: bytes) -> None:
     for byte in range(256):
         check_bytes(text % bytes((byte,)), KITS[1][1])
-        for other in b"\x00\x02\x80\x93\xa0\xbf\xc2\xe2 /=9A":
-            check_bytes(text % bytes((byte, other)), KITS[1][1])
+        for other_byte in b"\x00\x02\x80\x93\xa0\xbf\xc2\xe2 /=9A":
+            check_bytes(text % bytes((byte, other_byte)), KITS[1][1])
 
 
 @pytest.mark.parametrize(
@@ -141,14 +141,14 @@ def test_every_byte_and_pair_of_bytes(text: bytes) -> None:
     [0xA0, 0x7FF, 0x800, 0x1FFF, 0x2000, 0x200B, 0x200C, 0x200F, 0x2010, 0x2015, 0x2016, 0x2028,
      0x202F, 0x2212, 0x3000, 0x3001, 0xFEFF, 0xFFFD, 0x10000, 0x100A0, 0x12000, 0x1F600, 0x10FFFF],
 )  # fmt: skip
-def test_characters_of_unicode(point: int) -> None:
+def test_unicode_characters_agree(point: int) -> None:
     for text in ("S//%s", "S%s", "M(%s5,5)", "%sS"):
         check_bytes((text % chr(point)).encode(), KITS[1][1])
 
 
 @pytest.mark.sampled("room")
 @pytest.mark.parametrize("room", [8, 40, 100, SHORT_BUFFER])
-def test_little_room_is_full_and_nothing_else(room: int) -> None:
+def test_insufficient_room_only_causes_full_errors(room: int) -> None:
     for seed in range(100):
         kit, data, _, slips = texts_of(seed, 1)
         for data_line in (data, *slips):

@@ -52,7 +52,7 @@ def texts() -> list[bytes]:
 
 
 @pytest.mark.skipif(bool(REASON), reason=REASON or "there is a chip")
-def test_the_chip_says_the_same() -> None:
+def test_the_chip_gives_the_same_answers() -> None:
     reader = TextReader(KIT, ROOM, NO_DEFS)
     program = avr_bench.build("reader", avr_bench.SOURCES, "-Dtiniscript_with_remote")
     head = pack("<HH", ROOM, len(kit_words(KIT))) + kit_words(KIT)

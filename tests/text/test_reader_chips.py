@@ -32,7 +32,7 @@ def texts() -> list[bytes]:
 @pytest.mark.sampled("name")
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("room", [200, 374, LARGEST_ROOM])
-def test_the_chip_says_the_same(name: str, room: int) -> None:
+def test_the_chip_gives_the_same_answers(name: str, room: int) -> None:
     all_texts = texts()
     reader = TextReader(KIT, room)
     expected = [reader.read(text) for text in all_texts]

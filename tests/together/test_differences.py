@@ -78,7 +78,7 @@ def describe(operations: list[Operation]) -> str:
 
 
 @each_row("what, before, after, wanted_operations, stay", CASES)
-def test_what_is_the_same_stays(
+def test_equal_parts_are_kept(
     what: str, before: str, after: str, wanted_operations: str, stay: int
 ) -> None:
     numbers, new_numbers = count(1), count(1)
@@ -139,7 +139,7 @@ def edit_rows(rng: Random, rows: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_operations_make_the_new_program_and_are_taken_back(seed: int) -> None:
+def test_operations_produce_the_new_program_and_are_undone(seed: int) -> None:
     rng, tried = Random(seed), Counter[str]()
     while sum(tried.values()) < PROGRAMS:
         tree_before = program(rng, rng.randint(0, 20))

@@ -178,7 +178,7 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_changes_make_the_new_text_of_the_old(seed: int) -> None:
+def test_changes_turn_the_old_text_into_the_new(seed: int) -> None:
     rng = Random(seed)
     rows = ["F(1, 80);", "f(1,80)", "", "  B(2, 40);", "// \U0001f916 a", "// b \x0b c", "W(1)"]
     old_text, new_text = ("\n".join(rng.choices(rows, k=rng.randint(0, 8))) for _ in range(2))

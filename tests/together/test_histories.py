@@ -110,7 +110,7 @@ def test_all_pages_end_with_the_same_program(seed: int) -> None:
 
 
 @pytest.mark.long
-def test_pupils_of_ordinary_speed_are_seldom_refused() -> None:
+def test_pupils_typing_at_normal_speed_are_seldom_refused() -> None:
     change_count, refused_count = _counts([lesson(seed, 3) for seed in range(3)])
     assert change_count > 300
     assert refused_count <= MOST_REFUSED * change_count, f"{refused_count} of {change_count}"

@@ -119,7 +119,7 @@ def test_deep_and_long_programs_are_refused() -> None:
     assert {reason for _, reason in program.refusals_by_page["m"]} == {UNPARSED, TOO_LONG}
 
 
-def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
+def test_the_number_of_remembered_deletions_is_limited() -> None:
     program = SharedProgram(parse_tree("S\n", lambda: "i.1"), "e")
     page = Page.of("z", program.news("z", -1, ""))
     for k in range(1, 2 * MOST_FORMER_PLACES // 100 + 2):
@@ -137,7 +137,7 @@ def test_of_what_has_gone_a_limited_number_is_known_everywhere() -> None:
     )
 
 
-def test_a_change_counts_once_and_in_its_order() -> None:
+def test_a_change_counts_once_and_in_order() -> None:
     program = SharedProgram(parse_tree("S\n", lambda: "i.1"), "e")
 
     def beep(k: int) -> Any:

@@ -43,7 +43,7 @@ def are_same(a: SharedProgram, b: SharedProgram) -> bool:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, seed: int) -> None:
+def test_a_program_is_restored_from_a_truncated_journal(tmp_path: Path, seed: int) -> None:
     """All announced changes are there; a row that a crash has cut off was never announced."""
     path, rng = tmp_path / "journal", Random(seed)
     journal, program = begin_journal(path)
@@ -67,7 +67,7 @@ def test_a_program_goes_on_from_wherever_its_journal_was_cut(tmp_path: Path, see
     assert are_same(whole_program, resumed_program)
 
 
-def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
+def test_the_row_is_written_before_the_answer(tmp_path: Path) -> None:
     path = tmp_path / "journal"
     _, program = begin_journal(path)
     for value in (5, 0, 6):
@@ -78,7 +78,7 @@ def test_the_row_is_there_before_the_answer(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("says_so", ["write", "in part", "fsync"])
-def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
+def test_with_a_full_disk_the_lesson_continues_and_the_journal_catches_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, says_so: str
 ) -> None:
     """A system reports it at a write, by the number of written bytes, or at the sync."""
@@ -107,7 +107,7 @@ def test_where_the_disk_is_full_the_lesson_goes_on_and_the_journal_catches_up(
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
+def test_a_crash_on_a_bad_disk_loses_no_readable_data(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     path, rng, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
@@ -152,9 +152,7 @@ def test_a_crash_at_any_moment_of_a_bad_disk_costs_nothing_that_can_be_read(
     assert final is not None and are_same(final, program)
 
 
-def test_a_journal_that_is_too_long_begins_anew_and_keeps_the_one_before(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_overlong_journal_is_rotated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(journals, "MOST_BYTES", 3000)
     path = tmp_path / "journal"
     _, program = begin_journal(path)
@@ -177,7 +175,7 @@ def test_an_invalid_journal_is_ignored(tmp_path: Path, data: bytes) -> None:
     assert Journal(path).resume("e2") is None
 
 
-def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
+def test_a_forgotten_journal_is_deleted(tmp_path: Path) -> None:
     path = tmp_path / "folder" / "journal"
     journal, program = begin_journal(path)
     change_program(program, 3)
@@ -187,7 +185,7 @@ def test_a_forgotten_journal_is_gone(tmp_path: Path) -> None:
     assert START in program.tree  # the holder continues with it
 
 
-def test_the_newest_of_the_history_is_in_memory_and_the_rest_in_the_journal(tmp_path: Path) -> None:
+def test_recent_history_is_in_memory_and_the_rest_in_the_journal(tmp_path: Path) -> None:
     path = tmp_path / "journal"
     _, program = begin_journal(path)
     program._most_kept = 20

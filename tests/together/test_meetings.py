@@ -91,7 +91,7 @@ def pair() -> PagePair:
     return PagePair()
 
 
-def test_a_delete_spares_what_its_author_has_not_seen(pair: PagePair) -> None:
+def test_a_delete_spares_changes_unseen_by_its_author(pair: PagePair) -> None:
     loop = pair.find("LOOP(3)")
     pair.inserts(pair.ana, loop, pair.find("B(1, 40)"))
     apply_edits(pair.luz, [Delete(tuple(pair.luz.view.subtree_ids(loop)))])
@@ -100,7 +100,7 @@ def test_a_delete_spares_what_its_author_has_not_seen(pair: PagePair) -> None:
     assert "  BEEP(1, 440);" in pair.luz.lines
 
 
-def test_an_arm_goes_with_all_that_is_in_it_or_not(pair: PagePair) -> None:
+def test_a_branch_is_deleted_with_all_its_contents_or_not_at_all(pair: PagePair) -> None:
     pair.inserts(pair.ana, pair.find("IF(X < 1)"), pair.find("ELSE"))
     rows = [row for row in pair.luz.lines if "ELSE" not in row and "W(1)" not in row]
     pair.luz.type(rows, 0)
@@ -109,26 +109,26 @@ def test_an_arm_goes_with_all_that_is_in_it_or_not(pair: PagePair) -> None:
     assert pair.luz.refusals[-1][1] == HAS_NEW
 
 
-def test_a_block_goes_around_what_was_put_between(pair: PagePair) -> None:
+def test_a_new_block_encloses_instructions_inserted_meanwhile(pair: PagePair) -> None:
     first_id, last_id = pair.find("B(1, 40)"), pair.find("R(1, 40)")
     pair.inserts(pair.ana, pair.find("LOOP(3)"), first_id)
     apply_edits(pair.luz, [Wrap((first_id, last_id), Subtree(pair.luz.new_id(), "WHILE(X < 2)"))])
     assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in pair.meet()
 
 
-def test_a_place_whose_neighbour_has_gone_is_where_that_stood(pair: PagePair) -> None:
+def test_a_place_whose_neighbour_was_deleted_is_kept(pair: PagePair) -> None:
     apply_edits(pair.ana, [Delete((pair.find("R(1, 40)"),))])
     pair.inserts(pair.luz, pair.find("LOOP(3)"), pair.find("R(1, 40)"))
     assert "B(1, 40); BEEP(1, 440); END_LOOP" in pair.meet()
 
 
-def test_the_first_place_of_a_block_that_was_taken_away_stays(pair: PagePair) -> None:
+def test_the_first_place_of_a_removed_block_is_kept(pair: PagePair) -> None:
     apply_edits(pair.ana, [Unwrap(pair.find("LOOP(3)"))])
     pair.inserts(pair.luz, pair.find("LOOP(3)"), "")
     assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in pair.meet()
 
 
-def test_two_blocks_that_go_into_each_other_make_no_circle(pair: PagePair) -> None:
+def test_two_blocks_moved_into_each_other_form_no_cycle(pair: PagePair) -> None:
     loop, branch = pair.find("LOOP(3)"), pair.find("IF(X < 1)")
     apply_edits(pair.ana, [Move((loop,), Place(branch, ""))])
     apply_edits(pair.luz, [Move((branch,), Place(loop, ""))])
@@ -136,7 +136,7 @@ def test_two_blocks_that_go_into_each_other_make_no_circle(pair: PagePair) -> No
     assert pair.luz.refusals[-1][1] == CIRCLE
 
 
-def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(pair: PagePair) -> None:
+def test_the_later_of_two_values_wins_and_undo_restores_the_other(pair: PagePair) -> None:
     pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
     pair.types(pair.luz, "F(1, 80)", "F(1, 99)")
     assert "F(1, 99)" in pair.meet()
@@ -148,7 +148,7 @@ def test_of_two_values_the_later_wins_whole_and_undo_gives_back_the_other(pair: 
     assert "F(1, 80)" in pair.meet()
 
 
-def test_an_undo_that_comes_after_anothers_change_is_refused(pair: PagePair) -> None:
+def test_an_undo_after_another_pupils_change_is_refused(pair: PagePair) -> None:
     pair.types(pair.luz, "F(1, 80)", "F(1, 99)")
     pair.meet()
     pair.types(pair.ana, "F(1, 99)", "F(5, 99)")
@@ -157,7 +157,7 @@ def test_an_undo_that_comes_after_anothers_change_is_refused(pair: PagePair) -> 
     assert pair.luz.refusals[-1][1] == CHANGED
 
 
-def test_undo_brings_back_what_was_deleted_with_its_ids(pair: PagePair) -> None:
+def test_undo_restores_deleted_blocks_with_their_ids(pair: PagePair) -> None:
     loop = pair.find("LOOP(3)")
     text_before = text_of(pair.program.tree)
     apply_edits(pair.ana, [Delete(tuple(pair.ana.view.subtree_ids(loop)))])
@@ -168,7 +168,7 @@ def test_undo_brings_back_what_was_deleted_with_its_ids(pair: PagePair) -> None:
     assert loop in pair.program.tree
 
 
-def test_a_line_that_two_have_cut_and_pasted_is_there_once(pair: PagePair) -> None:
+def test_a_line_cut_and_pasted_by_two_exists_once(pair: PagePair) -> None:
     for page in (pair.ana, pair.luz):
         page.type([row for row in page.lines if "L(1, 60)" not in row], 0)
         page.flush()
@@ -187,7 +187,7 @@ def test_a_page_makes_no_change_that_leaves_no_program() -> None:
     assert not page.pending_changes
 
 
-def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(
+def test_a_line_being_typed_is_deleted_only_with_its_instruction(
     pair: PagePair,
 ) -> None:
     pair.types(pair.ana, "B(1, 40);", "B(1, 4", is_hot=True)
@@ -207,7 +207,7 @@ def test_a_line_that_is_being_typed_goes_with_its_instruction_and_stays_without(
     assert "i.3" in pair.program.tree  # the same instruction
 
 
-def test_a_half_typed_value_is_not_a_change_though_it_parses(pair: PagePair) -> None:
+def test_a_half_typed_value_is_not_a_change_even_if_it_parses(pair: PagePair) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
         old_row = next(row for row in pair.ana.lines if "L(1" in row)
         pair.types(pair.ana, old_row, shown, is_hot=True)
@@ -217,7 +217,7 @@ def test_a_half_typed_value_is_not_a_change_though_it_parses(pair: PagePair) -> 
     assert sum("L(1, 9" in str(change) for change in pair.program.taken_changes) == 1
 
 
-def test_of_lines_typed_one_below_the_other_only_the_last_one_waits(pair: PagePair) -> None:
+def test_only_the_last_of_successively_typed_lines_waits(pair: PagePair) -> None:
     k = pair.ana.lines.index("L(1, 60);")
     for row in ("W(2)", "f(3,70)", "LOOP(2)", "BEEP(1, 440)", "END_LOOP"):
         rows = pair.ana.lines[:]
@@ -252,7 +252,7 @@ def test_a_value_typed_into_what_was_deleted_is_a_draft_again(pair: PagePair) ->
     assert "i.4" in pair.program.tree
 
 
-def test_a_page_that_is_loaded_again_goes_on(pair: PagePair) -> None:
+def test_a_reloaded_page_continues(pair: PagePair) -> None:
     pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
     pair.types(pair.ana, "W(1);", "W(9)", is_hot=True)
     stored_data = json.loads(json.dumps(pair.ana.store_data()))
@@ -269,7 +269,7 @@ def test_a_page_that_is_loaded_again_goes_on(pair: PagePair) -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(seed: int) -> None:
+def test_undone_changes_can_be_redone_after_a_reload(seed: int) -> None:
     """The reload comes before the computer has heard of the undo."""
     rng, two = Random(seed), PagePair()
     for k in range(rng.randint(1, 3)):
@@ -286,7 +286,7 @@ def test_what_was_undone_before_any_reload_is_redone_after_it_and_not_undone(see
     assert f"F({last_value}, 80)" in two.meet()
 
 
-def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(pair: PagePair) -> None:
+def test_a_renamed_page_loses_and_duplicates_nothing(pair: PagePair) -> None:
     pair.inserts(pair.ana, ROOT, pair.find("L(1, 60)"))
     pair.program.submit(pair.ana.pending_changes)  # and the answer is lost
     pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
@@ -299,7 +299,7 @@ def test_a_page_that_gets_another_name_loses_nothing_and_doubles_nothing(pair: P
     assert all(change in pair.meet() for change in ("F(2, 80)", "L(4, 60)", "W(4)"))
 
 
-def test_a_copy_of_a_page_goes_its_own_way(pair: PagePair) -> None:
+def test_a_copy_of_a_page_is_independent(pair: PagePair) -> None:
     data_before: list[Any] = [pair.ana.lines[:], data(pair.ana)]
     copy = pair.ana.copy()
     pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
@@ -370,12 +370,12 @@ def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_copy_goes_on_as_the_page_itself_and_hears_nothing_of_it(seed: int) -> None:
+def test_a_copy_continues_like_the_page_without_its_messages(seed: int) -> None:
     assert list_shown_pages(seed, makes_copies=True) == list_shown_pages(seed, makes_copies=False)
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_what_is_typed_before_and_after_any_reload_is_the_program(seed: int) -> None:
+def test_text_typed_before_and_after_a_reload_is_in_the_program(seed: int) -> None:
     """Whichever messages were sent, received or lost then, no text is refused, lost or
     duplicated."""
     rng, two = Random(seed), PagePair(FLAT_PROGRAM)
@@ -400,7 +400,7 @@ def data(page: Page) -> Any:
     return [page.store_data(), list(map(data_of_change, page.pending_changes))]
 
 
-def test_a_page_whose_tree_is_another_one_asks_for_the_whole(pair: PagePair) -> None:
+def test_a_page_with_a_different_tree_requests_the_whole_program(pair: PagePair) -> None:
     pair.ana.base.node_by_id[pair.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
     pair.hears(pair.ana)
     assert pair.ana.is_astray
@@ -409,7 +409,7 @@ def test_a_page_whose_tree_is_another_one_asks_for_the_whole(pair: PagePair) -> 
     assert "SI|F(1, 80);" in pair.ana.lines
 
 
-def test_a_redo_takes_back_an_undo_until_something_else_is_done(pair: PagePair) -> None:
+def test_a_redo_reverts_an_undo_until_the_next_change(pair: PagePair) -> None:
     pair.types(pair.ana, "B(1, 40)", "B(9, 40)")
     pair.types(pair.luz, "R(1, 40)", "R(5, 40)")
     text_before = pair.meet()
@@ -427,7 +427,7 @@ def test_a_redo_takes_back_an_undo_until_something_else_is_done(pair: PagePair) 
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_as_many_redos_as_undos_bring_all_back(seed: int) -> None:
+def test_as_many_redos_as_undos_restore_everything(seed: int) -> None:
     rng, two = Random(seed), PagePair(FLAT_PROGRAM)
     texts = [two.meet()]
     for number in range(1, 6):

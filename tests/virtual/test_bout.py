@@ -78,39 +78,41 @@ def rivals_of(driving: Driving) -> list[Pose]:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(12))
-def test_whoever_looks_changes_nothing(seed: int) -> None:
+def test_observers_change_nothing(seed: int) -> None:
     draw = random.Random(seed)
     world, moves, body = (
         draw_crowded_world(draw),
         powers(draw),
         robots.load(draw.choice(robots.names())).body,
     )
-    ends = []
+    end_states = []
     for look_count in (0, 3, 40):
         driving, watch = driving_in(body, world), random.Random(seed + look_count)
         for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
             driving.set_motors(ms, left, right)
-            for at in sorted(watch.sample(range(ms, until), min(look_count, until - ms))):
-                driving.pose_at(at) if watch.random() < 0.5 else driving.advance_to(at)
-        ends.append(
+            for at_ms in sorted(watch.sample(range(ms, until), min(look_count, until - ms))):
+                driving.pose_at(at_ms) if watch.random() < 0.5 else driving.advance_to(at_ms)
+        end_states.append(
             (driving.advance_to(9000), rivals_of(driving), driving.bumps, driving.has_fallen)
         )
-    assert ends[0] == ends[1] == ends[2]
+    assert end_states[0] == end_states[1] == end_states[2]
 
 
 @pytest.mark.sampled("name", keep=3)
 @pytest.mark.parametrize("name", robots.names())
-def test_a_program_among_rivals_does_the_same_again(name: str) -> None:
+def test_a_program_among_rivals_is_reproducible(name: str) -> None:
     """For every robot, in the shipped world and from its own sensors."""
     image = compile("SI|LOOP(40);M(80,60);W(0.1);M(-20,90);W(0.05);END_LOOP", name).image
-    ends = []
+    end_states = []
     for pauses in ([7000], [13] * 500 + [500]):
         simulation = Simulation(name, worlds.load("sumo"), image)
         for pause in pauses:
             simulation.advance(pause)
         state = simulation.state()
-        ends.append({key: state[key] for key in ("now_ms", "pose", "rivals", "score", "readings")})
-    assert ends[0] == ends[1]
+        end_states.append(
+            {key: state[key] for key in ("now_ms", "pose", "rivals", "score", "readings")}
+        )
+    assert end_states[0] == end_states[1]
 
 
 # -- bodies ----------------------------------------------------------------------------------------
@@ -118,7 +120,7 @@ def test_a_program_among_rivals_does_the_same_again(name: str) -> None:
 
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(24))
-def test_no_body_is_ever_inside_another(seed: int) -> None:
+def test_no_body_ever_overlaps_another(seed: int) -> None:
     draw = random.Random(seed)
     world, moves = draw_crowded_world(draw), powers(draw)
     driving = driving_in(robots.load(draw.choice(robots.names())).body, world)
@@ -126,23 +128,23 @@ def test_no_body_is_ever_inside_another(seed: int) -> None:
     touched_count = 0
     for (ms, left, right), (until, _, _) in zip(moves, [*moves[1:], (9000, 0, 0)], strict=True):
         driving.set_motors(ms, left, right)
-        for at in range(ms, until, 7):
-            driving.advance_to(at)
+        for at_ms in range(ms, until, 7):
+            driving.advance_to(at_ms)
             bodies = driving.bodies()
             for k, (hull, pose) in enumerate(bodies):
                 for other, place in bodies[:k]:
                     apart = gap_between(hull.spine(pose), other.spine(place))[0]
                     gap = apart - hull.radius_cm - other.radius_cm
-                    assert gap > -1e-3, f"{at} ms"
+                    assert gap > -1e-3, f"{at_ms} ms"
                     touched_count += gap < 0.1
                 contact = hull.contact(pose, driving.obstacles)
-                assert contact is None or contact.gap_cm > -1e-3, f"{at} ms"
+                assert contact is None or contact.gap_cm > -1e-3, f"{at_ms} ms"
     assert touched_count or not any(rival.power_percent for rival in world.rivals)
 
 
 @pytest.mark.parametrize("power", [20, 60, 100])
 @pytest.mark.parametrize("heading", [0, 30, 90, 180])
-def test_a_rival_that_is_pushed_goes_where_it_is_pushed(heading: int, power: int) -> None:
+def test_a_pushed_rival_moves_in_the_push_direction(heading: int, power: int) -> None:
     """This holds for any orientation: it moves most along its wheels, least sideways."""
     driving = bout(RING + SLEEPING_RIVAL.replace("180", str(heading)))
     [pose_before] = driving.rivals
@@ -171,7 +173,7 @@ def test_the_stronger_one_pushes_the_other_back(mine: int, its: int, speed: int)
     assert (way > 0.5) == (mine > its) and (way < -0.5) == (mine < its)
 
 
-def test_a_body_alone_goes_as_it_does_without_a_ring() -> None:
+def test_a_single_body_moves_as_without_a_ring() -> None:
     """A rival that is far away, and asleep, changes nothing."""
     far = RING.replace("x_cm = 60", "x_cm = 30") + SLEEPING_RIVAL.replace(
         "x_cm = 100", "x_cm = 170"
@@ -201,7 +203,7 @@ def test_a_rival_begins_when_the_robot_first_moves() -> None:
     assert rivals_of(driving) == rivals_before, "its time is over"
 
 
-def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
+def test_an_unpushed_rival_stays_in_its_ring() -> None:
     draw = random.Random(8)
     for _ in range(6):
         text = RING.replace("x_cm = 60", "x_cm = 8")  # the robot is outside, and seen
@@ -209,8 +211,8 @@ def test_a_rival_stays_in_a_ring_where_nobody_pushes_it() -> None:
         driving = bout(text + HEAD_ON_RIVAL.format(power).replace("180", str(heading)))
         driving.has_fallen = True  # falling does not end this run
         driving.set_motors(0, 1, 0)
-        for at in range(0, 20_000, 50):
-            driving.advance_to(at)
+        for at_ms in range(0, 20_000, 50):
+            driving.advance_to(at_ms)
             [rival] = driving.rivals
             assert math.dist(rival[:2], (100, 100)) < 80
 
@@ -243,7 +245,7 @@ def test_a_distance_sensor_sees_where_a_rival_is() -> None:
     assert count > 8
 
 
-def test_what_is_black_and_what_is_white() -> None:
+def test_black_and_white_areas_are_sensed() -> None:
     """A dark ring, its edge, and the floor around it; a line is black anywhere."""
     world = read(RING + SLEEPING_RIVAL + "[[lines]]\npoints = [[20, 20], [195, 20]]\n", "ring")
     liner = robots.load("liner")
@@ -277,8 +279,8 @@ def test_the_edge_is_seen_before_the_robot_is_out(power: int) -> None:
         sensing = Sensing(SUMO, world)
         driving.set_motors(0, power, power)
         seen_ms = next(
-            at for at in range(0, 20_000, 10)
-            if sensing.peek(0, pose := driving.advance_to(at)) or sensing.peek(1, pose)
+            at_ms for at_ms in range(0, 20_000, 10)
+            if sensing.peek(0, pose := driving.advance_to(at_ms)) or sensing.peek(1, pose)
         )  # fmt: skip
         assert seen_ms > 300 and not driving.has_fallen
         driving.advance_to(seen_ms + 150)
@@ -297,7 +299,7 @@ def run_to_score(program: str, text: str, ms: int = 9000) -> dict[str, int]:
     return score
 
 
-def test_who_is_pushed_out_and_who_falls() -> None:
+def test_pushed_out_rivals_and_falls_are_counted() -> None:
     text = RING + SLEEPING_RIVAL + "[task]\nseconds = 20\n"
     won = run_to_score("F(9, 80)", text)
     assert (won["pushed"], won["rivals"], won["stars"], won["has_fallen"]) == (1, 1, 3, False)
@@ -322,7 +324,7 @@ def test_the_example_pushes_the_rival_of_the_world_out() -> None:
     assert (score["pushed"], score["stars"], score["has_fallen"]) == (1, 3, False)
 
 
-def test_a_world_says_what_is_wrong_with_its_rivals(tmp_path: Path) -> None:
+def test_faults_of_rivals_in_a_world_are_reported(tmp_path: Path) -> None:
     from tiniscript.robots.refusals import describe
     from tiniscript.virtual.world import WorldRefused
 

@@ -73,7 +73,7 @@ def stands_for_a_while(robot: VirtualRobot) -> bool:
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> None:
+def test_moves_are_straight_and_of_the_requested_length(profile: Robot, seed: int) -> None:
     robot, talk = started_robot("F(100 CM, 60)", seed, profile)
     talk.wait(9000)
     ahead, aside, _ = displacement(robot)
@@ -85,13 +85,13 @@ def test_it_goes_as_far_as_was_said_and_straight(profile: Robot, seed: int) -> N
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize(("text", "turn"), [("L(360 DEG, 60)", 360), ("R(90 DEG, 80)", -90)])
-def test_it_turns_as_far_as_was_said(profile: Robot, text: str, turn: int) -> None:
+def test_turns_have_the_requested_angle(profile: Robot, text: str, turn: int) -> None:
     robot, talk = started_robot(text, 2, profile)
     talk.wait(6000)
     assert abs(displacement(robot)[2] - turn) <= 6
 
 
-def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_controller_learns_how_its_wheels_roll_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """If wheels stop earlier than most, later moves end earlier, with fewer corrections."""
     monkeypatch.setattr(wheels, "LAG_MS", 30)
     robot, talk = started_robot("LOOP(6); F(30 CM, 70); SHOW(TIME); END_LOOP", slip=0.0)
@@ -101,7 +101,7 @@ def test_it_learns_how_its_wheels_roll(monkeypatch: pytest.MonkeyPatch) -> None:
     assert at_s[5] - at_s[2] < at_s[2] - 0.25
 
 
-def test_back_and_short_ways_and_no_way() -> None:
+def test_backward_short_and_zero_moves_are_exact() -> None:
     robot, talk = started_robot("B(30 CM, 100); F(2 CM, 40); F(0 CM, 0)")
     talk.wait(6000)
     assert abs(displacement(robot)[0] + 28) < 1.5 and robot.fault == ""
@@ -111,7 +111,7 @@ def test_back_and_short_ways_and_no_way() -> None:
     ]  # fmt: skip
 
 
-def test_a_kit_without_speed_measures_too_and_power_0_is_a_fault() -> None:
+def test_a_kit_without_speed_also_measures_and_power_0_is_a_fault() -> None:
     robot, talk = started_robot("P = 0; F(20 CM, P)")
     talk.wait(500)
     assert robot.fault == "NO_POWER"
@@ -121,7 +121,7 @@ def test_a_kit_without_speed_measures_too_and_power_0_is_a_fault() -> None:
     f"{WAY} UNTIL(TIME > 0.5); SHOW(1)",
     f"{WAY}; SHOW(1)\nTASK\nW(0.5); S\nEND_TASK",
 ])  # fmt: skip
-def test_what_ends_a_move_early_ends_it_at_once(text: str) -> None:
+def test_interrupted_moves_end_at_once(text: str) -> None:
     """There is no correction: the distance that it rolls on remains."""
     robot, talk = started_robot(text)
     talk.wait(540)
@@ -150,14 +150,14 @@ def test_a_stop_in_any_phase_stops(after_ms: int, how: str) -> None:
     assert stands_for_a_while(robot)
 
 
-def test_a_lost_link_ends_it() -> None:
+def test_a_lost_link_ends_a_move() -> None:
     robot, talk = started_robot("F(200 CM, 20)")
     talk.wait(300)
     robot.step(robot.now_ms + 1200)
     assert robot.fault == "LINK_LOST" and stands_for_a_while(robot)
 
 
-def test_a_task_that_takes_the_motors_gives_them_back_and_the_way_goes_on() -> None:
+def test_an_interrupted_move_continues_when_it_has_the_motors_again() -> None:
     """The turn comes with the motors, and the rest of the way is after it."""
     robot, talk = started_robot(
         "X = 0; F(60 CM, 60)\nWHEN(X = 0 AND TIME > 0.6)\nX = 1; R(90 DEG, 60)\nEND_WHEN"
@@ -188,7 +188,7 @@ INTERRUPTIONS += [("F(100 CM, 60)", 3, body) for body in STANDING[1:]]
 @pytest.mark.sampled("profile", "way", "times", "body", keep=6)
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize(("way", "times", "body"), INTERRUPTIONS)
-def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
+def test_an_interrupted_move_keeps_its_length_and_direction(
     profile: Robot, way: str, times: int, body: str
 ) -> None:
     """Rolling after a WHEN takes the motors counts as a part of the move."""
@@ -212,7 +212,7 @@ def test_a_way_that_is_interrupted_is_as_long_and_as_straight(
     ("M(60, 60); W(0.2); M(-60, -60); W(0.2); M(0, 0); W(0.4)", 0, 0.5),
     ("M(-40, -40); W(0.2); M(40, 40); W(0.2); M(0, 0); W(0.4)", 0, 0.5),
 ])  # fmt: skip
-def test_what_an_interruption_drives_is_not_a_part_of_the_way(
+def test_distance_driven_by_an_interruption_does_not_count(
     body: str, more_cm: float, off_cm: float
 ) -> None:
     """The result is not exact: how far a wheel driven meanwhile would have rolled is a guess."""
@@ -223,7 +223,7 @@ def test_what_an_interruption_drives_is_not_a_part_of_the_way(
         assert abs(ahead - 100 - 3 * more_cm) <= 1.5 + 3 * off_cm
 
 
-def test_two_ways_that_stand_still_are_both_gone_to_their_end() -> None:
+def test_two_suspended_moves_are_both_completed() -> None:
     """A higher WHEN interrupts a lower one's way, which has interrupted the main task's."""
     text = """X = 0; F(60 CM, 60); SHOW(3)
 WHEN(X = 1 AND TIME > 1); X = 2; M(0, 0); W(0.4); SHOW(1); END_WHEN
@@ -236,15 +236,15 @@ WHEN(X = 0 AND TIME > 0.6); X = 1; F(40 CM, 60); SHOW(2); END_WHEN"""
     assert abs(ahead - 100) <= 2
 
 
-def test_a_way_after_one_that_was_ended_is_whole() -> None:
+def test_a_move_after_an_ended_one_has_its_full_length() -> None:
     """A move ended by S is not continued, even if the same task makes the next one."""
     text = """F(60 CM, 60); F(30 CM, 60); SHOW(1)
 TASK; W(0.5); S; W(60); END_TASK"""
     robot, talk = started_robot(text, 2)
     talk.wait(500)
-    before, _, _ = displacement(robot)
+    ahead_before, _, _ = displacement(robot)
     talk.wait(5000)
-    assert abs(displacement(robot)[0] - before - 30) <= 2
+    assert abs(displacement(robot)[0] - ahead_before - 30) <= 2
 
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
@@ -253,7 +253,9 @@ TASK; W(0.5); S; W(60); END_TASK"""
     "F(30 CM, 60); SHOW(1)", "R(90 DEG, 60); SHOW(1)",
     "W(60)\nWHEN(TIME > 0.1); F(30 CM, 60); SHOW(1); END_WHEN",
 ])  # fmt: skip
-def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float, text: str) -> None:
+def test_a_move_ends_even_if_a_disc_flickers_at_rest(
+    profile: Robot, hertz: float, text: str
+) -> None:
     """A second after the motors were turned off at most: then no wheel turns."""
     for numbers in ((0,), (0, 1)):
         robot, talk = started_robot(text, 2, profile)
@@ -269,7 +271,7 @@ def test_a_way_ends_though_a_disc_flickers_at_rest(profile: Robot, hertz: float,
 
 
 @pytest.mark.parametrize("number", [0, 1])
-def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None:
+def test_edges_of_a_flickering_disc_do_not_count(number: int) -> None:
     """While a WHEN lets the robot stand, no more count than wheels may roll."""
     robot, talk = started_robot(interrupt_moves("F(100 CM, 60)", 2, "M(0, 0); W(3)"), 2)
     Flicker(robot, number, 40)
@@ -281,7 +283,7 @@ def test_edges_of_a_disc_that_flickers_are_no_part_of_a_way(number: int) -> None
 @pytest.mark.parametrize("number", [0, 1])
 @pytest.mark.parametrize("text", [WAY, f"{WAY} UNTIL(DISTANCE = 1)",
                                   f"W(0.01); {WAY}\nTASK\nW(60)\nEND_TASK"])  # fmt: skip
-def test_a_disc_that_tells_nothing_is_the_fault_stuck(
+def test_a_silent_disc_is_the_fault_stuck(
     number: int, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     robot, talk = started_robot(text)
@@ -294,16 +296,18 @@ def test_a_disc_that_tells_nothing_is_the_fault_stuck(
     sentence = fault_sentence(status.fault, status.fault_at, 0, None, "en")
     side = ("left", "right")[number]
     assert sentence.startswith(f"fault {robot.fault}: the {side} wheel does not turn: free it")
-    at = status.fault_at
+    fault_offset = status.fault_at
     code = unpack(compile_text(text, TWO.kit).image).code
-    op = BY_CODE[code[at]]
-    assert op.control_role == "until" if op else code[at] == ESCAPE, "the GO, or the UNTIL"
+    op = BY_CODE[code[fault_offset]]
+    assert op.control_role == "until" if op else code[fault_offset] == ESCAPE, (
+        "the GO, or the UNTIL"
+    )
     assert (op is not None) == ("UNTIL" in text)
     talk.wait(300)
     assert stands_for_a_while(robot)
 
 
-def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
+def test_two_standing_wheels_are_stuck_in_any_order(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     robot, talk = started_robot(WAY)
@@ -317,7 +321,7 @@ def test_wheels_that_both_stand_are_stuck_whoever_stood_first(
 
 @pytest.mark.parametrize("number", [0, 1])
 @pytest.mark.parametrize("text", [WAY, "B(60 CM, 60)", "R(90 DEG, 60)"])
-def test_a_disc_whose_channels_are_exchanged_ends_the_move(
+def test_exchanged_disc_channels_end_the_move(
     text: str, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It counts backward while the wheel turns forward, so the robot would drive in circles."""
@@ -339,7 +343,7 @@ def test_a_disc_whose_channels_are_exchanged_ends_the_move(
 
 
 @pytest.mark.parametrize(("profile", "sees"), [(TWO, False), (TWO_CHANNELS, True)])
-def test_a_hand_that_turns_a_wheel_back(profile: Robot, sees: bool) -> None:
+def test_a_wheel_turned_back_by_hand_is_measured(profile: Robot, sees: bool) -> None:
     """With two channels the wheel repeats that distance. With one channel, it seems to have gone
     ahead."""
     robot, talk = started_robot(WAY, profile=profile)
@@ -361,7 +365,7 @@ def noise(talk: Talk) -> tuple[int, ...]:
 
 @pytest.mark.parametrize("profile", [TWO, TWO_CHANNELS], ids=["slotted", "two_channel"])
 @pytest.mark.parametrize("number", [0, 1])
-def test_a_disc_that_flickers_at_rest_is_told_in_status(profile: Robot, number: int) -> None:
+def test_a_disc_that_flickers_at_rest_is_reported_in_status(profile: Robot, number: int) -> None:
     """This holds with and without a program, once the wheels have stopped rolling."""
     robot, talk = started_robot("W(1)", profile=profile)
     talk.wait(2000)
@@ -385,14 +389,14 @@ def test_a_disc_that_flickers_at_rest_is_told_in_status(profile: Robot, number: 
     interrupt_moves("F(60 CM, 60)", 3, "M(0, 0); W(0.4)"),
     interrupt_moves("F(60 CM, 60)", 2, "B(0.3, 80)"),
 ])  # fmt: skip
-def test_edges_of_wheels_that_turn_and_roll_are_no_noise(text: str) -> None:
+def test_edges_of_rolling_wheels_are_not_noise(text: str) -> None:
     for seed in (1, 2, 3):
         robot, talk = started_robot(text, seed)
         talk.wait(8000)
         assert noise(talk) == (0, 0) and wheel(robot, 0).counted_edges > 20
 
 
-def test_a_robot_without_discs_tells_no_noise() -> None:
+def test_a_robot_without_discs_reports_no_noise() -> None:
     for name in ("tinibot", "tinibot32"):
         assert noise(Talk(robot_in(name=name))) == ()
 
@@ -408,7 +412,7 @@ def hold(one: Wheel, monkeypatch: pytest.MonkeyPatch) -> None:
     (WAY, "held"), (WAY, "stopped"), (f"{WAY} UNTIL(TIME > 0.5)", "held"), (WAY, "lost"),
     (f"{WAY}\nTASK; W(0.4); S; W(60); END_TASK", "held"),
 ])  # fmt: skip
-def test_whatever_has_ended_a_way_the_next_program_goes_straight(
+def test_the_next_program_drives_straight_after_any_end_of_a_move(
     text: str, how: str, number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A wheel that stood left the other one's lead in the controller: the robot drove a curve."""
@@ -434,7 +438,7 @@ def test_whatever_has_ended_a_way_the_next_program_goes_straight(
 
 
 @pytest.mark.parametrize("number", [0, 1])
-def test_a_wheel_that_is_held_for_a_moment_bends_no_later_way(
+def test_a_briefly_held_wheel_bends_no_later_move(
     number: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Too short for a fault. The next way of the same program is straight."""
@@ -467,7 +471,7 @@ def test_a_wheel_that_stands_while_its_two_channels_flicker_is_stuck(
     assert robot.fault == ("STUCK_LEFT", "STUCK_RIGHT")[number] and not robot.is_running
 
 
-def test_counts_that_wrap_around() -> None:
+def test_counters_may_wrap_around() -> None:
     robot, talk = started_robot("W(0.1); F(30 CM, 60)")
     for number in (0, 1):
         wheel(robot, number).counted_edges = (1 << 16) - 7
@@ -475,7 +479,7 @@ def test_counts_that_wrap_around() -> None:
     assert abs(displacement(robot)[0] - 30) < 1.5
 
 
-def test_the_same_seed_gives_the_same_run_however_often_it_is_looked_at() -> None:
+def test_the_same_seed_gives_the_same_run_at_any_polling_rate() -> None:
     def run_way(look: Callable[[VirtualRobot], object], step_ms: int) -> object:
         robot, talk = started_robot(WAY, seed=5)
         for _ in range(4000 // step_ms):
@@ -514,7 +518,7 @@ def list_trace(text: str, name: str) -> list[str]:
 
 @pytest.mark.parametrize("name", ["grabber", "tinibot32"])
 @pytest.mark.parametrize("text", [ONE_TASK, TWO_TASKS])
-def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> None:
+def test_the_duration_of_a_program_follows_the_profile(name: str, text: str) -> None:
     robot = robot_in(name=name)
     talk = Talk(robot)
     assert talk.upload(text).status == OK
@@ -524,7 +528,7 @@ def test_a_program_takes_as_long_as_the_profile_says(name: str, text: str) -> No
 
 
 @each_row("name", robots.names())
-def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
+def test_a_simulated_body_moves_and_turns_at_its_kits_speeds(name: str) -> None:
     profile = robots.load(name)
     go_ms = profile.kit.go_ms(20_000, 60, is_turn=False)
     turn_ms = profile.kit.go_ms(90_000, 60, is_turn=True)
@@ -536,7 +540,7 @@ def test_a_simulated_body_goes_and_turns_as_its_kit_says(name: str) -> None:
 @pytest.mark.parametrize(
     ("text", "needs"), [(ONE_TASK, GO), (TWO_TASKS, GO | TASKS), ("W(0.1)", 0)]
 )
-def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
+def test_the_robot_determines_the_needs_of_code(text: str, needs: int) -> None:
     """For a program in one frame, and for a live line, its image equals the compiler's."""
     robot = robot_in(name="tinibot32")
     talk = Talk(robot)
@@ -550,7 +554,7 @@ def test_the_robot_finds_out_what_code_needs(text: str, needs: int) -> None:
     assert trace(robot.take_events()) == list_trace(text, "tinibot32")
 
 
-def test_without_numbers_it_never_comes_there() -> None:
+def test_a_measured_move_without_speeds_faults() -> None:
     """A profile without `speed` rejects such programs; a program sent anyway faults."""
     robot = robot_in(name="grabber")
     kit = robot.profile.kit

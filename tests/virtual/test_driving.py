@@ -42,7 +42,7 @@ def test_the_nearest_point_is_inside_or_an_end() -> None:
     assert nearest_point(Segment(Point(1, 1), Point(1, 1)), 4, 5) == (1, 1)
 
 
-def test_segments_cross_or_have_a_distance() -> None:
+def test_segments_cross_or_are_a_distance_apart() -> None:
     assert crosses(WALL_ACROSS, Segment(Point(0, 0), Point(20, 0)))
     assert not crosses(WALL_ACROSS, Segment(Point(0, 0), Point(9, 0)))
     assert gap_between(WALL_ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
@@ -80,15 +80,15 @@ def make_driving(world: World, start: Pose | None = None, robot: Robot = TINIBOT
     return Driving(robot.body, world.obstacles(), start or world.start)
 
 
-def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
+def test_without_obstacles_the_path_follows_the_wheels() -> None:
     drive = make_driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
     pose = Pose(1000, 1000, 0)
     now_ms = 0.0
     ways = ((80, 80, 1000), (60, -60, 500), (100, 30, 2500), (-50, 20, 700))
-    for left, right, duration_ms in ways:
-        drive.set_motors(now_ms, left, right)
+    for black_on_left, right, duration_ms in ways:
+        drive.set_motors(now_ms, black_on_left, right)
         now_ms += duration_ms
-        pose = move_pose(TINIBOT.body, pose, left, right, duration_ms)
+        pose = move_pose(TINIBOT.body, pose, black_on_left, right, duration_ms)
         assert drive.advance_to(now_ms) == pytest.approx(pose, abs=1e-6)
     assert drive.bumps == 0
 
@@ -131,7 +131,7 @@ def test_no_wheel_slips_aside_while_a_wall_turns_a_robot(turn_s: float) -> None:
 
 
 @pytest.mark.parametrize("aside", [2, 5, -7])
-def test_the_end_of_a_wall_that_catches_a_side_of_it_does_not_hold_it(aside: float) -> None:
+def test_the_end_of_a_wall_does_not_hold_a_robot_by_its_side(aside: float) -> None:
     end = 100 + aside
     drive = make_driving(floor(f"[[walls]]\npoints = [[120, {end}], [140, {end}]]\n"))
     drive.set_motors(0, 60, 60)
@@ -162,7 +162,7 @@ def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> Non
 
 def test_looking_changes_nothing() -> None:
     """A picture of it may be drawn whenever one likes."""
-    ends = []
+    end_poses = []
     for look_times_ms in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
         drive = make_driving(
             floor("[[boxes]]\nx_cm=150\ny_cm=95\nlength_cm=20\nwidth_cm=20\nheading=20")
@@ -170,11 +170,11 @@ def test_looking_changes_nothing() -> None:
         drive.set_motors(0, 90, 80)
         for now_ms in look_times_ms:
             drive.pose_at(now_ms)
-        ends.append(drive.advance_to(8000))
-    assert ends[0] == ends[1] == ends[2]
+        end_poses.append(drive.advance_to(8000))
+    assert end_poses[0] == end_poses[1] == end_poses[2]
 
 
-def test_the_way_has_no_gaps_and_few_corners() -> None:
+def test_the_path_has_no_gaps_and_few_corners() -> None:
     drive = make_driving(floor())
     drive.set_motors(0, 50, 50)
     drive.set_motors(3000, 30, -30)
@@ -242,12 +242,12 @@ def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:
 
 def test_a_line_sensor_is_over_a_line_or_not() -> None:
     line = floor("[[lines]]\npoints = [[107.5, 20], [107.5, 180]]\nwidth_cm = 2\n")
-    left = 0
+    black_on_left = 0
     for x, y, is_black in ((100, 100, 1), (101, 100, 1), (101.1, 100, 0), (100, 190, 0)):
-        assert read(line, left, Pose(x, y, 0), LINER) * ONE == is_black
+        assert read(line, black_on_left, Pose(x, y, 0), LINER) * ONE == is_black
 
 
-def test_a_bumper_notices_what_is_in_front() -> None:
+def test_a_bumper_notices_an_obstacle_in_front() -> None:
     hull, bumper = Hull(LINER.body), 2
     for heading, is_touched in ((0, True), (30, True), (80, False), (180, False)):
         cos = math.cos(math.radians(heading))
@@ -258,7 +258,7 @@ def test_a_bumper_notices_what_is_in_front() -> None:
         assert read(floor(), bumper, off, LINER) == 0
 
 
-def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -> None:
+def test_a_sensor_without_a_place_gives_a_plausible_or_set_value() -> None:
     pose = Pose(100, 100, 0)
     assert read(floor(), 3, pose, LINER) == 5  # BATTERY, 0 to 10 V
     assert read(floor(), 1, pose, GRABBER) == 20  # TEMPERATURE
@@ -268,7 +268,7 @@ def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -
     assert sensing.peek(3, pose) == 6500
 
 
-def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
+def test_noise_is_about_as_large_as_specified() -> None:
     sensing = Sensing(TINIBOT, floor(), 0.05, Random(1))
     pose = Pose(100, 100, 0)
     readings = [sensing.read(DISTANCE, pose) / ONE / 87 for _ in range(400)]

@@ -50,7 +50,7 @@ def program() -> bytes:
 
 
 @each_row("name", FOREIGN_GREETINGS)
-def test_no_beginning_of_a_browser_is_for_a_robot(name: str) -> None:
+def test_no_prefix_of_a_browser_request_is_accepted(name: str) -> None:
     """However slowly it comes, byte by byte."""
     data = FOREIGN_GREETINGS[name]
     answers = verdicts(data)
@@ -58,7 +58,7 @@ def test_no_beginning_of_a_browser_is_for_a_robot(name: str) -> None:
     assert answers[-1] is False
 
 
-def test_all_frames_of_a_computer_are_for_a_robot() -> None:
+def test_all_frames_of_a_computer_are_accepted() -> None:
     chance = Random(3)
     session = Session(7, 9600, 5)
     session.hello()
@@ -86,7 +86,7 @@ def test_all_frames_of_a_computer_are_for_a_robot() -> None:
     ("\x1b[A", 3), ("\3\3\3", 3), ("\0F(1)\n", 3), ("\0S\n", 3), ("\ufeffS", 1), ("\t\tS", 3),
     ('SHOW("GET / HTTP/1.1")\n', 5),
 ])  # fmt: skip
-def test_a_line_of_text_is_for_a_robot_as_soon_as_it_can_be_told(text: str, after: int) -> None:
+def test_a_line_of_text_is_accepted_as_soon_as_it_is_recognizable(text: str, after: int) -> None:
     answers = verdicts(text.encode())
     assert False not in answers
     assert answers.index(True) == after
@@ -124,7 +124,7 @@ def _has_moved(simulator: Simulator) -> bool:
     return any(event.kind == "MOTORS" for event in simulator.robot.take_events())
 
 
-def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator: Simulator) -> None:
+def test_a_web_request_moves_a_robot_only_without_its_header(simulator: Simulator) -> None:
     for header in (FOREIGN_GREETINGS["post"], FOREIGN_GREETINGS["any method"], tls_hello(), b""):
         with visit(simulator) as client:
             for part in (header[:3], header[3:], program()):
@@ -139,7 +139,7 @@ def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator:
                 until(simulator, lambda: _has_moved(simulator))
 
 
-def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulator) -> None:
+def test_a_web_page_is_also_refused_after_another_client(simulator: Simulator) -> None:
     with visit(simulator) as first:
         first.sendall(PING)
         until(simulator, lambda: simulator.transports.visit_count == 1)
@@ -151,7 +151,7 @@ def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulato
     assert not _has_moved(simulator)
 
 
-def test_a_line_that_comes_letter_by_letter_is_answered(simulator: Simulator) -> None:
+def test_a_line_sent_letter_by_letter_is_answered(simulator: Simulator) -> None:
     with visit(simulator) as client:
         for letter in b"PING|\r\n":
             client.send(bytes([letter]))
@@ -180,7 +180,7 @@ def crowd(simulator: Simulator, count: int, says: bytes = b"") -> list[socket.so
 
 
 @pytest.mark.parametrize("says", [b"", b"\0", b"POS"])
-def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes) -> None:
+def test_many_silent_clients_block_nobody(simulator: Simulator, says: bytes) -> None:
     idle = crowd(simulator, 300, says)
     [client] = crowd(simulator, 1)
     is_said, most, heard_bytes = False, 0, bytearray()
@@ -200,7 +200,7 @@ def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes)
         connection.close()
 
 
-def test_whoever_says_nothing_has_to_leave(
+def test_silent_clients_are_disconnected(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(limits, "SILENCE_TIMEOUT_S", 0.05)
@@ -211,7 +211,7 @@ def test_whoever_says_nothing_has_to_leave(
             wait_until_hung_up(simulator, client)
 
 
-def test_a_silent_client_leaves_its_place_to_one_who_speaks(
+def test_a_silent_client_gives_way_to_an_active_one(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with visit(simulator) as first, visit(simulator) as second:
@@ -232,7 +232,7 @@ def test_a_silent_client_leaves_its_place_to_one_who_speaks(
         wait_until_answered(simulator, second)
 
 
-def test_too_many_open_files_of_this_process_are_no_end(
+def test_the_server_survives_too_many_open_files(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     idle = crowd(simulator, 5)

@@ -49,7 +49,7 @@ def test_a_world_without_flags_has_no_score() -> None:
     assert run_to_score(FLOOR, "F(1, 80)", 900) is None
 
 
-def test_flags_are_taken_in_their_order_and_give_points_as_seconds_that_are_left_do() -> None:
+def test_flags_are_taken_in_order_and_remaining_seconds_give_points() -> None:
     at_once = run_to_score(TWO, "F(100 CM, 80)") or {}
     assert (at_once["taken"], at_once["of"], at_once["stars"]) == (2, 2, 3)
     later = run_to_score(TWO, "W(2);F(100 CM, 80)") or {}
@@ -70,7 +70,7 @@ def test_a_collision_and_a_late_end_cost_a_star_each() -> None:
     assert count_flags_and_stars(TWO, "F(9, 80)", 12_000) == (2, 3)
 
 
-def test_where_it_is_to_rest_it_stands() -> None:
+def test_a_rest_flag_requires_standing_still() -> None:
     rests = TWO + "rests = true\nreach_cm = 20\n"
     assert count_flags_and_stars(rests, "F(9, 80)")[0] == 1
     assert count_flags_and_stars(rests, "F(100 CM, 80)")[0] == 2  # the program ends there

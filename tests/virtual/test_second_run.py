@@ -63,11 +63,11 @@ OFF = ("a reset", "off and on")
 
 def program(rng: random.Random, name: str) -> str:
     text = re.sub(r"RANDOM\(\d, \d\)", "2", task_program(rng)[0]).replace("\n", ";")
-    ends = rng.choice(("", "F(0.3, 60);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);W(0.2);"))
+    ending = rng.choice(("", "F(0.3, 60);", "X = 0;W(0.05);SHOW(1 / X);", "M(30, -30);W(0.2);"))
     if name == "grabber":
         text = text.replace("LIGHT_L", "TEMPERATURE")
         text = rng.choice(("", "GRIPPER(40);LED(TRUE);", "LED(DISTANCE < 40);")) + text
-    return f"SI|SHOW(DISTANCE);{text};{ends}"
+    return f"SI|SHOW(DISTANCE);{text};{ending}"
 
 
 class Observation(NamedTuple):
@@ -93,9 +93,9 @@ def check(seed: int) -> str:
     talk = Talk(robot)
     assert talk.upload(program(rng, name), is_detached=rng.random() < 0.3).status == 0
     talk.wait(rng.choice((0, 1, 30, 300, 900)))
-    ends = rng.choice([*END_ACTIONS])
-    END_ACTIONS[ends](talk)
-    assert ends not in OFF or (not robot.is_running and robot.offset is None), seed
+    ending = rng.choice([*END_ACTIONS])
+    END_ACTIONS[ending](talk)
+    assert ending not in OFF or (not robot.is_running and robot.offset is None), seed
     robot.step(robot.now_ms + 20, b"\0S\n")
     robot.step(robot.now_ms + 1500)  # until the robot stops
     pose = robot.pose
@@ -104,23 +104,23 @@ def check(seed: int) -> str:
     other = robot_in(floor(WALL)._replace(start=pose), name, baud=0)
     other.step(1500)
     actions, want = run_program(Talk(robot, 7), text), run_program(Talk(other, 7), text)
-    explanation = f"seed {seed} {ends} {name} {text}\n{actions}\nnot\n{want}"
+    explanation = f"seed {seed} {ending} {name} {text}\n{actions}\nnot\n{want}"
     assert actions[:2] == want[:2], explanation
     did_pose, want_pose = actions.pose, want.pose
     assert hypot(did_pose.x_cm - want_pose.x_cm, did_pose.y_cm - want_pose.y_cm) < TOLERANCE_CM, (
         explanation
     )
     assert abs(did_pose.heading - want_pose.heading) < TOLERANCE_DEGREES, explanation
-    left = {k: value for k, value in actions.actuators.items() if k not in want.actuators}
-    assert {**want.actuators, **left} == actions.actuators, explanation
+    actuators_left = {k: value for k, value in actions.actuators.items() if k not in want.actuators}
+    assert {**want.actuators, **actuators_left} == actions.actuators, explanation
     # Outputs that the program's own end leaves on.
-    assert is_done or not any(left.values()), explanation
-    return ends if len(want.trace) > 3 else "little"
+    assert is_done or not any(actuators_left.values()), explanation
+    return ending if len(want.trace) > 3 else "little"
 
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(20))
-def test_a_second_run_is_as_on_a_robot_that_was_switched_on_there(part: int) -> None:
+def test_a_second_run_is_as_on_a_freshly_started_robot(part: int) -> None:
     counts = Counter(check(seed) for seed in range(part * 15, (part + 1) * 15))
     assert counts["little"] < 8, counts
 

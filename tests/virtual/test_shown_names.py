@@ -88,9 +88,7 @@ def test_the_copies_of_a_def_have_one_name(kind: str) -> None:
 
 @each_row("kind", KINDS)
 @pytest.mark.parametrize("stops", [False, True])
-def test_what_follows_a_program_that_waits_to_show_has_names_of_its_own(
-    kind: str, stops: bool
-) -> None:
+def test_a_program_after_one_with_waiting_values_has_its_own_names(kind: str, stops: bool) -> None:
     """Both have their SHOWs at the same places."""
     desk = Desk(kind, SLOW)
     desk.send("SI|NEAR = 1; LOOP(FOREVER); SHOW(NEAR); END_LOOP")
@@ -106,12 +104,12 @@ def test_what_follows_a_program_that_waits_to_show_has_names_of_its_own(
 
 
 @each_row("kind", KINDS)
-def test_the_robot_s_own_trace_says_the_same(kind: str) -> None:
+def test_the_robots_own_trace_agrees(kind: str) -> None:
     desk = Desk(kind, 0)
     desk.send(SEVERAL)
     desk.list_shown_values(60_000)
     [places] = desk.maps.values()
     for event in desk.robot.take_events():
         if event.kind == "SHOW":
-            at = places.location_at(event.offset)
-            assert at and NAMES[event.values[0] // 1000] in places.line(at.line)
+            location = places.location_at(event.offset)
+            assert location and NAMES[event.values[0] // 1000] in places.line(location.line)

@@ -33,7 +33,7 @@ def test_a_flood_waits_outside(simulator: Simulator) -> None:
         assert MOST_WAITING_BYTES < most < MOST_WAITING_BYTES + limits.READ_BYTES + 100
 
 
-def test_a_client_who_does_not_read_loses_what_it_does_not_read(
+def test_a_client_that_does_not_read_loses_the_unread_data(
     simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(limits, "MOST_UNSENT_BYTES", 500)
@@ -57,7 +57,7 @@ def test_clients_come_and_go(simulator: Simulator) -> None:
     assert simulator.transports._server.getsockname()[0] == "127.0.0.1"
 
 
-def test_of_many_clients_at_once_all_but_one_are_told(simulator: Simulator) -> None:
+def test_all_but_one_of_many_simultaneous_clients_are_refused(simulator: Simulator) -> None:
     crowd = [visit(simulator) for _ in range(6)]
     for client in crowd:
         client.sendall(PING)
@@ -79,7 +79,7 @@ def test_of_many_clients_at_once_all_but_one_are_told(simulator: Simulator) -> N
 
 
 @pytest.mark.parametrize("late_ms", [1, 30, 300])
-def test_a_new_client_hears_nothing_that_is_under_way_to_the_one_before(
+def test_a_new_client_gets_nothing_meant_for_the_previous_one(
     simulator: Simulator, late_ms: int
 ) -> None:
     """The line is bad, and its bytes are late."""
@@ -104,7 +104,7 @@ def bytes_heard_by_client(simulator: Simulator, stays_ms: int) -> bytes:
 # -- the heartbeat of a hurried robot -------------------------------------------------------------
 
 
-def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
+def test_the_heartbeat_repeats_the_last_complete_frame() -> None:
     heart = Heartbeat()
     assert heart.bytes_due(10_000, 5.0) == b""  # no heartbeat was sent
     heart.on_bytes(b"\0" + PING[:3], 5.0)
@@ -120,7 +120,7 @@ def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
     assert heart.bytes_due(40_000, 7.0) == b""
 
 
-def test_a_new_client_does_not_speak_with_the_words_of_the_one_before(simulator: Simulator) -> None:
+def test_a_new_client_does_not_continue_the_previous_ones_line(simulator: Simulator) -> None:
     with visit(simulator) as client:
         client.sendall(PING + b"\5half")
         until(simulator, lambda: bool(simulator._heartbeat._unfinished_packet))
@@ -131,7 +131,7 @@ def test_a_new_client_does_not_speak_with_the_words_of_the_one_before(simulator:
         assert simulator._heartbeat.bytes_due(10**6, simulator._heartbeat._received_s) == b""
 
 
-def test_the_heartbeat_keeps_nothing_endless() -> None:
+def test_the_heartbeat_buffer_is_bounded() -> None:
     heart = Heartbeat()
     for _ in range(1000):
         heart.on_bytes(b"x" * 1000, 1.0)

@@ -50,11 +50,11 @@ def test_lines_are_answered_and_the_robot_drives() -> None:
         assert lines_until(client, "DONE") == ["// OK", "// DONE"]
 
 
-def test_it_speaks_the_language_of_the_command_unless_its_profile_has_one(tmp_path: Path) -> None:
+def test_a_virtual_robot_uses_its_profiles_or_the_commands_language(tmp_path: Path) -> None:
     profile = tmp_path / "mine.toml"
     profile.write_text(TEXTS["tinibot"].replace("[board]\n", '[board]\nlanguage = "en"\n'))
-    own: list[str | Path] = ["--robot", profile]
-    for words, answers in (([], ["// OK", "// FIN"]), (own, ["// OK", "// DONE"])):
+    profile_options: list[str | Path] = ["--robot", profile]
+    for words, answers in (([], ["// OK", "// FIN"]), (profile_options, ["// OK", "// DONE"])):
         with (
             robot("--listen", "0", "--lang", "es", *words) as running_robot,
             visitor(running_robot.port) as client,

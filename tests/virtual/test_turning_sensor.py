@@ -26,7 +26,7 @@ def with_neck(low: int = 0, high: int = 180) -> Robot:
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 180), (-90, 90), (20, 160)])
-def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> None:
+def test_a_turned_sensor_reads_like_one_facing_that_way(low: int, high: int) -> None:
     """This holds anywhere in a world, for any names of its range: in the middle, it looks ahead."""
     necked_robot, world = with_neck(low, high), worlds.load("obstacles")
     draw = random.Random(3)
@@ -47,7 +47,7 @@ def test_it_reads_what_a_sensor_reads_that_looks_there(low: int, high: int) -> N
     assert sum(a != b for a, b in readings) > 30, "it turns, and sees something else"
 
 
-def test_it_stays_as_it_is_when_its_servo_is_released() -> None:
+def test_a_sensor_keeps_its_direction_when_its_servo_is_released() -> None:
     """A stop releases the servo, which then does not turn back."""
     robot = VirtualRobot(with_neck(), worlds.load("maze"), Settings(1))
     talk = Talk(robot)

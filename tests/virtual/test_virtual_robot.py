@@ -47,7 +47,7 @@ PROGRAMS = {
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_it_does_what_tsc_run_says(name: str) -> None:
+def test_the_virtual_robot_agrees_with_tsc_run(name: str) -> None:
     """The readings, each line of the trace and each time agree.
 
     The line takes no time; otherwise its values would wait until the receipt is sent.
@@ -95,7 +95,7 @@ def test_unequal_motors_drive_a_curve_and_their_trim_makes_it_straight() -> None
         assert robot.pose.x_cm > 130
 
 
-def test_the_papers_program_drives_around_the_obstacles_and_touches_none() -> None:
+def test_the_papers_program_avoids_all_obstacles() -> None:
     robot = robot_in(worlds.load("obstacles"))
     Talk(robot).upload(OBSTACLE, is_detached=True)
     robot.step(robot.now_ms + 40_000)
@@ -142,7 +142,7 @@ def push(robot: VirtualRobot) -> None:
     robot.let_go()
 
 
-def test_without_its_computer_a_program_ends_after_a_second_unless_it_is_detached() -> None:
+def test_without_its_computer_an_attached_program_ends_after_a_second() -> None:
     robot = robot_in()
     Talk(robot).upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP")
     began_ms = robot.now_ms
@@ -169,7 +169,7 @@ def test_a_program_that_another_one_replaces_stops_before_it_starts() -> None:
     assert [event.kind for event in robot.take_events()] == ["STOP", "START", "MOTORS"]
 
 
-def test_of_what_nobody_takes_the_newest_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_newest_unread_events_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tiniscript.virtual.robot.MOST_EVENTS", 10)
     robot = robot_in()
     Talk(robot).upload("SI|X = 0;LOOP(40);X = X + 1;SHOW(X);END_LOOP", is_detached=True)
@@ -188,7 +188,7 @@ def test_each_task_that_has_not_ended_has_a_place() -> None:
     assert len(robot.task_offsets) == len(set(robot.task_offsets)) == 2
 
 
-def test_a_saved_program_is_there_after_a_power_cycle() -> None:
+def test_a_saved_program_survives_a_power_cycle() -> None:
     robot = robot_in()
     talk = Talk(robot)
     talk.upload("SB|F(0.1, 50)", runs=False)
@@ -210,7 +210,7 @@ def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     assert trace(other.take_events()) == expected
 
 
-def test_a_byte_that_is_saved_takes_its_time() -> None:
+def test_saving_a_byte_takes_time() -> None:
     """A power cut in the middle: the program before is still there."""
     robot = robot_in(eeprom_us=3400)
     talk = Talk(robot)
@@ -226,7 +226,7 @@ def test_a_byte_that_is_saved_takes_its_time() -> None:
     assert trace(robot.take_events())[0] == "0 MOTORS 50 50"
 
 
-def test_off_and_on_ends_what_runs_where_it_is() -> None:
+def test_a_power_cycle_ends_the_run_where_the_robot_is() -> None:
     robot = robot_in()
     Talk(robot).upload("SI|F(5, 80)")
     robot.step(robot.now_ms + 500)
@@ -266,7 +266,7 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
     assert [line.split()[2] for line in lines if " MOTORS " in line][:3] == ["1", "2", "3"]
 
 
-def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
+def test_a_bad_line_is_reproducible_by_seed() -> None:
     def bytes_through_line(rate: float, seed: int) -> bytes:
         line = BadLine(rate, Random(seed))
         line.send_bytes(bytes(range(256)) * 8, 0)
@@ -277,7 +277,7 @@ def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() 
     assert b"OK+LOST\r\n" in bytes_through_line(50, 1)
 
 
-def test_a_running_robot_goes_on_by_itself() -> None:
+def test_a_running_robot_continues_by_itself() -> None:
     """Python is not called between events."""
     robot = robot_in(worlds.load("obstacles"))
     Talk(robot).upload("SI|F(50, 1)", is_detached=True)
@@ -302,7 +302,9 @@ def test_a_running_robot_goes_on_by_itself() -> None:
     ("tinibot32", (LARGE_FRAME, LARGE_WINDOW), "esp32"),
     ("tinibotc3", (LARGE_FRAME, LARGE_WINDOW), "esp32"),
 ])  # fmt: skip
-def test_it_says_the_sizes_of_its_chip(name: str, sizes: tuple[int, int], level: str) -> None:
+def test_a_virtual_robot_reports_the_sizes_of_its_chip(
+    name: str, sizes: tuple[int, int], level: str
+) -> None:
     talk = Talk(robot_in(name=name))
     hello_reply = talk.wait_for(talk.session.hello()).values
     assert (hello_reply.largest, hello_reply.window) == sizes
@@ -312,7 +314,7 @@ def test_it_says_the_sizes_of_its_chip(name: str, sizes: tuple[int, int], level:
 
 @pytest.mark.parametrize("is_all", [False, True])
 @pytest.mark.parametrize("name", LARGEST)
-def test_it_keeps_what_its_board_promises_and_what_it_says_itself(name: str, is_all: bool) -> None:
+def test_a_virtual_robot_holds_the_promised_program_size(name: str, is_all: bool) -> None:
     robot = robot_in(name=name)
     assert robot.profile.board.program_bytes == LARGEST[name]
     talk = Talk(robot)
@@ -329,7 +331,7 @@ def test_it_keeps_what_its_board_promises_and_what_it_says_itself(name: str, is_
     assert second_talk.wait_for(second_talk.session.fetch()).values.image == image
 
 
-def test_what_it_does_not_hold_is_refused() -> None:
+def test_a_program_too_large_for_the_virtual_robot_is_refused() -> None:
     talk = Talk(robot_in(name="grabber"))
     room = talk.wait_for(talk.session.hello()).values.room
     image = unpack(pack("SI", 0, large_upload.program(room + 1).code))
@@ -337,7 +339,7 @@ def test_what_it_does_not_hold_is_refused() -> None:
     assert len(talk.robot.memory) == 4096  # bytes of a Mega's EEPROM
 
 
-def test_it_runs_a_long_live_line() -> None:
+def test_a_virtual_robot_runs_a_long_live_line() -> None:
     talk = Talk(robot_in(name="tinibot32"))
     talk.wait_for(talk.session.hello())
     assert talk.wait_for(talk.session.live(large_upload.program(240).code)).status == OK
@@ -354,7 +356,7 @@ def owner_of(talk: Talk) -> str:
 
 
 @pytest.mark.parametrize(("held_ms", "status"), [(HOLD_MS, "OK"), (PUSH_MS, "HOLD_BUTTON")])
-def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
+def test_the_button_of_a_virtual_robot_confirms_a_claim(held_ms: int, status: str) -> None:
     keys, robot = Keys(), robot_in()
     talk = Talk(robot, keys=keys)
     request = talk.session.claim(KEY_OWNER)
@@ -370,7 +372,7 @@ def test_its_button_confirms_a_claim(held_ms: int, status: str) -> None:
         assert owner_of(Talk(robot, 7, keys)) == OWNED_BY_YOU
 
 
-def test_it_is_seen_and_heard_which_one_it_is() -> None:
+def test_identify_can_be_seen_and_heard() -> None:
     robot = robot_in()
     talk = Talk(robot)
     assert talk.wait_for(talk.session.identify()).status == 0
@@ -378,7 +380,7 @@ def test_it_is_seen_and_heard_which_one_it_is() -> None:
     for _ in range(35):
         talk.wait(100)
         lights.append(robot.is_lit)
-    assert sum(before != now for before, now in pairwise(lights)) >= 10
+    assert sum(was_lit != is_lit for was_lit, is_lit in pairwise(lights)) >= 10
     assert [event.kind for event in robot.take_events()] == ["BEEP"] * 3
 
 

@@ -35,7 +35,7 @@ def test_the_next_client_begins_a_line(simulator: Simulator) -> None:
         until(simulator, lambda: not simulator.robot.is_running)
 
 
-def test_blank_lines_cost_no_client_its_line(simulator: Simulator) -> None:
+def test_blank_lines_do_not_affect_a_clients_line(simulator: Simulator) -> None:
     for _ in range(2):
         with visit(simulator) as client:
             client.sendall(b"\n\n" + RUNNING_LINE)
@@ -46,7 +46,9 @@ def test_blank_lines_cost_no_client_its_line(simulator: Simulator) -> None:
 
 
 @pytest.mark.parametrize("word", [b"S", b"\r\nsToP ", b"\tS", b"\x1bS", b"SSSS", b"Stop.", b"PARA"])
-def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, word: bytes) -> None:
+def test_silence_completes_the_stop_of_a_possible_web_page(
+    simulator: Simulator, word: bytes
+) -> None:
     assert sniff_robot_client(word) is None
     with visit(simulator) as client:
         client.sendall(RUNNING_LINE)
@@ -57,7 +59,7 @@ def test_silence_ends_the_stop_of_who_may_be_a_web_page(simulator: Simulator, wo
         assert simulator.transports.visit_count == 1, "it lets nobody in"
 
 
-def test_the_host_knows_such_lines_as_a_robot_does() -> None:
+def test_the_virtual_robot_recognizes_stop_lines_like_a_robot() -> None:
     chance, robot, kinds = Random(4), robot_in(), set()
     parts = [
         b"S", b"sTOP", b"T", b" ", b"\t;", b"\x1b", b"\x1b[", b"O", b"1", b"A", b"\x7f", b"\1",

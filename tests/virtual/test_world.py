@@ -143,11 +143,11 @@ def test_the_world_of_the_documents_is_valid(language: str) -> None:
         ),
     ],
 )
-def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, message: str) -> None:
+def test_a_fault_in_a_world_is_reported_with_its_place(text: str, message: str) -> None:
     assert any(message in line for line in refusals_of(text)), refusals_of(text)
 
 
-def test_all_that_is_wrong_is_said_at_once() -> None:
+def test_all_faults_of_a_world_are_reported_at_once() -> None:
     text = RIGHT.replace("x_cm = 50", "x_cm = true") + "[[lamps]]\nz_cm = 1\n"
     assert (
         len(refusals_of(text)) == 3
@@ -164,20 +164,24 @@ def test_a_robot_that_does_not_fit_is_refused() -> None:
 
 
 @pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
-def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
-    binary, large, wrong = tmp_path / "b.toml", tmp_path / "l.toml", tmp_path / "w.toml"
-    binary.write_bytes(bytes(range(256)))
-    large.write_bytes(b"#" * 70_000)
-    wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
+def test_files_that_are_not_worlds_are_refused(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
+    binary_file, large_file, wrong_file = (
+        tmp_path / "b.toml",
+        tmp_path / "l.toml",
+        tmp_path / "w.toml",
+    )
+    binary_file.write_bytes(bytes(range(256)))
+    large_file.write_bytes(b"#" * 70_000)
+    wrong_file.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
     for name, expected in (
         ("obstacle", "Did you mean obstacles?"),
         ("nowhere", f"Choose one of these, or give a .toml file: {', '.join(worlds.names())}"),
         ("", "There is no world"),
         (str(tmp_path), "is a folder"),
         (str(tmp_path / "missing.toml"), "There is no file"),
-        (str(binary), "is not UTF-8"),
-        (str(large), "Check that it is a world"),
-        (str(wrong), "w.toml has mistakes:\n  lamps[1].x_cm is missing"),
+        (str(binary_file), "is not UTF-8"),
+        (str(large_file), "Check that it is a world"),
+        (str(wrong_file), "w.toml has mistakes:\n  lamps[1].x_cm is missing"),
         ("a\0b.toml", "cannot be read"),
     ):
         for language in ("en", "es"):
@@ -185,7 +189,7 @@ def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> 
             assert (expected in result.err) == (language == "en"), result.err
 
 
-def test_a_picture_has_the_longer_side_that_it_may_have() -> None:
+def test_the_longer_side_of_a_picture_has_the_allowed_size() -> None:
     text = """
         floor = { width_cm = 130, height_cm = 70, border = true }
         start = { x_cm = 20, y_cm = 20, heading = 0 }"""

@@ -105,7 +105,7 @@ def test_broken_programs(seeds: range) -> None:
 
 @pytest.mark.sampled("part")
 @pytest.mark.parametrize("part", range(128))
-def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
+def test_the_compiler_never_produces_code_that_verify_refuses(part: int) -> None:
     """10^5 random programs in all, 780 of them on a commit; optimised or not."""
     for number in range(782):
         seed = 1_000_000 + part * 782 + number

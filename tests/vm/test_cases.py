@@ -51,24 +51,26 @@ def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "bytecode"))
-def test_bytecode_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
+def test_the_bytecode_of_a_program_is_as_stated(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "bytecode", disassemble(compile_case(case).code), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "plain"))
-def test_plain_code_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
+def test_the_plain_code_of_a_program_is_as_stated(
+    case: Case, request: pytest.FixtureRequest
+) -> None:
     program = compile_case(case).program
     assert program is not None
     expect(case, "plain", disassemble(plain_code(program).code), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "line"))
-def test_line_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
+def test_the_line_of_a_program_is_as_stated(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "line", line_of(compile_case(case).source) + "\n", request)
 
 
 @each_row("case", [*having("tiniscript", "mistake"), *having("tiniscript", "warning")])
-def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
+def test_diagnostics_of_a_program_are_as_stated(case: Case, request: pytest.FixtureRequest) -> None:
     compilation = compile_case(case)
     for part, is_mistake in (("mistake", True), ("warning", False)):
         if part in case.parts:
@@ -85,7 +87,7 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "formatted"))
-def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
+def test_a_program_is_formatted_as_stated(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "formatted", format_source(compile_case(case).source), request)
 
 

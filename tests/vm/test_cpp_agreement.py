@@ -75,13 +75,13 @@ def test_disassembly_has_the_same_verdict(case: Case) -> None:
         compare_verdicts(host(), beginnings, len(kit.readings), len(kit.actuators), needs)
 
 
-def test_length_of_code() -> None:
+def test_the_length_limit_of_code_is_checked() -> None:
     lengths = (0, 1, CODE_BYTES - 1, CODE_BYTES, CODE_BYTES + 1, 100_000)
     compare_verdicts(host(), [simple("STOP") * length for length in lengths], 3, 2)
 
 
 @each_row("devices", [0, 1, 32, 33, 255])
-def test_number_of_devices(devices: int) -> None:
+def test_the_number_of_devices_is_checked(devices: int) -> None:
     """Sensors and actuators of every number, for a kit that has so many sensors."""
     codes = [simple("READ") + bytes([k]) for k in range(256)]
     codes += [simple("PUSH_TRUE") + simple("SET") + bytes([k]) for k in range(256)]
@@ -137,14 +137,14 @@ def check_three(first: int) -> int:
     "name",
     ["PUSH_TRUE", "PUSH_VAR", "ADD_VAR", "READ", "MOVE8_F", "MOTORS8", "STOP", "FOREVER", "DEF"],
 )
-def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
+def test_codes_of_three_bytes_with_the_same_first_byte_agree(name: str) -> None:
     """A sample of `--three`: codes that begin with an instruction of one, two or three bytes."""
     assert check_three(BY_NAME[name].code) > 0
 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(BATCHES))
-def test_random_codes(seed: int) -> None:
+def test_verdicts_on_random_codes_agree(seed: int) -> None:
     """A million in all, an eightieth of it on a commit: they break every rule, end in every way."""
     counts = check_codes(host(), seed, BATCH)
     others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # these codes have no tasks
@@ -154,7 +154,7 @@ def test_random_codes(seed: int) -> None:
     assert "BAD_CODE" not in counts, counts
 
 
-def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
+def test_the_machine_stays_within_its_memory_for_any_code() -> None:
     """Unverified code ends, waits or faults; sanitizers notice everything else."""
     endings: Counter[str] = Counter()
     for code in random_codes(1, 20_000):
@@ -199,7 +199,7 @@ def test_weeks_may_pass_between_two_ticks() -> None:
         assert theirs == run_late(image, kit, senses, late_ms), theirs
 
 
-def test_a_robot_that_is_not_ready_is_asked_again() -> None:
+def test_a_robot_that_is_not_ready_is_polled_again() -> None:
     """The trace is the same, only the tries are more."""
     tries = 0
     for image, kit, senses in some_programs():
@@ -255,7 +255,7 @@ def test_weeks_may_pass_between_two_turns() -> None:
 
 
 @pytest.mark.parametrize("not_ready", [2, 3])
-def test_a_task_whose_reading_is_not_ready_lets_the_others_go_on(not_ready: int) -> None:
+def test_a_task_whose_reading_is_not_ready_lets_others_continue(not_ready: int) -> None:
     """The same holds for a SHOW that is not ready."""
     for image, senses in some_task_programs(0, 200):
         run = host().run(image, KIT, senses, not_ready=not_ready)
@@ -282,13 +282,13 @@ def test_random_programs_with_ways(first: int) -> None:
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(8))
-def test_images(seed: int) -> None:
+def test_images_get_the_same_verdict(seed: int) -> None:
     cpp_checks.check_images(host(), seed, BATCH)
 
 
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(2))
-def test_images_of_programs(seed: int) -> None:
+def test_images_of_programs_get_the_same_verdict(seed: int) -> None:
     """Check the header, code and devices, in this order, for robots of which some have other
     devices.
     """
@@ -312,7 +312,7 @@ def test_needs_count_and_not_the_minor_version() -> None:
                 assert ours == theirs and want in ours and bool(want) == bool(ours), (text, minor)
 
 
-def test_long_images() -> None:
+def test_long_images_get_the_same_verdict() -> None:
     """The header's statements about the code are known before the code."""
     longest = pack("SI", 0, bytes(CODE_BYTES))
     for length in (CODE_BYTES, CODE_BYTES + 1, 40_000, 65_535):

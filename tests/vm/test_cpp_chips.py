@@ -157,7 +157,7 @@ def test_some_random_codes(chip: str, seed: int) -> None:
 
 
 @some_chips(avr.UNO)
-def test_code_that_changed_after_it_was_verified(chip: str) -> None:
+def test_code_changed_after_verification_ends_in_bad_code(chip: str) -> None:
     """It ends in BAD_CODE at each edge, and not earlier."""
     kit, senses = kit_with_sensors(SENSORS), Senses(max_ms=100, max_steps=100)
     endings = set()
@@ -171,7 +171,7 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
 
 
 @some_chips(avr.UNO)
-def test_loops_count_beyond_65535(chip: str) -> None:
+def test_loop_counts_may_exceed_65535(chip: str) -> None:
     """The test uses a nested loop and a long body: a counter has 24 bits, in registers and in
     memory."""
     kit = KITS[0][1]
@@ -185,7 +185,7 @@ def test_loops_count_beyond_65535(chip: str) -> None:
 
 
 @some_chips(avr.MEGA)
-def test_variables_behind_a_border_of_256_bytes(chip: str, tmp_path: Path) -> None:
+def test_variables_beyond_256_bytes_are_reached(chip: str, tmp_path: Path) -> None:
     """Some of those that short and long instructions use lie there, others before it."""
     names = [f"V{k}" for k in range(32)]
     text = "".join(f"{name} = {k}; {name} = {name} + 1; " for k, name in enumerate(names))
@@ -198,7 +198,7 @@ def test_variables_behind_a_border_of_256_bytes(chip: str, tmp_path: Path) -> No
 
 
 @some_chips(avr.UNO)
-def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
+def test_a_robot_that_is_not_ready_is_polled_again(chip: str) -> None:
     """Values stay on the stack, and the next tick goes on with them."""
     kit = KITS[0][1]
     code = b"".join(
@@ -215,7 +215,7 @@ def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
 @pytest.mark.sampled("chip", "seed")
 @each_emulated
 @pytest.mark.parametrize("seed", range(2))
-def test_random_codes(chip: str, seed: int) -> None:
+def test_verdicts_on_random_codes_agree(chip: str, seed: int) -> None:
     """Rules and offsets of random and mutated codes; those that are accepted run."""
     counts = cpp_checks.check_codes(start_emulator(chip), seed, 8000)
     assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(counts)
@@ -241,7 +241,7 @@ def test_programs_with_tasks_on_an_avr(chip: str) -> None:
 @pytest.mark.sampled("first")
 @some_chips(avr.UNO)
 @pytest.mark.parametrize("first", range(5000, 5400, 100))
-def test_assembly_and_its_twin_do_the_same(chip: str, first: int) -> None:
+def test_assembly_and_its_cpp_twin_agree(chip: str, first: int) -> None:
     """On one chip, instruction by instruction: turns, moves and the inner loop exist twice."""
     for number, (image, senses) in enumerate(cpp_checks.some_task_programs(first, 100)):
         not_ready, pace = (0, 2, 3)[number % 3], Pace(every_ms=(1, 8, 37, 2)[number % 4])
@@ -278,7 +278,7 @@ def test_calls_of_a_task_use_up_the_budget(chip: str) -> None:
 
 @pytest.mark.sampled("chip")
 @some_chips(avr.UNO, avr.MEGA, avr.PORTABLE_CHIP)
-def test_late_tasks_after_byte_256(chip: str) -> None:
+def test_late_tasks_beyond_byte_256_run(chip: str) -> None:
     for number, (image, senses) in enumerate(
         cpp_checks.some_task_programs(0, 40, cpp_checks.FAR_JUMP)
     ):
@@ -305,7 +305,7 @@ def test_programs_with_ways_on_an_avr(chip: str) -> None:
 
 @one_chip
 @each_emulated
-def test_images(chip: str) -> None:
+def test_images_get_the_same_verdict(chip: str) -> None:
     cpp_checks.check_images(start_emulator(chip), 0, 10_000)
     cpp_checks.check_whole_images(start_emulator(chip), 0, 300)
 

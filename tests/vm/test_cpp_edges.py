@@ -20,7 +20,7 @@ def show(number: int) -> bytes:
     return simple("PUSH8") + bytes([number]) + simple("SHOW")
 
 
-def test_many_defs() -> None:
+def test_many_defs_compile() -> None:
     for count in range(20):
         for calls in range(12):
             end = simple("RETURN")
@@ -51,7 +51,7 @@ def calls_in_calls(count: int) -> bytes:
     return code
 
 
-def test_what_is_closed_takes_no_room() -> None:
+def test_closed_blocks_take_no_room() -> None:
     """Blocks and procedures that have ended take no more room: there may be any number."""
     yes, stop = simple("PUSH_TRUE"), simple("STOP")
     leave = jump("BREAK", True, 3)
@@ -96,7 +96,7 @@ def test_a_procedure_needs_what_it_calls_needs() -> None:
         compare_verdicts(host(), [code, code + loops(stop, COUNTERS + 1)], 3, 2)
 
 
-def test_everything_has_a_place_of_its_own() -> None:
+def test_every_value_has_its_own_place() -> None:
     """Every variable, reading, counter, value and call has a place of its own."""
     kit = kit_with_sensors(MOST_DEVICES)
     readings = {device.name: [1000 * k + 500] for k, device in enumerate(kit.sensors)}
@@ -128,7 +128,7 @@ def test_everything_has_a_place_of_its_own() -> None:
     compare_verdicts(host(), [code + jump("CALL", True, len(code))], 3, 2)
 
 
-def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
+def test_an_instruction_of_one_byte_contains_its_operand() -> None:
     """Instructions of one byte mean the variable, sensor or actuator that is in their code."""
     devices = kit_with_sensors(SHORTS).sensors
     kit = Kit(devices, tuple(device._replace(name=f"A{device.name}") for device in devices))
@@ -159,7 +159,7 @@ def test_a_program_may_run_for_24_days() -> None:
         assert run.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), run.trace
 
 
-def test_code_that_changed_after_it_was_verified() -> None:
+def test_code_changed_after_verification_ends_in_bad_code() -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
     # A robot may report more sensors than a machine remembers.
     for many in (3, MOST_DEVICES - 1, MOST_DEVICES, MOST_DEVICES + 1, 2 * MOST_DEVICES):

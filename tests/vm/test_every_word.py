@@ -162,8 +162,8 @@ def header(word: str) -> str:
 
 def begin_of(end: str) -> str:
     """Return the header of the block that ends so, in one of its spellings."""
-    ends = {ALIASES.get(end, end)}
-    return header(next(begin for begin, its in BLOCK_ENDS.items() if its in ends))
+    end_words = {ALIASES.get(end, end)}
+    return header(next(begin_word for begin_word, its in BLOCK_ENDS.items() if its in end_words))
 
 
 USES = [(name, use) for name, word in WORDS.items() for use in uses_of(word)]
@@ -178,7 +178,7 @@ USES += [
 PARTS = 24  # parts of which a commit tries one in each frame, another in the next
 
 
-def test_every_word_in_every_frame(request: pytest.FixtureRequest) -> None:
+def test_every_word_works_in_every_context(request: pytest.FixtureRequest) -> None:
     first = sample_of(request.config, "words in frames", range(PARTS))
     programs = 0
     for number, frame in enumerate(frames()):
@@ -233,7 +233,7 @@ WORDS_WITH_ARGUMENTS = [
 
 @pytest.mark.sampled("word", keep=8)
 @pytest.mark.parametrize("word", WORDS_WITH_ARGUMENTS, ids=lambda word: word.text)
-def test_every_argument_at_its_edges(word: Word) -> None:
+def test_every_argument_works_at_its_limits(word: Word) -> None:
     samples = [argument.sample for argument in word.arguments]
     answers = set()
     for place, argument in enumerate(word.arguments):
@@ -245,6 +245,6 @@ def test_every_argument_at_its_edges(word: Word) -> None:
     assert answers == {True, False}
 
 
-def test_a_value_of_a_variable_at_its_edges() -> None:
+def test_variables_work_at_the_limits_of_arguments() -> None:
     answers = [check(f"V = 1;{LONG_NAME} = 2;X = {edge}") for edge in edges(VALUE)]
     assert {*answers} == {True, False}

@@ -87,7 +87,7 @@ def test_agrees_with_decimal(name: str) -> None:
 
 
 @pytest.mark.parametrize("value", EDGES)
-def test_one_operand(value: int) -> None:
+def test_unary_operations_agree(value: int) -> None:
     assert outcome(lambda: t.negate(value)) == outcome(lambda: milli(-units(value)))
     assert outcome(lambda: t.absolute(value)) == outcome(lambda: milli(abs(units(value))))
     assert t.round_to_whole(value) == int(units(value).quantize(Decimal(1), context=EXACT_CONTEXT))

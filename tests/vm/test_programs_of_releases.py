@@ -80,8 +80,8 @@ def programs_of_this_version() -> Iterator[ReleasedProgram]:
 
 def write_release_file() -> str:
     """Return the file of this version."""
-    before = [version for version in versions() if version != __version__]
-    earlier = {old[:2] for version in before for old in released_programs(version)}
+    earlier_versions = [version for version in versions() if version != __version__]
+    earlier = {old[:2] for version in earlier_versions for old in released_programs(version)}
     parts: dict[tuple[str, str], str] = {}
     for old in programs_of_this_version():
         text = old.text.rstrip("\n") + "\n"
@@ -94,7 +94,7 @@ def write_release_file() -> str:
 
 
 @pytest.mark.parametrize("version", versions())
-def test_they_compile_still_and_do_the_same(version: str) -> None:
+def test_released_programs_still_compile_and_do_the_same(version: str) -> None:
     olds = [old for old in released_programs(version) if not names_a_newer_word(old.text)]
     assert len(olds) > (300 if version == FIRST_VERSION else 0)
     changed_traces = []
@@ -108,7 +108,7 @@ def test_they_compile_still_and_do_the_same(version: str) -> None:
     assert not changed_traces, f"{len(changed_traces)}, the first: {changed_traces[0]}"
 
 
-def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
+def test_a_newer_word_of_the_kit_gives_way_with_a_warning() -> None:
     """Each of these words is a name in one of them."""
     named_words = set()
     for old in released_programs():
@@ -119,7 +119,7 @@ def test_a_newer_word_of_the_kit_gives_way_and_a_warning_says_so() -> None:
     assert named_words == KIT_WORDS_SINCE.keys()
 
 
-def test_of_those_with_a_newer_word_as_a_name_it_is_told_since_when() -> None:
+def test_use_of_a_newer_word_as_a_name_is_reported_with_its_version() -> None:
     olds = [old for old in released_programs() if names_a_newer_word(old.text)]
     assert len(olds) >= 5
     for old in olds:

@@ -71,7 +71,7 @@ LIGHTS = {"LIGHT_R": [9000, 0, 9000, 0], "DISTANCE": [5000]}
 
 
 @each_machine
-def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine: Run) -> None:
+def test_a_check_awaiting_an_echo_ends_when_the_motors_are_taken(machine: Run) -> None:
     """The echo that comes at 150 ms is of a look at 120: the task has the motors back at 260."""
     image = compile_text(TAKEN_AGAIN.format("F(FOREVER, 40) UNTIL(DISTANCE < 10)"), KIT).image
     pace = Pace(slow=ECHO_SENSORS, period_ms=1000, from_ms=100, to_ms=150)
@@ -95,7 +95,7 @@ def test_a_look_that_waits_for_an_echo_is_over_when_the_motors_are_taken(machine
 
 
 @each_machine
-def test_nor_is_a_first_look_gone_on_with_while_a_higher_task_has_the_motors(machine: Run) -> None:
+def test_a_first_check_is_not_continued_while_a_higher_task_has_the_motors(machine: Run) -> None:
     """No higher task existed when its task reached the move; the M before it is then over."""
     image = compile_text(
         """W(0.05)
@@ -119,7 +119,7 @@ TASK;M(20, 30);F(FOREVER, 40) UNTIL(LIGHT_L > 5 AND DISTANCE < 10);SHOW(1);END_T
 
 
 @each_machine
-def test_a_wait_is_looked_at_whoever_has_the_motors(machine: Run) -> None:
+def test_the_condition_of_a_wait_is_checked_whichever_task_has_the_motors(machine: Run) -> None:
     """The same applies to the condition of a WHEN, and to everything else that reads."""
     image = compile_text(
         """TASK;W(0.02);B(0.2, 50);END_TASK

@@ -89,7 +89,7 @@ def test_a_turn_that_waits_for_the_robot_leaves_no_value(asks: int) -> None:
         assert trace_with(text, robot, senses, 1000)[-1].split()[1] in ("DONE", "LIMIT")
 
 
-def test_others_go_on_while_a_reading_is_not_ready() -> None:
+def test_other_tasks_continue_while_a_reading_is_not_ready() -> None:
     text = "WHEN(DISTANCE < 10);END_WHEN;TASK;SHOW(1);W(0.005);SHOW(2);END_TASK"
     senses = Senses({"DISTANCE": [50_000]}, 30)
     robot = SlowRobot(senses, 10**9)
@@ -111,7 +111,7 @@ def test_the_first_turn_of_the_main_task_waits_for_its_reading() -> None:
     assert [str(event) for event in robot.events] == ["0 READ DISTANCE 50", "0 SHOW 50"]
 
 
-def test_a_late_task_goes_by_its_own_clock_for_20_ms() -> None:
+def test_a_late_task_follows_its_own_clock_for_20_ms() -> None:
     """Each task does this like a program without tasks."""
     text = "TASK;LOOP(3);W(0.01);SHOW(1);END_LOOP;END_TASK;LOOP(3);W(0.1);SHOW(2);END_LOOP"
     senses = Senses({}, 1000)
@@ -126,7 +126,7 @@ def test_a_late_task_goes_by_its_own_clock_for_20_ms() -> None:
     assert rows == ["", "1", "1", "", "1", "2", "", "2", "", "2"]
 
 
-def test_a_show_that_finds_no_room_is_sent_once_and_lets_the_others_go_on() -> None:
+def test_a_blocked_show_is_sent_once_and_lets_other_tasks_continue() -> None:
     text = "A = 5;TASK;SHOW(A + 1);SHOW(7);END_TASK;WHEN(TRUE);BEEP(0.001, 100);END_WHEN"
     senses = Senses({}, 30)
     robot = SlowRobot(senses, 0, 2)
@@ -135,7 +135,7 @@ def test_a_show_that_finds_no_room_is_sent_once_and_lets_the_others_go_on() -> N
     assert trace[0] == "0 BEEP 100 1\n"
 
 
-def test_the_others_begin_when_the_first_turn_of_the_main_task_is_over() -> None:
+def test_other_tasks_begin_after_the_main_tasks_first_turn() -> None:
     senses = Senses({}, 100)
     robot = SlowRobot(senses, 2)
     machine = machine_for("DISTANCE;TASK;W(0.015);SHOW(1);END_TASK", robot, senses)

@@ -40,7 +40,7 @@ SHOWS = [BY_NAME[name].code for name in ("SHOW", "SHOW_YES_NO")]
 
 
 @needs_zig
-def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
+def test_the_module_is_built_from_these_sources(tmp_path: Path) -> None:
     """Byte for byte, wherever they are."""
     copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "some where" / "else"))
     for module in wasm.MODULES:  # the modules may have been built here or elsewhere
@@ -50,7 +50,7 @@ def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
 
 
 @needs_zig
-def test_another_machine_is_another_module(
+def test_a_changed_machine_gives_a_different_module(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     modules = wasm.MODULES[:1]
@@ -86,7 +86,7 @@ def test_another_compiler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         wasm.main([])
 
 
-def test_the_module_imports_the_robot_alone() -> None:
+def test_the_module_imports_only_the_robot() -> None:
     """No heap, no system, and no path of the computer that made it."""
     from wasmtime import Engine, Module
 
@@ -123,13 +123,15 @@ def test_a_fault_has_its_line(tsc: Tsc) -> None:
     ("waits", "at_ms"),
     [("W(2147483.647);W(0.001)", 2**31), ("W(2147483.647);W(2147483.647);W(3)", 2**32 + 2998)],
 )
-def test_time_is_over_for_good(waits: str, at_ms: int, tsc: Tsc) -> None:
+def test_an_overflowed_time_stays_overflowed(waits: str, at_ms: int, tsc: Tsc) -> None:
     """A time that is too large for a number stays too large: a clock of 32 bits wraps around."""
     _, out, _ = both(tsc, "-e", f"SI|{waits};SHOW(TIME)", "--max-time", "9999999")
     assert out == f"{at_ms} FAULT OVERFLOW\n"
 
 
-def test_without_wasmtime_the_next_step_is_said(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_wasmtime_is_reported_with_the_next_step(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "wasmtime", None)
     for module in ("vm.wasm_store", "vm.wasm"):
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
@@ -157,7 +159,7 @@ WAT = """(module (import "" "look" (func $look)) (export "look" (func $look))
 
 
 @pytest.mark.parametrize("is_known", [True, False])
-def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
+def test_functions_are_called_alike_with_and_without_wasmtime_internals(
     is_known: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from wasmtime import Trap, _ffi
@@ -188,7 +190,7 @@ def test_functions_are_called_alike_where_wasmtime_is_known_inside_or_not(
 # -- refusals --------------------------------------------------------------------------------------
 
 
-def test_refused_images() -> None:
+def test_refused_images_raise_an_error() -> None:
     from tiniscript.vm.wasm import WasmImage
 
     good = compile_text("SHOW(DISTANCE)", KIT).image
@@ -206,7 +208,7 @@ def test_refused_images() -> None:
         WasmImage(good, changed_kit)
 
 
-def test_two_verdicts_are_our_mistake() -> None:
+def test_differing_verdicts_are_an_internal_error() -> None:
     bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
     with pytest.raises(AssertionError, match="refuses what Python accepts: UNKNOWN_OPCODE"):
         run._cpp_machine(bad, robots.load("tinibot"))
@@ -256,7 +258,7 @@ PROGRAM = "B(0.3, 80); BEEP(0.2, 440); GRIPPER(90); SHOW(DISTANCE); SHOW(DISTANC
 
 @pytest.mark.parametrize("begin_ms", [0, 5, 2**31 - 100, 2**32 - 500])
 @pytest.mark.parametrize("budget", [1, 3, 100_000])
-def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
+def test_a_slow_robot_agrees_from_any_start_time(begin_ms: int, budget: int) -> None:
     """Tick by tick the same, where the clock wraps around too."""
     from tiniscript.vm.wasm import WasmImage
 
@@ -289,7 +291,7 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
     check_round(run)
 
 
-def test_what_a_robot_raises_comes_out() -> None:
+def test_exceptions_of_a_robot_propagate() -> None:
     from tiniscript.vm.wasm import WasmImage
 
     class Broken(Slow):
@@ -320,7 +322,7 @@ class Narrow(Slow):
         return is_taken
 
 
-def test_both_machines_say_which_show_a_value_is_of() -> None:
+def test_both_machines_report_the_show_of_a_value() -> None:
     """The tasks are random; their values wait while others continue."""
     from tiniscript.vm.wasm import WasmImage
 
@@ -336,6 +338,6 @@ def test_both_machines_say_which_show_a_value_is_of() -> None:
             traces.append((robot.calls, robot.shown))
         assert traces[0] == traces[1], image.hex()
         show_rows = traces[0][1]
-        assert all(code[at] in SHOWS for at, _ in show_rows), image.hex()
+        assert all(code[offset] in SHOWS for offset, _ in show_rows), image.hex()
         waited += sum(not is_taken for _, is_taken in show_rows)
     assert waited > 100

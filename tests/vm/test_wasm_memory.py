@@ -45,17 +45,17 @@ def run_with_limit(code: str) -> str:
     "try: loaded(image[:-1])\n    except ImageRefused: pass",
     "one = loaded(); one.myself = one; one.close()",
 ])  # fmt: skip
-def test_two_thousand_machines_after_each_other(what: str) -> None:
+def test_two_thousand_successive_machines_take_bounded_memory(what: str) -> None:
     """However one ends: forgotten, refused, or closed while something still knows it."""
     code = f"{MACHINES}\nfor k in range(2000):\n    {what}\nprint(k + 1)"
     assert run_with_limit(code) == "2000\n"
 
 
-def test_two_hundred_machines_at_once() -> None:
+def test_two_hundred_machines_run_at_once() -> None:
     assert run_with_limit(f"{MACHINES}\nprint(len([loaded() for k in range(200)]))") == "200\n"
 
 
-def test_a_virtual_robot_is_switched_off_and_on() -> None:
+def test_repeated_power_cycles_take_bounded_memory() -> None:
     code = f"""{ROBOTS}
 robot = VirtualRobot(profile, world)
 for k in range(1000):
@@ -65,7 +65,7 @@ print(k + 1)"""
     assert run_with_limit(code) == "1000\n"
 
 
-def test_many_virtual_robots_after_each_other() -> None:
+def test_many_successive_virtual_robots_take_bounded_memory() -> None:
     code = (
         f"{ROBOTS}\nfor k in range(1000):\n    VirtualRobot(profile, world).step(10)\nprint(k + 1)"
     )

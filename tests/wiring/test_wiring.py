@@ -158,7 +158,7 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
     assert {"5V", "GND"} <= {row[0] for row in rails}
 
 
-def test_what_a_robot_does_not_have_is_not_said() -> None:
+def test_absent_parts_of_a_robot_are_not_mentioned() -> None:
     texts_by_robot = {name: " ".join(_sentences(name)) for name in robots.names()}
     assert "jumpers on ENA" in texts_by_robot["tinibot"]
     assert "jumpers on ENA" not in texts_by_robot["liner"]
@@ -177,7 +177,7 @@ def _sentences(name: str) -> list[str]:
     return [" ".join([block.text, *(" ".join(row) for row in block.rows)]) for block in blocks]
 
 
-def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
+def test_a_battery_has_resistors_for_its_range() -> None:
     text = (Path(robots.__file__).parent / "liner.toml").read_text(encoding="utf-8")
     for full, ohms in (("10", "10 kΩ"), ("15", "20 kΩ"), ("12.5", "15 kΩ")):
         plan = plan_of(read(text.replace("full = 10", f"full = {full}"), "x"), "en")
@@ -186,7 +186,7 @@ def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
 
 
 @pytest.mark.parametrize("name", robots.names())
-def test_no_pin_gets_more_than_it_takes(name: str) -> None:
+def test_no_pin_gets_more_than_its_allowed_voltage(name: str) -> None:
     """The voltage from a 5 V part to the pin, through its resistors.
 
     From the pin there is `series_resistor`, then `ground_resistor`, then `far_resistor`: no current
@@ -215,7 +215,7 @@ def texts_of(svg: str) -> list[str]:
 
 
 @each_robot
-def test_wires_never_lie_upon_each_other_nor_on_parts(robot: Robot) -> None:
+def test_wires_never_overlap_each_other_or_parts(robot: Robot) -> None:
     layout = layout_of(plan_of(robot, "en"))
     assert layout.board[2] == BOARD_WIDTH
     for box, near in combinations(_solid(layout), 2):
@@ -354,7 +354,7 @@ def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("firmware", "--wiring", "-o", "-").out == page.read_text(encoding="utf-8")
 
 
-def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
+def test_failed_writes_are_reported(tsc: Tsc, tmp_path: Path) -> None:
     for arguments, sentence in (
         (("-o", tmp_path / "no" / "page.html"), "cannot be written"),
         (("--robot", "tinybot"), "Did you mean tinibot?"),
@@ -369,7 +369,7 @@ def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
 
 
 @each_robot
-def test_the_finished_robot_has_each_sensor_where_the_body_says(robot: Robot) -> None:
+def test_the_finished_robot_has_each_sensor_at_its_place(robot: Robot) -> None:
     for language in LANGUAGES:
         plan = plan_of(robot, language)
         svg = finished_of(plan)
@@ -445,12 +445,12 @@ def test_the_longest_names_stay_in_the_finished_drawing() -> None:
     parts = tuple(part._replace(title=long, label=long) for part in plan.parts)
     svg = finished_of(plan._replace(parts=parts))
     tree = Tree.fromstring(svg)
-    right = float(tree.attrib["viewBox"].split()[2])
+    right_edge = float(tree.attrib["viewBox"].split()[2])
     for element in tree.iter(f"{SVG}text"):
         x, anchor = float(element.attrib["x"]), element.attrib["text-anchor"]
         wide = _width(element.text or "", float(element.get("font-size", 14)))
-        begin = x - wide * {"start": 0, "middle": 0.5, "end": 1}[anchor]
-        assert begin >= 0 and begin + wide <= right, element.text
+        text_start = x - wide * {"start": 0, "middle": 0.5, "end": 1}[anchor]
+        assert text_start >= 0 and text_start + wide <= right_edge, element.text
 
 
 def places_of(plan: Plan, place: Place) -> tuple[float, float]:

@@ -4,7 +4,7 @@
 ; Means the same as `siphash_portable.cpp`, which is for all other chips. Takes 108 bytes of flash less,
 ; without which an Uno would have no owners. A chip with more flash in its place, or 108 bytes to spare,
 ; lets it go: then delete this file. Calls are those of avr-gcc, as in `number_avr.S`.
-; `test_a_tag_takes_milliseconds_and_a_claim_outlives_a_reset` compares the two: one hash takes every
+; `test_a_tag_takes_milliseconds_and_a_claim_survives_a_reset` compares the two: one hash takes every
 ; path here, and a wrong one opens no robot.
 
 #ifdef __AVR__
