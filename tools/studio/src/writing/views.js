@@ -416,8 +416,8 @@ export class Views {
         this.#shownForm = JSON.stringify(this.#blocks.readForm().form);
         this.#shownLayout = this.#blocks.layoutText;
         if (group && !(await group.reportBlocks(this.#blocks.lines)).is_known) this.#shownText = null;
-        if (!this.#isStale()) this.#decorateBlocks(); // else others are made
       }
+      this.#decorateBlocks();
       if (!this.#changeCount) this.#showState();
     } catch (error) {
       this.#showFailure(error);
