@@ -298,7 +298,7 @@ def tests_of(file: str) -> list[str]:
 
     def sort_key(path: Path) -> tuple[bool, int]:
         name, text = path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
-        is_long = name in order.LONG or name.startswith(order.PAGES)
+        is_long = name in order.LONG_FILES or name.startswith(order.PAGES)
         return is_long, -100 * (stem in path.stem) - len(re.findall(rf"\b{stem}\b", text))
 
     tests: dict[Path, None] = {}

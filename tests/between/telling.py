@@ -71,9 +71,9 @@ class Teller(Terminal):
     def _read_on(self) -> None:
         part = b"begun"
         while part:
-            part = rest_of(self._ours)
+            part = rest_of(self._our_end)
             if part:
-                self.written += part
+                self.output_bytes += part
                 self.timed_output.append((CLOCK.now_s, part.decode(errors="replace")))
         self.process.wait()
         self.ended_s = CLOCK.now_s
@@ -87,7 +87,7 @@ class Teller(Terminal):
         if self.process.poll() is None:
             self.process.kill()
         self._reader.join()
-        os.close(self._ours)
+        os.close(self._our_end)
         return self.process.wait()
 
     def wait(self, timeout_s: float) -> bool:

@@ -36,7 +36,7 @@ from tests.between.lines import (
 )
 from tests.between.telling import CLOCK, Teller, own_folders
 from tests.support.campaign import make_options
-from tests.support.command import FOREVER, LONG
+from tests.support.command import FOREVER, LONG_PROGRAM
 from tests.support.pty_robot import PtyRobot, on
 
 LONGEST_SILENCE_S = 3.0  # longest silence allowed
@@ -65,7 +65,7 @@ class Words(NamedTuple):
 
 COMMANDS = (
     Words("upload", ("upload", "-e", SHORT_PROGRAM)),
-    Words("upload, long", ("upload", "-e", f"SI|{LONG}")),
+    Words("upload, long", ("upload", "-e", f"SI|{LONG_PROGRAM}")),
     Words("upload --detach", ("upload", "--detach", "-e", SHORT_PROGRAM)),
     Words("upload, Ctrl-C", ("upload", "-e", FOREVER), stays=True),
     Words("start", ("start",)),

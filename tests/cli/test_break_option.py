@@ -49,17 +49,17 @@ def program(tmp_path: Path, pty_robot: PtyRobot) -> Path:
 
 
 def start_terminal(robot: PtyRobot, program: Path, *lines: int) -> Terminal:
-    breaks = [word for line in lines for word in ("--break", str(line))]
+    break_options = [word for line in lines for word in ("--break", str(line))]
     port_option = ("--port", robot.port)
-    return Terminal("upload", program, "--no-save", *port_option, *breaks, size=(100, 50))
+    return Terminal("upload", program, "--no-save", *port_option, *break_options, size=(100, 50))
 
 
 def halt_output(terminal: Terminal) -> list[str]:
     """Wait for the end; return the output about the halts and after them."""
     assert terminal.end() == 0
     lines = [line for line in terminal.whole() if line]
-    first = next(k for k, line in enumerate(lines) if line.startswith("Halted"))
-    return lines[first:]
+    halt_index = next(k for k, line in enumerate(lines) if line.startswith("Halted"))
+    return lines[halt_index:]
 
 
 def test_without_a_terminal_each_halt_is_reported_and_the_program_continues(
@@ -96,8 +96,8 @@ def test_a_line_without_an_instruction_halts_before_the_next_one(
 def test_a_halt_reports_where_the_other_tasks_are(pty_robot: PtyRobot) -> None:
     pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
     result = on(pty_robot, "upload", "-e", TASKS, "--no-save", "--break", "5").gives(0)
-    first = result.out.splitlines()[1:6]
-    assert first == [
+    place_lines = result.out.splitlines()[1:6]
+    assert place_lines == [
         "Halted before line 5: S",
         "  N = 3",
         "  Line 1: another task, waiting",
@@ -234,8 +234,8 @@ def test_nothing_is_sent_to_a_robot_that_cannot_halt(
 
 
 # Arrows, also with Ctrl; F1 to F5, on a console, too; Delete; Alt with a letter.
-SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{last}" for last in "PQRS"), "\x1b[15~",
-             *(f"\x1b[[{last}" for last in "ABCDE"), "\x1b[3~", "\x1bs", "\x1bg"]  # fmt: skip
+SEQUENCES = ["\x1b[A", "\x1bOA", "\x1b[1;5C", *(f"\x1bO{final}" for final in "PQRS"), "\x1b[15~",
+             *(f"\x1b[[{final}" for final in "ABCDE"), "\x1b[3~", "\x1bs", "\x1bg"]  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -253,24 +253,26 @@ def test_the_first_key_at_a_halt_answers_it_and_no_other_key_does_anything(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At any halt, and while the program runs."""
-    rng, typed, asked, wanted = random.Random(seed), "", list[int](), list[int]()
+    rng, typed_keys, commands, wanted_commands = random.Random(seed), "", list[int](), list[int]()
     it = debugger.Debugger.__new__(debugger.Debugger)
     it.has_keys, it.is_halted, it.is_stepping, it.keys = True, False, False, Keys()
-    session = SimpleNamespace(resume=asked.append)
-    it.connection = cast(Connection, SimpleNamespace(request=lambda make: make(session)))
-    monkeypatch.setattr(it.keys, "read_keys", lambda: typed)
+    session = SimpleNamespace(resume=commands.append)
+    it.connection = cast(
+        Connection, SimpleNamespace(request=lambda make_request: make_request(session))
+    )
+    monkeypatch.setattr(it.keys, "read_keys", lambda: typed_keys)
     is_halted = False
     for _ in range(60):
         if rng.random() < 0.3:
             it.is_halted = is_halted = True
-        typed = "".join(rng.choices("sgx", k=rng.choice((0, 1, 1, 2))))
+        typed_keys = "".join(rng.choices("sgx", k=rng.choice((0, 1, 1, 2))))
         it.poll_keys()
-        key = next((key for key in typed if key in "sg"), "")
+        key = next((key for key in typed_keys if key in "sg"), "")
         if key and is_halted:
-            wanted.append(RESUME_STEP if key == "s" else RESUME_GO)
+            wanted_commands.append(RESUME_STEP if key == "s" else RESUME_GO)
             is_halted = False
-        assert asked == wanted
-        assert it.is_stepping == (wanted[-1:] == [RESUME_STEP])
+        assert commands == wanted_commands
+        assert it.is_stepping == (wanted_commands[-1:] == [RESUME_STEP])
 
 
 # -- lines of `tsc live` -------------------------------------------------------------------------
@@ -301,12 +303,14 @@ def test_a_line_halts_at_its_own_breakpoints_and_at_no_earlier_ones(pty_robot: P
 @pytest.mark.parametrize("halts", ["1", "4"])
 def test_lines_that_halt_do_the_same_as_without_halts(halts: str, pty_robot: PtyRobot) -> None:
     data = "\n".join(LINES).encode()
-    alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
+    lines_alone = on(pty_robot, "live", "-", data=data).gives(0, "").out.splitlines()
     halt_rows = (
         on(pty_robot, "live", "-", "--break", halts, data=data).gives(0, "").out.splitlines()
     )
     is_told = [line for line in halt_rows if not line.startswith(("Halted", "  "))]
-    assert is_told == alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (halts == "1")
+    assert is_told == lines_alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (
+        halts == "1"
+    )
 
 
 def test_a_person_steps_lines_at_the_prompt(pty_robot: PtyRobot) -> None:

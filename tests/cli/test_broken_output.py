@@ -28,27 +28,29 @@ from tiniscript.link.messages import STATUSES, STOP_ZEROS
 from tiniscript.link.payloads import SentReply
 from tiniscript.link.requests import Reply, reply_of
 
-SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
+SHOW_PROGRAM = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
 
 
-def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
+def after_lines(count: int, *words: str, joins_err: bool = False) -> tuple[int, str]:
     """Read so many lines of a command, close its output; return its exit code and its errors."""
-    err = subprocess.STDOUT if both else subprocess.PIPE
+    err = subprocess.STDOUT if joins_err else subprocess.PIPE
     with subprocess.Popen([*TSC, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=err) as running:  # fmt: skip
-        assert running.stdout
+                          stderr=err) as process:  # fmt: skip
+        assert process.stdout
         for _ in range(count):
-            assert running.stdout.readline()
-        running.stdout.close()
-        err_text = running.stderr.read().decode() if running.stderr else ""
-        return running.wait(HANG_LIMIT_S), err_text
+            assert process.stdout.readline()
+        process.stdout.close()
+        err_text = process.stderr.read().decode() if process.stderr else ""
+        return process.wait(HANG_LIMIT_S), err_text
 
 
-@pytest.mark.parametrize(("lines", "extra"), [(0, []), (1, ["--json"]), (3, [])])
+@pytest.mark.parametrize(("lines", "extra_options"), [(0, []), (1, ["--json"]), (3, [])])
 def test_upload_into_a_pipe_that_closes_stops_the_robot(
-    pty_robot: PtyRobot, lines: int, extra: list[str]
+    pty_robot: PtyRobot, lines: int, extra_options: list[str]
 ) -> None:
-    code, err = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
+    code, err = after_lines(
+        lines, "upload", "-e", SHOW_PROGRAM, "--port", pty_robot.port, *extra_options
+    )
     assert code == EXIT_OF_CLOSED_PIPE
     assert err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
@@ -80,15 +82,15 @@ def test_a_slow_reader_and_a_file_do_not_count_as_a_closed_pipe(
     words = ["upload", "-e", "SI|F(1, 80)", "--port", pty_robot.port]
     with (tmp_path / "said").open("wb") as file:
         assert subprocess.run([*TSC, *words], stdout=file, timeout=HANG_LIMIT_S).returncode == 0
-    with subprocess.Popen([*TSC, *words], stdout=subprocess.PIPE) as running:
-        assert running.wait(HANG_LIMIT_S) == 0
-        assert running.stdout and b"Done." in running.stdout.read()
+    with subprocess.Popen([*TSC, *words], stdout=subprocess.PIPE) as process:
+        assert process.wait(HANG_LIMIT_S) == 0
+        assert process.stdout and b"Done." in process.stdout.read()
 
 
 def test_a_save_is_finished_before_the_stop(pty_robot: PtyRobot) -> None:
     """The program drives without a pause, so saving waits for the stop."""
-    drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
-    words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
+    moves = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
+    words = ["upload", "-e", f"SI|LOOP(FOREVER);{moves}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, err = after_lines(1, *words)
     assert code == EXIT_OF_CLOSED_PIPE and err.count("\n") == 1 and "stopped the robot" in err
     pty_robot.switch_off_and_on()
@@ -97,7 +99,7 @@ def test_a_save_is_finished_before_the_stop(pty_robot: PtyRobot) -> None:
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
     port_option = ("--port", pty_robot.port)
-    assert after_lines(1, "upload", "-e", SHOWS, *port_option, both=True) == (
+    assert after_lines(1, "upload", "-e", SHOW_PROGRAM, *port_option, joins_err=True) == (
         EXIT_OF_CLOSED_PIPE,
         "",
     )
@@ -111,7 +113,7 @@ def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
 
 def test_detached_programs_continue(pty_robot: PtyRobot) -> None:
     port_option = ("--port", pty_robot.port)
-    code, err = after_lines(0, "upload", "-e", SHOWS, "--detach", *port_option)
+    code, err = after_lines(0, "upload", "-e", SHOW_PROGRAM, "--detach", *port_option)
     assert (code, err) == (EXIT_OF_CLOSED_PIPE, "")
     assert pty_robot.moves
     code, err = after_lines(0, "doctor", *port_option)
@@ -126,12 +128,12 @@ def test_many_robots_are_stopped() -> None:
     """All stop at once, not only by their timers a second later."""
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        code, _ = after_lines(4, "upload", "-e", SHOWS, *port_options)
+        code, _ = after_lines(4, "upload", "-e", SHOW_PROGRAM, *port_options)
         assert code == EXIT_OF_CLOSED_PIPE
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
         for pupil in room.pupils:
             assert any(line.startswith("MOTORS") for line in pupil.actions)
-            assert bytes(STOP_ZEROS) in pupil.heard
+            assert bytes(STOP_ZEROS) in pupil.received
 
 
 @pytest.mark.parametrize(("verb", "is_detached", "is_stopped"), [
@@ -160,7 +162,7 @@ def test_a_full_disk_also_stops_the_robot(pty_robot: PtyRobot) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("this system has no full device")
     with Path("/dev/full").open("wb") as full:
-        completed = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
+        completed = subprocess.run([*TSC, "upload", "-e", SHOW_PROGRAM, "--port", pty_robot.port],
                                    stdout=full, stderr=subprocess.PIPE,
                                    timeout=HANG_LIMIT_S)  # fmt: skip
     assert completed.returncode == 2
@@ -176,13 +178,13 @@ def test_a_full_disk_also_stops_the_robot(pty_robot: PtyRobot) -> None:
 )  # fmt: skip
 def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
     """None of its output is read: text, bytes, or mistakes."""
-    ours, theirs = os.pipe()
-    os.close(ours)
+    read_end, write_end = os.pipe()
+    os.close(read_end)
     try:
-        completed = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
-                              stderr=theirs, timeout=HANG_LIMIT_S)  # fmt: skip
+        completed = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=write_end,
+                              stderr=write_end, timeout=HANG_LIMIT_S)  # fmt: skip
     finally:
-        os.close(theirs)
+        os.close(write_end)
     assert completed.returncode == EXIT_OF_CLOSED_PIPE
 
 
@@ -190,25 +192,27 @@ def test_each_kind_of_output_has_the_same_exit_code(words: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "which"), [(["set", "name", "TINI"], 1), (["set", "trim", "--reset"], 2)]
+    ("words", "request_number"), [(["set", "name", "TINI"], 1), (["set", "trim", "--reset"], 2)]
 )
 def test_a_port_that_vanishes_is_not_reported_as_a_bug(
-    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], request_number: int
 ) -> None:
     """The cable is pulled before the robot has confirmed a save."""
     real_call = connect.Connection.begin_request
     requests = []
 
-    def ask_and_pull(self: connect.Connection, make: Any, limit_ms: int | None = None) -> Any:
+    def ask_and_pull(
+        self: connect.Connection, make_request: Any, limit_ms: int | None = None
+    ) -> Any:
         if limit_ms is None:  # a request after HELLO
-            requests.append(make)
-        if len(requests) == which:
+            requests.append(make_request)
+        if len(requests) == request_number:
             pty_robot.pull()
-        return real_call(self, make, limit_ms)
+        return real_call(self, make_request, limit_ms)
 
     monkeypatch.setattr(connect.Connection, "begin_request", ask_and_pull)
     result = run_in_process(*words, "--port", pty_robot.port)
-    assert len(requests) == which
+    assert len(requests) == request_number
     assert result.code == 3
     assert "is gone" in result.err
 
@@ -234,7 +238,7 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
 
 # -- an output without a reader --------------------------------------------------------------------
 
-TALKS = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
+TALKING_PROGRAM = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
 PIPE_BYTES = 4096
 
 
@@ -255,16 +259,18 @@ def start_unread_command(*words: str) -> Command:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
-@pytest.mark.parametrize("extra", [[], ["--json"]])
-def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
+@pytest.mark.parametrize("extra_options", [[], ["--json"]])
+def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra_options: list[str]) -> None:
     with RobotFleet([robots.load("tinibot").kit] * 3) as room:
         port_options = [word for pupil in room.pupils for word in ("--port", pupil.port)]
-        command = start_unread_command("upload", "-e", TALKS, *port_options, *extra)
+        command = start_unread_command(
+            "upload", "-e", TALKING_PROGRAM, *port_options, *extra_options
+        )
         assert any(pupil.moves for pupil in room.pupils)
         command.signal(signal.SIGINT)
         assert command.process.wait(HANG_LIMIT_S) == 2
         room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
-        assert all(bytes(STOP_ZEROS) in pupil.heard for pupil in room.pupils)
+        assert all(bytes(STOP_ZEROS) in pupil.received for pupil in room.pupils)
         result = command.wait_for_result()
         assert result.out and "Traceback" not in result.err
 
@@ -274,8 +280,10 @@ def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra: list[str]) -> None:
 def test_a_command_with_unread_output_ends_with_ctrl_c(pty_robot: PtyRobot, verb: str) -> None:
     port_option = ("--port", pty_robot.port)
     if verb == "monitor":
-        assert on(pty_robot, "upload", "-e", TALKS, "--detach").code == 0
-    command = start_unread_command(verb, *port_option, *(("-e", TALKS) if verb == "upload" else ()))
+        assert on(pty_robot, "upload", "-e", TALKING_PROGRAM, "--detach").code == 0
+    command = start_unread_command(
+        verb, *port_option, *(("-e", TALKING_PROGRAM) if verb == "upload" else ())
+    )
     command.signal(signal.SIGINT)
     assert command.process.wait(HANG_LIMIT_S) in (0, 2)
     if verb == "upload":
@@ -292,7 +300,7 @@ def test_an_interrupted_command_leaves_a_shared_pipe_as_it_was(
     """In `(tsc upload prog; echo done) | less`, the next command may wait for the reader."""
     monkeypatch.setattr(streams, "READER_TIMEOUT_S", 0.0)
     end, pipe = os.pipe()
-    shared = os.dup(pipe)
+    shared_pipe = os.dup(pipe)
     if reader == "is slow":
         os.set_blocking(pipe, False)
         with suppress(BlockingIOError):
@@ -305,8 +313,8 @@ def test_an_interrupted_command_leaves_a_shared_pipe_as_it_was(
             os.close(end)
         for _ in range(2):
             streams.drop_unread_output()
-            assert os.get_blocking(shared) and os.get_blocking(pipe)
+            assert os.get_blocking(shared_pipe) and os.get_blocking(pipe)
         monkeypatch.undo()
-    os.close(shared)
+    os.close(shared_pipe)
     if reader != "has gone":
         os.close(end)

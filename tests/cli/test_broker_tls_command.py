@@ -58,8 +58,10 @@ def test_a_robot_speaks_tls_with_brokers_that_it_trusts(school: School, tmp_path
     assert "does not trust its certificate" in set_wifi(*school.place(stranger.file))
     err = set_wifi(*school.place())
     assert "is connected to the broker localhost, in the class 3b" in err
-    later = on(school.robot, "set", "wifi").out
-    assert "is connected to the broker" in later and "tsc class" not in later, "it knows no port"
+    later_output = on(school.robot, "set", "wifi").out
+    assert "is connected to the broker" in later_output and "tsc class" not in later_output, (
+        "it knows no port"
+    )
     _, *next_command = shlex.split(err.partition("To see the whole class:  ")[2])
     assert (
         "no program; nothing is running; yours"
@@ -68,14 +70,14 @@ def test_a_robot_speaks_tls_with_brokers_that_it_trusts(school: School, tmp_path
 
 
 def test_an_invalid_certificate_is_reported_before_the_robot_is_asked(tmp_path: Path) -> None:
-    authority, other = Authority(tmp_path), Authority(tmp_path, "Otra")
+    authority, other_authority = Authority(tmp_path), Authority(tmp_path, "Otra")
     text = authority.file.read_bytes()
-    begin = text.index(b"-----BEGIN")
+    pem_start = text.index(b"-----BEGIN")
     files = {
-        "none": b"", "text": b"hello\n", "cut": text[: begin + 200], "der": authority.der[:-1],
-        "two der": authority.der + other.der,
-        "two": text + other.file.read_bytes(), "junk": text.replace(b"M", b"!"),
-        "long": text[:begin] + bytes(5000), "key": (tmp_path / "Aula.key").read_bytes(),
+        "none": b"", "text": b"hello\n", "cut": text[: pem_start + 200], "der": authority.der[:-1],
+        "two der": authority.der + other_authority.der,
+        "two": text + other_authority.file.read_bytes(), "junk": text.replace(b"M", b"!"),
+        "long": text[:pem_start] + bytes(5000), "key": (tmp_path / "Aula.key").read_bytes(),
     }  # fmt: skip
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)
@@ -101,7 +103,7 @@ def test_a_computer_trusts_the_brokers_own_certificate_regardless_of_its_signer(
     Each in a process, since one keeps its connection to a broker.
     """
     authority = Authority(tmp_path)
-    broker = Mosquitto(tmp_path, more=authority.rules(NAME))
+    broker = Mosquitto(tmp_path, extra_lines=authority.rules(NAME))
     authority.rules("other.aula")
     binary = tmp_path / "own.der"
     binary.write_bytes(der(authority.sign(NAME)))

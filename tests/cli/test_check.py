@@ -13,14 +13,14 @@ import pytest
 
 from tests.support.command import Tsc
 
-RIGHT, WRONG = "SI|F(2, 80)\n", "SI|F(2 80)\n"
+RIGHT_PROGRAM, WRONG_PROGRAM = "SI|F(2, 80)\n", "SI|F(2 80)\n"
 LEFT = "SI|F(2 80);girar(derecha, 90)\n"  # the first repair is certain, the second is not
 
 
 @pytest.fixture
 def folder(working_folder: Path) -> Path:
-    (working_folder / "a.ts").write_text(RIGHT, encoding="utf-8")
-    (working_folder / "b.ts").write_text(WRONG, encoding="utf-8")
+    (working_folder / "a.ts").write_text(RIGHT_PROGRAM, encoding="utf-8")
+    (working_folder / "b.ts").write_text(WRONG_PROGRAM, encoding="utf-8")
     (working_folder / "sub").mkdir()
     (working_folder / "sub" / "c.ts").write_text(LEFT, encoding="utf-8")
     (working_folder / "sub" / "notes.txt").write_text("no program", encoding="utf-8")
@@ -61,7 +61,7 @@ def test_correct_programs_give_exit_code_0_and_are_checked_once(folder: Path, ts
 
 def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:
     """Its messages are those of the command, except for an initial sign that begins a formula."""
-    (folder / "=1+1.ts").write_text(RIGHT, encoding="utf-8")
+    (folder / "=1+1.ts").write_text(RIGHT_PROGRAM, encoding="utf-8")
     (folder / "d.ts").write_text("SI|F(2, =X)", encoding="utf-8")
     (folder / "e.ts").write_text("SI|+F(2,80)", encoding="utf-8")
     result = tsc("check", "=1+1.ts", "b.ts", "d.ts", "e.ts", "--json", "--csv", "table.csv")
@@ -84,9 +84,9 @@ def test_a_spreadsheet_in_spanish_has_semicolons_and_may_be_written_again(
     for _ in range(2):
         tsc("check", "a.ts", "b.ts", "--lang", "es", "--csv", "tabla.csv").gives(1)
     table = StringIO((folder / "tabla.csv").read_text("utf-8-sig"))
-    first, second = csv.DictReader(table, delimiter=";")
-    assert (first["archivo"], first["errores"], first["mensaje"]) == ("a.ts", "0", "")
-    assert (second["errores"], second["línea"], second["código"]) == ("1", "1", "TS017")
+    first_row, second_row = csv.DictReader(table, delimiter=";")
+    assert (first_row["archivo"], first_row["errores"], first_row["mensaje"]) == ("a.ts", "0", "")
+    assert (second_row["errores"], second_row["línea"], second_row["código"]) == ("1", "1", "TS017")
 
 
 def test_an_unreadable_file_has_its_row_and_gives_exit_code_2(folder: Path, tsc: Tsc) -> None:
@@ -98,9 +98,9 @@ def test_an_unreadable_file_has_its_row_and_gives_exit_code_2(folder: Path, tsc:
 
 
 def test_other_contents_of_a_folder_do_no_harm(folder: Path, tsc: Tsc) -> None:
-    (folder / "x\n\x1b[31m.ts").write_text(RIGHT, encoding="utf-8")
+    (folder / "x\n\x1b[31m.ts").write_text(RIGHT_PROGRAM, encoding="utf-8")
     (folder / "bytes.ts").write_bytes(b"\0\xff")
-    (folder / ".hidden.ts").write_text(WRONG, encoding="utf-8")
+    (folder / ".hidden.ts").write_text(WRONG_PROGRAM, encoding="utf-8")
     (folder / "loop").symlink_to(".")
     (folder / "dangling.ts").symlink_to("nowhere")
     os.mkfifo(folder / "pipe.ts")
@@ -114,11 +114,13 @@ def test_other_contents_of_a_folder_do_no_harm(folder: Path, tsc: Tsc) -> None:
 
 
 def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
-    deep = folder
+    deep_folder = folder
     for k in range(30):
-        deep = deep / "d"
-        deep.mkdir()
-        (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
+        deep_folder = deep_folder / "d"
+        deep_folder.mkdir()
+        (deep_folder / f"p{k}.ts").write_text(
+            WRONG_PROGRAM if k % 2 else RIGHT_PROGRAM, encoding="utf-8"
+        )
     result = tsc("check", "d").gives(1)
     assert result.out.endswith("programs: 30, free of mistakes: 15\n")
 
@@ -152,7 +154,7 @@ def test_showing_the_difference_writes_nothing(folder: Path, tsc: Tsc, option: s
     """Without a file, the program is printed."""
     for options in ([option], ["--fix", option]):
         result = tsc("check", *options, "b.ts")
-        assert (folder / "b.ts").read_text("utf-8") == WRONG
+        assert (folder / "b.ts").read_text("utf-8") == WRONG_PROGRAM
         assert result.code == 1
         assert "-SI|F(2 80)\n+SI|F(2, 80)\n" in result.out
         assert result.err == "b.ts: 1 mistake can be repaired. Try:  tsc check --fix\n"
@@ -162,12 +164,12 @@ def test_showing_the_difference_writes_nothing(folder: Path, tsc: Tsc, option: s
 
 def test_a_file_keeps_its_line_ends_and_its_mark(folder: Path, tsc: Tsc) -> None:
     for end, bom, has_last in product(("\n", "\r\n", "\r"), (b"", b"\xef\xbb\xbf"), (False, True)):
-        last = end if has_last else ""
-        text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last}"
+        last_line_end = end if has_last else ""
+        text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last_line_end}"
         (folder / "b.ts").write_bytes(bom + text.encode())
-        assert tsc("check", "--fix", "b.ts").code == 0, (end, bom, last)
-        right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
-        assert (folder / "b.ts").read_bytes() == bom + right.encode()
+        assert tsc("check", "--fix", "b.ts").code == 0, (end, bom, last_line_end)
+        repaired_text = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last_line_end}"
+        assert (folder / "b.ts").read_bytes() == bom + repaired_text.encode()
 
 
 def test_binary_data_and_a_line_with_a_checksum_stay_as_they_are(folder: Path, tsc: Tsc) -> None:
@@ -182,9 +184,11 @@ def test_notepad_s_unicode_is_text_in_another_encoding(tmp_path: Path, tsc: Tsc)
     """PowerShell's > writes this encoding too; `explain TS003` names it and the remedy."""
     path = tmp_path / "unicode.ts"
     for encoding, mark in (("utf-16", ""), ("utf-16-be", "\ufeff"), ("utf-16-le", "\ufeff")):
-        path.write_bytes((mark + RIGHT).encode(encoding))
+        path.write_bytes((mark + RIGHT_PROGRAM).encode(encoding))
         assert "TS003" in tsc("check", path).err, encoding
-    path.write_bytes(RIGHT.encode("utf-16-le"))  # without a byte order mark, it may be anything
+    path.write_bytes(
+        RIGHT_PROGRAM.encode("utf-16-le")
+    )  # without a byte order mark, it may be anything
     assert "TS002" in tsc("check", path).err
 
 
@@ -196,7 +200,7 @@ def test_a_file_that_cannot_be_written_is_as_it_was(
 
     monkeypatch.setattr("tiniscript.base.files.replace", fail_full_disk)
     result = tsc("check", "--fix", "b.ts")
-    assert (result.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
+    assert (result.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG_PROGRAM)
     assert (
         "b.ts cannot be written: No space left on device. The file stays as it was." in result.err
     )

@@ -46,7 +46,7 @@ from tiniscript.link.port_connection import now_ms
 from tiniscript.link.requests import Reply
 from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
-drawn = pytest.mark.sampled(of="commands for a class", keep=1)
+sampled = pytest.mark.sampled(of="commands for a class", keep=1)
 
 SECRET = b"the password of all robots"
 SEEDS = (0x12345678, 0x0BADCAFE)
@@ -165,9 +165,9 @@ def test_a_suspended_driver_keeps_no_robot_driving(room: Class) -> None:
     """A robot keeps its client for 3 s; another client waits for that, and then gets a message."""
     command = start_endless_upload(room)
     command.signal(signal.SIGSTOP)
-    begun_ms = [robot.robot_ms for robot in room]
-    for robot, began_ms in zip(room, begun_ms, strict=True):
-        assert robot.stands_after_ms(began_ms) < 2000, "the dead-man timer is a second"
+    start_times_ms = [robot.robot_ms for robot in room]
+    for robot, start_ms in zip(room, start_times_ms, strict=True):
+        assert robot.stands_after_ms(start_ms) < 2000, "the dead-man timer is a second"
     command.process.kill()
     command = start_endless_upload(room)
     command.process.kill()
@@ -175,7 +175,7 @@ def test_a_suspended_driver_keeps_no_robot_driving(room: Class) -> None:
     tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(0)
 
 
-@drawn
+@sampled
 def test_watching_changes_nothing(room: Class) -> None:
     """This holds even if the command was suspended for longer than a driver may be silent."""
     text = "SI|LOOP(FOREVER); F(0.3, 80); SHOW(5); END_LOOP"
@@ -206,20 +206,24 @@ def test_only_clients_that_drive_robots_have_to_keep_them_alive() -> None:
 
 def test_messages_about_a_fleet_suggest_no_option_that_class_lacks() -> None:
     """Options that a class lacks have the fleet's default."""
-    own = Options("class", "en").read(["upload"])
+    class_options = Options("class", "en").read(["upload"])
     room = SimpleNamespace(
-        address=("h", 1), group="c", options=own, broker=SimpleNamespace(attend=print)
+        address=("h", 1), group="c", options=class_options, broker=SimpleNamespace(attend=print)
     )
-    alone = Options("upload", "en").read([])
-    assert own is not None and alone is not None
+    upload_options = Options("upload", "en").read([])
+    assert class_options is not None and upload_options is not None
     for verb in ("class", "stop", "upload"):
         options = vars(Classroom.options_for(cast(Classroom, room), [], verb))
-        lacks = {name: value for name, value in vars(alone).items() if name not in vars(own)}
-        assert len(lacks) > 5
-        assert {name: options.get(name, "none") for name in lacks} == lacks
+        missing_options = {
+            name: value
+            for name, value in vars(upload_options).items()
+            if name not in vars(class_options)
+        }
+        assert len(missing_options) > 5
+        assert {name: options.get(name, "none") for name in missing_options} == missing_options
 
 
-@drawn
+@sampled
 def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     tsc(room, "upload", "-e", text, "--detach").gives(0)
@@ -232,23 +236,23 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
             break
     assert len({value["port"] for value in values}) == 2, result
     with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
-        first, *rows = csv.reader(file)
-    assert first == ["robot", "id", "ms", "event", "value", "name"]
-    shows = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
-    assert shows == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
+        header, *rows = csv.reader(file)
+    assert header == ["robot", "id", "ms", "event", "value", "name"]
+    shown_values = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
+    assert shown_values == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
     assert len([row for row in rows if row[3] == "SHOW"]) == len(values)
 
 
 def test_the_times_of_all_robots_count_from_one_start() -> None:
     printed_lines: list[str] = []
     listener = Listener(True, None)
-    began_ms = now_ms()
+    start_ms = now_ms()
     shown_event = ShownEvent(5000, False)
 
     def listen(robot: int, after_ms: int) -> None:
         def watch(_: float | None) -> Iterator[tuple[int, ShownEvent]]:
-            yield began_ms + after_ms, shown_event
-            yield began_ms + after_ms + 100, shown_event
+            yield start_ms + after_ms, shown_event
+            yield start_ms + after_ms + 100, shown_event
             raise KeyboardInterrupt
 
         connection = SimpleNamespace(
@@ -272,12 +276,19 @@ def test_the_exit_code_tells_the_outcome_for_the_robots(
 ) -> None:
     """Ctrl-C is the usual end of `class show`, and of no other command. 1 is a program with a
     mistake, which no robot gets."""
-    own = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
+    options = SimpleNamespace(json=True, csv=None, max_time="1" if "second" in verb else None,
                           robot=None)  # fmt: skip
-    room = cast(Classroom, SimpleNamespace(
-        options=own, language="en", group="c", present_robots=list, options_for=lambda *_: own,
-        broker=SimpleNamespace(stop=lambda _: True),
-    ))  # fmt: skip
+    room = cast(
+        Classroom,
+        SimpleNamespace(
+            options=options,
+            language="en",
+            group="c",
+            present_robots=list,
+            options_for=lambda *_: options,
+            broker=SimpleNamespace(stop=lambda _: True),
+        ),
+    )
     monkeypatch.setattr(classroom, "run_together", lambda *_: code)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
     monkeypatch.setattr("tiniscript.cli.inputs.program", lambda *_: SimpleNamespace(name="P"))
@@ -290,24 +301,24 @@ def test_the_exit_code_tells_the_outcome_for_the_robots(
     assert actions.get(verb, classroom.show)(room) == (0 if is_usual else code)
 
 
-@pytest.mark.parametrize("is_there", [True, False])
-@pytest.mark.parametrize("gone", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
+@pytest.mark.parametrize("is_present", [True, False])
+@pytest.mark.parametrize("losses", [*product((True, False, None), repeat=classroom.STOP_MESSAGES)])
 def test_a_stop_succeeds_whichever_of_its_messages_is_lost(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
-    gone: tuple[bool | None, ...], is_there: bool,
+    losses: tuple[bool | None, ...], is_present: bool,
 ) -> None:  # fmt: skip
     """All of them are tried, and then each robot is asked whether it has stopped; if none can be
     asked, the output reports whether a message was sent."""
-    rest, calls = [*gone], []
+    losses_left, calls = [*losses], []
 
     def stop(group: str) -> bool:
-        has_gone = rest.pop(0)
+        has_gone = losses_left.pop(0)
         if has_gone is None:
             raise ConnectionResetError
         return has_gone
 
     def present() -> list[object]:
-        if not is_there:
+        if not is_present:
             raise CommandError(3, "class_empty", group="c", host="h")
         return []
 
@@ -320,14 +331,14 @@ def test_a_stop_succeeds_whichever_of_its_messages_is_lost(
 
     monkeypatch.setattr(classroom, "run_together", ask)
     monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: None)
-    if is_there:
+    if is_present:
         assert classroom.stop(cast(Classroom, room)) == 7 and len(calls) == 1
     else:
         with pytest.raises(CommandError):
             classroom.stop(cast(Classroom, room))
-    assert rest == []
+    assert losses_left == []
     has_gone = "the stop for all robots" in capsys.readouterr().err
-    assert has_gone == (not is_there and any(gone))
+    assert has_gone == (not is_present and any(losses))
 
 
 def test_a_missing_broker_and_an_empty_class_are_reported(broker: Mosquitto) -> None:
@@ -373,7 +384,7 @@ def test_a_robot_without_broker_support_is_reported_as_old() -> None:
     """Its firmware refuses the step: the sentence about a bad value would not help."""
     connection = SimpleNamespace(
         name="Tini",
-        begin_request=lambda make: None,
+        begin_request=lambda make_request: None,
         error_for_reply=AssertionError,
         port="/dev/ttyUSB0",
         wait=lambda request: Reply(STATUSES["BAD_VALUE"]),
@@ -404,7 +415,7 @@ def test_a_large_retained_message_is_named_and_a_stop_is_reported_as_sent(
     process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
 
 
-@drawn
+@sampled
 def test_robots_are_listed_and_stopped_beside_a_large_message(room: Class) -> None:
     access = Access("robots", SECRET.decode())
     topic = f"{ROOT}/3b/{SEEDS[0] ^ 1:08x}"

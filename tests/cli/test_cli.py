@@ -15,7 +15,7 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.cli import main
 from tiniscript.cli.texts import has_text
 
-WAYS = (
+VERB_OPTIONS = (
     "check", "compile", "compile -o a.bin", "compile --text", "compile --text -o a.txt", "fmt",
     "fmt --check", "show", "show --json", "show --arduino", "show --arduino -o a.ino", "run",
     "run --machine cpp", "run --record a.tsr", "run --record a.tsr --world line", "upload --port a",
@@ -23,14 +23,14 @@ WAYS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("verb_options", VERB_OPTIONS)
 def test_a_mistake_gives_exit_code_1_in_every_command(
-    tsc: Tsc, working_folder: Path, way: str
+    tsc: Tsc, working_folder: Path, verb_options: str
 ) -> None:
     """Nothing is written, run or sent."""
     program = working_folder / "drive.ts"
     program.write_text("SI|S = 5")
-    verb, *options = way.split()
+    verb, *options = verb_options.split()
     tsc(verb, program, *options).gives(1)
     assert [path.name for path in working_folder.glob("*.*")] == ["drive.ts"]
     assert program.read_text() == "SI|S = 5"
@@ -97,7 +97,7 @@ def test_map_names_the_lines(tsc: Tsc, tmp_path: Path) -> None:
 
 
 def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
-    for instruction, fault, what in (
+    for instruction, fault, message in (
         ("SHOW(2000000 * 2000000)", "OVERFLOW", "Use smaller numbers."),
         ("SHOW(1 / 0)", "DIVIDE_BY_ZERO", "check with IF"),
         ("F(20 CM, 0)", "NO_POWER", "Use more power."),
@@ -105,7 +105,7 @@ def test_each_fault_of_a_program_is_explained(tsc: Tsc) -> None:
         result = tsc("run", "-e", f"SI|{instruction}")
         assert (result.code, result.out) == (1, f"0 FAULT {fault}\n"), instruction
         assert f"fault {fault}: " in result.err, instruction
-        assert what in result.err, instruction
+        assert message in result.err, instruction
     assert all(has_text(f"fault_{name}") for _, name, _ in FAULTS)
 
 
@@ -139,13 +139,17 @@ def test_check_reports_all_mistakes_in_both_languages(tsc: Tsc) -> None:
 
 def test_check_json(tsc: Tsc) -> None:
     result = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)").gives(1)
-    first, second = json.loads(result.out)
-    assert set(first) == {"code", "severity", "line", "column", "end_line", "end_column",
+    first_diagnostic, second_diagnostic = json.loads(result.out)
+    assert set(first_diagnostic) == {"code", "severity", "line", "column", "end_line", "end_column",
                           "message", "fix"}  # fmt: skip
-    place = {key: first[key] for key in ("line", "column", "end_line", "end_column")}
+    place = {key: first_diagnostic[key] for key in ("line", "column", "end_line", "end_column")}
     assert place == {"line": 2, "column": 3, "end_line": 2, "end_column": 4}
-    assert (second["line"], second["column"], second["severity"]) == (2, 13, "mistake")
-    assert "1.5, 80" in second["fix"]
+    assert (
+        second_diagnostic["line"],
+        second_diagnostic["column"],
+        second_diagnostic["severity"],
+    ) == (2, 13, "mistake")
+    assert "1.5, 80" in second_diagnostic["fix"]
     assert json.loads(tsc("check", "--json", "-e", PROGRAM).out) == []
 
 
@@ -176,20 +180,20 @@ def test_run_accepts_an_image_and_standard_input(tsc: Tsc, program: Path) -> Non
 
 
 def test_max_steps_limits_only_steps_that_take_no_time(tsc: Tsc) -> None:
-    for text, steps, last in (
+    for text, steps, last_line in (
         ("W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "50", "2000 LIMIT"),
         ("X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP", "100", "60000 LIMIT"),
         ("LOOP(FOREVER);W(0);END_LOOP", "100", "0 LIMIT"),
     ):
         result = tsc("run", "-e", text, "--max-steps", steps)
-        assert (result.code, result.out.splitlines()[-1]) == (0, last), text
+        assert (result.code, result.out.splitlines()[-1]) == (0, last_line), text
 
 
 def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
     text = "LOOP(5);SHOW(RANDOM(1,1000));END_LOOP"
-    first = tsc("run", "-e", text).out
-    assert first == tsc("run", "-e", text, "--seed", "1").out
-    assert first != tsc("run", "-e", text, "--seed", "2").out
+    unseeded_output = tsc("run", "-e", text).out
+    assert unseeded_output == tsc("run", "-e", text, "--seed", "1").out
+    assert unseeded_output != tsc("run", "-e", text, "--seed", "2").out
 
 
 @each_row("arguments", [
@@ -223,11 +227,11 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
     with its number."""
     target = tmp_path / "a.bin"
     tsc("compile", "-e", OBSTACLE, "-o", target)
-    whole = target.read_bytes()
+    image = target.read_bytes()
     for data, word in (
-        (whole[:-1], "missing"),
-        (whole + b"x", "longer"),
-        (whole[:-1] + b"\xff", "damaged"),
+        (image[:-1], "missing"),
+        (image + b"x", "longer"),
+        (image[:-1] + b"\xff", "damaged"),
         (b"", "not a compiled"),
         (b"SI|F(2,80)", "not a compiled"),
         (bytes.fromhex("54530100000000000300101604fa443250"),
@@ -292,11 +296,11 @@ def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
     program.write_text("si|loop( 3 )\nf(2,50) // go\nendloop", encoding="utf-8")
     assert tsc("fmt", "--check", program).code == 1
     assert tsc("fmt", program).code == 0
-    laid_out = "SI|LOOP(3);\n  F(2, 50);  // go\nEND_LOOP;\n"
-    assert program.read_text(encoding="utf-8") == laid_out
+    formatted_text = "SI|LOOP(3);\n  F(2, 50);  // go\nEND_LOOP;\n"
+    assert program.read_text(encoding="utf-8") == formatted_text
     assert tsc("fmt", "--check", program).code == 0
     assert tsc("fmt", program).out == ""
-    assert tsc("fmt", "-e", laid_out).out == laid_out
+    assert tsc("fmt", "-e", formatted_text).out == formatted_text
 
 
 def test_fmt_leaves_wrong_programs_and_those_that_would_become_too_large(

@@ -131,13 +131,13 @@ def test_brackets_and_quotes_of_the_powershell_script_balance() -> None:
     code = [re.sub(r"'(?:[^']|'')*'", "''", line) for line in script.splitlines()]
     code = [line for line in code if not line.startswith("#")]
     assert "'" not in "".join(code).replace("''", "")
-    opened = []
+    open_signs = []
     for sign in "".join(code):
         if sign in "([{":
-            opened.append(sign)
+            open_signs.append(sign)
         elif sign in ")]}":
-            assert opened.pop() + sign in ("()", "[]", "{}")
-    assert not opened
+            assert open_signs.pop() + sign in ("()", "[]", "{}")
+    assert not open_signs
 
 
 def test_an_unknown_shell_is_refused(tsc: Tsc) -> None:

@@ -94,8 +94,8 @@ def test_a_restart_while_driving_is_reported(pty_robot: PtyRobot) -> None:
     """Its power fails when the motors start; this chip only reports a power-on."""
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
-    heard_count = len(pty_robot.heard)
-    pty_robot.until(lambda: len(pty_robot.heard) > heard_count + 200, "it is watched")
+    heard_count = len(pty_robot.received)
+    pty_robot.until(lambda: len(pty_robot.received) > heard_count + 200, "it is watched")
     pty_robot.switch_off_and_on()
     result = command.wait_for_result().gives(3)
     (finding,) = (finding for finding in json.loads(result.out)["findings"] if finding["is_wrong"])
@@ -142,7 +142,7 @@ def test_other_devices_and_foreign_firmware_are_recognized(tsc: Tsc) -> None:
     assert len(result.out.split("\n\n")[0].splitlines()) == 4
 
 
-SEVEN = [
+SEVEN_BOARDS = [
     (boards.FirmataBoard(57_600), "firmata", "The board runs Firmata", "StandardFirmata.ino 2.5"),
     (boards.MbotBoard(115_200), "mbot", "The board has the firmware of an mBot", "06.01.009"),
     (boards.LineEchoSketch(9600), "echo_sketch", "a sketch that sends back", "came back"),
@@ -155,17 +155,17 @@ SEVEN = [
 
 
 @pytest.mark.parametrize(
-    ("end", "cause", "what", "heard_text"), SEVEN, ids=[row[1] for row in SEVEN]
+    ("end", "cause", "board_name", "heard_text"), SEVEN_BOARDS, ids=[row[1] for row in SEVEN_BOARDS]
 )
 def test_a_foreign_board_at_a_real_port_is_reported(
-    tsc: Tsc, end: boards.Board, cause: str, what: str, heard_text: str
+    tsc: Tsc, end: boards.Board, cause: str, board_name: str, heard_text: str
 ) -> None:
     """The speed is that of a robot with an HC-05, which most boards do not have."""
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--port", pty_end.port, "--json").gives(3)
     (finding,) = json.loads(result.out)["findings"]
     assert (finding["cause"], finding["is_sure"]) == (cause, True)
-    assert what in finding["said"] and heard_text in finding["seen"] and finding["next"]
+    assert board_name in finding["said"] and heard_text in finding["seen"] and finding["next"]
 
 
 @pytest.mark.parametrize(("board", "sentence"), [
@@ -210,10 +210,10 @@ def cable(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyEnd]:
 
 def test_a_cable_is_opened_only_after_consent(tsc: Tsc, cable: PtyEnd) -> None:
     result = tsc("doctor", "--port", cable.port)
-    assert (result.code, cable.heard) == (3, b"")
+    assert (result.code, cable.received) == (3, b"")
     assert "tsc doctor --yes" in result.out
     tsc("doctor", "--port", cable.port, "--yes").gives(0)
-    assert cable.heard
+    assert cable.received
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_the_doctor_asks_before_it_opens_a_cable(
     monkeypatch.setattr("sys.stdin", keys)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     result = tsc("doctor", "--port", cable.port)
-    assert (result.code, bool(cable.heard)) == (code, code == 0)
+    assert (result.code, bool(cable.received)) == (code, code == 0)
     assert f"open {cable.port}. That restarts a board" in result.err
 
 
@@ -236,14 +236,20 @@ def test_the_doctor_asks_before_it_opens_a_cable(
 
 def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> None:
     file = tmp_path / "report.txt"
-    own = (getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd()))
+    private_words = (getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd()))
     with PtyEnd(Firmware(name=b"ANA 6B", kit=0x1234)) as pty_end:
         tsc("doctor", "--port", pty_end.port, "--report", file).gives(3, out=str(file))
         text = file.read_text(encoding="utf-8")
         assert text.startswith(report.REPORT_MARK + "\n")
         assert "unknown_kit sure" in text and "next: Name its profile once" in text
         assert f"port: {pty_end.port}" in text
-        for word in ("ANA", "6B", "12347f3a", str(tmp_path), *(x for x in own if len(x) > 2)):
+        for word in (
+            "ANA",
+            "6B",
+            "12347f3a",
+            str(tmp_path),
+            *(x for x in private_words if len(x) > 2),
+        ):
             assert not re.search(rf"\b{re.escape(word)}\b", text), word
         # A name of its own replaces the option.
         tsc("doctor", "--port", "/dev/not-there", "--report", file)

@@ -67,7 +67,7 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
     """The picture shows the path in color, and the values next to it or below; the cursor
     reappears."""
     terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", pace, size=size)
-    written_bytes, lines = terminal.written, terminal.whole()
+    written_bytes, lines = terminal.output_bytes, terminal.whole()
     if pace != "0":  # in that case the picture is drawn once
         assert written_bytes.count(HIDE_CURSOR) == 1 and written_bytes.rindex(
             SHOW_CURSOR
@@ -79,9 +79,9 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
     assert lines[top + len(trace) :] == drawn_lines and drawn_lines[0].startswith("── TiniBot")
     if size[0] >= 40:
         assert b"\x1b[36m" in written_bytes
-        way = drawn_lines if size[0] == 80 else drawn_lines[1:8]
-        assert any(arrow in line for line in way for arrow in sketch.ARROWS)
-        assert any("⠀" < c <= "⣿" for line in way for c in line)
+        picture_rows = drawn_lines if size[0] == 80 else drawn_lines[1:8]
+        assert any(arrow in line for line in picture_rows for arrow in sketch.ARROWS)
+        assert any("⠀" < c <= "⣿" for line in picture_rows for c in line)
         assert row(drawn_lines, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
         assert row(drawn_lines, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
         assert row(drawn_lines, "left motor")[2] == "0"
@@ -91,7 +91,7 @@ def test_a_file_gets_the_trace_byte_for_byte(tmp_path: Path) -> None:
     file = tmp_path / "trace"
     terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", "20", output=file)
     assert file.read_bytes() == plain_output("-e", OBSTACLES, *SENSOR_OPTIONS).encode()
-    assert b"MOTORS" not in terminal.written
+    assert b"MOTORS" not in terminal.output_bytes
     assert picture(terminal.whole())[0].startswith("── TiniBot")
 
 
@@ -103,14 +103,14 @@ def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
     assert row(lines, "BUTTON")[:2] == ["BUTTON", "FALSE"]
     assert row(lines, "SHOW") == ["SHOW", "FALSE", "before:", "1.5"]
     assert row(lines, "time")[-1] == "done"
-    assert "♪ 440 Hz".encode() in terminal.written  # shown while the tone sounded
+    assert "♪ 440 Hz".encode() in terminal.output_bytes  # shown while the tone sounded
     assert not any("♪" in line for line in lines)
 
 
 def test_a_terminal_without_color_or_braille_gets_plain_signs_in_its_language() -> None:
     env = {"PYTHONIOENCODING": "latin-1", "NO_COLOR": "1"}
     terminal = run_to_end("-e", OBSTACLES, *SENSOR_OPTIONS, "--pace", "10", "--lang", "es", env=env)
-    output = terminal.written.decode("latin-1")
+    output = terminal.output_bytes.decode("latin-1")
     assert "[36m" not in output and "\\u28" not in output and "*" in output
     assert "en el límite" in output and "sensor de distancia" in output
 
@@ -139,7 +139,7 @@ def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None
     terminal.until("↑")
     terminal.interrupt()
     assert terminal.end() == 2
-    assert terminal.written.rindex(SHOW_CURSOR) > terminal.written.rindex(HIDE_CURSOR)
+    assert terminal.output_bytes.rindex(SHOW_CURSOR) > terminal.output_bytes.rindex(HIDE_CURSOR)
     lines = terminal.whole()
     assert lines[-lines[::-1].index("Stopped.") - 1 :].count("Stopped.") == 1
     assert not any("Traceback" in line for line in lines)
@@ -164,7 +164,7 @@ def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.Monkey
     draw_times_ms: list[float] = []
     monkeypatch.setattr(terminal_screen, "time", clock)
     monkeypatch.setattr(
-        terminal_screen.Screen, "draw", lambda self, seen, now_ms: draw_times_ms.append(now_ms)
+        terminal_screen.Screen, "draw", lambda self, screen, now_ms: draw_times_ms.append(now_ms)
     )
     assert run_drawing.watch(iter(events), robots.load("tinibot"), pace, "en") == events[-1]
     assert draw_times_ms == sorted(draw_times_ms)
@@ -216,13 +216,13 @@ def test_values_stand_beside_the_floor_on_a_wide_terminal() -> None:
 
 def test_a_long_path_stays_in_view_and_in_bounded_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sketch, "MOST_CORNERS", 100)
-    way = sketch.Sketch(robots.load("tinibot"))
+    long_sketch = sketch.Sketch(robots.load("tinibot"))
     for k in range(3000):
-        way.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
+        long_sketch.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
         if k % 10 == 0:
-            drawn_text = "\n".join(line.plain for line in way.draw(30, 12, k * 500))
+            drawn_text = "\n".join(line.plain for line in long_sketch.draw(30, 12, k * 500))
             assert any(arrow in drawn_text for arrow in sketch.ARROWS)
-            assert len(way.way.corners) <= 100
+            assert len(long_sketch.way.corners) <= 100
 
 
 @pytest.mark.parametrize(("percent", "bar"), [

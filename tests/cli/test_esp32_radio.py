@@ -10,8 +10,8 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.claimed_robots import become_another_computer, claim_with_button
-from tests.support.command import FOREVER, LONG, Command, process, run_in_process
-from tests.support.esp32_announced import Announced
+from tests.support.command import FOREVER, LONG_PROGRAM, Command, process, run_in_process
+from tests.support.esp32_announced import AnnouncedNames
 from tests.support.esp32_near import (
     DRIVE_ACTIONS,
     DRIVE_PROGRAM,
@@ -34,14 +34,18 @@ def robot() -> Iterator[Esp32PtyRobot]:
         yield esp32_pty_robot
 
 
-def ask_radios(robot: Esp32PtyRobot, what: str) -> str:
+def ask_radios(robot: Esp32PtyRobot, property_name: str) -> str:
     """Return the settings of the robot's radios, or the address where it listens."""
     questions: list[str] = []
 
     def ask(host_firmware: HostFirmware) -> None:
         assert isinstance(host_firmware, Esp32Robot)
         questions.append(
-            str(port_of(host_firmware) if what == "port" else getattr(radios(host_firmware), what))
+            str(
+                port_of(host_firmware)
+                if property_name == "port"
+                else getattr(radios(host_firmware), property_name)
+            )
         )
 
     robot.ask(ask)
@@ -154,26 +158,26 @@ def test_two_computers_use_cable_and_network_at_once(
 
 
 def test_a_program_runs_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_path: Path) -> None:
-    bad = BadNetwork(int(ask_radios(robot_in_network, "port")))
-    place = f"socket://127.0.0.1:{bad.port}"
+    bad_network = BadNetwork(int(ask_radios(robot_in_network, "port")))
+    place = f"socket://127.0.0.1:{bad_network.port}"
     for _ in range(3):
-        run_in_process("upload", "-e", LONG, "--no-run", "--port", place).gives(0)
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    assert run_in_process("compile", "-e", LONG, "-o", ours).code == 0
-    assert run_in_process("show", "-o", theirs, "--port", place).code == 0
-    assert ours.read_bytes() == theirs.read_bytes()
+        run_in_process("upload", "-e", LONG_PROGRAM, "--no-run", "--port", place).gives(0)
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    assert run_in_process("compile", "-e", LONG_PROGRAM, "-o", compiled_file).code == 0
+    assert run_in_process("show", "-o", robot_file, "--port", place).code == 0
+    assert compiled_file.read_bytes() == robot_file.read_bytes()
     command = start_endless_upload(robot_in_network, place)
     assert process("stop", "--port", place).code == 0
     assert not robot_in_network.moves
     command.wait_for_result()
     command = start_endless_upload(robot_in_network, place)
-    began_ms = robot_in_network.robot_ms
-    bad.cut()
-    assert robot_in_network.stands_after_ms(began_ms) < 2000, (
+    start_ms = robot_in_network.robot_ms
+    bad_network.cut()
+    assert robot_in_network.stands_after_ms(start_ms) < 2000, (
         "the connection was its dead-man timer"
     )
     assert command.wait_for_result().code == 3
-    bad.close()
+    bad_network.close()
 
 
 # -- by its name, with real multicast DNS ---------------------------------------------------------
@@ -194,7 +198,7 @@ def test_a_robot_is_found_and_driven_by_its_name(
     robot_in_network: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("serial.tools.list_ports.comports", list)  # asking one takes ten seconds
-    with Announced(robot_in_network):
+    with AnnouncedNames(robot_in_network):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
             assert process("doctor", "--identify", "--port", place).code == 0
         robot_in_network.until(is_listed, "it is listed")  # a busy computer misses data after 2 s

@@ -15,12 +15,12 @@ DEF, WHEN, TASK = (
 FAULT = "SHOW(1 / N)"
 
 
-def program(where: str) -> str:
+def program(place: str) -> str:
     blocks = (("DEF", DEF), ("WHEN", WHEN), ("TASK", TASK))
-    inner = {"DEF": "A", where: FAULT}
-    inner["DEF"] = FAULT if where == "DEF" else "S"
+    inner = {"DEF": "A", place: FAULT}
+    inner["DEF"] = FAULT if place == "DEF" else "S"
     text = "N = 0; TASKS = 1\n" + "".join(block.format(inner.get(k, "A")) for k, block in blocks)
-    return text + (f"W(0.01); {FAULT}\n" if where == "main" else "")
+    return text + (f"W(0.01); {FAULT}\n" if place == "main" else "")
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def path(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("where", "english", "spanish"),
+    ("place", "english", "spanish"),
     [
         ("WHEN", "line 6, in the WHEN on line 5:  ", "línea 6, en el WHEN de la línea 5:  "),
         ("TASK", "line 9, in the TASK on line 8:  ", "línea 9, en el TASK de la línea 8:  "),
@@ -38,9 +38,9 @@ def path(tmp_path: Path) -> Path:
     ],
 )
 def test_a_fault_names_its_line_and_its_task(
-    where: str, english: str, spanish: str, path: Path
+    place: str, english: str, spanish: str, path: Path
 ) -> None:
-    path.write_text(program(where), encoding="utf-8")
+    path.write_text(program(place), encoding="utf-8")
     for language, sentence in (("en", english), ("es", spanish)):
         result = run_in_process("run", path, "--lang", language)
         assert result.code == 1 and result.out.endswith("FAULT DIVIDE_BY_ZERO\n")

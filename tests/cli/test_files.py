@@ -28,16 +28,20 @@ LIBRARY_FOLDER = Path(files.__file__).parent
 
 def test_the_folders_are_where_platformdirs_has_them(monkeypatch: pytest.MonkeyPatch) -> None:
     """Though on Linux they are found without that."""
-    chosen = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
-    for one, home in product(chosen, (None, "", "part", "/home/ada", "/")):
-        for name, value in (("XDG_CACHE_HOME", one), ("XDG_CONFIG_HOME", one), ("HOME", home)):
+    values = (None, "", "part", "/elsewhere", "/elsewhere/", "~/cache")
+    for folder, home in product(values, (None, "", "part", "/home/ada", "/")):
+        for name, value in (
+            ("XDG_CACHE_HOME", folder),
+            ("XDG_CONFIG_HOME", folder),
+            ("HOME", home),
+        ):
             if value is None:
                 monkeypatch.delenv(name, raising=False)
             else:
                 monkeypatch.setenv(name, value)
         cache = platformdirs.user_cache_path("tiniscript", appauthor=False)
         settings = platformdirs.user_config_path("tiniscript", appauthor=False)
-        assert (files.cache_folder(), files.settings_folder()) == (cache, settings), (one, home)
+        assert (files.cache_folder(), files.settings_folder()) == (cache, settings), (folder, home)
 
 
 def test_no_folder_on_windows_has_an_author_folder(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,7 +52,7 @@ def test_no_folder_on_windows_has_an_author_folder(monkeypatch: pytest.MonkeyPat
         calls.append((name, appauthor))
         return Path(name)
 
-    monkeypatch.setattr(files, "_linux_folder", lambda variable, usual: None)
+    monkeypatch.setattr(files, "_linux_folder", lambda variable, default: None)
     monkeypatch.setattr(platformdirs, "user_cache_path", path)
     monkeypatch.setattr(platformdirs, "user_config_path", path)
     assert files.cache_folder() == files.settings_folder() == Path("tiniscript")
@@ -173,19 +177,19 @@ def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A stick that is pulled has the old file or the new one."""
-    old, writes = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
-    old.write_bytes(b"TS\2old")
+    old_file, writes = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
+    old_file.write_bytes(b"TS\2old")
     sync = os.fsync
 
-    def look(number: int) -> None:
-        [new] = tmp_path.glob(f".*{files.NEW_ENDING}")
-        writes.append((old.read_bytes(), new.read_bytes()))
+    def read_files(number: int) -> None:
+        [new_file] = tmp_path.glob(f".*{files.NEW_ENDING}")
+        writes.append((old_file.read_bytes(), new_file.read_bytes()))
         sync(number)
 
-    monkeypatch.setattr(os, "fsync", look)
-    outputs.write(old, b"TS\2new", "unwritable")
+    monkeypatch.setattr(os, "fsync", read_files)
+    outputs.write(old_file, b"TS\2new", "unwritable")
     assert writes == [(b"TS\2old", b"TS\2new")]
-    assert old.read_bytes() == b"TS\2new"
+    assert old_file.read_bytes() == b"TS\2new"
 
 
 def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
@@ -224,16 +228,16 @@ def test_only_one_module_replaces_files() -> None:
 def test_abandoned_files_of_the_cache_are_removed(tsc: Tsc, tmp_path: Path) -> None:
     folder = files.cache_folder() / "maps"
     folder.mkdir(parents=True)
-    old, new = folder / ".x.json.00.new", folder / ".y.json.00.new"
-    older = folder / "0badcafe.1234"  # a name in the form of older versions
-    for path in (old, new, older):
+    old_path, new_path = folder / ".x.json.00.new", folder / ".y.json.00.new"
+    older_file = folder / "0badcafe.1234"  # a name in the form of older versions
+    for path in (old_path, new_path, older_file):
         path.write_bytes(b"")
-    for path in (old, older):
+    for path in (old_path, older_file):
         os.utime(path, (time() - 7200, time() - 7200))
     assert tsc("compile", "-e", PROGRAM, "-o", tmp_path / "x.bin").code == 0
     names = {path.name for path in folder.iterdir()}
-    assert {old.name, older.name} & names == set()
-    assert new.name in names, "another command may be writing it now"
+    assert {old_path.name, older_file.name} & names == set()
+    assert new_path.name in names, "another command may be writing it now"
     empty = folder / "00000001.json"
     empty.write_bytes(b"")
     assert source_map.recall(1) is None
@@ -276,22 +280,22 @@ def test_the_lock_and_the_registration_of_a_killed_command_are_removed() -> None
 
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The owner left between our opening and our locking its file; another one came."""
-    first = registry.lock_port("socket://x:1")
-    assert first is not None
+    old_lock = registry.lock_port("socket://x:1")
+    assert old_lock is not None
     real_call = registry._lock
-    others: list[IO[bytes] | None] = []
+    other_locks: list[IO[bytes] | None] = []
 
     def lock(file: registry._Lock) -> bool:
-        if not others:
-            others.append(None)
-            first.close()
-            others.append(registry.lock_port("socket://x:1"))
+        if not other_locks:
+            other_locks.append(None)
+            old_lock.close()
+            other_locks.append(registry.lock_port("socket://x:1"))
         return real_call(file)
 
     monkeypatch.setattr(registry, "_lock", lock)
     assert registry.lock_port("socket://x:1") is None
-    assert others[1] is not None, "one has it"
-    others[1].close()
+    assert other_locks[1] is not None, "one has it"
+    other_locks[1].close()
 
 
 @pytest.mark.parametrize("is_of_folder", [False, True], ids=["the link itself", "of a folder"])
@@ -369,26 +373,26 @@ def test_a_lock_has_one_holder_until_it_ends_in_any_way(
     path = tmp_path / "data"
     for _ in range(2):
         with suppress(KeyError), files.lock_file(path):
-            began_s = now_s
+            start_s = now_s
             with pytest.raises(TimeoutError), files.lock_file(path):
                 raise AssertionError("two have the lock")
-            assert files.LOCK_WAIT_S <= now_s - began_s < files.LOCK_WAIT_S + 0.1
+            assert files.LOCK_WAIT_S <= now_s - start_s < files.LOCK_WAIT_S + 0.1
             raise KeyError
-        began_s = now_s
+        start_s = now_s
         with files.lock_file(path):
-            assert now_s == began_s
+            assert now_s == start_s
 
 
 def test_only_regular_files_within_the_size_limit_are_read(tmp_path: Path) -> None:
     path = tmp_path / "data"
     path.write_bytes(b"12345")
     assert files.read_limited(path, 5) == b"12345"
-    others = [tmp_path, Path(os.devnull)]
+    not_files = [tmp_path, Path(os.devnull)]
     if sys.platform != "win32":
         os.mkfifo(tmp_path / "pipe")
-        others.append(tmp_path / "pipe")
-    for other in others:
+        not_files.append(tmp_path / "pipe")
+    for file in not_files:
         with pytest.raises(OSError):
-            files.read_limited(other, 5)
+            files.read_limited(file, 5)
     with pytest.raises(OSError):
         files.read_limited(path, 4)

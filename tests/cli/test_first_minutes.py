@@ -59,21 +59,21 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     )
 
 
-LOOKS = 300  # most events to look at while a command may need time to save
+MAX_LOOKS = 300  # most events to look at while a command may need time to save
 
 
 @pytest.fixture
 def ends_in_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that looks at events long after its time is over fails: it would never end."""
-    whole, look_count = Connection.event, 0
+    wait_for_event, look_count = Connection.event, 0
 
     def count_and_wait(
         connection: Connection, timeout_s: float = POLL_INTERVAL_S
     ) -> tuple[int, Event] | None:
         nonlocal look_count
         look_count += connection.is_time_over
-        assert look_count < LOOKS, "its time is over, and it goes on"
-        return whole(connection, timeout_s)
+        assert look_count < MAX_LOOKS, "its time is over, and it goes on"
+        return wait_for_event(connection, timeout_s)
 
     monkeypatch.setattr(Connection, "event", count_and_wait)
 
@@ -155,8 +155,8 @@ class Upload(Robot):
 def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
     upload = Upload()
     # a command that brings a robot along does not take that of another one
-    other = run_in_process("upload", "--virtual", "-e", "SI|SHOW(1)")
-    assert "SHOW 1" in other.out and upload.port not in other.out
+    virtual_result = run_in_process("upload", "--virtual", "-e", "SI|SHOW(1)")
+    assert "SHOW 1" in virtual_result.out and upload.port not in virtual_result.out
     assert run_in_process("doctor", "--virtual").code == 0
     result = run_in_process("stop", *options)
     assert (result.code, result.out) == (
@@ -187,8 +187,8 @@ def test_stop_includes_the_last_used_port(monkeypatch: pytest.MonkeyPatch, tmp_p
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")
-    running = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
-    monkeypatch.setattr(directory, "running_robots", lambda: running)
+    running_robots = [RunningRobot("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
+    monkeypatch.setattr(directory, "running_robots", lambda: running_robots)
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
     usb.touch()
     assert in_reach.ports_to_stop() == ["socket://127.0.0.1:5", str(usb)]
@@ -256,12 +256,12 @@ def test_a_division_by_zero_is_reported_with_its_cause(tsc: Tsc) -> None:
 
 @each_row("language, try_it", [("en", "Try"), ("es", "Prueba"), ("pt", "Tente")])
 def test_an_option_of_another_verb_suggests_that_verb(language: str, try_it: str, tsc: Tsc) -> None:
-    for verb, option, other in (
+    for verb, option, other_verb in (
         ("run", "--virtual", "upload"), ("run", "--hurry", "upload"), ("run", "--detach", "upload"),
         ("upload", "--max-steps", "run"), ("upload", "--show", "run"),
     ):  # fmt: skip
         result = tsc(verb, "prog.ts", option, "--lang", language).gives(2)
-        assert f"{try_it}:  tsc {other} prog.ts {option}" in result.err
+        assert f"{try_it}:  tsc {other_verb} prog.ts {option}" in result.err
     result = tsc("run", "prog.ts", "--virtul", "--lang", language).gives(2)
     assert "tsc run --help" in result.err
 
@@ -274,10 +274,10 @@ def test_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
     assert result.code == 1
     # The message names the program's first word.
     message = "tinibot has no BUTTON; the robot liner has it.\nTry:  "
-    either = (
+    robot_lists = (
         "If your robot is not a liner, remove the parts that need BUTTON. If it is, write above"
     )
-    assert f"{message}{either} the program: // robot: liner " in result.err
+    assert f"{message}{robot_lists} the program: // robot: liner " in result.err
     assert "LINE_L = 0" not in result.err
     for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
         assert "the robot liner has it" in tsc(*verb, *LINE).err, verb
@@ -303,10 +303,12 @@ def test_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
 
 def test_up_to_three_robots_are_named() -> None:
     kit = robots.load("liner").kit
-    own = robots.load("tinibot").kit
-    compilation = compile_text("LED(TRUE)", own)
-    others = {f"R{k}": kit for k in range(5)}
-    (named_diagnostic,) = hints_among(others, compilation.diagnostics, "LED(TRUE)", "tinibot", own)
+    tinibot_kit = robots.load("tinibot").kit
+    compilation = compile_text("LED(TRUE)", tinibot_kit)
+    other_kits = {f"R{k}": kit for k in range(5)}
+    (named_diagnostic,) = hints_among(
+        other_kits, compilation.diagnostics, "LED(TRUE)", "tinibot", tinibot_kit
+    )
     assert named_diagnostic.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
@@ -366,16 +368,16 @@ def test_tsc_commands_typed_at_the_prompt_are_recognized() -> None:
 def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
     """The mark is the smallest number: `Y = -2147483.647 - 0.001`."""
     known_state = LiveState(robots.load("tinibot").kit)
-    for before in (0, 1, 2):  # random numbers used before, by the program itself
+    for use_count in (0, 1, 2):  # random numbers used before, by the program itself
         catch = ValueCatcher(("X", "Y"), known_state, EventPrinter("en"), prints_done=False)
-        for value in (*[BOOKKEEPING_MARK] * before, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
+        for value in (*[BOOKKEEPING_MARK] * use_count, BOOKKEEPING_MARK, BOOKKEEPING_MARK, 7):
             assert catch.hold_event(ShownEvent(value, 0))
         assert catch.hold_event(DoneEvent(1))
         assert {name: value.value for name, value in known_state.value_by_name.items()} == {
             "X": BOOKKEEPING_MARK,
             "Y": 7,
         }
-        assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
+        assert capsys.readouterr().out == "SHOW -2147483.648\n" * use_count
         known_state.value_by_name.clear()
 
 
@@ -400,8 +402,8 @@ def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> 
     # nor the picture or the lines of a virtual robot
     bookkeeping = Bookkeeping()
     hidden = [
-        bookkeeping.filter_trace_event(what, values)
-        for what, values in (
+        bookkeeping.filter_trace_event(event_name, values)
+        for event_name, values in (
             ("START", ()), ("SHOW", (1,)), ("SHOW", (BOOKKEEPING_MARK,)), ("SHOW", (5000,)),
             ("MOTORS", (0, 0)), ("DONE", ()), ("START", ()), ("SHOW", (5000,)),
         )
@@ -478,12 +480,12 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     assert tsc("check", folder / expected).err == ""
 
 
-@pytest.mark.parametrize("more", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
+@pytest.mark.parametrize("options", [(), ("--port", "P"), ("--build",), ("--robot", "liner")])
 @pytest.mark.parametrize("chip", ["nano", "MEGA"])
 def test_a_chip_instead_of_a_robot_suggests_its_option(
-    tsc: Tsc, chip: str, more: tuple[str, ...]
+    tsc: Tsc, chip: str, options: tuple[str, ...]
 ) -> None:
-    for words in (("--board", chip, *more), (*more, f"--board={chip}")):
+    for words in (("--board", chip, *options), (*options, f"--board={chip}")):
         tsc("firmware", *words).gives(2, f"Try:  tsc firmware --chip {chip.lower()}\n")
 
 
@@ -495,15 +497,15 @@ def test_board_names_the_folder_of_the_build(
     (working_folder / "vm_arduino" / "platformio.ini").touch()
     result = tsc("firmware", "--board", "liner", "-o", "own.h")
     home_of_it = "vm_arduino/src/boards/kits/own.h"
-    then = "Then:  pio run -d vm_arduino -e"
-    assert f"tsc firmware --board liner -o {home_of_it}   {then}" in result.out
+    build_hint = "Then:  pio run -d vm_arduino -e"
+    assert f"tsc firmware --board liner -o {home_of_it}   {build_hint}" in result.out
     assert "Ponlo ahí:" in tsc("firmware", "--board", "liner", "-o", "own.h", "--lang", "es").out
     result = tsc("firmware", "--board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
     assert result.out.endswith("To build the firmware:  pio run -d vm_arduino -e nano\n")
     monkeypatch.chdir(home)
-    up = str(Path("../../.."))
+    sources_folder = str(Path("../../.."))
     assert tsc("firmware", "--board", "liner", "-o", "own.h").out.endswith(
-        f"To build the firmware:  pio run -d {up} -e nano\n"
+        f"To build the firmware:  pio run -d {sources_folder} -e nano\n"
     )
 
 
@@ -512,8 +514,8 @@ def test_the_first_program_has_no_warning(tsc: Tsc) -> None:
     assert tsc("check", ROOT / PROGRAM).gives(0, out="no mistakes").err == ""
     for path in sorted(ROOT.glob("README*.md")):
         program = path.read_text(encoding="utf-8")
-        first = program.partition("```tiniscript\n")[2].partition("```")[0]
-        assert tsc("check", "-e", first).gives(0, out="no mistakes").err == "", path
+        first_program = program.partition("```tiniscript\n")[2].partition("```")[0]
+        assert tsc("check", "-e", first_program).gives(0, out="no mistakes").err == "", path
         assert f"`{PROGRAM.as_posix()}`" in program, path
 
 

@@ -41,13 +41,13 @@ class Room:
         self.fleet = fleet
         self.stages = {pupil.port: stage for pupil, stage in zip(fleet.pupils, stages, strict=True)}
         self.waiting_ports: set[str] = set()
-        self.pressed = threading.Event()
-        self.starts: list[int] = []  # when Ctrl-C was pressed, by robot
+        self.has_pressed = threading.Event()
+        self.start_times: list[int] = []  # when Ctrl-C was pressed, by robot
 
-    def at(self, stage: int, port: str) -> None:
-        if self.stages[port] == stage and not self.pressed.is_set():
+    def reach(self, stage: int, port: str) -> None:
+        if self.stages[port] == stage and not self.has_pressed.is_set():
             self.waiting_ports.add(port)
-            assert self.pressed.wait(HANG_LIMIT_S), "nobody presses Ctrl-C"
+            assert self.has_pressed.wait(HANG_LIMIT_S), "nobody presses Ctrl-C"
 
     def may_press(self) -> bool:
         return all(
@@ -62,16 +62,21 @@ class Room:
 
 
 def step_calls(
-    monkeypatch: pytest.MonkeyPatch, room: Room, owner: object, name: str, before: int, after: int
+    monkeypatch: pytest.MonkeyPatch,
+    room: Room,
+    owner: object,
+    name: str,
+    early_stage: int,
+    late_stage: int,
 ) -> None:
     """Make calls of a function, whose first argument contains a port, pass two stages."""
-    whole: Callable[..., Any] = getattr(owner, name)
+    step: Callable[..., Any] = getattr(owner, name)
 
-    def interrupt_step(first: Any, *words: Any, **keyword_arguments: Any) -> Any:
-        port = first if isinstance(first, str) else first.port
-        room.at(before, port)
-        outcome = whole(first, *words, **keyword_arguments)
-        room.at(after, port)
+    def interrupt_step(target: Any, *words: Any, **keyword_arguments: Any) -> Any:
+        port = target if isinstance(target, str) else target.port
+        room.reach(early_stage, port)
+        outcome = step(target, *words, **keyword_arguments)
+        room.reach(late_stage, port)
         return outcome
 
     monkeypatch.setattr(owner, name, interrupt_step)
@@ -89,11 +94,11 @@ def test_after_ctrl_c_nothing_starts(
     fleet: RobotFleet, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
     rng = random.Random(seed)
-    first = seed % 6  # the stages of all robots overlap
+    first_stage = seed % 6  # the stages of all robots overlap
     room = Room(
         fleet,
         [
-            first,
+            first_stage,
             *(rng.choice((OPENING_STAGE, OPENED_STAGE, ASKED_STAGE, DRIVING_STAGE)) for _ in "23"),
         ],
     )
@@ -103,19 +108,19 @@ def test_after_ctrl_c_nothing_starts(
     interrupt = Fleet.interrupt_robots
 
     def press(_: Fleet) -> None:
-        if not room.pressed.is_set() and room.may_press():
+        if not room.has_pressed.is_set() and room.may_press():
             raise KeyboardInterrupt
 
-    def interrupt_and_note(its: Fleet) -> None:
-        interrupt(its)
-        room.starts = room.starts or room.count_states()
-        room.pressed.set()
+    def interrupt_and_note(interrupted_fleet: Fleet) -> None:
+        interrupt(interrupted_fleet)
+        room.start_times = room.start_times or room.count_states()
+        room.has_pressed.set()
 
     monkeypatch.setattr(Fleet, "_raise_if_reader_gone", press)
     monkeypatch.setattr(Fleet, "interrupt_robots", interrupt_and_note)
     result = run_in_process("upload", "-e", ENDLESS_PROGRAM, "--all").gives(2)
-    assert room.pressed.is_set()
-    assert room.count_states() == room.starts, (room.stages, result)
+    assert room.has_pressed.is_set()
+    assert room.count_states() == room.start_times, (room.stages, result)
     assert not any(pupil.moves for pupil in fleet.pupils)
 
 
@@ -128,13 +133,13 @@ def interrupt_contained() -> Iterator[None]:
         pytest.fail("Ctrl-C ends in a traceback")
 
 
-class Watched:
+class WatchedFleet:
     """A fleet whose robots are silent forever, on a clock of the test; somebody presses Ctrl-C."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, presses_s: list[float]) -> None:
         self.now_s = 0.0
         self.presses_s = [*presses_s]
-        self.stopped: list[float] = []  # when each robot got its stop
+        self.stop_times_s: list[float] = []  # when each robot got its stop
         monkeypatch.setattr(fleet_of, "monotonic", lambda: self.now_s)
         monkeypatch.setattr(streams, "drop_unread_output", lambda: None)
         options = Namespace(verb="upload", detach=True, json=False)
@@ -142,7 +147,7 @@ class Watched:
         for port in "12":
             member = Member(Target(port, "", True, True), deque())
             member.connection = cast(Any, SimpleNamespace(
-                interrupt=lambda: self.stopped.append(self.now_s),
+                interrupt=lambda: self.stop_times_s.append(self.now_s),
                 connection=SimpleNamespace(robot=None),
             ))  # fmt: skip
             self.fleet.members.append(member)
@@ -157,23 +162,23 @@ class Watched:
             raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize("how", ["lines", "a table", "stop"])
+@pytest.mark.parametrize("interruption", ["lines", "a table", "stop"])
 @pytest.mark.parametrize("presses", [1, 2, 3])
 def test_the_first_ctrl_c_waits_for_the_robots_and_the_second_does_not(
-    monkeypatch: pytest.MonkeyPatch, how: str, presses: int
+    monkeypatch: pytest.MonkeyPatch, interruption: str, presses: int
 ) -> None:
     """They may come at any time; without a second press, it ends by itself."""
     for seed in range(10):
-        chance = random.Random(seed)
+        rng = random.Random(seed)
         times = [5.0]
         for _ in range(presses):
             times.append(
                 times[-1]
-                + chance.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
+                + rng.uniform(POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S - POLL_INTERVAL_S)
             )
-        room = Watched(monkeypatch, times[:presses])
+        room = WatchedFleet(monkeypatch, times[:presses])
         timeout_s = opening.CONFIRM_TIMEOUT_S + 1
-        if how == "stop":  # an unreadable output acts like a first Ctrl-C
+        if interruption == "stop":  # an unreadable output acts like a first Ctrl-C
             room.presses_s, timeout_s = times[1:presses], opening.CONFIRM_TIMEOUT_S
             room.now_s = times[0]
             with interrupt_contained():
@@ -181,10 +186,12 @@ def test_the_first_ctrl_c_waits_for_the_robots_and_the_second_does_not(
         else:
             table = SimpleNamespace(draw=room.passes, end=lambda _: None, print_line=lambda _: None)
             with interrupt_contained():
-                room.fleet.print_until_done(cast(FleetTable, table) if how == "a table" else None)
-        assert [at_s for at_s in room.stopped if at_s <= times[0] + 2 * POLL_INTERVAL_S], (
-            "each is told"
-        )
-        assert len(room.stopped) == len(room.fleet.members)
+                room.fleet.print_until_done(
+                    cast(FleetTable, table) if interruption == "a table" else None
+                )
+        assert [
+            stop_s for stop_s in room.stop_times_s if stop_s <= times[0] + 2 * POLL_INTERVAL_S
+        ], "each is told"
+        assert len(room.stop_times_s) == len(room.fleet.members)
         end_s = times[1] if presses > 1 else times[0] + timeout_s
         assert end_s <= room.now_s <= end_s + 3 * POLL_INTERVAL_S

@@ -25,35 +25,35 @@ class Terminal:
     """A terminal that reads what a frame writes."""
 
     def __init__(self, columns: int = COLUMNS) -> None:
-        self.written = io.StringIO()
+        self.output = io.StringIO()
         self.console = Console(
-            file=self.written, force_terminal=True, width=columns, height=LINES,
+            file=self.output, force_terminal=True, width=columns, height=LINES,
             color_system="standard", legacy_windows=False,
         )  # fmt: skip
         self.frame = Frame(self.console)
         self.screen = pyte.HistoryScreen(columns, LINES, history=10_000)
         self.stream = pyte.Stream(self.screen)
 
-    def draw(self, lines: list[Text], above: str = "") -> str:
+    def draw(self, lines: list[Text], text_above: str = "") -> str:
         """Draw it; return the output."""
-        self.written.seek(0)
-        self.written.truncate()
-        self.frame.draw(lines, above)
-        output = self.written.getvalue()
+        self.output.seek(0)
+        self.output.truncate()
+        self.frame.draw(lines, text_above)
+        output = self.output.getvalue()
         self.stream.feed(output.replace("\n", "\r\n"))  # line ends as a terminal writes them
         return output
 
     def all_lines(self) -> list[str]:
         """All lines, with those that have scrolled away."""
         rows = [*self.screen.history.top, *(self.screen.buffer[k] for k in range(LINES))]
-        wide = self.screen.columns
-        return ["".join(row[k].data for k in range(wide)).rstrip() for row in rows]
+        column_count = self.screen.columns
+        return ["".join(row[k].data for k in range(column_count)).rstrip() for row in rows]
 
 
-def line(chance: random.Random) -> Text:
+def line(rng: random.Random) -> Text:
     text = Text()
-    while text.cell_len < chance.randrange(COLUMNS - 2):
-        text.append(chance.choice(SIGNS), style=chance.choice(STYLES))
+    while text.cell_len < rng.randrange(COLUMNS - 2):
+        text.append(rng.choice(SIGNS), style=rng.choice(STYLES))
     text.rstrip()
     return text
 
@@ -61,22 +61,22 @@ def line(chance: random.Random) -> Text:
 @pytest.mark.parametrize("seed", range(40))
 def test_the_terminal_shows_the_last_picture_below_all_printed_lines(seed: int) -> None:
     """Includes lines that appear, vanish and change, and lines printed above."""
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     terminal = Terminal()
     lines_above: list[str] = []
-    lines = [line(chance) for _ in range(5)]
+    lines = [line(rng) for _ in range(5)]
     for number in range(30):
         lines = [text.copy() for text in lines]
         for k in range(len(lines)):
-            if chance.random() < 0.3:
-                lines[k] = line(chance)
-        if chance.random() < 0.2:
-            lines = lines[: chance.randrange(len(lines) + 1)]
-        if chance.random() < 0.2 and len(lines) < LINES - 4:
-            lines.append(line(chance))
-        above = f"said {number}" if chance.random() < 0.3 else ""
-        lines_above += [above] if above else []
-        terminal.draw(lines, above)
+            if rng.random() < 0.3:
+                lines[k] = line(rng)
+        if rng.random() < 0.2:
+            lines = lines[: rng.randrange(len(lines) + 1)]
+        if rng.random() < 0.2 and len(lines) < LINES - 4:
+            lines.append(line(rng))
+        text_above = f"said {number}" if rng.random() < 0.3 else ""
+        lines_above += [text_above] if text_above else []
+        terminal.draw(lines, text_above)
         expected = [*lines_above, *(text.plain for text in lines)]
         lines_shown = terminal.all_lines()
         assert lines_shown[: len(expected)] == expected
@@ -142,12 +142,12 @@ def test_a_terminal_that_becomes_wider_or_narrower_gets_all_of_it() -> None:
     [(0, 1000), (3_000, 97_000), (412_000, 419_000), (-5000, 5000), (7, 7), (0, 1), (-9, 10**9)],
 )
 def test_an_axis_has_round_marks_around_the_values(low: int, high: int) -> None:
-    begin, end, step = scale(low, high)
-    assert begin <= low and end >= high
-    assert begin % step == 0 and end % step == 0
+    low_end, end, step = scale(low, high)
+    assert low_end <= low and end >= high
+    assert low_end % step == 0 and end % step == 0
     digits = str(step).rstrip("0")
     assert digits in ("1", "2", "5"), step
-    assert 1 <= (end - begin) // step <= 6
+    assert 1 <= (end - low_end) // step <= 6
 
 
 def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
@@ -224,10 +224,10 @@ def test_a_copy_is_independent_of_its_canvas() -> None:
 
 
 def test_a_character_has_the_dots_of_all_layers_and_the_style_of_the_topmost() -> None:
-    top, below = Canvas(3, 1), Canvas(3, 1)
+    top, lower_canvas = Canvas(3, 1), Canvas(3, 1)
     top.draw_lines([(0, 0), (0, 0)])
-    below.draw_lines([(0, 3), (3, 3)])
-    [line] = merge_layers([(top, "red"), (below, "blue")])
+    lower_canvas.draw_lines([(0, 3), (3, 3)])
+    [line] = merge_layers([(top, "red"), (lower_canvas, "blue")])
     assert line.plain == "⣁⣀ "
     assert [(span.start, span.end, span.style) for span in line.spans] == [
         (0, 1, "red"), (1, 2, "blue"),

@@ -51,9 +51,9 @@ def rows_of(help_text: str) -> list[str]:
 def flags_in_help(verb: str) -> list[str]:
     """Return the flags of a verb, without the silent ones."""
     used_names = {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
-    silent = [option for option in options_of(verb) if option not in shown_of(verb)]
+    undocumented = [option for option in options_of(verb) if option not in shown_of(verb)]
     unsaid_texts = {
-        flag for option in silent if not option.is_argument for flag in option.flags.split()
+        flag for option in undocumented if not option.is_argument for flag in option.flags.split()
     }
     assert unsaid_texts <= used_names
     return sorted(used_names - unsaid_texts)
@@ -74,7 +74,10 @@ def test_parser_flags_and_help_agree(tsc: Tsc, verb: str, language: str) -> None
     for argument in arguments:
         assert re.search(rf"\b{argument}\b", result.out.splitlines()[0])
     known_names = {
-        flag for of in PARSERS.values() for action in of._actions for flag in action.option_strings
+        flag
+        for parser in PARSERS.values()
+        for action in parser._actions
+        for flag in action.option_strings
     }
     assert set(re.findall(FLAG, result.out)) <= known_names | {"-N", "-Uz"}  # a number; of zsh
     for action in PARSERS[verb]._actions:
@@ -200,7 +203,7 @@ def test_every_text_of_help_is_shown() -> None:
 
 
 # Robots whose board `tsc firmware` writes to.
-WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AVRS]
+AVR_ROBOTS = [name for name in robots.names() if robots.load(name).board.chip in AVRS]
 
 
 @in_both
@@ -209,7 +212,7 @@ WRITTEN = [name for name in robots.names() if robots.load(name).board.chip in AV
     [
         ("robot", "--world", worlds.names()),
         ("firmware", "--chip", BOARDS),
-        ("firmware", "--robot", WRITTEN),
+        ("firmware", "--robot", AVR_ROBOTS),
     ],
 )
 def test_help_lists_exactly_the_existing_names(
@@ -222,25 +225,27 @@ def test_help_lists_exactly_the_existing_names(
 
 def test_every_verb_with_a_program_accepts_it_on_the_command_line(tsc: Tsc, tmp_path: Path) -> None:
     """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
-    takes = [verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))]
-    assert takes == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
-    for verb in takes:
+    program_verbs = [
+        verb for verb in VERBS if any(option.kind is A_PROGRAM for option in options_of(verb))
+    ]
+    assert program_verbs == ["lesson", "check", "run", "compile", "show", "fmt", "upload", "class"]
+    for verb in program_verbs:
         assert "-e" in {flag for action in PARSERS[verb]._actions for flag in action.option_strings}
         if verb not in ("upload", "class", "lesson"):
-            more = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
-            assert tsc(verb, "-e", PROGRAM, *more).code == 0
+            options = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
+            assert tsc(verb, "-e", PROGRAM, *options).code == 0
     assert "-e" in {flag for action in PARSERS["live"]._actions for flag in action.option_strings}
 
 
 @pytest.mark.parametrize("language", DOCUMENTED)
 @of_each
 def test_the_documents_contain_the_full_help(verb: str, language: str) -> None:
-    common, *sections = page(language, "a test", table).split("\n## ")
+    common_text, *sections = page(language, "a test", table).split("\n## ")
     sections = [section for part in sections for section in part.split("\n### ")]
     (section,) = (
         section for section in sections if section.startswith(f"`tsc {command_words(verb)}`\n")
     )
-    rows = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
+    rows = re.findall(r"^\| `(-.*?)` \|", common_text + "\n" + section, re.M)
     flags = [flag for row in rows for flag in re.findall(FLAG, row)]
     assert sorted(flags) == flags_in_help(verb)
 
@@ -267,10 +272,10 @@ def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
     assert keys.isascii()  # less spoils other letters there
     terminal = on_terminal(f"help upload --lang {language}")
     terminal.until(f"{keys}$")
-    assert b"tsc upload" in terminal.written and b"--seed" not in terminal.written
+    assert b"tsc upload" in terminal.output_bytes and b"--seed" not in terminal.output_bytes
     terminal.type("G")
     terminal.until("-h, --help")
-    assert b"--seed N" in terminal.written
+    assert b"--seed N" in terminal.output_bytes
     terminal.type("q")
     assert terminal.end() == 0
 
@@ -326,19 +331,19 @@ time.sleep(1000)
 
 
 @pytest.mark.parametrize(
-    ("how", "output"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
+    ("pager_mode", "output"), [("dies", ""), ("waits", "caught\r\nleft\r\n")], ids=["dies", "waits"]
 )
 def test_ctrl_c_belongs_to_the_pager_and_tsc_waits_silently(
-    tmp_path: Path, how: str, output: str
+    tmp_path: Path, pager_mode: str, output: str
 ) -> None:
     """`less` continues after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
     (tmp_path / "pager.py").write_text(PAGER)
-    words = shlex.join([sys.executable, str(tmp_path / "pager.py"), how])
+    words = shlex.join([sys.executable, str(tmp_path / "pager.py"), pager_mode])
     terminal = on_terminal("help upload --lang en", PAGER=f"exec {words}")
     terminal.until("begun")
     terminal.type("\x03")
     assert terminal.end() == 0
-    partition_after = terminal.written.decode().partition("begun\r\n")[2]
+    partition_after = terminal.output_bytes.decode().partition("begun\r\n")[2]
     assert partition_after.replace("^C", "") == output
 
 

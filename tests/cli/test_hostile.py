@@ -24,7 +24,7 @@ from tiniscript.virtual import directory
 # -- arbitrary input -----------------------------------------------------------------------------
 
 
-def hostile(many: int) -> dict[str, bytes]:
+def hostile(count: int) -> dict[str, bytes]:
     """Return unusual inputs, of at most this many parts."""
     return {
         "empty": b"",
@@ -34,36 +34,36 @@ def hostile(many: int) -> dict[str, bytes]:
         "utf-16": "SI|F(2,80)".encode("utf-16"),
         "too large": b"W(1);" * 200_001,
         "ten megabytes": b"x" * 10_000_000,
-        "parentheses": b"X = " + b"(" * many + b"1" + b")" * many,
-        "open parentheses": b"X = " + b"(" * many,
-        "functions": b"X = " + b"ABS(" * (many // 3) + b"1" + b")" * (many // 3),
-        "minus": b"X = " + b"-" * many + b"TIME",
-        "sum": b"X = 0" + b"+TIME" * many,
-        "and": b"X = TRUE" + b" AND TRUE" * (many // 2),
-        "nested": b"IF(TRUE);" * (many // 2),
-        "nested and closed": b"IF(TRUE);" * (many // 5) + b"ENDIF;" * (many // 5),
-        "defs": b"DEF A;" * (many // 2),
-        "ends": b"ENDIF;" * (many // 2),
-        "elses": b"IF(TRUE);" + b"ELSEIF(TRUE);" * (many // 3) + b"ENDIF",
-        "quotes": b'"' * (5 * many),
-        "letters": "é".encode() * (4 * many),
-        "digits": b"X = " + b"9" * (9 * many),
-        "name": b"X" * (9 * many) + b" = 1",
-        "lines": b"\n" * (9 * many),
-        "separators": b";" * (9 * many),
+        "parentheses": b"X = " + b"(" * count + b"1" + b")" * count,
+        "open parentheses": b"X = " + b"(" * count,
+        "functions": b"X = " + b"ABS(" * (count // 3) + b"1" + b")" * (count // 3),
+        "minus": b"X = " + b"-" * count + b"TIME",
+        "sum": b"X = 0" + b"+TIME" * count,
+        "and": b"X = TRUE" + b" AND TRUE" * (count // 2),
+        "nested": b"IF(TRUE);" * (count // 2),
+        "nested and closed": b"IF(TRUE);" * (count // 5) + b"ENDIF;" * (count // 5),
+        "defs": b"DEF A;" * (count // 2),
+        "ends": b"ENDIF;" * (count // 2),
+        "elses": b"IF(TRUE);" + b"ELSEIF(TRUE);" * (count // 3) + b"ENDIF",
+        "quotes": b'"' * (5 * count),
+        "letters": "é".encode() * (4 * count),
+        "digits": b"X = " + b"9" * (9 * count),
+        "name": b"X" * (9 * count) + b" = 1",
+        "lines": b"\n" * (9 * count),
+        "separators": b";" * (9 * count),
         "emoji": "🤖".encode() * 1000,
         "right to left": "\u202eF(2,80)".encode(),
-        "bars": b"SI|" * (many // 10),
-        "commas": b"F(" + b"1," * many + b"1)",
-        "long condition": b"A=TRUE;IF(A" + b" AND A" * (many * 3 // 2) + b");S;ENDIF",
-        "decided": b"A=1;C=A/1=1" + b" AND FALSE" * (many * 4 // 5) + b";SHOW(C)",
-        "not": b"A=TRUE;IF(" + b"NOT " * (2 * many) + b"A);S;ENDIF",
-        "unknown names": b";".join(b"QWERTYUIO%d=Z%d" % (k, k) for k in range(many * 2 // 5)),
-        "units": b"F(20 DEG, 60);" * (many // 10),
-        "questions": b"IF(TIME>1) " * (many // 10),
-        "calls on one line": b"beep(1 440) " * (many // 12),
-        "questions in words": b"F(5, 60) UNTIL(cerca);" * (many // 22),
-        "a call without its DEF": b"DEF;S;END_DEF\n" + b"PASO\n" * (many // 5),
+        "bars": b"SI|" * (count // 10),
+        "commas": b"F(" + b"1," * count + b"1)",
+        "long condition": b"A=TRUE;IF(A" + b" AND A" * (count * 3 // 2) + b");S;ENDIF",
+        "decided": b"A=1;C=A/1=1" + b" AND FALSE" * (count * 4 // 5) + b";SHOW(C)",
+        "not": b"A=TRUE;IF(" + b"NOT " * (2 * count) + b"A);S;ENDIF",
+        "unknown names": b";".join(b"QWERTYUIO%d=Z%d" % (k, k) for k in range(count * 2 // 5)),
+        "units": b"F(20 DEG, 60);" * (count // 10),
+        "questions": b"IF(TIME>1) " * (count // 10),
+        "calls on one line": b"beep(1 440) " * (count // 12),
+        "questions in words": b"F(5, 60) UNTIL(cerca);" * (count // 22),
+        "a call without its DEF": b"DEF;S;END_DEF\n" + b"PASO\n" * (count // 5),
         "wide header": b"IF(" + b"+".join([b"1"] * 60) + b", 2);S;ENDIF",
     }
 
@@ -74,10 +74,10 @@ def hostile(many: int) -> dict[str, bytes]:
 def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str) -> None:
     """Inputs are as large as `check` allows, and a tenth of that for the others."""
     program = tmp_path / "any.ts"
-    extra = ["--max-steps", "1000"] if verb == "run" else []
+    extra_options = ["--max-steps", "1000"] if verb == "run" else []
     program.write_bytes(hostile(100_000 if verb == "check" else 10_000)[name])
     # Texts about programs are the same for all verbs, so one verb tests the other language.
-    result = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra)
+    result = tsc(verb, program, "--lang", "en" if verb == "compile" else "es", *extra_options)
     assert result.code in (0, 1), result.err[-2000:]
     if name in ("too large", "ten megabytes", "binary", "nul", "latin-1", "utf-16"):
         assert result.code == 1
@@ -214,8 +214,8 @@ def test_a_damaged_or_unwritable_cache_does_no_harm(
     tsc("compile", program)
     path = source_map._path(unpack(image.read_bytes()).checksum)
     huge = '{"version": 1, "name": "", "lines": [], "places": [[1e400, 1, 1, 1, 9]]}'
-    wrong = ("", "{}", "[]", '{"version": 1, "places": 5}', "nonsense", '{"version": 9}')
-    for text in ("[" * 200_000, huge, *wrong):
+    damaged_texts = ("", "{}", "[]", '{"version": 1, "places": 5}', "nonsense", '{"version": 9}')
+    for text in ("[" * 200_000, huge, *damaged_texts):
         path.write_text(text)
         assert tsc("show", image).code == 0
     blocked_path = program.with_name("blocked")

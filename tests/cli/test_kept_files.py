@@ -41,7 +41,7 @@ LONG_TEXT = "x" * 5000  # a disk that is full cuts it in its middle
 LINES = 8  # lines at which a commit kills each action; --whole tries all
 
 
-class Kept(NamedTuple):
+class KeptNumbers(NamedTuple):
     """`add` keeps a number, with the earlier ones unless it `is_alone`; `all` returns them."""
 
     add: Callable[[int], object]
@@ -85,33 +85,33 @@ def found_output() -> list[int]:
 
 
 KEPT_FILES = {
-    "ports": Kept(
+    "ports": KeptNumbers(
         lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG_TEXT),
         lambda: [int(name[-1]) for name in known_ports.remembered_ports().name_by_port],
         known_ports,
     ),
-    "keys": Kept(add_key, lambda: [key.id for key in key_file().all()], keys),
-    "robots that were met": Kept(
+    "keys": KeptNumbers(add_key, lambda: [key.id for key in key_file().all()], keys),
+    "robots that were met": KeptNumbers(
         lambda number: met_robots.remember_robot(met_robots_file(), f"{number}{LONG_TEXT}", number),
         lambda: [*met_robots.read_met_robots(met_robots_file()).id_by_place.values()],
         met_robots,
     ),
-    "robots that may answer": Kept(
+    "robots that may answer": KeptNumbers(
         lambda number: met_robots.accept(met_robots_file(), number),
         lambda: met_robots.read_met_robots(met_robots_file()).accepted_ids,
         met_robots,
     ),
-    "profiles": Kept(
+    "profiles": KeptNumbers(
         lambda number: given.remember(f"/{LONG_TEXT}{number}", number),
         lambda: [number for number, _ in given._remembered_profiles()],
         given,
     ),
-    "maps": Kept(
+    "maps": KeptNumbers(
         lambda number: source_map.remember(program(number), SourceMap(LONG_TEXT, (), ())),
         found_maps,
         source_map,
     ),
-    "a program": Kept(
+    "a program": KeptNumbers(
         lambda number: outputs.write_output(str(output()), bytes((number,)) * len(LONG_TEXT)),
         found_output,
         outputs,
@@ -127,13 +127,13 @@ def _folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(variable, str(tmp_path / variable))
 
 
-def fork_child(does: Callable[[], object]) -> int:
+def fork_child(action: Callable[[], object]) -> int:
     """Return the number of a process of its own that does something and ends with 0."""
     number = os.fork()
     if number == 0:
         code = 1
         try:
-            does()
+            action()
             code = 0
         finally:
             os._exit(code)
@@ -145,7 +145,7 @@ def wait_for_child(number: int) -> int:
 
 
 def trace_until_line(
-    kept_memory: Kept, line: int, then: Callable[[], object]
+    kept_memory: KeptNumbers, line: int, action: Callable[[], object]
 ) -> Callable[[], None]:
     """Return a tracer that counts the executed lines of the writing code, and acts at one."""
     traced_files = {kept_memory.module.__file__, files.__file__}
@@ -157,13 +157,13 @@ def trace_until_line(
         if event == "line":
             lines_left[0] -= 1
             if lines_left[0] == 0:
-                then()
+                action()
         return trace
 
     return lambda: sys.settrace(trace)
 
 
-def lines_of(kept_memory: Kept, number: int) -> int:
+def lines_of(kept_memory: KeptNumbers, number: int) -> int:
     """Return the number of lines of a first execution."""
     read_end, write = os.pipe()
     count = [0]
@@ -187,7 +187,7 @@ def lines_of(kept_memory: Kept, number: int) -> int:
     return line_count
 
 
-def restore(kept_memory: Kept, tmp_path: Path) -> list[int]:
+def restore(kept_memory: KeptNumbers, tmp_path: Path) -> list[int]:
     """Restore the state with the first value stored; return the stored values."""
     for folder in tmp_path.iterdir():
         for path in sorted(folder.rglob("*"), reverse=True):
@@ -208,7 +208,7 @@ def test_a_kill_at_any_line_leaves_the_kept_data_intact(
     assert lines > 10
     lines_reached = set()
     for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = restore(kept_memory, tmp_path)
+        saved_numbers = restore(kept_memory, tmp_path)
 
         def kill_at_line(line: int = line) -> None:
             trace_until_line(kept_memory, line, lambda: os.kill(os.getpid(), signal.SIGKILL))()
@@ -216,9 +216,10 @@ def test_a_kill_at_any_line_leaves_the_kept_data_intact(
 
         assert wait_for_child(fork_child(kill_at_line)) == -signal.SIGKILL, line
         all_after = kept_memory.all()
-        assert sorted(all_after) in (before, expected_values(kept_memory, before, SECOND_NUMBER)), (
-            line
-        )
+        assert sorted(all_after) in (
+            saved_numbers,
+            expected_values(kept_memory, saved_numbers, SECOND_NUMBER),
+        ), line
         lines_reached.add(len(all_after))
         kept_memory.add(THIRD_NUMBER)
         assert sorted(kept_memory.all()) == expected_values(
@@ -227,32 +228,34 @@ def test_a_kill_at_any_line_leaves_the_kept_data_intact(
     assert lines_reached
 
 
-def expected_values(kept_memory: Kept, counts_before: list[int], number: int) -> list[int]:
+def expected_values(kept_memory: KeptNumbers, counts_before: list[int], number: int) -> list[int]:
     return [number] if kept_memory.is_alone else [*counts_before, number]
 
 
 @each_kept_file
 def test_a_disk_full_at_any_byte_leaves_the_kept_data_intact(name: str, tmp_path: Path) -> None:
     kept_memory = KEPT_FILES[name]
-    for most in (0, 1, 10, 60):
-        before = restore(kept_memory, tmp_path)
+    for free_bytes in (0, 1, 10, 60):
+        saved_numbers = restore(kept_memory, tmp_path)
 
-        def cut(most: int = most) -> None:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        def limit_size(free_bytes: int = free_bytes) -> None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (free_bytes, free_bytes))
             with suppress(BadKeys, CommandError, OSError):
                 kept_memory.add(SECOND_NUMBER)
 
-        assert wait_for_child(fork_child(cut)) == 0
-        assert kept_memory.all() == before, most
+        assert wait_for_child(fork_child(limit_size)) == 0
+        assert kept_memory.all() == saved_numbers, free_bytes
         assert not [*tmp_path.rglob(f"*{files.NEW_ENDING}")], "nothing is left of what did not fit"
         kept_memory.add(SECOND_NUMBER)
-        assert sorted(kept_memory.all()) == expected_values(kept_memory, before, SECOND_NUMBER), (
-            most
-        )
+        assert sorted(kept_memory.all()) == expected_values(
+            kept_memory, saved_numbers, SECOND_NUMBER
+        ), free_bytes
 
 
 @pytest.mark.sampled("name", keep=2)
-@pytest.mark.parametrize("name", [name for name, kept in KEPT_FILES.items() if not kept.is_alone])
+@pytest.mark.parametrize(
+    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
+)
 def test_concurrent_commands_lose_none_of_their_data(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
@@ -261,39 +264,45 @@ def test_concurrent_commands_lose_none_of_their_data(
     restore(kept_memory, tmp_path)
     lines = lines_of(kept_memory, SECOND_NUMBER)
     for line in sample_of(request.config, name, range(1, lines + 1), min(LINES, lines)):
-        before = restore(kept_memory, tmp_path)
-        arrived, holds = os.pipe(), os.pipe()
-        say = os.pipe()
+        saved_numbers = restore(kept_memory, tmp_path)
+        arrival_pipe, release_pipe = os.pipe(), os.pipe()
+        wait_pipe = os.pipe()
 
-        def pause_at_line(line: int = line, arrived: Any = arrived, holds: Any = holds) -> None:
+        def pause_at_line(
+            line: int = line, arrival_pipe: Any = arrival_pipe, release_pipe: Any = release_pipe
+        ) -> None:
             trace_until_line(
-                kept_memory, line, lambda: (os.write(arrived[1], b"1"), os.read(holds[0], 1))
+                kept_memory,
+                line,
+                lambda: (os.write(arrival_pipe[1], b"1"), os.read(release_pipe[0], 1)),
             )()
             kept_memory.add(SECOND_NUMBER)
 
-        def other(say: Any = say) -> None:
-            vars(files)["sleep"] = lambda _: os.write(say[1], b"w")
+        def run_child(wait_pipe: Any = wait_pipe) -> None:
+            vars(files)["sleep"] = lambda _: os.write(wait_pipe[1], b"w")
             kept_memory.add(THIRD_NUMBER)
-            os.write(say[1], b"e")
+            os.write(wait_pipe[1], b"e")
 
-        first = fork_child(pause_at_line)
-        assert os.read(arrived[0], 1)
-        second = fork_child(other)
-        assert os.read(say[0], 1) in (b"w", b"e")
-        os.write(holds[1], b"1")
-        assert (wait_for_child(first), wait_for_child(second)) == (0, 0), line
-        assert sorted(kept_memory.all()) == [*before, SECOND_NUMBER, THIRD_NUMBER], line
-        for end in (*arrived, *holds, *say):
+        first_child = fork_child(pause_at_line)
+        assert os.read(arrival_pipe[0], 1)
+        second_child = fork_child(run_child)
+        assert os.read(wait_pipe[0], 1) in (b"w", b"e")
+        os.write(release_pipe[1], b"1")
+        assert (wait_for_child(first_child), wait_for_child(second_child)) == (0, 0), line
+        assert sorted(kept_memory.all()) == [*saved_numbers, SECOND_NUMBER, THIRD_NUMBER], line
+        for end in (*arrival_pipe, *release_pipe, *wait_pipe):
             os.close(end)
 
 
-@pytest.mark.parametrize("name", [name for name, kept in KEPT_FILES.items() if not kept.is_alone])
+@pytest.mark.parametrize(
+    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
+)
 def test_a_suspended_writer_does_not_block_others_for_ever(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The other one keeps it without the lock, or says that it cannot, or leaves it as it was."""
     kept_memory = KEPT_FILES[name]
-    before = restore(kept_memory, tmp_path)
+    saved_numbers = restore(kept_memory, tmp_path)
     now_s = 0.0
 
     def pass_time(seconds: float) -> None:
@@ -313,8 +322,8 @@ def test_a_suspended_writer_does_not_block_others_for_ever(
             with suppress(BadKeys, OSError):
                 kept_memory.add(SECOND_NUMBER)
             assert sorted(kept_memory.all()) in (
-                before,
-                expected_values(kept_memory, before, SECOND_NUMBER),
+                saved_numbers,
+                expected_values(kept_memory, saved_numbers, SECOND_NUMBER),
             )
     kept_memory.add(THIRD_NUMBER)
     assert THIRD_NUMBER in kept_memory.all()

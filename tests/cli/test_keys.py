@@ -116,8 +116,8 @@ def test_many_claims_at_once_lose_no_key(key_file: KeyFile) -> None:
     commands = [
         [sys.executable, "-c", CLAIM_CODE, str(key_file.path), str(100 * k)] for k in range(4)
     ]
-    running = [subprocess.Popen(command) for command in commands]
-    assert [process.wait() for process in running] == [0] * 4
+    processes = [subprocess.Popen(command) for command in commands]
+    assert [process.wait() for process in processes] == [0] * 4
     robot_keys = key_file.all()
     assert sorted(key.id for key in robot_keys) == [
         100 * k + n for k in range(4) for n in range(25)
@@ -186,14 +186,14 @@ def test_a_class_list_is_exported_and_imported(
 
 def test_keys_that_do_not_fit_leave_the_existing_keys(tsc: Tsc, tmp_path: Path) -> None:
     """The keys of a stranger would remove a person's own robots."""
-    key_file, many = KeyFile(), tmp_path / "many.json"
+    key_file, large_file = KeyFile(), tmp_path / "many.json"
     key_file.add([OWNER_KEY])
-    others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
-    many.write_bytes(encode_keys(others))
+    foreign_keys = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST_KEYS)]
+    large_file.write_bytes(encode_keys(foreign_keys))
     for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
-        tsc("set", "owner", "--import", str(many), "--lang", language).gives(2, words, out="")
+        tsc("set", "owner", "--import", str(large_file), "--lang", language).gives(2, words, out="")
     assert key_file.all() == [OWNER_KEY]
-    assert key_file.add(others[1:]) == MOST_KEYS - 1
+    assert key_file.add(foreign_keys[1:]) == MOST_KEYS - 1
     assert key_file.create_pending_key(5_000, KEY_OWNER, "A") is None, (
         "no key is dropped for a new one"
     )
@@ -215,18 +215,20 @@ def test_abandoned_claims_leave_few_keys() -> None:
     key_file = KeyFile()
     for _ in range(6):
         key_file.create_pending_key(OWNER_KEY.id, OWNER_KEY.kind, "TINI")
-        last = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.kind, "TINI")
-    other = key_file.create_pending_key(7, 0, "")
-    assert last and other
-    key_file.mark_stale(last)
+        last_key = key_file.create_pending_key(OWNER_KEY.id, 1 - OWNER_KEY.kind, "TINI")
+    other_key = key_file.create_pending_key(7, 0, "")
+    assert last_key and other_key
+    key_file.mark_stale(last_key)
     robot_keys = key_file.keys_of_robot(OWNER_KEY.id)
     assert sorted(key.kind for key in robot_keys) == [0, 0, 1, 1]
-    assert robot_keys[-1] == last._replace(is_stale=True) and key_file.keys_of_robot(7) == [other]
+    assert robot_keys[-1] == last_key._replace(is_stale=True) and key_file.keys_of_robot(7) == [
+        other_key
+    ]
 
 
-@pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
+@pytest.mark.parametrize("kind", [KEY_OWNER, KEY_TEACHER])
 @pytest.mark.parametrize("status", [OK, STATUSES["NOT_OWNER"]])
-def test_giving_up_a_robot_removes_one_key(key_file: KeyFile, which: int, status: int) -> None:
+def test_giving_up_a_robot_removes_one_key(key_file: KeyFile, kind: int, status: int) -> None:
     """The other one it still has, and so has this computer; a refused one stays."""
     ring = [
         OWNER_KEY._replace(id=robot, kind=kind, key=bytes([robot % 256, kind] * 8))
@@ -235,13 +237,13 @@ def test_giving_up_a_robot_removes_one_key(key_file: KeyFile, which: int, status
     ]
     key_file.add(ring)
     robot = DeviceInfo("TINI", OWNER_KEY.id, (2, 1), 0, 389, cast(HelloReply, None))
-    exchange = disown(key_file, robot, which)
+    exchange = disown(key_file, robot, kind)
     next(exchange)
     with pytest.raises(StopIteration):
         exchange.send(Reply(status, 0, EmptyReply()))
     key_ids = {(key.id, key.kind) for key in key_file.all()}
     given_up_keys = {(key.id, key.kind) for key in ring} - key_ids
-    assert given_up_keys == ({(OWNER_KEY.id, which)} if status == OK else set())
+    assert given_up_keys == ({(OWNER_KEY.id, kind)} if status == OK else set())
 
 
 ROBOT_ADDRESS = "tcp://ana"

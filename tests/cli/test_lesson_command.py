@@ -17,7 +17,7 @@ from tests.support.texts import LANGUAGES
 from tiniscript.cli import lesson_check
 from tiniscript.lessons import catalogue
 
-RIGHT, SHORT, WRONG = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
+RIGHT_ANSWER, SHORT_ANSWER, WRONG_ANSWER = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
 
 
 @pytest.fixture
@@ -25,9 +25,14 @@ def folder(tmp_path: Path) -> Path:
     """A folder with the programs of a class."""
     pupils = tmp_path / "class"
     pupils.mkdir()
-    for name, text in {"ana": RIGHT, "beto": SHORT, "carla": WRONG, "=dani": "SI|F(5, 80)"}.items():
+    for name, text in {
+        "ana": RIGHT_ANSWER,
+        "beto": SHORT_ANSWER,
+        "carla": WRONG_ANSWER,
+        "=dani": "SI|F(5, 80)",
+    }.items():
         (pupils / f"{name}.ts").write_text(text, encoding="utf-8")
-    (pupils / "eva.ts.txt").write_text(RIGHT, encoding="utf-8")
+    (pupils / "eva.ts.txt").write_text(RIGHT_ANSWER, encoding="utf-8")
     (pupils / "fox.ts").write_bytes(b"\xff\xfe\x00")
     (pupils / "notes.pdf").write_bytes(b"%PDF")
     return pupils
@@ -47,7 +52,7 @@ def test_a_program_is_checked(tsc: Tsc, folder: Path) -> None:
     tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es").gives(
         1, out="- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más."
     )
-    tsc("lesson", "check", "1", "-e", WRONG).gives(1, "TS017", out="fix the mistakes first")
+    tsc("lesson", "check", "1", "-e", WRONG_ANSWER).gives(1, "TS017", out="fix the mistakes first")
 
 
 def test_the_world_of_a_failed_check_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
@@ -103,13 +108,13 @@ def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
         "failed", "passed", "failed", "mistakes", "passed", "mistakes"]  # fmt: skip
     assert rows[2]["findings"][0]["kind"] == "ends_in"
     assert rows[2]["seed"] == 1
-    (one,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT, "--json").out)
-    assert one == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
+    (result,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT_ANSWER, "--json").out)
+    assert result == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
 
 
 def test_lesson_draws_the_path_and_prints_a_page_for_a_terminal(tsc: Tsc, tmp_path: Path) -> None:
     picture = tmp_path / "way.png"
-    assert tsc("lesson", "check", "1", "-e", SHORT, "--plot", picture).code == 1
+    assert tsc("lesson", "check", "1", "-e", SHORT_ANSWER, "--plot", picture).code == 1
     assert picture.read_bytes().startswith(b"\x89PNG")
     result = tsc("lesson", "show", "4", "--teacher").gives(
         0, out=("    SI|LOOP(4)\n", "Answers\n-------")
@@ -174,13 +179,13 @@ def test_a_custom_lesson_is_checked(tsc: Tsc, tmp_path: Path) -> None:
     shipped_path = catalogue.folders()[0]
     for name in ("lesson.toml", "world.toml"):
         (tmp_path / name).write_bytes((shipped_path / name).read_bytes())
-    assert tsc("lesson", "check", tmp_path, "-e", RIGHT).code == 0
+    assert tsc("lesson", "check", tmp_path, "-e", RIGHT_ANSWER).code == 0
     tsc("lesson", "show", tmp_path).gives(2, "pupil.en.md is missing")
     text = (tmp_path / "world.toml").read_text(encoding="utf-8")
     (tmp_path / "world.toml").write_text(text.replace("x_cm = 30", "x_cm = 2"), encoding="utf-8")
-    tsc("lesson", "check", tmp_path, "-e", RIGHT).gives(2, "the robot does not fit")
+    tsc("lesson", "check", tmp_path, "-e", RIGHT_ANSWER).gives(2, "the robot does not fit")
     (tmp_path / "lesson.toml").write_text("worlds = 0", encoding="utf-8")
-    tsc("lesson", "check", tmp_path, "-e", RIGHT).gives(2, "robot is missing")
+    tsc("lesson", "check", tmp_path, "-e", RIGHT_ANSWER).gives(2, "robot is missing")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -189,21 +194,21 @@ def test_worksheets_are_complete_pages(
     tsc: Tsc, number: int, language: str, tmp_path: Path
 ) -> None:
     """A sheet is one file: it downloads nothing, closes every element, and includes the drawing."""
-    for more in ([], ["--teacher"]):
+    for options in ([], ["--teacher"]):
         path = tmp_path / "sheet.html"
-        tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more).gives(0)
+        tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *options).gives(0)
         page = path.read_text(encoding="utf-8")
         assert not re.search(r"(src|href|url|@import|<script|<link)\b", page)
         assert page.count("<svg") == 1
         assert "**" not in page and "```" not in page and "`" not in page
         assert "size: A4" in page
-        opened: list[str] = []
+        open_tags: list[str] = []
         for is_end, tag, is_whole in re.findall(r"<(/?)(\w+)[^>]*?(/?)>", page):
             if is_end:
-                assert opened and opened.pop() == tag, tag
+                assert open_tags and open_tags.pop() == tag, tag
             elif tag != "meta" and not is_whole:
-                opened.append(tag)
-        assert opened == []
+                open_tags.append(tag)
+        assert open_tags == []
 
 
 def test_a_word_of_another_robot_suggests_no_option_that_lesson_lacks(tsc: Tsc) -> None:
@@ -219,20 +224,21 @@ def test_a_class_folder_may_contain_anything(tsc: Tsc, tmp_path: Path) -> None:
     """Broken, empty, huge, binary and wrongly stored files have a row each, and none is lost."""
     pupils = tmp_path / "class"
     pupils.mkdir()
-    odd = {
+    odd_files = {
         "empty.ts": (b"", "not yet"), "blank.ts": (b"  \n\n", "not yet"),
         "binary.ts": (bytes(range(256)) * 10, "mistakes"),
         "huge.ts": (b"F(1,80);" * 200_000, "mistakes"),
         "latin1.ts": ("SI|F(2.5, 80) // año".encode("latin-1"), "mistakes"),
-        "utf16.ts": (RIGHT.encode("utf-16"), "mistakes"),
-        "notepad.txt": (b"\xef\xbb\xbf" + RIGHT.encode() + b"\r\n", "done"),
+        "utf16.ts": (RIGHT_ANSWER.encode("utf-16"), "mistakes"),
+        "notepad.txt": (b"\xef\xbb\xbf" + RIGHT_ANSWER.encode() + b"\r\n", "done"),
         "ping.ts": (b"PING|CHECK_CONNECTION", "not yet"),
-        "José Ñañez.ts": (RIGHT.encode(), "done"), "red\x1b[31m.ts": (RIGHT.encode(), "done"),
+        "José Ñañez.ts": (RIGHT_ANSWER.encode(), "done"),
+        "red\x1b[31m.ts": (RIGHT_ANSWER.encode(), "done"),
     }  # fmt: skip
-    for name, (data, _) in odd.items():
+    for name, (data, _) in odd_files.items():
         (pupils / name).write_bytes(data)
-    for number in range(30 - len(odd)):
-        (pupils / f"pupil {number}.ts").write_text(RIGHT, encoding="utf-8")
+    for number in range(30 - len(odd_files)):
+        (pupils / f"pupil {number}.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     (pupils / "folder.ts").mkdir()
     rows = tmp_path / "marks.csv"
     result = tsc("lesson", "check", "1", pupils, "--csv", rows).gives(1)
@@ -243,7 +249,7 @@ def test_a_class_folder_may_contain_anything(tsc: Tsc, tmp_path: Path) -> None:
     verdict_by_name = {
         row[0]: row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())
     }
-    for name, (_, verdict) in odd.items():
+    for name, (_, verdict) in odd_files.items():
         assert verdict_by_name[name.replace("\x1b", "?")] == verdicts[verdict], name
 
 
@@ -251,20 +257,20 @@ def test_notes_are_ignored_and_folders_of_pupils_are_checked(tsc: Tsc, tmp_path:
     pupils = tmp_path / "año 3 ñandú"
     for name in ("Ana", "Beto", "x.ts"):
         (pupils / name).mkdir(parents=True)
-        (pupils / name / "square.ts").write_text(RIGHT, encoding="utf-8")
+        (pupils / name / "square.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     notes = {
         "README.txt": "Para entregar: los de tercero.\nGracias (a todos).\n",
         "Léeme primero.TXT": "Ana 15\nBeto 12\n", "notas (2).txt": "Todo bien",
     }  # fmt: skip
     files = {
-        "notepad.txt": RIGHT, "wrong.txt": "ADELANTE (2)", "notasio.txt": "hola",
-        "readme ana.txt": RIGHT, "notes.txt": "SI\rforward 5", "notas.txt": "F 2 80;R 1 60",
+        "notepad.txt": RIGHT_ANSWER, "wrong.txt": "ADELANTE (2)", "notasio.txt": "hola",
+        "readme ana.txt": RIGHT_ANSWER, "notes.txt": "SI\rforward 5", "notas.txt": "F 2 80;R 1 60",
         "empty.txt": "", "note.ts": "Ana 15", "also.ts.txt": "Ana 15", "lista.txt": "Ana 15",
     }  # fmt: skip
     for name, content in {**files, **notes}.items():
         (pupils / name).write_text(content, encoding="utf-8")
     (pupils / ".hidden").mkdir()
-    (pupils / ".hidden" / "old.ts").write_text(RIGHT, encoding="utf-8")
+    (pupils / ".hidden" / "old.ts").write_text(RIGHT_ANSWER, encoding="utf-8")
     rows = tmp_path / "marks.csv"
     result = tsc("lesson", "check", "1", pupils, "--json", "--csv", rows).gives(1)
     verdict_by_file = {
@@ -297,14 +303,16 @@ def test_notes_are_ignored_and_folders_of_pupils_are_checked(tsc: Tsc, tmp_path:
 
 
 def test_a_wrong_program_of_a_pupil_has_a_row(tsc: Tsc, tmp_path: Path) -> None:
-    for wrong in (
+    for wrong_program in (
         "SI\nF 2,80\nR 1,60", "F 2 80;R 1 60", "adelante 5 segundos\nderecha 1",
         "forward 5\nright 90", "if distancia < 10 parar", "Nombre: Ana\nSI;F 2,80;R 1,60",
     ):  # fmt: skip
-        (tmp_path / "ana.txt").write_text(wrong, encoding="utf-8")
+        (tmp_path / "ana.txt").write_text(wrong_program, encoding="utf-8")
         result = tsc("lesson", "check", "1", tmp_path, "--json")
         (row,) = json.loads(result.out)
-        assert (result.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes"), wrong
+        assert (result.code, row["file"], row["verdict"]) == (1, "ana.txt", "mistakes"), (
+            wrong_program
+        )
 
 
 def test_a_note_of_empty_lines_is_looked_at_once(tsc: Tsc, tmp_path: Path) -> None:

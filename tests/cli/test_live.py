@@ -132,7 +132,7 @@ def test_a_block_may_span_lines(pty_robot: PtyRobot) -> None:
     run_live("IF(TRUE)\nSHOW(5)\n").gives(1, "ENDIF", out="")
 
 
-@pytest.mark.parametrize(("text", "ends"), [
+@pytest.mark.parametrize(("text", "missing_text"), [
     ("F(1, 80)", ""),
     ("LOOP(2)", "END_LOOP"),
     ("si|if(TRUE); F(1, 50)\nELSE", "ENDIF"),
@@ -143,8 +143,8 @@ def test_a_block_may_span_lines(pty_robot: PtyRobot) -> None:
     ("END_LOOP; LOOP(2)", ""),
     ("// LOOP(2)", ""),
 ])  # fmt: skip
-def test_missing_block_ends_are_found(text: str, ends: str) -> None:
-    assert missing_ends(text) == ends
+def test_missing_block_ends_are_found(text: str, missing_text: str) -> None:
+    assert missing_ends(text) == missing_text
 
 
 def test_a_line_is_sent_with_its_dependencies_only() -> None:

@@ -24,7 +24,7 @@ from tiniscript.link import known_ports, ports
 from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 
-TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
+TINIBOT_KIT, LINER_KIT = robots.load("tinibot").kit, robots.load("liner").kit
 SHORT_PROGRAM = "SI|F(0.3, 80);SHOW(DISTANCE)"
 ROBOT_COUNT = 30
 SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT = 3, 7, 11  # robots with which something is wrong
@@ -33,7 +33,7 @@ NOISY_ROBOTS = (5, 13, 17, 21)
 
 @pytest.fixture
 def class_() -> Iterator[RobotFleet]:
-    with known_fleet([TINIBOT] * 4) as robot_fleet:
+    with known_fleet([TINIBOT_KIT] * 4) as robot_fleet:
         yield robot_fleet
 
 
@@ -44,7 +44,9 @@ def results(result: CommandResult) -> dict[str, dict[str, object]]:
 
 @pytest.mark.sampled(of="slow commands")
 def test_thirty_robots_get_a_program_despite_three_faulty_ones() -> None:
-    kits = [LINER if number == OTHER_KIT_ROBOT else TINIBOT for number in range(ROBOT_COUNT)]
+    kits = [
+        LINER_KIT if number == OTHER_KIT_ROBOT else TINIBOT_KIT for number in range(ROBOT_COUNT)
+    ]
     with RobotFleet(kits) as room:
         pupils = room.pupils
         pupils[SILENT_ROBOT].deaf_after = 0
@@ -55,23 +57,31 @@ def test_thirty_robots_get_a_program_despite_three_faulty_ones() -> None:
             known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
         result = run_in_process("upload", "-e", SHORT_PROGRAM, "--all", "--json").gives(3)
         rows = results(result)
-        bad = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
+        bad_ports = {pupils[number].port for number in (SILENT_ROBOT, OTHER_KIT_ROBOT, DEAF_ROBOT)}
         present_rows = {port: row for port, row in rows.items() if not row["is_absent"]}
         assert set(present_rows) == {pupil.port for pupil in pupils}
-        assert {port for port, row in present_rows.items() if not row["is_done"]} == bad
+        assert {port for port, row in present_rows.items() if not row["is_done"]} == bad_ports
         assert "nothing responds" in str(rows[pupils[SILENT_ROBOT].port]["said"])
         assert "--robot liner" in str(rows[pupils[OTHER_KIT_ROBOT].port]["said"])
         for pupil in pupils:
-            if pupil.port not in bad:
+            if pupil.port not in bad_ports:
                 assert pupil.actions == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
         events = [json.loads(line) for line in result.out.splitlines()]
         receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
         assert len(receipts) == len(set(receipts)) >= ROBOT_COUNT - 3
         showing_ports = [row["port"] for row in events if row["event"] == "SHOW"]
-        noisy = {pupils[number].port for number in NOISY_ROBOTS}  # the damaged event may be theirs
-        assert set(present_rows) - bad - noisy <= set(showing_ports) <= set(present_rows) - bad
+        noisy_ports = {
+            pupils[number].port for number in NOISY_ROBOTS
+        }  # the damaged event may be theirs
+        assert (
+            set(present_rows) - bad_ports - noisy_ports
+            <= set(showing_ports)
+            <= set(present_rows) - bad_ports
+        )
         # the silent one is over last
-        assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
+        assert events[-1]["port"] in bad_ports | {
+            port for port, row in rows.items() if row["is_absent"]
+        }
 
         run_in_process("upload", "-e", FOREVER, "--all", "--detach").gives(3)
         # The program uses no device of a kit.
@@ -86,19 +96,19 @@ def test_thirty_robots_get_a_program_despite_three_faulty_ones() -> None:
 @pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
 def test_a_babbling_device_delays_no_robot(class_: RobotFleet, babble: bytes) -> None:
     """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
-    *others, last = class_.pupils
-    last.babble = babble
+    *other_pupils, last_robot = class_.pupils
+    last_robot.babble = babble
     result = run_in_process("upload", "-e", FOREVER, "--all", "--detach", "--json")
     rows = results(result)
     assert result.code == 3 and len(result.out) < 10_000
     assert {port for port, row in rows.items() if row["is_done"]} == {
-        pupil.port for pupil in others
+        pupil.port for pupil in other_pupils
     }
-    assert all(pupil.moves for pupil in others)
+    assert all(pupil.moves for pupil in other_pupils)
     result = run_in_process("stop", "--all", "--json")
     rows = results(result)
     assert {port for port, row in rows.items() if row["is_done"]} >= {
-        pupil.port for pupil in others
+        pupil.port for pupil in other_pupils
     }
     assert not any(pupil.moves for pupil in class_.pupils)
 
@@ -107,18 +117,18 @@ def test_flashing_one_board_delays_no_stop_of_others(
     class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Another program has its port, as avrdude does: its stop is refused, the others are not."""
-    *others, last = class_.pupils
+    *other_pupils, last_robot = class_.pupils
     assert run_in_process("upload", "-e", FOREVER, "--all", "--detach").code == 0
-    holder = ports.open_port(last.port, 115_200)
-    with monkeypatch.context() as short, closing(holder):
-        short.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
+    holder = ports.open_port(last_robot.port, 115_200)
+    with monkeypatch.context() as patch, closing(holder):
+        patch.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
         for options in (("--all",), tuple(f"--port={pupil.port}" for pupil in class_.pupils)):
             result = run_in_process("stop", *options, "--json")
             rows = results(result)
-            assert result.code == 3 and not rows[last.port]["is_done"]
-            assert all(rows[pupil.port]["is_done"] for pupil in others)
-            assert not any(pupil.moves for pupil in others)
-            run_in_process("start", "--port", others[0].port, "--detach")
+            assert result.code == 3 and not rows[last_robot.port]["is_done"]
+            assert all(rows[pupil.port]["is_done"] for pupil in other_pupils)
+            assert not any(pupil.moves for pupil in other_pupils)
+            run_in_process("start", "--port", other_pupils[0].port, "--detach")
     run_in_process("stop", "--all").gives(0)
     assert not any(pupil.moves for pupil in class_.pupils)
 
@@ -152,7 +162,7 @@ def test_all_robots_stop_however_the_driving_command_ends(class_: RobotFleet) ->
 def test_each_robot_has_a_row(class_: RobotFleet) -> None:
     """Each named port must have a robot."""
     assert run_in_process("upload", "-e", "F(2 80)", "--all").code == 1
-    assert not any(pupil.heard for pupil in class_.pupils)
+    assert not any(pupil.received for pupil in class_.pupils)
     assert (
         run_in_process("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
     )
@@ -188,19 +198,19 @@ def test_the_doctor_examines_each_of_many_robots_like_a_single_one(class_: Robot
     with weak._lock:
         weak.robot.supply(True)
     run_in_process("upload", "-e", "SB|S", "--port", weak.port)
-    heard_count_by_port = {pupil.port: len(pupil.heard) for pupil in class_.pupils}
+    heard_count_by_port = {pupil.port: len(pupil.received) for pupil in class_.pupils}
     robots_by_port = results(run_in_process("doctor", "--all", "--count", "3", "--json").gives(3))
-    alone = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
-    wrong = [finding for finding in alone["findings"] if finding["is_wrong"]]
-    assert [finding["cause"] for finding in wrong] == ["low_supply"]
+    single_report = json.loads(run_in_process("doctor", "--port", weak.port, "--json").gives(3).out)
+    wrong_findings = [finding for finding in single_report["findings"] if finding["is_wrong"]]
+    assert [finding["cause"] for finding in wrong_findings] == ["low_supply"]
     findings = robots_by_port[weak.port]["findings"]
     assert isinstance(findings, list)
-    assert [finding for finding in findings if finding["is_wrong"]] == wrong
-    assert wrong[0]["said"] in str(robots_by_port[weak.port]["said"])
+    assert [finding for finding in findings if finding["is_wrong"]] == wrong_findings
+    assert wrong_findings[0]["said"] in str(robots_by_port[weak.port]["said"])
     for pupil in class_.pupils:
         assert robots_by_port[pupil.port]["is_done"] == (pupil is not weak)
         assert robots_by_port[pupil.port]["round_trips"] == 3
-        assert pings(pupil.heard[heard_count_by_port[pupil.port] :]) == 3 + 20 * (pupil is weak)
+        assert pings(pupil.received[heard_count_by_port[pupil.port] :]) == 3 + 20 * (pupil is weak)
 
 
 def pings(heard_bytes: bytes) -> int:
@@ -209,10 +219,13 @@ def pings(heard_bytes: bytes) -> int:
 
 
 def test_undo_has_a_row_for_each_robot_and_continues_after_failures(class_: RobotFleet) -> None:
-    first, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
-    assert run_in_process("upload", "-e", first, "--all").code == 0
+    first_program, second_program = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
+    assert run_in_process("upload", "-e", first_program, "--all").code == 0
     names = [pupil.port for pupil in class_.pupils]
-    assert run_in_process("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
+    assert (
+        run_in_process("upload", "-e", second_program, "--port", names[1], "--port", names[2]).code
+        == 0
+    )
     result = run_in_process("start", "--previous", "--all", "--json").gives(3)
     rows = results(result)
     assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
@@ -231,8 +244,8 @@ def test_a_port_that_never_had_a_robot_is_not_a_failure(
 ) -> None:
     import pty
 
-    ends = [end for _ in range(2) for end in pty.openpty()]
-    port, known_text = os.ttyname(ends[1]), os.ttyname(ends[3])
+    pty_ends = [end for _ in range(2) for end in pty.openpty()]
+    port, known_text = os.ttyname(pty_ends[1]), os.ttyname(pty_ends[3])
     monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(port, "")])
     monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_TIMEOUT_S", 1.0)
     result = run_in_process("doctor", "--identify", "--all").gives(0)
@@ -244,7 +257,7 @@ def test_a_port_that_never_had_a_robot_is_not_a_failure(
     run_in_process("doctor", "--identify", "--all").gives(
         3, "Done: 4 of 5.", out=f"R9 ({known_text}): nothing responds"
     )
-    for end in ends:
+    for end in pty_ends:
         os.close(end)
 
 
@@ -255,7 +268,7 @@ def test_robots_of_a_fleet_are_remembered_but_none_as_the_last_used(
     robot that this person has driven before."""
     monkeypatch.setattr(ports, "list_ports", list)
     known_ports.remember("own", "MINE")
-    with RobotFleet([TINIBOT] * 2) as fleet:
+    with RobotFleet([TINIBOT_KIT] * 2) as fleet:
         places = [pupil.port for pupil in fleet.pupils]
         words = [word for place in places for word in ("--port", place)]
         run_in_process("upload", "-e", "SI|W(0.1)", "--no-save", *words).gives(0)
@@ -315,8 +328,8 @@ def test_ctrl_c_stops_all_whatever_is_printed_meanwhile(
     when: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     options = Namespace(verb="upload", json=False, detach=False)
-    at = [Target(port, "", True, True) for port in "AB"]
-    fleet = Fleet(at, options, robots.load("tinibot"), "en")
+    targets = [Target(port, "", True, True) for port in "AB"]
+    fleet = Fleet(targets, options, robots.load("tinibot"), "en")
     fleet.members[0].result = Result(True, "fine")
     pressed_keys: list[str] = []
 

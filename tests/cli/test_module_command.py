@@ -99,8 +99,11 @@ def test_a_silent_port_is_reported(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) ->
     with PtyEnd(end) as pty_end:
         result = tsc("doctor", "--module", "--port", pty_end.port, "--name", "ANA")
     assert result.code == 3
-    silent = sentences_of(sure_finding("module_silent"), "en")
-    assert f"WRONG  module: {silent.finding}\n" in result.out and silent.advice in result.out
+    silent_sentences = sentences_of(sure_finding("module_silent"), "en")
+    assert (
+        f"WRONG  module: {silent_sentences.finding}\n" in result.out
+        and silent_sentences.advice in result.out
+    )
     assert result.err == ""
 
 
@@ -146,8 +149,8 @@ def test_an_unopenable_port_has_the_same_message_as_in_the_doctor(
     port = port_of(module) if is_locked else "/dev/not-there"
     with closing(open_port(port, 9600)) if is_locked else nullcontext():
         (finding,) = json.loads(tsc("doctor", "--port", port, "--json").out)["findings"]
-        out = tsc("doctor", "--module", "--port", port, "--name", "ANA").gives(3, "").out
-    assert out.splitlines() == [
+        module_output = tsc("doctor", "--module", "--port", port, "--name", "ANA").gives(3, "").out
+    assert module_output.splitlines() == [
         f"WRONG  module: {finding['said']}",
         f"       Seen: {finding['seen']}",
         f"       Try:  {finding['next']}",
@@ -157,10 +160,12 @@ def test_an_unopenable_port_has_the_same_message_as_in_the_doctor(
 
 def test_each_outcome_of_a_step_is_a_cause_of_the_doctors_table() -> None:
     """No other cause concerns a setting."""
-    outcome_by_cause = {cause: how for how, causes in MESSAGES_BY_CAUSE.items() for cause in causes}
+    outcome_by_cause = {
+        cause: outcome for outcome, causes in MESSAGES_BY_CAUSE.items() for cause in causes
+    }
     assert {*outcome_by_cause} == {cause for cause, row in CAUSES.items() if row.part == "setting"}
     assert {
-        cause for cause, how in outcome_by_cause.items() if how not in set_up.GOOD_OUTCOMES
+        cause for cause, outcome in outcome_by_cause.items() if outcome not in set_up.GOOD_OUTCOMES
     } == {cause for cause in outcome_by_cause if CAUSES[cause].verdict == WRONG}
 
 
@@ -186,7 +191,7 @@ def test_a_pulled_cable_and_ctrl_c_report_the_possible_speeds(
     end.is_on = is_on
     with PtyEnd(end) as pty_end:
         command = Command("doctor", "--module", "--port", pty_end.port, "--baud", "115200")
-        until(lambda: (b"AT+BAUD4" if is_on else b"AT") in pty_end.heard, "it is asked")
+        until(lambda: (b"AT+BAUD4" if is_on else b"AT") in pty_end.received, "it is asked")
         if is_pulled:
             pty_end.pull()
         else:

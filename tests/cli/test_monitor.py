@@ -60,7 +60,7 @@ def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     terminal.until(r"(?s)── SHOW 1 .*Done\.|Done\..*── SHOW 1 ")
     terminal.interrupt()
     assert terminal.end() == 0
-    output = terminal.written.decode()
+    output = terminal.output_bytes.decode()
     assert "SHOW -2.5" in output and "SHOW TRUE" in output
     assert any("⠀" < letter <= "⣿" for letter in output)
     assert output.endswith("\n")
@@ -95,28 +95,28 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     capsys: pytest.CaptureFixture[str], seed: int
 ) -> None:
     """This holds for any number of losses and unanswered searches; each robot is found once."""
-    chance = Random(seed)
+    rng = Random(seed)
     searches: list[Any] = []
-    is_there, losses, waits = True, 0, 0
+    is_reachable, losses, wait_count = True, 0, 0
 
     class Over(Exception):
         pass
 
     def event() -> tuple[int, Event] | None:
-        nonlocal is_there, losses, waits
-        waits += 1
-        if waits > 400:
+        nonlocal is_reachable, losses, wait_count
+        wait_count += 1
+        if wait_count > 400:
             raise Over
-        if is_there:
-            if losses < 5 and chance.random() < 0.1:
-                is_there, losses = False, losses + 1
-                return waits, LostEvent()
+        if is_reachable:
+            if losses < 5 and rng.random() < 0.1:
+                is_reachable, losses = False, losses + 1
+                return wait_count, LostEvent()
             return None
         questions = [search for search in searches if search.outcome is None]
         assert len(questions) == 1, "nobody looks for it"
-        if chance.random() < 0.3:
-            is_there = chance.random() < 0.3
-            questions[0].outcome = SimpleNamespace(status=OK if is_there else LOST)
+        if rng.random() < 0.3:
+            is_reachable = rng.random() < 0.3
+            questions[0].outcome = SimpleNamespace(status=OK if is_reachable else LOST)
         return None
 
     def search() -> Any:

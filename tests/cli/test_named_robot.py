@@ -16,11 +16,11 @@ from tiniscript import ProgramError
 from tiniscript.cli.texts.options import OPTIONS
 from tiniscript.cli.texts.verbs import VERBS
 
-LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
-UNKNOWN = "// robot: linar\nSI|SHOW(LINE_L)\n"
-WINS = "--robot {} takes precedence: {} names the robot {}.\n"
+LINER_PROGRAM = "// robot: liner\nSI|SHOW(LINE_L)\n"
+UNKNOWN_ROBOT_PROGRAM = "// robot: linar\nSI|SHOW(LINE_L)\n"
+PRECEDENCE_MESSAGE = "--robot {} takes precedence: {} names the robot {}.\n"
 # Each verb with a program, and its other arguments.
-CALLS = {
+OPTIONS_BY_VERB = {
     "check": [], "run": [], "compile": [], "show": [], "fmt": ["--check"],
     # A class sends programs as upload does.
     "upload": ["--virtual"], "lesson": ["check", "1"], "class": None,
@@ -30,19 +30,19 @@ CALLS = {
 @pytest.fixture
 def liner(tmp_path: Path) -> Path:
     path = tmp_path / "line.ts"
-    path.write_text(LINER, encoding="utf-8")
+    path.write_text(LINER_PROGRAM, encoding="utf-8")
     return path
 
 
 def test_every_verb_is_covered() -> None:
-    takes = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
+    robot_verbs = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
              and option.kind is not None and option.kind.name == "program"}  # fmt: skip
-    assert takes == set(CALLS)
+    assert robot_verbs == set(OPTIONS_BY_VERB)
 
 
-@each_row("verb", [verb for verb, words in CALLS.items() if words is not None])
+@each_row("verb", [verb for verb, words in OPTIONS_BY_VERB.items() if words is not None])
 def test_every_verb_takes_the_robot_that_a_program_names(verb: str, tsc: Tsc, liner: Path) -> None:
-    words = CALLS[verb] or []
+    words = OPTIONS_BY_VERB[verb] or []
     result = tsc(verb, *words, liner)
     assert "Error: " not in result.err and "[TS" not in result.err, result
     assert result.code == (1 if verb == "lesson" else 0)  # the program does not solve lesson 1
@@ -50,9 +50,9 @@ def test_every_verb_takes_the_robot_that_a_program_names(verb: str, tsc: Tsc, li
 
 @each_row("verb", ["check", "run", "compile", "show", "upload"])
 def test_an_option_takes_precedence_with_one_notice(verb: str, tsc: Tsc, liner: Path) -> None:
-    words = CALLS[verb] or []
+    words = OPTIONS_BY_VERB[verb] or []
     result = tsc(verb, *words, liner, "--robot", "tinibot").gives(1)
-    assert result.err.startswith(WINS.format("tinibot", liner, "liner"))
+    assert result.err.startswith(PRECEDENCE_MESSAGE.format("tinibot", liner, "liner"))
     assert result.err.count(" takes precedence: ") == 1
     wanted_text = "Try:  Write --robot liner in the command, not tinibot"
     assert wanted_text in result.err  # the comment is there already
@@ -62,19 +62,19 @@ def test_an_option_takes_precedence_with_one_notice(verb: str, tsc: Tsc, liner: 
 
 def test_a_custom_robot_may_be_named(tsc: Tsc, tmp_path: Path) -> None:
     shipped_path = ROOT / "compiler" / "tiniscript" / "robots" / "liner.toml"
-    own = tmp_path / "mine.toml"
-    own.write_text(shipped_path.read_text(encoding="utf-8"), encoding="utf-8")
+    robot_file = tmp_path / "mine.toml"
+    robot_file.write_text(shipped_path.read_text(encoding="utf-8"), encoding="utf-8")
     path = tmp_path / "line.ts"
-    path.write_text(LINER.replace("liner", "mine"), encoding="utf-8")
+    path.write_text(LINER_PROGRAM.replace("liner", "mine"), encoding="utf-8")
     assert "No robot is called mine" in tsc("check", path).gives(1).err
-    assert tsc("check", path, "--robot", own).gives(0).err == ""
+    assert tsc("check", path, "--robot", robot_file).gives(0).err == ""
 
 
 @each_row("verb", ["check", "run", "compile", "show", "upload", "lesson"])
 def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Path) -> None:
     path = tmp_path / "x.ts"
-    path.write_text(UNKNOWN, encoding="utf-8")
-    result = tsc(verb, *(CALLS[verb] or []), path).gives(1)
+    path.write_text(UNKNOWN_ROBOT_PROGRAM, encoding="utf-8")
+    result = tsc(verb, *(OPTIONS_BY_VERB[verb] or []), path).gives(1)
     assert result.err.count("[TS") == 1  # the words of this robot are unknown
     assert "line 1:  // robot: linar\n                   ^^^^^\n" in result.err
     assert "No robot is called linar; TiniScript includes: tinibot, elegoo4" in result.err
@@ -92,20 +92,20 @@ def test_an_unknown_robot_is_reported_in_all_languages(
 
 
 def test_an_editor_gets_the_place_of_the_name(tsc: Tsc) -> None:
-    (finding,) = json.loads(tsc("check", "-e", UNKNOWN, "--json").gives(1).out)
+    (finding,) = json.loads(tsc("check", "-e", UNKNOWN_ROBOT_PROGRAM, "--json").gives(1).out)
     assert (finding["code"], finding["line"], finding["column"], finding["end_column"]) == (
         "TS138", 1, 11, 16,
     )  # fmt: skip
 
 
 def test_each_program_of_a_folder_has_its_own_robot(tsc: Tsc, tmp_path: Path) -> None:
-    (tmp_path / "a.ts").write_text(LINER, encoding="utf-8")
+    (tmp_path / "a.ts").write_text(LINER_PROGRAM, encoding="utf-8")
     (tmp_path / "b.ts").write_text("SI|SHOW(DISTANCE)\n", encoding="utf-8")
     (tmp_path / "c.ts").write_text("// robot: grabber\nSI|F(2 60);LED(TRUE)\n", encoding="utf-8")
     rows = json.loads(tsc("check", tmp_path, "--json").gives(1).out)
     assert [row["mistakes"] for row in rows] == [0, 0, 1]
     result = tsc("check", tmp_path, "--robot", "liner").gives(1)
-    assert result.err == WINS.format("liner", tmp_path / "c.ts", "grabber")
+    assert result.err == PRECEDENCE_MESSAGE.format("liner", tmp_path / "c.ts", "grabber")
     tsc("check", tmp_path, "--fix").gives(0)
     assert "F(2, 60)" in (tmp_path / "c.ts").read_text(encoding="utf-8")
 
@@ -127,11 +127,15 @@ def test_a_named_robot_takes_precedence_over_the_connected_one(liner: Path) -> N
 
 
 def test_the_library_accepts_a_named_robot() -> None:
-    assert tiniscript.compile(LINER).robot == "liner"
-    assert tiniscript.check(LINER) == []
-    assert [event.name for event in tiniscript.run(LINER).events] == ["READ", "SHOW", "DONE"]
-    assert [message.code for message in tiniscript.check(LINER, "tinibot")] == ["TS119"]
-    assert [message.code for message in tiniscript.check(UNKNOWN)] == ["TS138"]
-    assert tiniscript.check(UNKNOWN, "liner") == []
+    assert tiniscript.compile(LINER_PROGRAM).robot == "liner"
+    assert tiniscript.check(LINER_PROGRAM) == []
+    assert [event.name for event in tiniscript.run(LINER_PROGRAM).events] == [
+        "READ",
+        "SHOW",
+        "DONE",
+    ]
+    assert [message.code for message in tiniscript.check(LINER_PROGRAM, "tinibot")] == ["TS119"]
+    assert [message.code for message in tiniscript.check(UNKNOWN_ROBOT_PROGRAM)] == ["TS138"]
+    assert tiniscript.check(UNKNOWN_ROBOT_PROGRAM, "liner") == []
     with pytest.raises(ProgramError, match="No robot is called linar"):
-        tiniscript.compile(UNKNOWN)
+        tiniscript.compile(UNKNOWN_ROBOT_PROGRAM)

@@ -29,7 +29,7 @@ from tiniscript.cli.verbless import is_help
 
 OLD_VERBS = "|".join(FORMER_COMMANDS)
 # `tsc name`, as a command or in a list of words; the changelog may mention former names.
-OLD_USE = re.compile(
+OLD_VERB_PATTERN = re.compile(
     rf"(?:\btsc|-m tiniscript)(?:['\", ]+--lang['\", ]+\w\w)?['\", ]+(?:{OLD_VERBS})\b(?!=)"
 )
 FILES_WITH_OLD_VERBS = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
@@ -58,7 +58,9 @@ def test_no_file_names_an_old_verb() -> None:
     for path in files():
         count += 1
         text = path.read_text(encoding="utf-8", errors="replace")
-        old_uses += [f"{path.relative_to(ROOT)}: {match[0]}" for match in OLD_USE.finditer(text)]
+        old_uses += [
+            f"{path.relative_to(ROOT)}: {match[0]}" for match in OLD_VERB_PATTERN.finditer(text)
+        ]
     assert count > 1000 and not old_uses, "\n".join(old_uses)
 
 
@@ -66,9 +68,9 @@ def test_the_pattern_finds_former_commands() -> None:
     for name in FORMER_COMMANDS:
         for words in ("Try:  tsc {}", "`tsc {} x`", '["tsc", "{}"]', "python -m tiniscript {}",
                       '"-m tiniscript", "--lang", "es", "{}"'):  # fmt: skip
-            assert OLD_USE.search(words.format(name)), words
+            assert OLD_VERB_PATTERN.search(words.format(name)), words
     for command in COMMANDS:
-        assert not OLD_USE.search(f"tsc {command_words(command)}"), command
+        assert not OLD_VERB_PATTERN.search(f"tsc {command_words(command)}"), command
 
 
 # -- commands in texts ----------------------------------------------------------------------------
@@ -139,11 +141,11 @@ def test_robot_sources_suggest_only_existing_commands() -> None:
 
 
 def test_a_wrong_command_in_a_robots_message_is_found() -> None:
-    for wrong in (
+    for wrong_command in (
         "Owned: tsc set txet on, or button 2 s.",
         "Take other pins with tsc firmwear -b.",
     ):
-        (command,) = commands_in(wrong, is_document=False, is_robots=True)
+        (command,) = commands_in(wrong_command, is_document=False, is_robots=True)
         assert find_unknown_word(command) in ("txet", "firmwear")
 
 
@@ -166,13 +168,13 @@ def test_documents_suggest_only_existing_commands() -> None:
 def test_an_old_name_suggests_the_new_one(tsc: Tsc, name: str) -> None:
     assert name not in VERBS
     for language in LANGUAGES:
-        for more in ([], ["--nonsense"], ["--lang", language]):
-            result = tsc("--lang", language, name, *more).gives(2, out="")
+        for options in ([], ["--nonsense"], ["--lang", language]):
+            result = tsc("--lang", language, name, *options).gives(2, out="")
             assert result.err.count("\n") == 1 and name in result.err
-            now = result.err.rstrip("\n").rpartition("  tsc ")[2]
-            verb, *words = shlex.split(now)
-            assert command_of(verb, words)[0] == FORMER_COMMANDS[name], now
-            assert "nonsense" not in now and find_unknown_word(now) is None
+            new_command = result.err.rstrip("\n").rpartition("  tsc ")[2]
+            verb, *words = shlex.split(new_command)
+            assert command_of(verb, words)[0] == FORMER_COMMANDS[name], new_command
+            assert "nonsense" not in new_command and find_unknown_word(new_command) is None
 
 
 @each_row("old, now", [
@@ -225,8 +227,8 @@ def test_the_word_after_set_may_come_after_options(tsc: Tsc) -> None:
     for words in (["--port", "trim", "name"], ["--lang", "en", "name"], ["name", "--port", "x"]):
         tsc("set", *words).gives(2, "which name?", out="")
     tsc("set", "--lang", "en").gives(2, "owner, name, trim, text or wifi")
-    for more in ([], ["3", "--balance"]):  # the first mistake is reported first
-        tsc("set", "trmi", *more, "--lang", "en").gives(2, "Did you mean trim?")
+    for options in ([], ["3", "--balance"]):  # the first mistake is reported first
+        tsc("set", "trmi", *options, "--lang", "en").gives(2, "Did you mean trim?")
 
 
 def test_each_command_is_chosen_by_its_typed_name() -> None:

@@ -26,13 +26,13 @@ PARSERS = parsers()
 
 # each output of each verb, against everything that this verb reads, and against its other outputs
 PAIRS = [
-    (verb, output, other)
+    (verb, output, other_output)
     for verb, parser in PARSERS.items()
     for output in values_of(parser)
-    for other in values_of(parser)
+    for other_output in values_of(parser)
     if output in paths.WRITE_OPTIONS
-    and other != output
-    and {other} & {*paths.READ_OPTIONS, *paths.WRITE_OPTIONS}
+    and other_output != output
+    and {other_output} & {*paths.READ_OPTIONS, *paths.WRITE_OPTIONS}
     if not (verb == "monitor" and output == "plot")
 ]
 # Arguments of a verb before its files.
@@ -102,28 +102,30 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
     assert {places[name] for name in known_options} == {*paths.WRITE_OPTIONS, "program", "programs"}
 
 
-@pytest.mark.sampled("how")
-@pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])
-@pytest.mark.parametrize(("verb", "output", "other"), PAIRS)
+@pytest.mark.sampled("spelling")
+@pytest.mark.parametrize("spelling", ["same", "dot", "link", "hard"])
+@pytest.mark.parametrize(("verb", "output", "other_output"), PAIRS)
 def test_no_output_overwrites_another_file_of_its_command(
-    tsc: Tsc, working_folder: Path, verb: str, output: str, other: str,
-    how: str,
+    tsc: Tsc, working_folder: Path, verb: str, output: str, other_output: str,
+    spelling: str,
 ) -> None:  # fmt: skip
-    text = TEXTS.get(other, "what was there")
+    text = TEXTS.get(other_output, "what was there")
     precious = working_folder / "precious.ts"
     precious.write_text(text, encoding="utf-8")
-    path = {"same": precious, "dot": Path("./precious.ts")}.get(how, working_folder / "other name")
-    if how == "link":
+    path = {"same": precious, "dot": Path("./precious.ts")}.get(
+        spelling, working_folder / "other name"
+    )
+    if spelling == "link":
         path.symlink_to(precious)
-    elif how == "hard":
+    elif spelling == "hard":
         os.link(precious, path)
-    before = sorted(os.listdir(working_folder))  # noqa: PTH208
+    files_before = sorted(os.listdir(working_folder))  # noqa: PTH208
     for language in ("en", "es"):
-        tsc(*arguments(verb, {other: precious, output: path}), "--lang", language).gives(
+        tsc(*arguments(verb, {other_output: precious, output: path}), "--lang", language).gives(
             2, str(path), precious.name, paths.WRITE_OPTIONS[output][0]
         )
     assert precious.read_text(encoding="utf-8") == text
-    assert sorted(os.listdir(working_folder)) == before  # noqa: PTH208 - nothing was made either
+    assert sorted(os.listdir(working_folder)) == files_before  # noqa: PTH208 - nothing was made either
 
 
 def test_the_default_image_path_is_also_an_output(tsc: Tsc, tmp_path: Path) -> None:
@@ -142,9 +144,9 @@ def test_two_missing_outputs_are_told_apart(tsc: Tsc, working_folder: Path) -> N
     (working_folder / "folder").mkdir()
     (working_folder / "link").symlink_to("x")
     (working_folder / "loop").symlink_to("loop")
-    for second in ("x", "./x", "X", "folder/../x", "link"):
-        result = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second)
-        assert result.code == 2 and "the same file" in result.err, second
+    for second_path in ("x", "./x", "X", "folder/../x", "link"):
+        result = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second_path)
+        assert result.code == 2 and "the same file" in result.err, second_path
         assert not (working_folder / "x").exists()
     assert tsc("compile", "-e", PROGRAM, "-o", "link", "--map", "x").code == 2
     assert tsc("compile", "-e", PROGRAM, "-o", "loop").code == 2

@@ -35,9 +35,9 @@ def test_the_robot_has_been_asked_before_hold_is_printed(
         if file is None:
             return
         assert "2 s" in words
-        began_ms = pty_robot.robot_ms
+        start_ms = pty_robot.robot_ms
         pty_robot.hold()
-        pty_robot.until(lambda: pty_robot.robot_ms > began_ms + 2400, "the press is over")
+        pty_robot.until(lambda: pty_robot.robot_ms > start_ms + 2400, "the press is over")
 
     monkeypatch.setattr(set_owner, "print", press_slowly, raising=False)
     assert main(["set", "owner", "--port", pty_robot.port]) == 0
@@ -108,11 +108,13 @@ def test_giving_up_a_robot_frees_it(pty_robot: PtyRobot) -> None:
 
 def test_a_live_line_fits_a_sealed_frame(pty_robot: PtyRobot) -> None:
     """Variables without room to be shown are forgotten; a longer line gets a message about it."""
-    most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with the event about X
-    result = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
+    longest_line = (
+        "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"
+    )  # 38 bytes, and 46 with the event about X
+    result = on(pty_robot, "live", "-", data=f"{longest_line}\nSHOW(X)\n".encode())
     assert result.code == 0 and result.out.count("X 1\n") == 1
     assert claim_with_button(pty_robot).code == 0
-    on(pty_robot, "live", "-", data=most.encode()).gives(0, "are lost", out="")
+    on(pty_robot, "live", "-", data=longest_line.encode()).gives(0, "are lost", out="")
     on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8).gives(1, "room for 42")
     result = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
     assert "42" in result.err

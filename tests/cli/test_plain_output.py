@@ -62,7 +62,7 @@ def assert_plain(*texts: str) -> None:
 
 
 @pytest.fixture(autouse=True)
-def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def in_own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
 
@@ -72,20 +72,22 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
     tsc: Tsc, verb: str, dest: str, pytestconfig: pytest.Config
 ) -> None:
     option = values_of(PARSERS[verb])[dest]
-    ends = END_ARGUMENTS.get(verb, [])
-    if dest in ("port", "ports", "listen") and ends:
-        ends = ends[:-2]
+    end_arguments = END_ARGUMENTS.get(verb, [])
+    if dest in ("port", "ports", "listen") and end_arguments:
+        end_arguments = end_arguments[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
-        ends = [ending for ending in ends if ending not in ("X", "-e", PROGRAM, "F(1, 80)")]
+        end_arguments = [
+            ending for ending in end_arguments if ending not in ("X", "-e", PROGRAM, "F(1, 80)")
+        ]
     for language in sample_of(pytestconfig, f"{verb} {dest}", LANGUAGES):
-        for evil in (
+        for unsafe_text in (
             HOSTILE_TEXT,
             f"DISTANCE={HOSTILE_TEXT}",
             f"{HOSTILE_TEXT}.toml",
             f"/{HOSTILE_TEXT}/x",
         ):
-            words = [option, evil] if option else [evil]
-            result = tsc(*words_of(verb), *words, *ends, "--lang", language)
+            words = [option, unsafe_text] if option else [unsafe_text]
+            result = tsc(*words_of(verb), *words, *end_arguments, "--lang", language)
             assert_plain(result.out, result.err)
 
 
@@ -128,8 +130,8 @@ def test_no_string_of_a_profile_reaches_the_terminal_raw(
         words.append("evil.toml")
         words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
         for language in sample_of(pytestconfig, f"{verb} {number}", LANGUAGES):
-            ends = END_ARGUMENTS["robot"] if verb == "robot" else []
-            result = tsc(*words, *ends, "--lang", language)
+            end_arguments = END_ARGUMENTS["robot"] if verb == "robot" else []
+            result = tsc(*words, *end_arguments, "--lang", language)
             assert result.code != 2 or "evil.toml" in result.err
             assert_plain(result.out, result.err)
 
@@ -185,8 +187,8 @@ def test_a_sentence_leaves_the_lines_of_other_sentences() -> None:
 
 
 def test_printable_characters_are_kept() -> None:
-    for good in ("", "Tini", "año ñandú", "机器人", "🤖", "a b", "-e 'SI|F(2, 80)'"):
-        assert printable(good) == good
+    for printable_text in ("", "Tini", "año ñandú", "机器人", "🤖", "a b", "-e 'SI|F(2, 80)'"):
+        assert printable(printable_text) == printable_text
     assert printable("abc", 2) == "ab…"
     assert printable("a\x1b[31m") == "a?[31m"
 
@@ -194,8 +196,8 @@ def test_printable_characters_are_kept() -> None:
 def test_a_single_byte_takes_the_singular() -> None:
     for language, expected in (("en", "1 byte of code"), ("es", "1 byte de código")):
         values = {"checksum": "0", "name": " (1 bytes.ts)", "saved": "x"}
-        one = text("info_program", language).format(code=1, **values)
-        assert expected in one and "(1 bytes.ts)" in one
+        one_byte_text = text("info_program", language).format(code=1, **values)
+        assert expected in one_byte_text and "(1 bytes.ts)" in one_byte_text
         assert expected not in text("info_program", language).format(code=11, **values)
 
 
@@ -289,5 +291,5 @@ def test_no_cell_of_a_row_is_a_formula(text: str, separator: str) -> None:
 
 
 def test_numbers_and_words_are_kept() -> None:
-    for plain in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
-        assert escape_formula(plain) == plain
+    for plain_text in ("F(1, -2) = 3", "F(2, -X)", "M(-X, +Y)", "a-b", "1 + 1", "x@y", "hello"):
+        assert escape_formula(plain_text) == plain_text

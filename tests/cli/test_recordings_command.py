@@ -59,9 +59,12 @@ def test_a_run_on_the_virtual_robot_is_recorded_and_played_again(tsc: Tsc, tmp_p
         recordings.encode_row(show._replace(event="SHOW 100")),
     )
     file.write_text(file.read_text().replace(*old_and_new_row))
-    other = tsc("run", file, "--lang", "es").gives(1)
-    assert "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual" in other.err
-    assert f"hizo {show.event[5:]} a los 1.0 s" in other.err
+    other_result = tsc("run", file, "--lang", "es").gives(1)
+    assert (
+        "Línea 2: la grabación tiene 100 a los 1.0 s, y esta vez el robot virtual"
+        in other_result.err
+    )
+    assert f"hizo {show.event[5:]} a los 1.0 s" in other_result.err
 
 
 def test_a_run_is_as_long_as_it_may_be(tsc: Tsc, tmp_path: Path) -> None:
@@ -107,7 +110,7 @@ def test_a_real_run_is_recorded_and_compared(tsc: Tsc, tmp_path: Path) -> None:
     assert "el virtual, 5 a los 0.2 s" in result.err
 
 
-READS = """LOOP(6)
+SENSOR_PROGRAM = """LOOP(6)
   F(0.2, 60)
   X = DISTANCE * 2
   SHOW(X)
@@ -121,7 +124,7 @@ def test_a_real_run_is_recorded_with_its_readings_and_replayed_in_another_world(
     tmp_path: Path,
 ) -> None:
     program, file = tmp_path / "p.ts", tmp_path / "run.tsr"
-    program.write_text(READS)
+    program.write_text(SENSOR_PROGRAM)
     result = run_in_process(
         "upload", program, "--virtual", "--world", "obstacles", "--record", file
     )
@@ -289,8 +292,10 @@ def test_unrecordable_runs_are_refused_with_a_reason(
 ) -> None:
     assert tsc("compile", "-e", TEXT, "-o", "p.bin").code == 0
     shipped_path = Path(recordings.__file__).parents[1].joinpath("robots/tinibot.toml")
-    own = shipped_path.read_text(encoding="utf-8").replace('name = "tinibot"', 'name = "own"')
-    Path("own.toml").write_text(own, encoding="utf-8")
+    robot_text = shipped_path.read_text(encoding="utf-8").replace(
+        'name = "tinibot"', 'name = "own"'
+    )
+    Path("own.toml").write_text(robot_text, encoding="utf-8")
     Path("letter").write_bytes(b"a letter")
     Path("r").write_bytes(real_recording((5, "SHOW 5")))
     tsc(*words).gives(2, message, out="")
@@ -298,10 +303,10 @@ def test_unrecordable_runs_are_refused_with_a_reason(
 
 
 def record(
-    file: Path, *events: tuple[str, str], began_s: float | None = None, end: str = ""
+    file: Path, *events: tuple[str, str], start_s: float | None = None, end: str = ""
 ) -> tuple[Row, ...]:
     """Record these events of a robot; return the content of the file."""
-    recorder = Recorder(str(file), HEAD, began_s=began_s)
+    recorder = Recorder(str(file), HEAD, began_s=start_s)
     for event in events:
         recorder.add_event(7, *event)
     if end:
@@ -314,33 +319,33 @@ def test_a_recording_has_an_end_and_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file, show = tmp_path / "run.tsr", ("SHOW", "1")
-    for ends, wanted_texts in (
+    for end_options, wanted_texts in (
         ((), ["SHOW 1", "STOPPED"]),
         ((("MISSED", "3"), ("SHOW", "2"), ("DONE", "")), ["SHOW 1", "MISSED"]),
         ((("TEXT", "hello"), ("STOPPED", "BUTTON"), ("DONE", "")), ["SHOW 1", "STOPPED"]),
     ):
-        events = record(file, show, *ends, began_s=monotonic())
+        events = record(file, show, *end_options, start_s=monotonic())
         assert [event.event for event in events] == wanted_texts
     with monkeypatch.context() as patch:
         patch.setattr(recordings, "MOST_ROW_BYTES", 30)
         events = record(file, *(("SHOW", str(k)) for k in range(9)), end="LOST")
     assert [event.event for event in events] == ["SHOW 0", "SHOW 1"]
     assert events[0] == Row(0, "SHOW 0")  # the value shown when the recording began
-    began_s = monotonic()
+    start_s = monotonic()
     monkeypatch.setattr(recorder, "monotonic", lambda: 1e9)
-    events = record(file, show, began_s=began_s)
+    events = record(file, show, start_s=start_s)
     assert events == ()  # longer than may be
     assert record(file) == (Row(0, "STOPPED"),)
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_messages_after_the_end_of_a_run_are_not_recorded(tmp_path: Path, seed: int) -> None:
-    chance, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
+    rng, file, kit = Random(seed), tmp_path / "run.tsr", robots.load("tinibot").kit
     tested_recorder = Recorder(str(file), HEAD, monotonic(), kit=kit)
     for k in range(12):
-        name = chance.choice(["SHOW", "READING", "READING", "TEXT", *ENDING_EVENTS])
+        name = rng.choice(["SHOW", "READING", "READING", "TEXT", *ENDING_EVENTS])
         if name == "READING":
-            tested_recorder.add_reading(ReadingEvent(7, chance.randrange(3), 1000 * k, 0))
+            tested_recorder.add_reading(ReadingEvent(7, rng.randrange(3), 1000 * k, 0))
         else:
             tested_recorder.add_event(7, name, "OVERFLOW" if name == "FAULT" else str(k))
     tested_recorder.close()
@@ -355,7 +360,7 @@ def test_a_recording_ends_when_the_run_does(
     """A robot that hangs after its first value and is stopped by hand has not done the same."""
     file, clock = tmp_path / "run.tsr", iter((10.2, 70.0))
     monkeypatch.setattr(recorder, "monotonic", lambda: next(clock))
-    events = record(file, ("SHOW", "5"), began_s=10.0, end=event)
+    events = record(file, ("SHOW", "5"), start_s=10.0, end=event)
     assert events == (Row(200, "SHOW 5"), Row(60_000, wanted_text))
     compared_divergence = play(prepare(decode(file.read_bytes()))).divergence
     assert compared_divergence is not None and compared_divergence.outcome == (

@@ -26,9 +26,9 @@ from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.remote import NOTHING_PRESSED, RemoteState, remote_state_of
 from tiniscript.link.requests import OK, Reply
 
-UP, LEFT = "\x1b[A", "\x1b[D"
+UP_KEY, LEFT_KEY = "\x1b[A", "\x1b[D"
 KEYS = (
-    (UP, "UP"), ("\x1b[B", "DOWN"), ("\x1b[C", "RIGHT"), (LEFT, "LEFT"), ("\x1bOA", "UP"),
+    (UP_KEY, "UP"), ("\x1b[B", "DOWN"), ("\x1b[C", "RIGHT"), (LEFT_KEY, "LEFT"), ("\x1bOA", "UP"),
     ("\x1bOD", "LEFT"), ("\x1b[1;2A", "UP"), ("a", "A"), ("A", "A"), ("b", "B"), ("B", "B"),
 )  # fmt: skip
 
@@ -42,30 +42,30 @@ def test_a_first_press_holds_for_long_and_a_repeat_briefly(typed_text: str, name
     for k in range(20):  # a terminal repeats it after 0.66 s, 25 times a second
         assert keys.keys_at(20.66 + k / 25 - 0.01) == (held_state if k else NOTHING_PRESSED)
         keys.press_typed(typed_text, 20.66 + k / 25)
-    last = 20.66 + 19 / 25
-    assert keys.keys_at(last + REPEAT_HOLD_S - 0.01) == held_state
-    assert keys.keys_at(last + REPEAT_HOLD_S) == NOTHING_PRESSED
+    last_s = 20.66 + 19 / 25
+    assert keys.keys_at(last_s + REPEAT_HOLD_S - 0.01) == held_state
+    assert keys.keys_at(last_s + REPEAT_HOLD_S) == NOTHING_PRESSED
 
 
 def test_a_held_key_is_held_without_a_gap_from_the_first_press_on() -> None:
     for delay_s in (0.25, 0.5, 0.66):
         keys = HeldKeys()
-        keys.press_typed(UP, 0.0)
+        keys.press_typed(UP_KEY, 0.0)
         now_s = 0.0
         while now_s < 2.0:
             if now_s >= delay_s:
-                keys.press_typed(UP, now_s)
+                keys.press_typed(UP_KEY, now_s)
             for _ in range(4):
                 assert keys.keys_at(now_s) == remote_state_of(["UP"]), (delay_s, now_s)
                 now_s += 0.01
 
 
-@pytest.mark.parametrize("cut", [1, 2])
-def test_a_key_that_comes_in_two_pieces(cut: int) -> None:
+@pytest.mark.parametrize("split", [1, 2])
+def test_a_key_that_comes_in_two_pieces(split: int) -> None:
     keys = HeldKeys()
-    keys.press_typed("a" + UP[:cut], 0.0)
+    keys.press_typed("a" + UP_KEY[:split], 0.0)
     assert keys.keys_at(0.1) == remote_state_of(["A"])
-    keys.press_typed(UP[cut:] + LEFT, 0.1)
+    keys.press_typed(UP_KEY[split:] + LEFT_KEY, 0.1)
     assert keys.keys_at(0.2) == remote_state_of(["A", "UP", "LEFT"])
 
 
@@ -81,52 +81,53 @@ def test_anything_but_a_remote_control_key_holds_nothing(typed_text: str) -> Non
     assert keys.keys_at(0.2) == remote_state_of(["B"])
 
 
-@pytest.mark.parametrize("typed_text", ["q", "Q", "\x04", UP + "q", "aaaq"])
+@pytest.mark.parametrize("typed_text", ["q", "Q", "\x04", UP_KEY + "q", "aaaq"])
 def test_quit_keys_leave(typed_text: str) -> None:
     assert HeldKeys().press_typed(typed_text, 0.0)
 
 
-OTHERS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
+OTHER_KEYS = ("\x1b", "x", "\x1b[3~", "\x1bOP", "\n", "7", "é", "q", "\x04")
 
 
 @pytest.mark.parametrize("seed", range(50))
 def test_keys_in_pieces_count_like_whole_keys(seed: int) -> None:
     """Keys may be split anywhere, after any input: no part of a key is left for the next."""
-    chance = random.Random(seed)
-    whole, cut = HeldKeys(), HeldKeys()
+    rng = random.Random(seed)
+    whole_keys, split_keys = HeldKeys(), HeldKeys()
     for k in range(20):
         typed_text, now_s = (
-            chance.choice([*(typed_text for typed_text, _ in KEYS), *OTHERS]),
+            rng.choice([*(typed_text for typed_text, _ in KEYS), *OTHER_KEYS]),
             2.0 * k,
         )
-        at = chance.randrange(len(typed_text) + 1)
-        leaves = [
-            cut.press_typed(piece, now_s) for piece in (typed_text[:at], "", typed_text[at:], "")
+        offset = rng.randrange(len(typed_text) + 1)
+        leave_flags = [
+            split_keys.press_typed(piece, now_s)
+            for piece in (typed_text[:offset], "", typed_text[offset:], "")
         ]
-        assert any(leaves) == whole.press_typed(typed_text, now_s), (k, typed_text)
-        assert cut.keys_at(now_s) == whole.keys_at(now_s), (k, typed_text)
+        assert any(leave_flags) == whole_keys.press_typed(typed_text, now_s), (k, typed_text)
+        assert split_keys.keys_at(now_s) == whole_keys.keys_at(now_s), (k, typed_text)
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_keys_typed_earlier_are_no_longer_held(seed: int) -> None:
-    chance, used, fresh, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
+    rng, used_keys, unused_keys, now_s = random.Random(seed), HeldKeys(), HeldKeys(), 0.0
     for _ in range(20):
-        used.press_typed(chance.choice(KEYS)[0], now_s)
-        now_s += chance.random()
+        used_keys.press_typed(rng.choice(KEYS)[0], now_s)
+        now_s += rng.random()
     now_s += FIRST_HOLD_S
     for _ in range(20):
-        typed_text = chance.choice(KEYS)[0]
-        used.press_typed(typed_text, now_s)
-        fresh.press_typed(typed_text, now_s)
-        for _ in range(chance.randrange(9)):
-            assert used.keys_at(now_s) == fresh.keys_at(now_s)
+        typed_text = rng.choice(KEYS)[0]
+        used_keys.press_typed(typed_text, now_s)
+        unused_keys.press_typed(typed_text, now_s)
+        for _ in range(rng.randrange(9)):
+            assert used_keys.keys_at(now_s) == unused_keys.keys_at(now_s)
             now_s += 0.1
 
 
 # -- a terminal and a robot ------------------------------------------------------------------------
 
 
-class Refused(Exception):
+class KeysRefused(Exception):
     """The robot accepts no keys."""
 
 
@@ -134,7 +135,7 @@ class Table:
     """A terminal, the connection to a robot, and a clock."""
 
     def __init__(self, features: int = REMOTE) -> None:
-        self.now_s, self.typed, self.is_entered = 0.0, "", False
+        self.now_s, self.typed_keys, self.is_entered = 0.0, "", False
         self.device_info = SimpleNamespace(values=SimpleNamespace(features=features))
         self.words: list[tuple[float, RemoteState]] = []
         self.status: int | None = None  # of the answers
@@ -146,11 +147,13 @@ class Table:
         self.is_entered = False
 
     def read_keys(self) -> str:
-        typed, self.typed = self.typed, ""
-        return typed
+        typed_keys, self.typed_keys = self.typed_keys, ""
+        return typed_keys
 
-    def begin_request(self, make: Callable[[Any], PendingRequest[Any]]) -> PendingRequest[Any]:
-        return make(self)
+    def begin_request(
+        self, make_request: Callable[[Any], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
+        return make_request(self)
 
     def press(self, *state: int) -> PendingRequest[Any]:
         self.words.append((self.now_s, RemoteState(*state)))
@@ -159,7 +162,7 @@ class Table:
         return request
 
     def error_for_reply(self, reply: Reply[Any]) -> Exception:
-        return Refused(reply.status)
+        return KeysRefused(reply.status)
 
 
 def remote_at(table: Table, monkeypatch: pytest.MonkeyPatch) -> TerminalRemote:
@@ -173,23 +176,23 @@ def test_held_keys_are_sent_at_once_and_repeatedly(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It hears nothing while nothing is held."""
-    chance, table, held_keys = random.Random(seed), Table(), HeldKeys()
+    rng, table, held_keys = random.Random(seed), Table(), HeldKeys()
     with remote_at(table, monkeypatch) as remote:
         for _ in range(1500):
-            table.typed = chance.choice(KEYS)[0] if chance.random() < 0.05 else ""
-            held_keys.press_typed(table.typed, table.now_s)
-            table.status = chance.choice((OK, CANCELLED, LOST, None))
+            table.typed_keys = rng.choice(KEYS)[0] if rng.random() < 0.05 else ""
+            held_keys.press_typed(table.typed_keys, table.now_s)
+            table.status = rng.choice((OK, CANCELLED, LOST, None))
             remote.poll()
-            held = held_keys.keys_at(table.now_s)
+            held_state = held_keys.keys_at(table.now_s)
             said_s, said = table.words[-1] if table.words else (0.0, NOTHING_PRESSED)
-            assert said == held
-            assert held == NOTHING_PRESSED or table.now_s - said_s < SEND_INTERVAL_S
+            assert said == held_state
+            assert held_state == NOTHING_PRESSED or table.now_s - said_s < SEND_INTERVAL_S
             table.now_s += POLL_S
         assert table.is_entered
     assert not table.is_entered
-    for (before_s, before), (after_s, after) in pairwise(table.words):
-        is_due = after_s - before_s > SEND_INTERVAL_S - POLL_S and after != NOTHING_PRESSED
-        assert before != after or is_due
+    for (before_s, earlier_word), (after_s, later_word) in pairwise(table.words):
+        is_due = after_s - before_s > SEND_INTERVAL_S - POLL_S and later_word != NOTHING_PRESSED
+        assert earlier_word != later_word or is_due
 
 
 @pytest.mark.parametrize("name", ["NOT_OWNER", "NO_REMOTE", "LATCHED"])
@@ -197,15 +200,15 @@ def test_a_robot_that_accepts_no_keys_is_an_error(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     table = Table()
-    with remote_at(table, monkeypatch) as remote, pytest.raises(Refused):
-        table.status, table.typed = STATUSES[name], "a"
+    with remote_at(table, monkeypatch) as remote, pytest.raises(KeysRefused):
+        table.status, table.typed_keys = STATUSES[name], "a"
         remote.poll()
         remote.poll()
     assert not table.is_entered
-    older = Table(features=0)
-    with pytest.raises(Refused), remote_at(older, monkeypatch):
+    older_table = Table(features=0)
+    with pytest.raises(KeysRefused), remote_at(older_table, monkeypatch):
         pass
-    assert not older.is_entered and not older.words
+    assert not older_table.is_entered and not older_table.words
 
 
 def test_q_interrupts_like_ctrl_c_but_is_distinguishable(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -213,7 +216,7 @@ def test_q_interrupts_like_ctrl_c_but_is_distinguishable(monkeypatch: pytest.Mon
     with remote_at(table, monkeypatch) as remote:
         remote.poll()
         assert not remote.has_quit
-        table.typed = "aq"
+        table.typed_keys = "aq"
         with pytest.raises(KeyboardInterrupt):
             remote.poll()
         assert remote.has_quit and not table.words

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, Tsc, run_in_process
+from tests.support.command import LONG_PROGRAM, Tsc, run_in_process
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.simulated_port import simulate
 from tiniscript import compile_text, robots
@@ -38,7 +38,7 @@ def test_a_port_in_use_by_another_program_is_reported(
     monkeypatch.setattr(opening, "STOP_BUSY_TIMEOUT_S", 0.5)
     with serial.Serial(pty_robot.port, exclusive=True):
         on(pty_robot, "stop").gives(3, "another program holds", "did not get through")
-    assert pty_robot.heard == b""
+    assert pty_robot.received == b""
 
 
 def test_a_robot_stops_however_its_command_ends(pty_robot: PtyRobot) -> None:
@@ -66,13 +66,13 @@ def test_power_lost_in_the_middle_leaves_the_old_program(hasty: None, tmp_path: 
     with PtyRobot(KIT, bytes_per_ms=2) as pty_robot:
         assert on(pty_robot, "upload", "-e", "SB|F(0.1, 40)").code == 0
         pty_robot.off_after = 250
-        result = run_in_process("upload", "-e", LONG, "--port", pty_robot.port)
+        result = run_in_process("upload", "-e", LONG_PROGRAM, "--port", pty_robot.port)
         assert result.code == 3
         assert "lost the connection to the robot" in result.err
         pty_robot.switch_on()
         assert on(pty_robot, "show", "-o", tmp_path / "new.bin").code == 0
-    old = compile_text("SB|F(0.1, 40)", KIT).image
-    assert (tmp_path / "new.bin").read_bytes() == old
+    old_image = compile_text("SB|F(0.1, 40)", KIT).image
+    assert (tmp_path / "new.bin").read_bytes() == old_image
 
 
 # -- presence of a robot --------------------------------------------------------------------------
@@ -135,7 +135,7 @@ def test_ports_queries_robots_only_on_request(tsc: Tsc, pty_robot: PtyRobot, has
     rows = json.loads(tsc("doctor", "--ports", "--json").out)
     row = next(row for row in rows if row["port"] == pty_robot.port)
     assert (row["remembered"], row["is_last_used"]) == ("TINI", True)
-    assert pty_robot.heard == b""
+    assert pty_robot.received == b""
     assert "robot tinibot" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
     pty_robot.switch_off()
     assert "nothing responds" in tsc("doctor", "--ports", "--ask", "--port", pty_robot.port).out
@@ -162,8 +162,8 @@ def test_a_person_without_a_port_is_asked_for_a_port(
 def test_silence_other_devices_and_other_versions_are_reported(
     tsc: Tsc, pty_robot: PtyRobot, hasty: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with monkeypatch.context() as newer:
-        newer.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
+    with monkeypatch.context() as patch:
+        patch.setattr("tiniscript.link.handshake.MAJOR", MAJOR + 1)
         tsc("doctor", "--identify", "--port", pty_robot.port).gives(
             3, f"uses version {MAJOR} of the link"
         )

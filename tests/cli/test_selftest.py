@@ -84,12 +84,14 @@ def test_every_board_has_its_sensors_tested(name: str) -> None:
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
         middle = [sensor.is_yes_no or (sensor.low + sensor.high) // 2 for sensor in kit.sensors]
-        robot.ask(lambda its: its.sense(*map(int, middle)))
+        robot.ask(lambda host: host.sense(*map(int, middle)))
         code, parts = find_with_selftest(robot)
         # an ESP32's robot has the words of the paper's
         kits = {name: robots.load(name).kit for name in robots.names()}
-        same = [{"robot": value} for value, its in kits.items() if its[:2] == kit[:2]]
-        assert parts["kit"]["values"] in same and {"robot": name} in same
+        equal_kits = [
+            {"robot": value} for value, robot_kit in kits.items() if robot_kit[:2] == kit[:2]
+        ]
+        assert parts["kit"]["values"] in equal_kits and {"robot": name} in equal_kits
         assert len([part for part in parts if part.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
 
@@ -123,28 +125,28 @@ def test_the_self_test_agrees_with_the_doctor(pty_robot: PtyRobot) -> None:
     findings = json.loads(on(pty_robot, "doctor", "--robot", "liner", "--json").out)["findings"]
     _, parts = find_with_selftest(pty_robot, "--robot", "liner")
     assert parts["store"]["cause"] == "unsaved"
-    ours = {finding["cause"]: finding for finding in parts.values()}
+    finding_by_cause = {finding["cause"]: finding for finding in parts.values()}
     assert {finding["cause"] for finding in findings} >= {"low_supply", "wrong_kit", "lossy"}
     for finding in findings:
         if finding["is_wrong"]:
-            its = ours[finding["cause"]]
-            assert (its["verdict"], its["next"]) == ("wrong", finding["next"])
-            assert its["said"] == finding["said"]
+            own_finding = finding_by_cause[finding["cause"]]
+            assert (own_finding["verdict"], own_finding["next"]) == ("wrong", finding["next"])
+            assert own_finding["said"] == finding["said"]
 
 
 def test_the_self_test_finds_faults(pty_robot: PtyRobot) -> None:
     """A sensor at the end of its range, a bad line, and in the middle of it the robot is silent."""
-    low = pty_robot.kit.sensors[0].low
-    pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
+    lowest_reading = pty_robot.kit.sensors[0].low
+    pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
     _, parts = find_with_selftest(pty_robot)
-    first, second = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
-    assert parts[first]["cause"] == "stuck"
-    assert parts[second]["verdict"] == "ok"
+    first_sensor, second_sensor = (f"sensor {sensor.name}" for sensor in pty_robot.kit.sensors[:2])
+    assert parts[first_sensor]["cause"] == "stuck"
+    assert parts[second_sensor]["verdict"] == "ok"
     pty_robot.ask(lambda robot: robot.sense(GOOD_LIGHT, GOOD_LIGHT, 0))
     code, parts = find_with_selftest(pty_robot)
     assert (code, parts["sensor DISTANCE"]["cause"]) == (3, "echo_hung")
     assert parts["sensor DISTANCE"]["verdict"] == "wrong"
-    pty_robot.ask(lambda robot: robot.sense(low, GOOD_LIGHT, GOOD_DISTANCE))
+    pty_robot.ask(lambda robot: robot.sense(lowest_reading, GOOD_LIGHT, GOOD_DISTANCE))
     pty_robot.damages = 100
     code, parts = find_with_selftest(pty_robot)
     assert code == 3
@@ -173,16 +175,19 @@ def test_without_a_robot_the_doctors_findings_are_reported_at_once(kind: str) ->
         result = run_in_process("doctor", "--selftest", "--port", port, "--json").gives(3)
         text = run_in_process("doctor", "--selftest", "--port", port, "--lang", "en").gives(3).out
     reported = json.loads(result.out)["found"]
-    wrong = [finding for finding in findings if finding["is_wrong"]]
-    assert wrong and [finding["cause"] for finding in reported] == [
-        finding["cause"] for finding in wrong
+    wrong_findings = [finding for finding in findings if finding["is_wrong"]]
+    assert wrong_findings and [finding["cause"] for finding in reported] == [
+        finding["cause"] for finding in wrong_findings
     ]
-    for ours, its in zip(reported, wrong, strict=True):
-        assert [ours[key] for key in ("said", "seen", "next")] == [
-            its[key] for key in ("said", "seen", "next")
+    for reported_finding, doctor_finding in zip(reported, wrong_findings, strict=True):
+        assert [reported_finding[key] for key in ("said", "seen", "next")] == [
+            doctor_finding[key] for key in ("said", "seen", "next")
         ]
-        assert ours["next"] != "tsc doctor"
-        assert all(sentence in text for sentence in (its["said"], its["seen"], its["next"]))
+        assert reported_finding["next"] != "tsc doctor"
+        assert all(
+            sentence in text
+            for sentence in (doctor_finding["said"], doctor_finding["seen"], doctor_finding["next"])
+        )
 
 
 def test_only_the_port_of_the_self_test_is_opened(
@@ -194,7 +199,7 @@ def test_only_the_port_of_the_self_test_is_opened(
     with PtyEnd(Firmware()) as end:
         monkeypatch.setattr("tiniscript.doctor.diagnosis._only_port", lambda *_: end.port)
         result = run_in_process("doctor", "--selftest", "--json").gives(3)
-        assert end.heard == b""
+        assert end.received == b""
     assert json.loads(result.out)["found"][0]["cause"] == "not_opened"
 
 
@@ -271,8 +276,8 @@ def person(
     return answer
 
 
-def causes(out: str) -> set[str]:
-    return {finding["cause"] for finding in json.loads(out)["found"]}
+def causes(json_output: str) -> set[str]:
+    return {finding["cause"] for finding in json.loads(json_output)["found"]}
 
 
 def test_a_good_robot_passes_with_a_person(pty_robot: PtyRobot) -> None:
@@ -359,13 +364,13 @@ WIRES = [Wires(*flags) for flags in product((False, True), repeat=3)]
 def test_a_robot_learns_how_its_motors_are_wired(pty_robot: PtyRobot, wires: Wires) -> None:
     """Earlier values do not matter; the rest of its trim stays."""
     pty_robot.ask(lambda robot: robot.sense(*GOOD_READINGS))
-    for before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
-        assert on(pty_robot, "set", "trim", *before, "--least", "3").code == 0
+    for options_before in ((), ("--exchange", "yes", "--reverse-left", "yes", "--balance", "7")):
+        assert on(pty_robot, "set", "trim", *options_before, "--least", "3").code == 0
         code, out, _ = run_self_test(pty_robot, person(pty_robot, wires, learns="1"))
         assert (code, out.count("turns forward"), "WRONG" in out) == (0, 2, False), out
         kept_state = json.loads(on(pty_robot, "set", "trim", "--show", "--json").out)
         assert tuple(kept_state[name] for name in Wires._fields[:3]) == wires[:3]
-        assert (kept_state["least"], kept_state["balance"]) == (3, 7 if before else 0)
+        assert (kept_state["least"], kept_state["balance"]) == (3, 7 if options_before else 0)
         assert ("motors swapped" in out) == wires.is_exchanged, "what it keeps now is said"
 
 
@@ -395,14 +400,21 @@ def test_a_disc_that_flickers_at_rest_is_reported(number: int | None) -> None:
     robot = robot_in(name="tinibot2", eeprom_us=0)
     if number is not None:
         Flicker(robot, number, 20)
-    running = SimulatedRobot(robot, HURRIED_PACE)
+    simulated_robot = SimulatedRobot(robot, HURRIED_PACE)
     try:
         result = run_in_process(
-            "doctor", "--selftest", "--port", running.port, "--robot", "tinibot2", "--yes", "--json"
+            "doctor",
+            "--selftest",
+            "--port",
+            simulated_robot.port,
+            "--robot",
+            "tinibot2",
+            "--yes",
+            "--json",
         )
-        output = run_in_process("doctor", "--port", running.port, "--lang", "en").out
+        output = run_in_process("doctor", "--port", simulated_robot.port, "--lang", "en").out
     finally:
-        running.close()
+        simulated_robot.close()
     (disc,) = [finding for finding in json.loads(result.out)["found"] if finding["what"] == "discs"]
     if number is None:
         assert (result.code, disc["cause"]) == (0, "discs_rest") and "disc" not in output
@@ -427,10 +439,10 @@ def test_a_report_has_no_names(pty_robot: PtyRobot, tmp_path: Path) -> None:
     for private in ("LUISITO", str(tmp_path), os.uname().nodename):
         assert private not in report_text
     assert "sensor" in report_text
-    mine = tmp_path / "mine.txt"
-    mine.write_text("mine")
-    assert on(pty_robot, "doctor", "--selftest", "--yes", "--report", mine).code == 2
-    assert mine.read_text() == "mine"
+    robot_file = tmp_path / "mine.txt"
+    robot_file.write_text("mine")
+    assert on(pty_robot, "doctor", "--selftest", "--yes", "--report", robot_file).code == 2
+    assert robot_file.read_text() == "mine"
 
 
 def test_a_missing_robot_has_a_report(tmp_path: Path) -> None:
@@ -449,9 +461,9 @@ def test_after_an_unanswered_question_nothing_more_is_asked(
 ) -> None:
     """Nothing moves after an unanswered question."""
     actions: list[str] = []
-    typed = iter(["1\n"] * answers)
+    typed_lines = iter(["1\n"] * answers)
     monkeypatch.setattr(Conversation, "run_line", lambda _, line: actions.append(line))
-    monkeypatch.setattr("tiniscript.cli.terminal.asking.ask", lambda _: next(typed, ""))
+    monkeypatch.setattr("tiniscript.cli.terminal.asking.ask", lambda _: next(typed_lines, ""))
     ways: list[Callable[[Conversation], object]] = [
         lambda talk: talk.ask_to_lift(),
         lambda talk: talk.ask("ask_free", name="X", values=""),
@@ -459,17 +471,17 @@ def test_after_an_unanswered_question_nothing_more_is_asked(
         lambda talk: talk.turn_motor("left"),
         lambda talk: talk.ask_what_was_seen("BEEP(1, 440)", "ask_buzzer", ANSWER_AGAIN),
     ]
-    for last in ways:
-        typed = iter(["1\n"] * answers)
+    for final_step in ways:
+        typed_lines = iter(["1\n"] * answers)
         talk = Conversation(cast(Connection, SimpleNamespace(language="en")))
         for _ in range(answers):
             ways[1](talk)
         with pytest.raises(NoPerson):
-            last(talk)
-        typed = iter(["1\n"] * 10)  # more answers than questions
+            final_step(talk)
+        typed_lines = iter(["1\n"] * 10)  # more answers than questions
         actions.clear()
         capsys.readouterr()
-        for way in ways:
+        for step in ways:
             with pytest.raises(NoPerson):
-                way(talk)
+                step(talk)
         assert actions == [] and capsys.readouterr().err == ""

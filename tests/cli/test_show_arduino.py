@@ -10,7 +10,7 @@ from tests.support.command import PROGRAM, Tsc
 from tiniscript import robots
 
 READINGS = robots.load("tinibot").kit.readings
-OWN = len(robots.load("tinibot").kit.sensors)
+TINIBOT_SENSOR_COUNT = len(robots.load("tinibot").kit.sensors)
 
 
 def test_show_arduino_prints_a_sketch(tsc: Tsc) -> None:
@@ -36,8 +36,10 @@ def test_a_wrong_program_gets_the_usual_messages(tsc: Tsc, tmp_path: Path) -> No
 
 
 def test_a_program_too_large_for_a_machine_is_refused_as_a_sketch(tsc: Tsc) -> None:
-    many = ";".join(f"F({k}.5, {k})" for k in range(1, 100))
-    tsc("show", "--arduino", "-e", f"SI|{many};{many}").gives(0, out="forward(99.5, 99);")
+    many_moves = ";".join(f"F({k}.5, {k})" for k in range(1, 100))
+    tsc("show", "--arduino", "-e", f"SI|{many_moves};{many_moves}").gives(
+        0, out="forward(99.5, 99);"
+    )
 
 
 def test_impossible_requests_are_refused_with_a_reason(tsc: Tsc, tmp_path: Path) -> None:
@@ -59,7 +61,7 @@ def test_a_reading_is_in_the_sketch_or_reported_as_unsupported(tsc: Tsc, k: int)
                  f"IF({condition});S;ENDIF", f"DEF DEF_1;{name};END_DEF;LOOP(2);DEF_1;END_LOOP",
                  f"WHILE({condition});S;END_WHILE"):  # fmt: skip
         result = tsc("show", "--arduino", "-e", f"SI|{text}")
-        if k < OWN:
+        if k < TINIBOT_SENSOR_COUNT:
             result.gives(0, out="void loop()")
         else:
             result.gives(2, "no remote control")

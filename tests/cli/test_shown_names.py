@@ -23,9 +23,9 @@ from tiniscript.link.outcomes import ShownEvent
 LOOPS = "LOOP(FOREVER); SHOW({}); W(0.05); END_LOOP"
 
 
-def list_names(out: str) -> list[str]:
+def list_names(json_output: str) -> list[str]:
     """Return the names of the values in JSON lines, or an empty text for a value without one."""
-    events = [json.loads(line) for line in out.splitlines()]
+    events = [json.loads(line) for line in json_output.splitlines()]
     return [event.get("name", "") for event in events if event["event"] == "SHOW"]
 
 

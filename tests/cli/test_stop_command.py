@@ -24,9 +24,9 @@ from tiniscript.link.transmission import CONFIRM_MS
 
 def takes_no_wait(pty_robot: PtyRobot, *arguments: str) -> bool:
     """Run `tsc` on the robot's port; return whether it took less than a stop is waited for."""
-    began_ms = pty_robot.robot_ms
+    start_ms = pty_robot.robot_ms
     assert on(pty_robot, *arguments).code == 0
-    return pty_robot.robot_ms - began_ms < CONFIRM_MS
+    return pty_robot.robot_ms - start_ms < CONFIRM_MS
 
 
 @pytest.mark.parametrize("is_shared", [False, True])
@@ -122,7 +122,7 @@ def suspend(command: Command) -> Command:
 
 
 # A reader is woken for bytes and reads them a little later, when another one may have taken them.
-TOLD = """
+TOLD_SCRIPT = """
 import select, sys, time
 from tiniscript.cli import main
 waited = select.select
@@ -136,16 +136,16 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-@pytest.mark.parametrize("code", ["", TOLD], ids=["anywhere", "before it reads"])
+@pytest.mark.parametrize("code", ["", TOLD_SCRIPT], ids=["anywhere", "before it reads"])
 @pytest.mark.parametrize("verb", ["monitor", "monitor --hold"])
 def test_a_stop_gets_through_beside_a_suspended_tsc(
     pty_robot: PtyRobot, verb: str, code: str
 ) -> None:
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    pty_robot.heard = b""
+    pty_robot.received = b""
     holder = Command(*verb.split(), "--port", pty_robot.port, code=code)
     until(lambda: registry.find_registration(pty_robot.port) is not None, "it shares its port")
-    pty_robot.until(lambda: b"\x04" in pty_robot.heard, "it talks to the robot")
+    pty_robot.until(lambda: b"\x04" in pty_robot.received, "it talks to the robot")
     suspend(holder)
     assert pty_robot.moves
     for _ in range(2):
@@ -159,7 +159,7 @@ def test_a_stop_gets_through_beside_a_suspended_tsc(
     assert holder.wait_for_result().code == 0
 
 
-LOCKS = """
+LOCK_SCRIPT = """
 import fcntl, os, sys, time
 port = os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY)
 fcntl.flock(port, fcntl.LOCK_EX)
@@ -171,12 +171,12 @@ time.sleep(1000)
 def test_a_stop_gets_past_the_lock_of_another_suspended_program(pty_robot: PtyRobot) -> None:
     """A running command may be writing firmware, so it is named."""
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
-    holder = Command(pty_robot.port, code=LOCKS)
+    holder = Command(pty_robot.port, code=LOCK_SCRIPT)
     holder.until("locked")
-    heard_bytes = pty_robot.heard
+    heard_bytes = pty_robot.received
     with mock.patch.object(opening, "STOP_BUSY_TIMEOUT_S", 0.2):
         on(pty_robot, "stop").gives(3, f"(process {holder.process.pid})", "lift it")
-    assert pty_robot.heard == heard_bytes and pty_robot.moves
+    assert pty_robot.received == heard_bytes and pty_robot.moves
     suspend(holder)
     on(pty_robot, "start").gives(3, "another program is using")
     on(pty_robot, "stop").gives(0, "", out="has confirmed the stop")

@@ -179,10 +179,10 @@ def test_a_stop_from_elsewhere_during_trimming_keeps_the_previous_trim(
             given_bytes.append(data)
 
     class Connected:
-        def request(self, make: Callable[[Asked], None], taken: object) -> None:
+        def request(self, make_request: Callable[[Asked], None], taken: object) -> None:
             if stops:
                 raise CommandError(3, stops.pop())
-            make(Asked())
+            make_request(Asked())
 
     def refuse_step(wizard: trim_wizard.TrimWizard, trim_before: Trim) -> Trim:
         raise CommandError(3, key)
@@ -208,8 +208,8 @@ def test_ctrl_c_stops_the_robot_and_keeps_its_trim(pty_robot: PtyRobot) -> None:
 
 # -- how fast it is -------------------------------------------------------------------------------
 
-PACE = Pace(16.5, 33.25, 144, 288)
-LIFTED = "\n1\n3\n1\n\n1\n1\n"  # answers: wired correctly, straight at both powers
+TRIM_PACE = Pace(16.5, 33.25, 144, 288)
+LIFTED_ANSWERS = "\n1\n3\n1\n\n1\n1\n"  # answers: wired correctly, straight at both powers
 
 
 def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
@@ -218,15 +218,15 @@ def moves_in(robot: HostFirmware, session: Session, line: str) -> list[int]:
     code = unpack(compile_text(f"SI|{line}", KIT).image).code
     assert robot.until(session, session.live(code)) == OK
     robot.talk(session, 9000)
-    at = [int(row.split()[0]) for row in robot.did[count_before:] if "MOTORS" in row]
-    return [end - start for start, end in zip(at[::2], at[1::2], strict=True)]
+    times_ms = [int(row.split()[0]) for row in robot.did[count_before:] if "MOTORS" in row]
+    return [end - start for start, end in zip(times_ms[::2], times_ms[1::2], strict=True)]
 
 
 def test_a_measured_robot_goes_by_the_line_through_two_points() -> None:
     robot, session = switched_on(), computer()
     line = "F(20 CM, 60); R(90 DEG, 60); F(20 CM, 100); F(20 CM, 10)"
     assert moves_in(robot, session, line) == [741, 417, 444, 4444]
-    assert robot.until(session, session.trim(Trim(pace=PACE).data())) == OK
+    assert robot.until(session, session.trim(Trim(pace=TRIM_PACE).data())) == OK
     # 24.875 cm and 216 degrees in a second at 60 %, 41.625 at 100, 3.9375 at 10
     assert moves_in(robot, session, line) == [804, 417, 480, 5079]
 
@@ -246,30 +246,30 @@ def test_a_measured_robot_may_not_move_at_all_with_little_power() -> None:
 
 def test_a_pace_that_does_not_rise_is_refused_entirely() -> None:
     robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(Trim(balance=3, pace=PACE).data())) == OK
+    assert robot.until(session, session.trim(Trim(balance=3, pace=TRIM_PACE).data())) == OK
     for pace in (Pace(20, 20), Pace(20, 10), Pace(1, 0), Pace(0, 0, 9, 8)):
         refused_count = robot.until(session, session.trim(Trim(balance=9, pace=pace).data()))
         assert refused_count == STATUSES["BAD_VALUE"], pace
         assert trim_from_reply(robot.complete(session, session.trim())) == Trim(
-            balance=3, pace=PACE
+            balance=3, pace=TRIM_PACE
         )
 
 
 def test_a_pace_survives_a_fault_and_a_torn_save() -> None:
     robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(Trim(pace=PACE).data())) == OK
+    assert robot.until(session, session.trim(Trim(pace=TRIM_PACE).data())) == OK
     robot.talk(session, 1000)
     memory_before = robot.memory()
     code = unpack(compile_text("SHOW(1 / 0)", KIT).image).code
     assert robot.until(session, session.live(code)) == OK  # the fault is saved beside it
     robot.talk(session, 1000)
     for memory in (memory_before, robot.memory()):
-        assert pace_of(memory) == PACE
+        assert pace_of(memory) == TRIM_PACE
     assert robot.memory() != memory_before
-    slots = [at for at in (66, 97) if robot.memory()[at] != 0xFF]
+    slots = [offset for offset in (66, 97) if robot.memory()[offset] != 0xFF]
     torn_bytes = bytearray(robot.memory())
-    for at in slots:
-        torn_bytes[at + 4 + 20] ^= 1  # a bit of both records
+    for offset in slots:
+        torn_bytes[offset + 4 + 20] ^= 1  # a bit of both records
     assert pace_of(bytes(torn_bytes)) == Pace()
 
 
@@ -279,14 +279,14 @@ def pace_of(memory: bytes) -> Pace | None:
 
 
 def test_older_firmware_stores_no_pace() -> None:
-    older = TrimReply(0, 0, 0, b"")
-    assert trim_from_reply(older).pace is None
-    assert "centimetres" not in trim_in_words(trim_from_reply(older), "en")
+    older_reply = TrimReply(0, 0, 0, b"")
+    assert trim_from_reply(older_reply).pace is None
+    assert "centimetres" not in trim_in_words(trim_from_reply(older_reply), "en")
 
 
 def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None:
     measuring = "1\n\nx\n-3\n0.5 m\n1e3\n99999\n\n33\n\n66,5 cm\n\n144°\n\n288\n"
-    result = run_trim(pty_robot, data=LIFTED + measuring).gives(0)
+    result = run_trim(pty_robot, data=LIFTED_ANSWERS + measuring).gives(0)
     assert stored_trim(pty_robot).pace == Pace(16.5, 33.25, 144, 288)
     assert result.err.count("18 in") == 5
     assert "drives 16.5 cm per second at 40 % and 33.25 at 80 %" in result.out
@@ -295,8 +295,10 @@ def test_a_person_measures_with_tape_and_protractor(pty_robot: PtyRobot) -> None
 
 
 def test_a_lower_speed_at_80_is_measured_again(pty_robot: PtyRobot) -> None:
-    wrong = "1\n\n33\n\n33\n"
-    result = run_trim(pty_robot, data=LIFTED + wrong + "\n0\n\n13 in\n\n144\n\n288\n")
+    wrong_answers = "1\n\n33\n\n33\n"
+    result = run_trim(
+        pty_robot, data=LIFTED_ANSWERS + wrong_answers + "\n0\n\n13 in\n\n144\n\n288\n"
+    )
     assert result.code == 0, result.err
     assert "Measure both again" in result.err
     assert stored_trim(pty_robot).pace == Pace(0, 16.51, 144, 288)
@@ -307,6 +309,6 @@ def test_an_interrupted_measurement_keeps_the_stored_pace(pty_robot: PtyRobot) -
     assert stored_trim(pty_robot).pace == Pace()
     assert run_trim(pty_robot, "--speed-40", "10", "--speed-80", "20,5", "--balance", "7").code == 0
     for answers in ("1\n", "1\n\n33\n\n"):
-        run_trim(pty_robot, data=LIFTED + answers).gives(3, "the input ended")
+        run_trim(pty_robot, data=LIFTED_ANSWERS + answers).gives(3, "the input ended")
         assert stored_trim(pty_robot) == Trim(balance=7, pace=Pace(10, 20.5))
         assert not pty_robot.moves

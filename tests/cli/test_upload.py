@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import LONG, OBSTACLE, Command, CommandResult, run_in_process
+from tests.support.command import LONG_PROGRAM, OBSTACLE, Command, CommandResult, run_in_process
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
@@ -38,10 +38,10 @@ def test_slots_and_checksums_are_printed_on_request(pty_robot: PtyRobot) -> None
     image = compile_text("SI|S", KIT).image
     checksum = f"{int.from_bytes(image[10:14], 'little'):08x}"
     result = on(pty_robot, "upload", "-e", "SI|S", "--verbose").gives(0, "")
-    receipt, _, last = result.out.splitlines()
+    receipt, _, last_line = result.out.splitlines()
     assert receipt.startswith(f"-e -> tinibot ({pty_robot.port})   {len(image)} bytes")
     assert receipt.endswith(f"checksum {checksum}   saving   SI: running")
-    assert last == "Saved in slot 0."
+    assert last_line == "Saved in slot 0."
     result = on(pty_robot, "upload", "-e", "SI|S", "--json").gives(0, "")
     rows = [json.loads(line) for line in result.out.splitlines()]
     assert (rows[0]["checksum"], rows[0]["code_bytes"]) == (checksum, 1)
@@ -73,19 +73,19 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(
     pty_robot: PtyRobot, tmp_path: Path
 ) -> None:
     """Noise on the line costs only time."""
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    ours.write_bytes(compile_text(LONG, KIT).image)
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    compiled_file.write_bytes(compile_text(LONG_PROGRAM, KIT).image)
     for damages in (0, 211):
         pty_robot.damages = damages
-        result = on(pty_robot, "upload", ours, "--no-run", "--no-save")
+        result = on(pty_robot, "upload", compiled_file, "--no-run", "--no-save")
         assert (result.code, pty_robot.actions) == (0, [])
         assert "only in RAM   SI: waiting" in result.out
-        assert on(pty_robot, "show", "-o", theirs).code == 0
-        assert theirs.read_bytes() == ours.read_bytes(), damages
+        assert on(pty_robot, "show", "-o", robot_file).code == 0
+        assert robot_file.read_bytes() == compiled_file.read_bytes(), damages
         fields = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]
         assert bool(fields["damaged"]) == bool(damages)
     listing = on(pty_robot, "show").out
-    assert listing.split("\n", 1)[1] == run_in_process("show", ours).out.split("\n", 1)[1]
+    assert listing.split("\n", 1)[1] == run_in_process("show", compiled_file).out.split("\n", 1)[1]
 
 
 def test_the_receipt_is_available_as_json(pty_robot: PtyRobot) -> None:
@@ -114,7 +114,7 @@ def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
 
 def test_a_program_with_mistakes_is_not_sent(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", "F(2 80)").gives(1, "TS017")
-    assert pty_robot.heard == b""
+    assert pty_robot.received == b""
 
 
 def test_a_program_that_does_not_fit_is_refused_with_sizes(
@@ -131,10 +131,10 @@ def test_a_program_that_does_not_fit_is_refused_with_sizes(
 
 def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
     with PtyRobot(KIT, bytes_per_ms=1) as pty_robot:
-        words = ("upload", "-e", LONG, "--no-run", "--no-save", "--port", pty_robot.port)
+        words = ("upload", "-e", LONG_PROGRAM, "--no-run", "--no-save", "--port", pty_robot.port)
         terminal = Terminal(*words, size=(200, 5), types=False)
         assert terminal.end() == 0
-    assert b"sending [" in terminal.written
+    assert b"sending [" in terminal.output_bytes
     assert terminal.lines()[0].startswith("-e -> tinibot")
     assert "sending" not in "".join(terminal.lines())
 
@@ -142,8 +142,8 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
 @pytest.mark.parametrize("is_many", [False, True])
 def test_a_reset_during_a_run_is_not_success(pty_robot: PtyRobot, is_many: bool) -> None:
     """After a power cycle, a program has not ended by itself, however it was started."""
-    other = ("--port", "/dev/none") if is_many else ()
-    command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *other)
+    more_options = ("--port", "/dev/none") if is_many else ()
+    command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *more_options)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
     pty_robot.switch_off_and_on()
     result = command.wait_for_result()
@@ -239,10 +239,10 @@ def upload_two(pty_robot: PtyRobot) -> list[str]:
 
 def test_undo_reports_the_restored_program_and_its_save(pty_robot: PtyRobot) -> None:
     """The JSON form is a receipt."""
-    first, second = upload_two(pty_robot)
+    first_checksum, second_checksum = upload_two(pty_robot)
     for language, checksum, expected, saved_text in (
-        ("en", first, "it has the previous program again, checksum", "Saved. The button"),
-        ("es", second, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
+        ("en", first_checksum, "it has the previous program again, checksum", "Saved. The button"),
+        ("es", second_checksum, "vuelve a tener el programa anterior, suma", "Guardado. Empieza"),
     ):
         result = on(pty_robot, "start", "--previous", "--lang", language).gives(0, "")
         lines = result.out.splitlines()
@@ -253,7 +253,7 @@ def test_undo_reports_the_restored_program_and_its_save(pty_robot: PtyRobot) -> 
     receipt, kept_state = map(
         json.loads, on(pty_robot, "start", "--previous", "--json").out.splitlines()
     )
-    assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first
+    assert receipt["event"] == "RECEIPT" and receipt["checksum"] == first_checksum
     assert receipt["saved"] == "SAVING" and receipt["slot"] is None
     assert kept_state["event"] == "SAVED" and kept_state["slot"] == 0
 
@@ -289,15 +289,20 @@ def test_undo_ends_the_program_of_another_terminal(pty_robot: PtyRobot) -> None:
 
 @pytest.mark.sampled(of="slow commands")
 def test_with_weak_batteries_undo_reports_that_nothing_is_lost(pty_robot: PtyRobot) -> None:
-    first, second = upload_two(pty_robot)
+    first_checksum, second_checksum = upload_two(pty_robot)
     pty_robot.ask(lambda robot: robot.supply(is_low=True))
     for language, expected in (("en", "Nothing is lost"), ("es", "No se pierde nada")):
-        on(pty_robot, "start", "--previous", "--lang", language).gives(3, expected, out=first)
+        on(pty_robot, "start", "--previous", "--lang", language).gives(
+            3, expected, out=first_checksum
+        )
         assert on(pty_robot, "start", "--previous").code == 0, "the second one is saved already"
     on(pty_robot, "start", "--previous")
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
     pty_robot.switch_off_and_on()
-    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (first, second)
+    assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (
+        first_checksum,
+        second_checksum,
+    )
 
 
 def test_undo_accepts_the_ports_and_options_of_other_verbs() -> None:

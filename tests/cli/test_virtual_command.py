@@ -30,8 +30,8 @@ def test_another_terminal_finds_the_virtual_robot_and_its_actions_are_printed(
     picture = tmp_path / "way.png"
     with robot("--name", "KAT", "--world", "light", "--plot", picture) as running_robot:
         assert running_robot.port.startswith("socket://127.0.0.1:")
-        listed = json.loads(run_in_process("doctor", "--ports", "--json").out)
-        [row] = [row for row in listed if row["port"] == running_robot.port]
+        port_rows = json.loads(run_in_process("doctor", "--ports", "--json").out)
+        [row] = [row for row in port_rows if row["port"] == running_robot.port]
         assert row["is_virtual"]
         assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
         in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
@@ -83,10 +83,10 @@ def test_ctrl_c_works_at_any_moment(monkeypatch: pytest.MonkeyPatch) -> None:
     dropped: list[object] = []
     monkeypatch.setattr(sys, "unraisablehook", dropped.append)
 
-    inside = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
+    interrupt = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
 
     with handle_signals() as ended_end_request:
-        inside()
+        interrupt()
     # A stopped simulator prints no Python traceback.
     assert not dropped and ended_end_request.is_set
     sys.unraisablehook(None)  # type: ignore[arg-type]
@@ -102,9 +102,9 @@ def test_a_second_computer_is_refused_because_the_port_is_in_use() -> None:
             result = run_in_process("doctor", "--identify", "--port", running_robot.port)
             assert result.code == 3
             assert f"another program is using the port {running_robot.port}" in result.err
-            with visitor(running_robot.port) as third:
-                assert third.recv(1000).startswith(b"Port already in use")
-                assert third.recv(1000) == b""
+            with visitor(running_robot.port) as third_client:
+                assert third_client.recv(1000).startswith(b"Port already in use")
+                assert third_client.recv(1000) == b""
             first.sendall(b"\x05half a frame")
         run_in_process("upload", "--port", running_robot.port, "-e", "SI|F(0.1, 50)").gives(0, "")
 
@@ -119,12 +119,16 @@ def test_the_memory_of_a_virtual_robot_may_be_a_file(tmp_path: Path) -> None:
         running_robot.end(signal.SIGTERM)
     assert len(memory.read_bytes()) == 1024
     options = ("--button-at", "1", "--for", "20", "--hurry", "max", "--noise", "5", "--lang", "es")
-    first, second, other = (
+    first, second, other_result = (
         run_in_process("robot", "--memory", memory, *options, "--seed", seed) for seed in "112"
     )
     assert first.code == 0
     assert first.out.count("READ DISTANCE") > 10
-    assert first.out.splitlines()[1:] == second.out.splitlines()[1:] != other.out.splitlines()[1:]
+    assert (
+        first.out.splitlines()[1:]
+        == second.out.splitlines()[1:]
+        != other_result.out.splitlines()[1:]
+    )
     found_cm = re.search(r"El robot virtual recorrió (\d+) cm en 20.0 s", first.err)
     assert found_cm and int(found_cm[1]) > 50, "what it drives when its time is over counts"
     with robot("--memory", memory):
@@ -145,10 +149,10 @@ def test_each_robot_reads_its_own_memory_file(name: str, size: int, tmp_path: Pa
     assert len(memory.read_bytes()) == size
     run_in_process("robot", *options).gives(0)
     assert b"INTI" in memory.read_bytes()
-    for other in (size + 1, size - 1, 0):
-        memory.write_bytes(bytes(other))
+    for wrong_size in (size + 1, size - 1, 0):
+        memory.write_bytes(bytes(wrong_size))
         run_in_process("robot", *options).gives(2, f"which has {size} bytes")
-        assert len(memory.read_bytes()) == other
+        assert len(memory.read_bytes()) == wrong_size
 
 
 def test_a_pseudo_terminal_is_also_a_port() -> None:
@@ -219,17 +223,20 @@ def colours(data: bytes) -> dict[str, int]:
 
 
 def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
-    still, way = tmp_path / "still.png", tmp_path / "way.png"
-    run_in_process("upload", "--virtual", "-e", "SI|S", "--plot", still).gives(0)
+    still_picture, way_picture = tmp_path / "still.png", tmp_path / "way.png"
+    run_in_process("upload", "--virtual", "-e", "SI|S", "--plot", still_picture).gives(0)
     result = run_in_process("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
-                            "--plot", way)  # fmt: skip
+                            "--plot", way_picture)  # fmt: skip
     assert result.code == 0
     assert "The time set with --for is over.\nSaved. The button starts it.\n" in result.out
-    assert f"and touched nothing. Picture: {way}\n" in result.out
-    before, colours_after = colours(still.read_bytes()), colours(way.read_bytes())
-    assert before["way"] < 20 < 4000 < colours_after["way"]
-    assert before["robot"] > 200
-    assert before["box"] > 10_000
+    assert f"and touched nothing. Picture: {way_picture}\n" in result.out
+    colours_before, colours_after = (
+        colours(still_picture.read_bytes()),
+        colours(way_picture.read_bytes()),
+    )
+    assert colours_before["way"] < 20 < 4000 < colours_after["way"]
+    assert colours_before["robot"] > 200
+    assert colours_before["box"] > 10_000
     assert directory.running_robots() == []
 
 
@@ -288,10 +295,10 @@ def test_every_verb_that_asks_a_robot_knows_the_virtual_one() -> None:
         assert "Start one in another terminal:  tsc robot" in result.err, command
         assert "--virtual" in run_in_process(*command.split(), "--help").out, command
     assert "Without a robot:  --virtual" in run_in_process("upload", "-e", "SI|S").err
-    with robot() as running:
+    with robot() as running_robot:
         for words in ((), ("--virtual",), ("--identify", "--virtual")):
-            run_in_process("doctor", *words).gives(0, out=running.port)
-        run_in_process("doctor", "--virtual", "--port", running.port).gives(2, "--virtual")
+            run_in_process("doctor", *words).gives(0, out=running_robot.port)
+        run_in_process("doctor", "--virtual", "--port", running_robot.port).gives(2, "--virtual")
 
 
 @pytest.mark.parametrize(
@@ -331,9 +338,9 @@ def test_a_port_in_use_and_an_invalid_memory_are_refused(tsc: Tsc, tmp_path: Pat
         result = tsc("robot", "--listen", str(server_socket.getsockname()[1]))
     assert result.code == 3
     assert "Choose another port with --listen" in result.err
-    small = tmp_path / "small.bin"
-    small.write_bytes(b"TS")
-    tsc("robot", "--memory", small).gives(2, "which has 1024 bytes")
+    small_file = tmp_path / "small.bin"
+    small_file.write_bytes(b"TS")
+    tsc("robot", "--memory", small_file).gives(2, "which has 1024 bytes")
 
 
 @pytest.mark.parametrize(("name", "commands"), [

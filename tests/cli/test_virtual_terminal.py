@@ -29,7 +29,9 @@ def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
     assert drawn_text.count("*") == 2  # the lamps
     assert "The virtual robot drove 22 cm" in drawn_text
     assert "fault DIVIDE_BY_ZERO" in drawn_text
-    assert terminal.written.rfind(b"\x1b[?25h") > terminal.written.rfind(b"\x1b[?25l")  # cursor
+    assert terminal.output_bytes.rfind(b"\x1b[?25h") > terminal.output_bytes.rfind(
+        b"\x1b[?25l"
+    )  # cursor
 
 
 def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
@@ -120,5 +122,5 @@ def test_the_prompt_shows_only_requested_values() -> None:
     terminal.until("The robot has LIGHT_R, LIGHT_L, DISTANCE")
     terminal.type("quit\n")
     assert terminal.end() == 0
-    assert b"2147483" not in terminal.written
-    assert b"before" not in terminal.written
+    assert b"2147483" not in terminal.output_bytes
+    assert b"before" not in terminal.output_bytes

@@ -16,7 +16,7 @@ from tests.between.lines import BadLine, Fault
 from tests.support.command import Tsc
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on
-from tests.support.simulated_ends import Nobody
+from tests.support.simulated_ends import UnpoweredEnd
 from tests.support.terminal import Terminal
 from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript.cli import main
@@ -40,26 +40,26 @@ def watch_output(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def silent(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+def silent_port(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A port without a robot; the computer soon gives up."""
     monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     monkeypatch.setattr(opening, "CABLE_ANSWER_TIMEOUT_MS", 200)
-    with PtyEnd(Nobody()) as end:
+    with PtyEnd(UnpoweredEnd()) as end:
         yield end.port
 
 
 def test_waiting_for_a_robot_is_reported(
-    tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, silent_port: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A short wait prints nothing, and a program that reads the output sees nothing."""
     watch_output(monkeypatch)
-    result = tsc("doctor", "--identify", "--port", silent, "--lang", "es").gives(3)
-    assert result.err.startswith(f"Esperando al robot en {silent} …\n")
+    result = tsc("doctor", "--identify", "--port", silent_port, "--lang", "es").gives(3)
+    assert result.err.startswith(f"Esperando al robot en {silent_port} …\n")
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", HANG_LIMIT_S)
-    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
+    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent_port).err
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
-    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent).err
+    assert "Waiting" not in tsc("doctor", "--identify", "--port", silent_port).err
 
 
 def test_waiting_for_a_board_is_reported_until_it_is_written(
@@ -111,12 +111,12 @@ def test_waiting_for_a_robot_silent_after_hello_is_reported_once(
 
 
 def test_waiting_for_an_unconfirmed_stop_is_reported(
-    tsc: Tsc, silent: str, monkeypatch: pytest.MonkeyPatch
+    tsc: Tsc, silent_port: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     watch_output(monkeypatch)
     monkeypatch.setattr(opening, "CONFIRM_TIMEOUT_S", 0.3)
-    result = tsc("stop", "--port", silent).gives(3, "has not confirmed the stop")
-    assert result.err.count(f"Waiting for the robot on {silent} to confirm the stop …\n") == 1
+    result = tsc("stop", "--port", silent_port).gives(3, "has not confirmed the stop")
+    assert result.err.count(f"Waiting for the robot on {silent_port} to confirm the stop …\n") == 1
 
 
 def test_waits_without_news_are_one_silence(
@@ -126,21 +126,21 @@ def test_waits_without_news_are_one_silence(
     now_s = 0.0
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    quiet = progress.RepeatedWaitNotice("waits", is_seen=True)
+    quiet_notice = progress.RepeatedWaitNotice("waits", is_seen=True)
 
     def wait_times(count: int, each_s: float) -> str:
         nonlocal now_s
         for _ in range(count):
-            quiet.begin()
+            quiet_notice.begin()
             end_s = now_s + each_s
             while now_s < end_s:
                 now_s += 0.1
-                quiet.poll()
+                quiet_notice.poll()
         return capsys.readouterr().err
 
     assert wait_times(19, 0.1) == ""
     assert wait_times(100, 0.3) == "waits\n"
-    quiet.restart()
+    quiet_notice.restart()
     assert wait_times(50, 0.3) == ""  # once
     now_s += 1  # a person types
     assert wait_times(1, 1.8) == "" and wait_times(2, 1.8) == "waits\n"
@@ -163,28 +163,28 @@ def test_a_bar_writes_only_changes_and_leaves_nothing(
     seed: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds for any amount, also for none, and however often it is drawn and ended."""
-    chance, now_s, line = Random(seed), 100.0, ""
+    rng, now_s, line = Random(seed), 100.0, ""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
-    bar = progress.Progress("en", total := chance.choice((0, 7, 200)))
+    bar = progress.Progress("en", total := rng.choice((0, 7, 200)))
     newest = ""  # the newest line that is no empty one
     for _ in range(60):
-        now_s += chance.choice((0.0, 0.02, 0.1))
-        if chance.random() < 0.2:
+        now_s += rng.choice((0.0, 0.02, 0.1))
+        if rng.random() < 0.2:
             bar.end()
-            wanted = ""
+            wanted_text = ""
         else:
-            done = chance.randint(0, total)
-            bar.draw(done)
-            percent = f"{min(100 * done // total, 99)} %" if total else ""
+            done_count = rng.randint(0, total)
+            bar.draw(done_count)
+            percent = f"{min(100 * done_count // total, 99)} %" if total else ""
             is_late = now_s - 100 >= progress.DRAW_DELAY_S and percent != newest
-            wanted = percent if is_late else line
-            newest = wanted or newest
+            wanted_text = percent if is_late else line
+            newest = wanted_text or newest
         output = capsys.readouterr().err
-        assert bool(output) == (wanted != line)
+        assert bool(output) == (wanted_text != line)
         shown_line = output.split("\r")[-1].strip() if output else line
-        assert shown_line.rpartition("] ")[2].strip() == wanted
-        line = wanted
+        assert shown_line.rpartition("] ")[2].strip() == wanted_text
+        line = wanted_text
 
 
 def test_received_bytes_may_come_from_a_late_robot(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,12 +206,12 @@ def test_a_long_wait_is_reported_once_and_soon_enough(
     now_s = 0.0
     monkeypatch.setattr(progress, "monotonic", lambda: now_s)
     real_call = Client.wait
-    waits: list[str] = []
+    notices: list[str] = []
 
     def wait(self: connect.Connection, *arguments: Any) -> Any:
         nonlocal now_s
         reply = real_call(self, *arguments)
-        waits.append("wait")
+        notices.append("wait")
         now_s += 1.5
         if len(arguments) > 1 and arguments[1] is not None:
             arguments[1]()
@@ -219,7 +219,7 @@ def test_a_long_wait_is_reported_once_and_soon_enough(
 
     monkeypatch.setattr(Client, "wait", wait)
     result = tsc("set", "trim", "--show", "--port", pty_robot.port).gives(0)
-    assert len(waits) >= 2
+    assert len(notices) >= 2
     assert result.err.count("Waiting for the robot") == 1  # there were no 3 s of silence
     monkeypatch.setattr(progress, "SILENCE_LIMIT_S", 0.0)
     now_s += 100
@@ -243,7 +243,7 @@ def test_a_finished_wait_is_not_reported(
 def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     """Otherwise it might begin while Python exits, and crash it."""
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    ends: list[str] = []
+    events: list[str] = []
 
     def begin_late(run: Callable[[], None], arguments: tuple[()]) -> None:
         def run_late() -> None:
@@ -253,12 +253,12 @@ def test_a_thread_that_begins_late_ends_before_its_wait(monkeypatch: pytest.Monk
         Thread(target=run_late).start()
 
     monkeypatch.setattr(progress, "start_new_thread", begin_late)
-    monkeypatch.setattr(progress.WaitNotice, "_print_wait", lambda _: ends.append("thread"))
+    monkeypatch.setattr(progress.WaitNotice, "_print_wait", lambda _: events.append("thread"))
     for _ in range(2):
         with progress.show_wait("studio_stops", "en") as notice:
             notice.cancel()
-        ends.append("wait")
-    assert ends == ["thread", "wait"] * 2
+        events.append("wait")
+    assert events == ["thread", "wait"] * 2
 
 
 def test_a_long_live_line_and_its_warnings_are_reported_once(

@@ -84,9 +84,9 @@ def test_the_users_and_the_holder_of_a_port_are_named(linux: FakeComputer) -> No
     assert diagnosis.port_access(linux, port).is_joined
     linux.owners[port] = (20, True)
     linux.group_numbers = {20}
-    linux.program(5, "minicom", opens="/dev/ttyUSB1")
+    linux.program(5, "minicom", opened_port="/dev/ttyUSB1")
     assert diagnosis.port_access(linux, port) == computer.Access(True, "dialout", False, ())
-    linux.program(6, "ModemManager", opens=port)
+    linux.program(6, "ModemManager", opened_port=port)
     assert diagnosis.port_access(linux, port).using_programs == ("ModemManager",)
 
 
@@ -99,8 +99,8 @@ def test_a_program_of_another_user_is_known_by_its_lock(linux: FakeComputer) -> 
     assert diagnosis.port_access(linux, port).using_programs == ("screen",)
     linux.write("/run/lock/LCK..ttyUSB0", "999")  # process 999 has ended
     assert diagnosis.port_access(linux, port).using_programs == ()
-    for other in ("socket://robot:7000", "/dev/ttyUSB9"):
-        assert diagnosis.port_access(linux, other) == computer.FREE_ACCESS
+    for other_port in ("socket://robot:7000", "/dev/ttyUSB9"):
+        assert diagnosis.port_access(linux, other_port) == computer.FREE_ACCESS
 
 
 # -- macOS and Windows --------------------------------------------------------------------------

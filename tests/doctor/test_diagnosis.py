@@ -14,7 +14,7 @@ import pytest
 
 from tests.support.fake_computer import FakeComputer
 from tests.support.foreign_boards import FIRMATA
-from tests.support.simulated_ends import KIT, Firmware, Nobody
+from tests.support.simulated_ends import KIT, Firmware, UnpoweredEnd
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
 from tiniscript.cli.texts.causes import sentences_of
 from tiniscript.doctor.diagnosis import Diagnosis, DoctorServices, Question, diagnose
@@ -44,7 +44,7 @@ STATUS = StatusReply(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, b"\0\0")
 PONG = PingReply(0, 0, b"")
 
 
-class Shared:
+class OtherCommand:
     """The connection of another tsc: its requests are answered with `replies`, or it has ended."""
 
     robot = None
@@ -54,12 +54,12 @@ class Shared:
         self.replies = list(replies)
         self.is_closed = False
 
-    def begin(self, make: Callable[[Any], object]) -> object:
+    def begin(self, make_request: Callable[[Any], object]) -> object:
         class Session:
             def __getattr__(self, name: str) -> Callable[[], Namespace]:
                 return lambda: Namespace(name=name)
 
-        return make(Session())
+        return make_request(Session())
 
     def wait(self, request: Namespace) -> Reply[Any]:
         assert request.name in ("hello", "status", "ping", "trim") and request.limit_ms > 0
@@ -82,16 +82,16 @@ class Case:
         self.end: OtherEnd = Firmware()
         self.failure: PortError | None = None
         self.says_yes = False
-        self.last: str | None = None
-        self.opened: list[str] = []
+        self.last_port: str | None = None
+        self.opened_names: list[str] = []
         self.wire: SimulatedWire | None = None
-        self.asked: list[str] = []
-        self.other: OtherVersion | None = None
-        self.shared: Shared | None = None
-        self.watched = Shared(Reply(LOST))
+        self.asked_names: list[str] = []
+        self.other_version: OtherVersion | None = None
+        self.shared_connection: OtherCommand | None = None
+        self.watched_connection = OtherCommand(Reply(LOST))
         self.watch_ms = 0
-        self.virtual: tuple[str, ...] = ()
-        self.expected = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
+        self.virtual_ports: tuple[str, ...] = ()
+        self.expectations = Expectations(None, "tinibot", {KIT: "tinibot"}.get)
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -106,13 +106,13 @@ class Case:
         self.system.usb("usb1", "1d6b", "0002")
         return self
 
-    def failing(self, reason: str, why: str = "") -> Case:
-        self.failure = PortError(reason, why)
+    def failing(self, reason: str, detail: str = "") -> Case:
+        self.failure = PortError(reason, detail)
         return self
 
     def diagnosis(self, port: str | None = CABLE) -> Diagnosis:
         def open_wire(name: str, baud: int) -> Wire:
-            self.opened.append(name)
+            self.opened_names.append(name)
             if self.failure is not None:
                 raise self.failure
             if name == CABLE and name not in self.system.owners:
@@ -121,21 +121,27 @@ class Case:
             return self.wire
 
         def join(name: str) -> LinkConnection | None:
-            if self.other is not None:
-                raise self.other
-            return cast(LinkConnection, self.shared) if self.shared is not None else None
+            if self.other_version is not None:
+                raise self.other_version
+            return (
+                cast(LinkConnection, self.shared_connection)
+                if self.shared_connection is not None
+                else None
+            )
 
         def may_open(name: str) -> bool:
-            self.asked.append(name)
+            self.asked_names.append(name)
             return self.says_yes
 
         def share(name: str) -> AbstractContextManager[LinkConnection]:
-            return nullcontext(cast(LinkConnection, self.watched))
+            return nullcontext(cast(LinkConnection, self.watched_connection))
 
         doors = DoctorServices(
             self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share
         )
-        question = Question(port, self.last, 9600, self.expected, 7, self.watch_ms, self.virtual)
+        question = Question(
+            port, self.last_port, 9600, self.expectations, 7, self.watch_ms, self.virtual_ports
+        )
         return diagnose(doors, question)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
@@ -152,23 +158,23 @@ Make = Callable[[Case], object]
 
 
 def _port_of_dialout(member: str) -> Make:
-    def make(case: Case) -> None:
+    def set_case(case: Case) -> None:
         case.with_port(CABLE)
         case.system.owners[CABLE] = (20, False)
         case.system.write("/etc/group", f"dialout:x:20:{member}\n")
 
-    return make
+    return set_case
 
 
-_member, _stranger = _port_of_dialout("somebody"), _port_of_dialout("")
+_set_member, _set_stranger = _port_of_dialout("somebody"), _port_of_dialout("")
 
 
 def _port_in_use(name: str) -> Make:
-    def make(case: Case) -> None:
+    def set_case(case: Case) -> None:
         case.with_port(CABLE)
-        case.system.program(5, name, opens=CABLE)
+        case.system.program(5, name, opened_port=CABLE)
 
-    return make
+    return set_case
 
 
 def _brltty(case: Case) -> None:
@@ -178,7 +184,7 @@ def _brltty(case: Case) -> None:
 
 def _other_tsc(case: Case) -> None:
     held_registration = Registration(CABLE, 1, "t", "a", "link", 9600, 5)
-    case.with_port(CABLE).other = OtherVersion(held_registration, "0.1")
+    case.with_port(CABLE).other_version = OtherVersion(held_registration, "0.1")
 
 
 def _plug(vendor: str, product: str, driver: str = "") -> Make:
@@ -190,8 +196,8 @@ def _pair(reason: str, *names: str, is_off: bool = False) -> Make:
     return lambda case: case.with_bluetooth(*names, is_off=is_off).failing(reason)
 
 
-def _failing(reason: str, why: str = "") -> Make:
-    return lambda case: case.failing(reason, why)
+def _failing(reason: str, detail: str = "") -> Make:
+    return lambda case: case.failing(reason, detail)
 
 
 def _ports(*names: str) -> Make:
@@ -199,7 +205,7 @@ def _ports(*names: str) -> Make:
 
 
 HUB, CH340 = ("1d6b", "0002"), ("1a86", "7523")
-REFUSED = os.strerror(errno.ECONNREFUSED)
+REFUSED_DETAIL = os.strerror(errno.ECONNREFUSED)
 ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (None, _ports(), "no_port", True),
     (CABLE, _ports(), "no_port", True),
@@ -214,8 +220,8 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (RADIO, _pair(errors.MISSING, is_off=True), "bluetooth_off", True),
     (RADIO, _pair(errors.MISSING, "Telephone"), "not_paired", True),
     (RADIO, _pair(errors.MISSING, "HC-05"), "no_rfcomm", True),
-    (CABLE, _stranger, "no_permission", True),
-    (CABLE, _member, "login_again", True),
+    (CABLE, _set_stranger, "no_permission", True),
+    (CABLE, _set_member, "login_again", True),
     (CABLE, _port_in_use("minicom"), "busy", True),
     (CABLE, _port_in_use("ModemManager"), "modem_manager", True),
     (CABLE, _other_tsc, "other_tsc", True),
@@ -223,7 +229,7 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (RADIO, _failing(errors.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
     (RADIO, _pair(errors.UNREACHABLE, "HC-05"), "out_of_reach", False),
     (RADIO, _pair(errors.UNREACHABLE, "Telephone"), "not_paired", False),
-    (RADIO, _failing(errors.UNREACHABLE, REFUSED), "other_host", False),
+    (RADIO, _failing(errors.UNREACHABLE, REFUSED_DETAIL), "other_host", False),
     (RADIO, _pair(errors.SLOW, "HC-05"), "slow_port", False),
     (RADIO, _failing(errors.NO_PORT), "no_serial_port", True),
     (RADIO, _failing(errors.BROKEN, "Input/output error"), "port_broken", True),
@@ -234,57 +240,59 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
 
 
 @pytest.mark.parametrize(
-    ("port", "make", "cause", "is_sure"), ROWS, ids=lambda value: str(value)[:20]
+    ("port", "set_case", "cause", "is_sure"), ROWS, ids=lambda value: str(value)[:20]
 )
 def test_each_cause_at_the_computer_or_port_is_found(
-    case: Case, port: str | None, make: Make, cause: str, is_sure: bool
+    case: Case, port: str | None, set_case: Make, cause: str, is_sure: bool
 ) -> None:
-    make(case)
+    set_case(case)
     assert case.cause(port) == (cause, is_sure)
 
 
 def test_a_cable_is_opened_only_after_consent_and_a_radio_without_it(case: Case) -> None:
     diagnosis = case.diagnosis(RADIO)
     assert (diagnosis.findings[0].cause, diagnosis.is_opened) == ("fine", True)
-    assert (case.opened.pop(), case.asked) == (RADIO, [])
+    assert (case.opened_names.pop(), case.asked_names) == (RADIO, [])
     case.with_port(CABLE)
     assert case.cause() == ("not_opened", True)
-    assert (case.opened, case.asked) == ([], [CABLE])
+    assert (case.opened_names, case.asked_names) == ([], [CABLE])
     case.says_yes = True
     assert case.cause() == ("fine", True)
-    assert case.opened == [CABLE]
+    assert case.opened_names == [CABLE]
     assert case.wire is not None and case.wire.is_gone  # the port is closed
 
 
 def test_ports_without_a_cable_are_named_in_the_finding(case: Case) -> None:
     """`tsc doctor --ports` lists them, so the doctor does not claim that there are no ports."""
-    case.virtual = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
+    case.virtual_ports = ("socket://127.0.0.1:7007", "socket://127.0.0.1:7008")
     (finding,) = case.diagnosis(None).findings
-    assert (finding.cause, finding.values) == ("no_port", {"ports": ", ".join(case.virtual)})
+    assert (finding.cause, finding.values) == ("no_port", {"ports": ", ".join(case.virtual_ports)})
     case.with_port("/dev/ttyS0")
     (finding,) = case.diagnosis(None).findings
     assert finding.cause == "charging_cable"
-    assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual)}"}
+    assert finding.values == {"ports": f"/dev/ttyS0, {', '.join(case.virtual_ports)}"}
     for language in ("en", "es"):
-        _, sentence, then = sentences_of(finding, language)
+        _, sentence, hint = sentences_of(finding, language)
         assert finding.values["ports"] in sentence
-        assert "tsc doctor --port" in then
+        assert "tsc doctor --port" in hint
 
 
 def test_the_only_virtual_robot_is_examined_if_there_is_no_cable(case: Case) -> None:
     case.says_yes = True
-    case.virtual = ("socket://127.0.0.1:7007",)
-    assert case.diagnosis(None).port == case.virtual[0]
+    case.virtual_ports = ("socket://127.0.0.1:7007",)
+    assert case.diagnosis(None).port == case.virtual_ports[0]
     case.with_port(CABLE)
     assert case.diagnosis(None).port == CABLE
 
 
-@pytest.mark.parametrize("make", [_stranger, _member, _port_in_use("minicom"), _other_tsc])
-def test_a_foreign_port_is_not_opened(case: Case, make: Make) -> None:
-    make(case)
+@pytest.mark.parametrize(
+    "set_case", [_set_stranger, _set_member, _port_in_use("minicom"), _other_tsc]
+)
+def test_a_foreign_port_is_not_opened(case: Case, set_case: Make) -> None:
+    set_case(case)
     case.says_yes = True
     assert not case.diagnosis().is_opened
-    assert case.opened == []
+    assert case.opened_names == []
 
 
 def test_the_last_or_only_port_is_chosen(case: Case) -> None:
@@ -292,7 +300,7 @@ def test_the_last_or_only_port_is_chosen(case: Case) -> None:
     assert case.diagnosis(None).port == CABLE  # the other one is no robot's
     case.with_port("/dev/ttyACM0")
     assert case.diagnosis(None).port is None
-    case.last = RADIO
+    case.last_port = RADIO
     assert case.diagnosis(None).port == RADIO
 
 
@@ -313,7 +321,7 @@ def test_the_only_port_is_found_on_each_system(
     [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
 )
 def test_a_vanishing_port_is_reported(case: Case, port: str, cause: str, is_sure: bool) -> None:
-    class Gone(Nobody):
+    class Gone(UnpoweredEnd):
         def answer(self, data: bytes) -> bytes:
             raise OSError("gone")
 
@@ -335,16 +343,16 @@ def test_a_vanishing_port_is_reported(case: Case, port: str, cause: str, is_sure
 def test_a_robot_is_examined_through_another_tsc(
     case: Case, replies: list[Reply[Any]], cause: str
 ) -> None:
-    case.shared = Shared(*replies)
+    case.shared_connection = OtherCommand(*replies)
     diagnosis = case.diagnosis()
     assert [finding.cause for finding in diagnosis.findings] == [cause]
-    assert diagnosis.is_opened and case.shared.is_closed
-    assert case.opened == []
+    assert diagnosis.is_opened and case.shared_connection.is_closed
+    assert case.opened_names == []
 
 
 def test_a_foreign_board_heard_by_another_tsc_is_recognized(case: Case) -> None:
-    case.shared = Shared(Reply(LOST))
-    case.shared.early_bytes = FIRMATA
+    case.shared_connection = OtherCommand(Reply(LOST))
+    case.shared_connection.early_bytes = FIRMATA
     (finding,) = case.diagnosis().findings
     assert (finding.cause, finding.values["said"]) == ("firmata", "StandardFirmata.ino 2.5")
 
@@ -360,13 +368,13 @@ def test_a_robot_that_falls_silent_behind_another_tsc_is_given_up(
         *[Reply(OK, 0, PONG)] * answered_count,
     ]
     lost_replies: list[Reply[Any]] = [Reply(LOST)] * MOST_UNANSWERED
-    case.shared = Shared(*known_replies, *lost_replies)
+    case.shared_connection = OtherCommand(*known_replies, *lost_replies)
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = Shared(
+    case.shared_connection = OtherCommand(
         *known_replies, *lost_replies[1:], *[Reply(OK, 0, PONG)] * 3, *lost_replies
     )
     assert "falls_silent" in [finding.cause for finding in case.diagnosis().findings]
-    assert case.shared.replies == [], "one that is heard again has all of them again"
+    assert case.shared_connection.replies == [], "one that is heard again has all of them again"
 
 
 def test_a_healthy_robot_on_a_shared_port_is_watched(case: Case) -> None:
@@ -374,7 +382,7 @@ def test_a_healthy_robot_on_a_shared_port_is_watched(case: Case) -> None:
     # The reason that the shared connection reports.
     assert case.cause(RADIO) == ("falls_silent", False)
     assert case.wire is not None and case.wire.is_gone
-    case.end = Nobody()
+    case.end = UnpoweredEnd()
     assert case.cause(RADIO) == ("crossed", False)
 
 
@@ -386,7 +394,7 @@ def test_a_doubtful_robot_gets_no_further_requests(case: Case, cause: str) -> No
         places.append(port)
         return cause
 
-    case.expected = case.expected._replace(doubt_of=doubts)
+    case.expectations = case.expectations._replace(doubt_of=doubts)
     (finding,) = case.diagnosis(RADIO).findings
     assert (finding.cause, finding.values) == (cause, {"id": "12347f3a"})
     assert places == [RADIO] and finding.is_wrong
@@ -401,15 +409,17 @@ def test_the_key_of_a_robot_with_an_owner_is_shown_by_the_connection(
 ) -> None:
     """The robot's unproven statement about its owner is false."""
     case.end = Firmware(features=features)
-    case.expected = case.expected._replace(has_key=lambda robot: has_key)
+    case.expectations = case.expectations._replace(has_key=lambda robot: has_key)
     assert case.diagnosis(RADIO).findings[0].cause == cause
 
 
 def test_the_ownership_of_a_robot_is_shown_by_its_answer_to_a_key(case: Case) -> None:
-    case.expected = case.expected._replace(has_key=lambda robot: True)
-    case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
+    case.expectations = case.expectations._replace(has_key=lambda robot: True)
+    case.shared_connection = OtherCommand(Reply(OK, 0, HELLO._replace(features=OWNED)), Reply(LOST))
     assert "of_another_owner" in [finding.cause for finding in case.diagnosis().findings]
-    case.shared = Shared(Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST))
+    case.shared_connection = OtherCommand(
+        Reply(OK, 0, HELLO._replace(features=OWNED | YOURS)), Reply(LOST)
+    )
     assert "of_another_owner" not in [finding.cause for finding in case.diagnosis().findings]
 
 

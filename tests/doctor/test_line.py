@@ -8,12 +8,12 @@ from tests.support import foreign_boards as boards
 from tests.support.simulated_ends import (
     KIT,
     QUESTIONS,
-    Babble,
+    BabblingEnd,
     Board,
     Echo,
     Firmware,
-    Nobody,
     Sketch,
+    UnpoweredEnd,
     reset,
     state,
 )
@@ -39,12 +39,15 @@ from tiniscript.link.wire import QUIET_MS
 from tiniscript.robots import load
 
 # Devices that are silent after their start.
-SAY_NOTHING = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
-RESTARTED = (115200, 57600)  # the speeds of bootloaders: there a board is heard when it starts
+SILENT_BOARDS = (boards.Esp32Board, boards.SilentPython, boards.DownloadBoard)
+BOOTLOADER_BAUDS = (
+    115200,
+    57600,
+)  # the speeds of bootloaders: there a board is heard when it starts
 NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
-SAVED_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED_STATES)}
-MEGA = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
-STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
+SAVED_NUMBER_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED_STATES)}
+MEGA_GREETING = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
+STALL_NUMBER = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 
 
 def findings_on(
@@ -59,7 +62,7 @@ def findings_on(
     expected = Expectations(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
     findings = diagnose_line(wire, PortFacts(baud, is_radio, 4711), expected)
     if is_radio:
-        assert {speed for speed, _ in wire.sent} == {baud}
+        assert {speed for speed, _ in wire.sent_pieces} == {baud}
         assert wire.restarts == 0
     return findings
 
@@ -81,13 +84,13 @@ def watch_line(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
     return {finding.cause: finding for finding in examine(robot, reply, expected, watch_ms)}
 
 
-def only_cause(end: OtherEnd, **how: object) -> tuple[str, bool]:
-    (finding,) = findings_on(end, **how)  # type: ignore[arg-type]
+def only_cause(end: OtherEnd, **options: object) -> tuple[str, bool]:
+    (finding,) = findings_on(end, **options)  # type: ignore[arg-type]
     return finding.cause, finding.is_sure
 
 
-def causes(end: OtherEnd, **how: object) -> dict[str, Finding]:
-    return {finding.cause: finding for finding in findings_on(end, **how)}  # type: ignore[arg-type]
+def causes(end: OtherEnd, **options: object) -> dict[str, Finding]:
+    return {finding.cause: finding for finding in findings_on(end, **options)}  # type: ignore[arg-type]
 
 
 # -- a robot ------------------------------------------------------------------------------------
@@ -118,9 +121,9 @@ def test_a_healthy_robot_gets_only_harmless_requests(is_radio: bool) -> None:
         ({"reset": reset("WATCHDOG")}, "hung"),
         ({"reset": 5}, "fine"),
         ({"reset": 99}, "fine"),
-        ({"fault": STALL}, "hung"),
+        ({"fault": STALL_NUMBER}, "hung"),
         ({"features": WIFI_RESTS}, "wifi_rests"),
-        ({"saved": SAVED_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
+        ({"saved": SAVED_NUMBER_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
     ],
 )
 def test_faults_that_a_robot_reports_are_found(values: dict[str, int], cause: str) -> None:
@@ -132,8 +135,8 @@ def test_faults_that_a_robot_reports_are_found(values: dict[str, int], cause: st
     [
         ({"state": state("STOPPED")}, "stopped"),
         ({"state": state("FAULTED")}, "stopped"),
-        ({"saved": SAVED_BY_NAME["SAVING"]}, "not_saved_yet"),
-        ({"saved": SAVED_BY_NAME["OTHER_VERSION"]}, "other_program"),
+        ({"saved": SAVED_NUMBER_BY_NAME["SAVING"]}, "not_saved_yet"),
+        ({"saved": SAVED_NUMBER_BY_NAME["OTHER_VERSION"]}, "other_program"),
         ({"features": OWNERS | OWNED}, "of_another_owner"),
     ],
 )
@@ -176,7 +179,7 @@ def test_an_unknown_kit_is_reported() -> None:
 )
 def test_a_refused_hello_is_reported(refuses: tuple[str, int], cause: str, is_sure: bool) -> None:
     end = Firmware()
-    end.refuses = (STATUSES[refuses[0]], refuses[1])
+    end.hello_refusal = (STATUSES[refuses[0]], refuses[1])
     assert only_cause(end) == (cause, is_sure)
 
 
@@ -197,11 +200,13 @@ def test_each_restart_counts_once(restarts_ms: int) -> None:
     robot = WireRobot(SimulatedWire(end), 4711, KIT)
     end.restarts_ms, end.resets = restarts_ms, "POWER"
     hello = robot.hello()
-    first = hello_values(hello)
-    assert hello is not None and first is not None
+    first_values = hello_values(hello)
+    assert hello is not None and first_values is not None
     (finding,) = examine(robot, hello, Expectations(KIT, "tinibot", NAMES.get), 20_000)
-    last = end.hello["nonce"]
-    assert isinstance(last, int) and finding.values["count"] == str(last - first.nonce)
+    last_nonce = end.hello["nonce"]
+    assert isinstance(last_nonce, int) and finding.values["count"] == str(
+        last_nonce - first_values.nonce
+    )
 
 
 @pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])
@@ -214,11 +219,11 @@ def test_restarts_at_motor_starts_are_reported(resets: str, is_sure: bool) -> No
                 self.hello["state"] = state("RUNNING")
             return super().answer(data)
 
-    ends = [Driver(), Driver()]
-    for end in ends:
+    drivers = [Driver(), Driver()]
+    for end in drivers:
         end.restarts_ms, end.resets = 10_000, resets
-    assert watch_line(ends[0], 12_000)["motors_restart"].is_sure == is_sure
-    assert "motors_restart" not in causes(ends[1])  # the watch was too short for that
+    assert watch_line(drivers[0], 12_000)["motors_restart"].is_sure == is_sure
+    assert "motors_restart" not in causes(drivers[1])  # the watch was too short for that
 
 
 @pytest.mark.parametrize("is_radio", [False, True])
@@ -234,12 +239,12 @@ def test_a_lossy_radio_is_reported(is_radio: bool) -> None:
 def test_a_robot_reports_everything_whatever_was_stopped_before(epoch: int) -> None:
     end = Firmware()
     end.epoch, end.trim = epoch, {"wheels": 5, "balance": -2, "least": 30, "pace": b""}
-    told: list[RobotAnswers] = []
+    robot_answers: list[RobotAnswers] = []
     robot = WireRobot(SimulatedWire(end), 4711, KIT)
     reply = robot.hello()
     assert reply is not None
-    examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_answers=told.append))
-    assert told[0].trim == TrimReply(**end.trim)  # type: ignore[arg-type]
+    examine(robot, reply, Expectations(KIT, "tinibot", NAMES.get, on_answers=robot_answers.append))
+    assert robot_answers[0].trim == TrimReply(**end.trim)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("damaged_count", "is_lossy"), [(1, False), (2, True)])
@@ -255,18 +260,18 @@ def test_a_robot_that_hears_badly_but_answers_is_reported(
     assert ("lossy" in causes(Noisy())) == is_lossy
 
 
-@pytest.mark.parametrize("before", [0, 100, 240, 253, 255])
+@pytest.mark.parametrize("count_before", [0, 100, 240, 253, 255])
 @pytest.mark.parametrize("count", ["damaged", "framing", "overrun"])
-def test_damage_is_counted_across_a_counter_overflow(count: str, before: int) -> None:
+def test_damage_is_counted_across_a_counter_overflow(count: str, count_before: int) -> None:
     """Its 256 values follow each other in a circle."""
 
     class Noisy(Firmware):
         def answer(self, data: bytes) -> bytes:
             if len(self.requests) == 10:  # in the middle of the PINGs
-                self.counts[count] = (before + 4) % 256
+                self.counts[count] = (count_before + 4) % 256
             return super().answer(data)
 
-    assert causes(Noisy(**{count: before}))["lossy"].values["damaged"] == "4"
+    assert causes(Noisy(**{count: count_before}))["lossy"].values["damaged"] == "4"
 
 
 def test_earlier_damage_on_a_line_counts() -> None:
@@ -297,7 +302,7 @@ def test_a_robot_at_another_baud_rate_is_found(baud: int) -> None:
 
 
 def test_a_robot_at_another_baud_rate_with_another_fault_is_found() -> None:
-    end = Firmware(115200, saved=SAVED_BY_NAME["LOW_SUPPLY"])
+    end = Firmware(115200, saved=SAVED_NUMBER_BY_NAME["LOW_SUPPLY"])
     assert [finding.cause for finding in findings_on(end)] == ["wrong_baud", "low_supply"]
 
 
@@ -315,9 +320,10 @@ def test_a_robot_at_another_baud_rate_with_another_fault_is_found() -> None:
         (Board(57600), "other_sketch", False),
         (Board(open_ms=None), "bootloader_only", True),
         (Board(57600, open_ms=None), "bootloader_only", True),
-        (Board(115200, MEGA, b"\x1b\x01\0\x0b\x0e\x01\0\x08AVRISP_2!"), "other_sketch", False),
-        (Babble(), "garbled", False),
-        (Nobody(), "silent", False),
+        (Board(115200, MEGA_GREETING, b"\x1b\x01\0\x0b\x0e\x01\0\x08AVRISP_2!"), "other_sketch",
+            False),
+        (BabblingEnd(), "garbled", False),
+        (UnpoweredEnd(), "silent", False),
     ],
 )  # fmt: skip
 def test_causes_on_a_cable_are_found(end: OtherEnd, cause: str, is_sure: bool) -> None:
@@ -333,7 +339,7 @@ def test_bytes_heard_at_only_one_baud_rate_are_reported(speed: int) -> None:
             heard_bytes = super().receive(wait_ms, quiet_ms)
             return heard_bytes if self.baud == speed else b""
 
-    wire = Deaf(Babble(speed), BAUDS[0])
+    wire = Deaf(BabblingEnd(speed), BAUDS[0])
     expected = Expectations(None, "tinibot", NAMES.get)
     (finding,) = diagnose_line(wire, PortFacts(BAUDS[0], False, 4711), expected)
     assert finding.cause == "garbled"
@@ -344,8 +350,8 @@ def test_bytes_heard_at_only_one_baud_rate_are_reported(speed: int) -> None:
     [
         (Echo(), "echo", False),  # radios have one speed, so this may be a sketch
         (Sketch(), "other_sketch", True),
-        (Babble(), "module_baud", False),  # the module's wire garbles the radio's data
-        (Nobody(), "crossed", False),
+        (BabblingEnd(), "module_baud", False),  # the module's wire garbles the radio's data
+        (UnpoweredEnd(), "crossed", False),
     ],
 )
 def test_causes_by_radio_are_found(end: OtherEnd, cause: str, is_sure: bool) -> None:
@@ -378,7 +384,7 @@ def test_a_foreign_board_on_a_cable_is_recognized(
     """This holds for any speed of the board, and any speed of a robot here."""
     for baud in (9600, 115200):
         (finding,) = findings_on(kind(its_baud), baud=baud)
-        if kind in SAY_NOTHING and its_baud not in (baud, *RESTARTED):
+        if kind in SILENT_BOARDS and its_baud not in (baud, *BOOTLOADER_BAUDS):
             assert finding.cause == "garbled", baud
             continue
         assert (finding.cause, finding.is_sure) == (cause, True), baud
@@ -391,7 +397,7 @@ def test_a_foreign_board_by_radio_is_recognized(
 ) -> None:
     """The board was not restarted, so its start message is not received."""
     end = kind(9600)
-    end.now_ms = end._since_ms = 10_000
+    end.now_ms = end._elapsed_ms = 10_000
     (finding,) = findings_on(end, is_radio=True)
     unheard = {
         boards.EchoSketch: "echo", boards.AtBoard: "echo", boards.Esp32Board: "crossed",
@@ -404,15 +410,15 @@ def test_a_foreign_board_by_radio_is_recognized(
 def test_a_robot_that_sends_but_hears_nothing_is_reported() -> None:
     """Its frames and lines are never those of a foreign board."""
 
-    class OneWay(Nobody):
-        sent = b"// OK\r\n"
+    class OneWay(UnpoweredEnd):
+        sent_bytes = b"// OK\r\n"
 
         def answer(self, data: bytes) -> bytes:
-            return self.sent if self.now_ms % 300 == 0 else b""
+            return self.sent_bytes if self.now_ms % 300 == 0 else b""
 
     end = OneWay()
-    for data in (end.sent, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
-        end.sent = data
+    for data in (end.sent_bytes, b"\0" + encode_frame(Frame(33, 0, 7, b"\x01\xff\x55\r\n>>> "))):
+        end.sent_bytes = data
         for is_radio in (False, True):
             assert only_cause(end, is_radio=is_radio) == ("one_way", False)
 

@@ -15,27 +15,57 @@ from tiniscript.link import foreign
 
 # The values of each cause that has some; the sentences may use no others.
 VALUES = {
-    "port_missing": {"ports"}, "which_port": {"ports"}, "driver_missing": {"chip", "driver"},
-    "brltty": {"chip"}, "no_rfcomm": {"number"}, "no_permission": {"group"},
-    "login_again": {"group"}, "busy": {"by"}, "other_tsc": {"verb", "theirs"},
-    "port_broken": {"why"}, "module_set_up": {"baud", "module"}, "module_alone": {"baud", "module"},
-    "wrong_baud": {"baud", "expected"}, "module_baud": {"n"},
-    "bootloader_only": {"board"}, "garbled": {"n"}, "firmware_older": {"theirs", "ours"},
-    "firmware_newer": {"theirs", "ours"}, "wrong_kit": {"kit", "robot", "expected"},
-    "unknown_kit": {"kit"}, "restarts": {"count", "reset"}, "motors_restart": {"count", "reset"},
-    "lossy": {"missed", "n", "damaged"}, "other_robot": {"id"}, "unproven": {"id"},
-    "fine": {"name", "kit", "id", "n"}, "plain": {"said"}, "kit_is": {"robot"},
-    "firmware_is": {"isa", "room", "largest", "window"}, "line_is": {"n", "ms", "least", "most"},
-    "supply_is": {"reset"}, "trim_is": {"trim"}, "discs_noise": {"left", "right"},
-    "reads": {"name", "values"}, "stuck": {"name", "values"}, "changes": {"name", "values", "now"},
-    "same": {"name", "values", "now"}, "as_bright": {"name", "values", "now"},
-    "no_reading": {"name", "said"}, "ended": {"said"}, "too_weak": {"n"}, "too_uneven": {"n"},
-    **{f"module_{how}": {"name", "said"} for how in ("refused", "differs", "elsewhere", "lost")},
-}  # fmt: skip
+    "port_missing": {"ports"},
+    "which_port": {"ports"},
+    "driver_missing": {"chip", "driver"},
+    "brltty": {"chip"},
+    "no_rfcomm": {"number"},
+    "no_permission": {"group"},
+    "login_again": {"group"},
+    "busy": {"by"},
+    "other_tsc": {"verb", "theirs"},
+    "port_broken": {"why"},
+    "module_set_up": {"baud", "module"},
+    "module_alone": {"baud", "module"},
+    "wrong_baud": {"baud", "expected"},
+    "module_baud": {"n"},
+    "bootloader_only": {"board"},
+    "garbled": {"n"},
+    "firmware_older": {"theirs", "ours"},
+    "firmware_newer": {"theirs", "ours"},
+    "wrong_kit": {"kit", "robot", "expected"},
+    "unknown_kit": {"kit"},
+    "restarts": {"count", "reset"},
+    "motors_restart": {"count", "reset"},
+    "lossy": {"missed", "n", "damaged"},
+    "other_robot": {"id"},
+    "unproven": {"id"},
+    "fine": {"name", "kit", "id", "n"},
+    "plain": {"said"},
+    "kit_is": {"robot"},
+    "firmware_is": {"isa", "room", "largest", "window"},
+    "line_is": {"n", "ms", "least", "most"},
+    "supply_is": {"reset"},
+    "trim_is": {"trim"},
+    "discs_noise": {"left", "right"},
+    "reads": {"name", "values"},
+    "stuck": {"name", "values"},
+    "changes": {"name", "values", "now"},
+    "same": {"name", "values", "now"},
+    "as_bright": {"name", "values", "now"},
+    "no_reading": {"name", "said"},
+    "ended": {"said"},
+    "too_weak": {"n"},
+    "too_uneven": {"n"},
+    **{
+        f"module_{outcome}": {"name", "said"}
+        for outcome in ("refused", "differs", "elsewhere", "lost")
+    },
+}
 
 
 # Parts with a single cause need no further symptom; several causes may share a next step.
-OF_A_PART = [
+PART_CAUSES = [
     value for value, row in CAUSES.items() if row.next_key or (row.verdict == OK and row.part)
 ]
 
@@ -49,12 +79,12 @@ def sentences(cause: str, *kinds: str) -> Iterator[str]:
             yield sentence
 
 
-@each_row("cause", [cause for cause in CAUSES if cause not in (*OF_A_PART, *foreign.NAMES)])
+@each_row("cause", [cause for cause in CAUSES if cause not in (*PART_CAUSES, *foreign.NAMES)])
 def test_each_cause_has_a_finding_evidence_and_advice(cause: str) -> None:
     assert len([*sentences(cause, "found", "seen", "next")]) > 3
 
 
-@each_row("cause", OF_A_PART)
+@each_row("cause", PART_CAUSES)
 def test_each_fault_of_a_part_has_advice(cause: str) -> None:
     values = dict.fromkeys(VALUES.get(cause, ()), "7")
     assert [*sentences(cause, "found")]
@@ -83,11 +113,11 @@ def test_every_sentence_about_a_board_has_a_row() -> None:
 def test_every_sentence_about_a_cause_has_its_cause() -> None:
     known_names = {f"found_{cause}" for cause in CAUSES}
     known_names |= {f"next_{row.next_key or cause}" for cause, row in CAUSES.items()}
-    known_names -= {f"next_{cause}" for cause in OF_A_PART}
+    known_names -= {f"next_{cause}" for cause in PART_CAUSES}
     known_names |= {
-        f"next_{CAUSES[cause].next_key}" for cause in OF_A_PART if CAUSES[cause].next_key
+        f"next_{CAUSES[cause].next_key}" for cause in PART_CAUSES if CAUSES[cause].next_key
     }
-    known_names |= {f"seen_{cause}" for cause in CAUSES if cause not in OF_A_PART}
+    known_names |= {f"seen_{cause}" for cause in CAUSES if cause not in PART_CAUSES}
     for kind in ("found", "seen", "next"):  # texts about other boards have their own catalogue
         known_names -= {f"{kind}_{cause}" for cause in foreign.NAMES}
     known_names |= {

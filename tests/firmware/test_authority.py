@@ -9,10 +9,10 @@ import pytest
 from tests.support.campaign import make_options
 from tests.support.images import image_of
 from tests.support.owners import (
-    OPEN_TO_ALL,
-    WITHOUT_SEALS,
+    NO_SEALS_DEFINES,
+    UNSEALED_REQUESTS,
     Keys,
-    Owned,
+    OwnedRobot,
     grants_key_request,
     owner_of,
     robots_of_both_kinds,
@@ -30,7 +30,7 @@ DISCONNECTED = 8  # the STATE pin of a module
 
 
 def test_a_stranger_can_only_watch_and_stop() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     owner = table.claim_session(keys)
     assert table.tries(owner) == "OK"
     stranger = table.session(nonce=3)
@@ -47,12 +47,12 @@ def test_a_stranger_can_only_watch_and_stop() -> None:
 
 def test_every_request_is_classified_by_authority() -> None:
     """Requests that act and are not listed here need authority, and the owner's run continues."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     assert table.tries(table.claim_session(keys)) == "OK"
     stranger = table.session(nonce=3)
     assert owner_of(table, stranger) == OWNED_BY_OTHER
     for message in BY_NAME.values():
-        if message.number >= 32 or message.name in OPEN_TO_ALL | {"CLAIM", "AUTHENTICATE"}:
+        if message.number >= 32 or message.name in UNSEALED_REQUESTS | {"CLAIM", "AUTHENTICATE"}:
             continue
         payload = bytes(sum(field.least_bytes for field in message.request))
         status = table.ask_unsealed(stranger, message.name, payload)[0]
@@ -66,7 +66,7 @@ def test_every_request_is_classified_by_authority() -> None:
 def test_authority_ends_with_its_connection_and_is_proved_again(ending: str) -> None:
     """It ends less than 2 s after its last frame if a radio dropped out, or when another client
     arrives."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     session._handshake._keys = None  # without a key, it cannot authenticate
     table.pass_time(None, 1900)
@@ -84,7 +84,7 @@ def test_authority_ends_with_its_connection_and_is_proved_again(ending: str) -> 
 
 
 def test_a_replayed_session_grants_nothing() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     next_session = table.session(keys, nonce=4)
     recorded_bytes, _ = table.frames(next_session, next_session.upload(image_of("SI|F(1, 80)")))
@@ -97,7 +97,7 @@ def test_a_replayed_session_grants_nothing() -> None:
 
 
 def test_a_replayed_tag_grants_nothing_in_its_own_epoch() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     owner = table.session(keys, nonce=4)
     recorded_bytes, _ = table.frames(owner, owner.hello())
@@ -134,7 +134,7 @@ def test_a_replayed_tag_grants_nothing_in_its_own_epoch() -> None:
 
 def test_wrong_keys_do_not_affect_the_owner() -> None:
     """This is on a line whose other end is unknown to the robot."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     wrong_keys = Keys()
     for count in range(20):
@@ -150,7 +150,7 @@ def test_wrong_keys_do_not_affect_the_owner() -> None:
 
 def test_no_challenge_can_serve_as_a_tag() -> None:
     """Both are hashes with one key: the sender of a session's nonce cannot obtain a tag."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     owner = table.claim_session(keys)
     assert owner.robot is not None
     nonce = owner.robot.values.nonce.to_bytes(4, "little")
@@ -169,12 +169,12 @@ def test_no_challenge_can_serve_as_a_tag() -> None:
 
 def test_a_reset_with_the_same_seed_gives_a_new_challenge_or_needs_the_key() -> None:
     """Two robots with one memory and one nonce: a tag shown to one never opens the other."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     memory = table.robot.memory()
     challenges = set()
     for seed in range(12):
-        restarted = Owned(memory, seed=seed)
+        restarted = OwnedRobot(memory, seed=seed)
         session = restarted.session(keys, nonce=4)
         _, answers = restarted.frames(session, session.hello())
         reply = max(answers, key=len)
@@ -195,7 +195,7 @@ def send_forged_frames(frames: int, seed: int) -> int:
     had it drive, start or change. A stop in between is always obeyed.
     """
     chance = random.Random(seed)
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     owner = table.session(keys, nonce=4)
     recorded_bytes, _ = table.frames(owner, owner.upload(image_of("SI|F(0.1, 80)")))
@@ -244,5 +244,5 @@ def send_forged_frames(frames: int, seed: int) -> int:
 
 if __name__ == "__main__":
     options = make_options(100_000, 1)
-    Owned.DEFINES = WITHOUT_SEALS
+    OwnedRobot.DEFINES = NO_SEALS_DEFINES
     assert send_forged_frames(options.count, options.seed) == 0

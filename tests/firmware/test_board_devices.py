@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from tests.machines.board import HERTZ, MS, Board
-from tests.support.board_states import START, STEADY, WORKSHOP, on_board, pulses, start_board
+from tests.support.board_states import START_MS, STEADY_MS, WORKSHOP, on_board, pulses, start_board
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
@@ -30,8 +30,8 @@ def test_an_echo_is_measured_on_other_pins_of_a_mega(echo: str) -> None:
     board = start_board(robot, power_program("DISTANCE"))
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [50 * 2 / 0.0343])
-    board.run_for(START + 80)
-    assert board.motors(START + 75)[0] == f"pwm {50 * 653 >> 8}"
+    board.run_for(START_MS + 80)
+    assert board.motors(START_MS + 75)[0] == f"pwm {50 * 653 >> 8}"
 
 
 @pytest.mark.sampled("echo", "group", "mask")
@@ -47,9 +47,9 @@ def test_pin_change_interrupts_of_ports_j_and_k_are_enabled(
     )
     board = start_board(robot, power_program("DISTANCE"))
     board.watched |= {PCICR, PCMSK0 + group}
-    board.run_for(START + 10)
-    assert board.register(PCICR, START + 5) == 1 << group
-    assert board.register(PCMSK0 + group, START + 5) == 1 << mask
+    board.run_for(START_MS + 10)
+    assert board.register(PCICR, START_MS + 5) == 1 << group
+    assert board.register(PCMSK0 + group, START_MS + 5) == 1 << mask
 
 
 PCICR, PCMSK0 = 0x68, 0x6B
@@ -63,12 +63,12 @@ def test_a_missing_echo_reads_as_far_away_after_three_times_25_ms(width_us: int)
     board = start_board(robot, text)
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [width_us] * 3 + [50 * 2 / 0.0343])
-    board.run_for(START + 250)
+    board.run_for(START_MS + 250)
     level = f"pwm {10 * 653 >> 8}"
     third = 2 * max(30, 0.46 + width_us / 1000)
-    assert board.motors(START + third + 24)[0] == "low"
-    assert board.motors(START + third + 30)[0] == level
-    assert board.motors(START + 249)[0] == f"pwm {20 * 653 >> 8}"
+    assert board.motors(START_MS + third + 24)[0] == "low"
+    assert board.motors(START_MS + third + 30)[0] == level
+    assert board.motors(START_MS + 249)[0] == f"pwm {20 * 653 >> 8}"
 
 
 @pytest.mark.sampled("name", "reading", "channel", "millivolts", "power", keep=3)
@@ -85,8 +85,8 @@ def test_a_voltage_is_a_reading(
 ) -> None:
     board = start_board(robots.load(name), power_program(reading))
     board.analog(channel, millivolts)
-    board.run_for(START + 10)
-    pwm_value = int(board.motors(START + 9)[0].removeprefix("pwm "))
+    board.run_for(START_MS + 10)
+    pwm_value = int(board.motors(START_MS + 9)[0].removeprefix("pwm "))
     assert abs(pwm_value - power * 2.55) < 3
 
 
@@ -94,8 +94,8 @@ def is_true(robot: Robot, condition: str, set_up: Callable[[Board], object]) -> 
     """Return the value of a condition, which a program shows as a power."""
     board = start_board(robot, f"SI|IF({condition});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)")
     set_up(board)
-    board.run_for(START + 5)
-    level = board.motors(START + 4)[0]
+    board.run_for(START_MS + 5)
+    level = board.motors(START_MS + 4)[0]
     assert level in (f"pwm {20 * 653 >> 8}", f"pwm {10 * 653 >> 8}")
     return level == f"pwm {20 * 653 >> 8}"
 
@@ -166,8 +166,8 @@ def test_each_task_gets_its_readings_in_time(seed: int) -> None:
     main_task, *other_tasks = tasks[:3]
     text = f"SI|LONGEST = 0;COUNT = 0\n{main_task}\n"
     text += "".join(f"TASK\n{task}\nEND_TASK\n" for task in other_tasks) + SHOW_RESULTS_CODE
-    board = start_board(on_board("tinibot", "mega", *DIM_SENSOR), text).run_for(START + 530)
-    longest, count = (int(board.motors(START + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
+    board = start_board(on_board("tinibot", "mega", *DIM_SENSOR), text).run_for(START_MS + 530)
+    longest, count = (int(board.motors(START_MS + 529)[pin].removeprefix("pwm ")) for pin in (0, 3))
     assert 0 < longest <= 3 * 26 and count > 20
 
 
@@ -186,7 +186,7 @@ def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
     robot = robots.load(name)
     board = start_board(robot, f"SI|BEEP(0.3, {hertz})")
     board.watch(buzzer_of(robot))
-    board.run_for(START + 290)
+    board.run_for(START_MS + 290)
     edges = board.edges(buzzer_of(robot))
     periods = (len(edges) - 1) // 2
     measured_hertz = HERTZ * periods / (edges[2 * periods] - edges[0])
@@ -197,8 +197,8 @@ def test_a_beep_of_zero_length_ends_the_previous_one() -> None:
     robot = on_board("tinibot", "mega")
     board = start_board(robot, "SI|BEEP(0.5, 440)\nTASK\nW(0.1);BEEP(0, 440);W(9)\nEND_TASK")
     board.watch(buzzer_of(robot))
-    board.run_for(START + 300)
-    edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
+    board.run_for(START_MS + 300)
+    edges = [cycle / MS - START_MS for cycle in board.edges(buzzer_of(robot))]
     assert 95 < edges[-1] < 103
 
 
@@ -209,13 +209,13 @@ def test_an_ended_program_plays_its_tune_and_the_light_shows_readiness() -> None
     board = start_board(robot, "SI|F(0.1, 50)")
     board.watch(buzzer_of(robot))
     board.watch(light)
-    board.run_for(START + 500)
-    edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
+    board.run_for(START_MS + 500)
+    edges = [cycle / MS - START_MS for cycle in board.edges(buzzer_of(robot))]
     assert 99 < edges[0] < 102
     assert 338 < edges[-1] < 342
     halves = [b - a for a, b in pairwise(edges)]
     assert halves[0] > 1.3 * halves[-2]
-    assert [board.pin(light, START + ms) for ms in (-50, 50, 250)] == ["high", "low", "high"]
+    assert [board.pin(light, START_MS + ms) for ms in (-50, 50, 250)] == ["high", "low", "high"]
 
 
 def test_no_note_of_a_tune_follows_a_tone() -> None:
@@ -223,9 +223,9 @@ def test_no_note_of_a_tune_follows_a_tone() -> None:
     robot = robots.load("tinibot")
     board = start_board(robot, "SI|BEEP(0.05, 880);W(0.2)")
     board.watch(buzzer_of(robot))
-    board.press(START + 255, START + 345 - STEADY)
-    board.run_for(START + 590)
-    edges = [cycle / MS - START for cycle in board.edges(buzzer_of(robot))]
+    board.press(START_MS + 255, START_MS + 345 - STEADY_MS)
+    board.run_for(START_MS + 590)
+    edges = [cycle / MS - START_MS for cycle in board.edges(buzzer_of(robot))]
     assert any(255 < edge < 340 for edge in edges), "the tune has begun"
     assert any(350 < edge < 390 for edge in edges), "the program runs again"
     assert not any(400 < edge < 585 for edge in edges)
@@ -238,15 +238,17 @@ def test_servo_and_lamp_are_set() -> None:
     )
     for pin in (11, 30):
         board.watch(pin)
-    board.run_for(START + 320)
+    board.run_for(START_MS + 320)
     pulse_list = pulses(board, 11)
-    assert pulse_list[0][0] > START
+    assert pulse_list[0][0] > START_MS
     for after_ms, us in ((25, 600), (125, 1500), (225, 2400)):
         lengths = [
-            length for ms, length in pulse_list if START + after_ms < ms < START + after_ms + 70
+            length
+            for ms, length in pulse_list
+            if START_MS + after_ms < ms < START_MS + after_ms + 70
         ]
         assert lengths and all(abs(length - us) < 3 for length in lengths)
-    assert board.pin(30, START + 50) == "high"
+    assert board.pin(30, START_MS + 50) == "high"
 
 
 def test_fan_and_active_low_lamp_are_set() -> None:
@@ -256,11 +258,11 @@ def test_fan_and_active_low_lamp_are_set() -> None:
     )
     for pin in (9, 19):
         board.watch(pin)
-    board.run_for(START + 250)
-    assert [board.pin(9, START + ms) for ms in (-1, 50, 150, 240)] == [
+    board.run_for(START_MS + 250)
+    assert [board.pin(9, START_MS + ms) for ms in (-1, 50, 150, 240)] == [
         "low", "pwm 0", "pwm 128", "pwm 255",
     ]  # fmt: skip
-    assert [board.pin(19, START + ms) for ms in (-1, 50, 150)] == ["high", "low", "high"]
+    assert [board.pin(19, START_MS + ms) for ms in (-1, 50, 150)] == ["high", "low", "high"]
 
 
 def test_a_reading_of_the_previous_program_is_not_reused() -> None:
@@ -269,10 +271,10 @@ def test_a_reading_of_the_previous_program_is_not_reused() -> None:
     pins = robot.board.sensors[2].pins
     board = start_board(robot, "SI|W(0.05);M(DISTANCE, 0);W(5)")
     board.echoes(pins["trigger"], pins["echo"], [2000, 80 * 2 / 0.0343])
-    board.press(START + 51, START + 100)
-    board.press(START + 150, START + 200)
-    board.run_for(START + 400)
-    assert board.motors(START + 390)[0] == f"pwm {80 * 653 >> 8}"
+    board.press(START_MS + 51, START_MS + 100)
+    board.press(START_MS + 150, START_MS + 200)
+    board.run_for(START_MS + 400)
+    assert board.motors(START_MS + 390)[0] == f"pwm {80 * 653 >> 8}"
 
 
 @pytest.mark.sampled("name")
@@ -280,16 +282,16 @@ def test_a_reading_of_the_previous_program_is_not_reused() -> None:
 def test_a_remote_control_is_read_after_the_sensors_of_the_kit(name: str) -> None:
     robot = on_board(name, "mega")
     board = start_board(robot, "SI|IF(KEY_DOWN AND NOT KEY_A);M(PAD_X, PAD_Y);ENDIF;W(5)")
-    board.run_for(START + 50)
-    motors = [motor for motor in board.motors(START + 40) if motor.startswith("pwm")]
+    board.run_for(START_MS + 50)
+    motors = [motor for motor in board.motors(START_MS + 40) if motor.startswith("pwm")]
     assert motors == [f"pwm {60 * 653 >> 8}", f"pwm {70 * 653 >> 8}"]
 
 
 def test_a_board_without_room_for_a_remote_control_refuses_a_program_that_reads_it() -> None:
     for text, moves in (("SI|M(60, PAD_Y);W(5)", False), ("SI|M(60, 70);W(5)", True)):
         board = start_board(robots.load("tinibot"), text)  # an Uno without tasks
-        board.run_for(START + 50)
-        assert (f"pwm {60 * 653 >> 8}" in board.motors(START + 40)) == moves
+        board.run_for(START_MS + 50)
+        assert (f"pwm {60 * 653 >> 8}" in board.motors(START_MS + 40)) == moves
 
 
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])
@@ -303,5 +305,5 @@ def test_interrupts_are_never_off_for_long(name: str) -> None:
     pins = robot.board.sensors[sonar_index].pins
     board = start_board(robot, text)
     board.echoes(pins["trigger"], pins["echo"], [1000])
-    board.run_for(START + 200)
+    board.run_for(START_MS + 200)
     assert 0 < board.quiet_us < 25

@@ -17,7 +17,7 @@ from tests.machines.board import Board
 from tests.machines.wired import Wired
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
-from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, Driven
+from tests.support.uno_with_discs import ENVIRONMENT, ROBOT, DrivenUno
 from tests.support.wired_robots import with_discs
 from tiniscript import robots
 from tiniscript.link.requests import OK
@@ -146,7 +146,7 @@ def test_two_channels_count_backwards(name: str) -> None:
 
 
 def test_moves_and_turns_have_the_requested_length(sketches: Callable[[str], Path]) -> None:
-    robot = Driven(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
+    robot = DrivenUno(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
     with robot.uno:
         assert robot.drive("F(30 CM, 60); R(90 DEG, 60)") == "DONE"
         pose = robot.pose
@@ -154,7 +154,7 @@ def test_moves_and_turns_have_the_requested_length(sketches: Callable[[str], Pat
 
 
 def test_a_move_interrupted_by_when_keeps_its_length(sketches: Callable[[str], Path]) -> None:
-    robot = Driven(sketches(ENVIRONMENT), 2, (92.5, 107.5), Roughness(0.005))
+    robot = DrivenUno(sketches(ENVIRONMENT), 2, (92.5, 107.5), Roughness(0.005))
     text = """X = 0; F(60 CM, 80)
 WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
     with robot.uno:
@@ -167,7 +167,7 @@ WHEN(X < 3 AND TIME > 0.35 + X * 0.65); X = X + 1; M(0, 0); W(0.4); END_WHEN"""
 
 def test_moves_are_straight_after_a_wheel_was_held(sketches: Callable[[str], Path]) -> None:
     """The fault is that of the wheel. The next program is as straight as the first one."""
-    robot = Driven(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
+    robot = DrivenUno(sketches(ENVIRONMENT), 1, (107.5, 92.5), Roughness(0.005))
     held_wheel = robot.wheels.wheels[1]
     with robot.uno:
         with mock.patch.object(held_wheel, "step", lambda has_two: 0.0):
@@ -234,7 +234,7 @@ def test_a_typed_stop_gets_through_while_both_discs_flicker(
 @pytest.mark.sampled(of="long ways of a chip")
 def test_a_nano_with_discs_runs_tasks(sketches: Callable[[str], Path]) -> None:
     """The reader of text has left room for them: it backs away from obstacles."""
-    robot = Driven(sketches("nano_tinibot2"), 1, (100, 100), Roughness())
+    robot = DrivenUno(sketches("nano_tinibot2"), 1, (100, 100), Roughness())
     pins = ROBOT.board.sensors[2].pins
     eye = f"D{pins['trigger']}", f"D{pins['echo']}"
     text = (ROOT / "examples" / "away.ts").read_text(encoding="utf-8")

@@ -14,13 +14,13 @@ import pytest
 from tests.machines.board import CONTROLS, HERTZ, MS, PORTS, Board
 from tests.machines.shift_register import HOLD_NS, ShiftRegister, WrongTiming
 from tests.support.board_states import (
-    BACKWARD,
-    FORWARD,
-    MOVES,
-    OFF,
-    START,
+    BACKWARD_MS,
+    FORWARD_MS,
+    MOVES_PROGRAM,
+    OFF_MS,
+    START_MS,
     STOPS,
-    TURN,
+    TURN_MS,
     start_board,
 )
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -135,13 +135,13 @@ def both(sides: tuple[str, str], left: int, right: int) -> dict[str, int]:
 @pytest.mark.parametrize("name", SIDES)
 def test_both_motors_of_a_side_run_alike(name: str, chip: str) -> None:
     sides = SIDES[name]
-    board = start_board(shield(*sides, chip), MOVES).run_for(START + OFF + 50)
+    board = start_board(shield(*sides, chip), MOVES_PROGRAM).run_for(START_MS + OFF_MS + 50)
     states = motor_states(board)
-    assert powers_at(states, START - 1) == {}
-    assert powers_at(states, START + FORWARD) == both(sides, 204, 204)
-    assert powers_at(states, START + BACKWARD) == both(sides, -102, -102)
-    assert powers_at(states, START + TURN) == both(sides, 127, -255)
-    assert powers_at(states, START + OFF) == {}
+    assert powers_at(states, START_MS - 1) == {}
+    assert powers_at(states, START_MS + FORWARD_MS) == both(sides, 204, 204)
+    assert powers_at(states, START_MS + BACKWARD_MS) == both(sides, -102, -102)
+    assert powers_at(states, START_MS + TURN_MS) == both(sides, 127, -255)
+    assert powers_at(states, START_MS + OFF_MS) == {}
     assert board.quiet_us < 40  # half the time of two bytes at 115,200 baud
 
 
@@ -154,11 +154,11 @@ def test_no_motor_turns_against_its_side(seed: int) -> None:
              for _ in range(12)]  # fmt: skip
     text = "SI|" + ";".join(f"M({left}, {right});W(0.02)" for left, right in moves)
     sides = SIDES["crossed"]
-    states = motor_states(start_board(shield(*sides), text).run_for(START + 300))
+    states = motor_states(start_board(shield(*sides), text).run_for(START_MS + 300))
     left_of = set(sides[0].split())
     previous = (0, 0)
     for number, (left, right) in enumerate(moves):
-        begin_ms, end_ms = START + 20 * number, START + 20 * (number + 1)
+        begin_ms, end_ms = START_MS + 20 * number, START_MS + 20 * (number + 1)
         levels = [int(percent * 2.55) for percent in (left, right)]
         steady = powers_at(states, end_ms - 1)
         assert steady == {m: p for m, p in both(sides, *levels).items() if p}
@@ -178,12 +178,12 @@ def test_nothing_moves_before_the_button_nor_after_a_stop(chip: str) -> None:
     extra_code = STOPS if chip == "uno" else ""
     board = start_board(robot, "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);END_LOOP", extra_code)
     if chip == "uno":
-        board.level(START + 50.123, 19, True)
+        board.level(START_MS + 50.123, 19, True)
     board.press(400, 450)
     board.run_for(430)
     states = motor_states(board)
-    assert all(state.cycle >= (START - 1) * MS for state in states if state.powers)
-    stop_ms = START + 50.123 + 0.02 if chip == "uno" else 402
+    assert all(state.cycle >= (START_MS - 1) * MS for state in states if state.powers)
+    stop_ms = START_MS + 50.123 + 0.02 if chip == "uno" else 402
     assert all(state.cycle < stop_ms * MS for state in states if state.powers)
     enable = board.edges(WIRES["enable"])
     assert enable[0] < 100, "its outputs are off before a program drives"

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from tests.machines.board import HERTZ, MS, PORTS, Board
-from tests.support.board_states import START, on_board, start_board
+from tests.support.board_states import START_MS, on_board, start_board
 from tests.support.sonar import (
     US_PER_CM,
     approaching_obstacle,
@@ -53,7 +53,7 @@ def test_pings_are_30_ms_apart_and_measure_the_distance(name: str, distance_cm: 
     board = start_board(robot, "SI|LOOP(FOREVER);M(DISTANCE, 0);END_LOOP")
     board.watch(trigger)
     board.echoes(trigger, echo, [distance_cm * US_PER_CM])
-    board.run_for(START + 400)
+    board.run_for(START_MS + 400)
     gaps = [b - a for a, b in pairwise(ping_starts_ms(board, trigger))]
     assert len(gaps) >= 10
     assert min(gaps) >= SPACING_MS
@@ -61,12 +61,12 @@ def test_pings_are_30_ms_apart_and_measure_the_distance(name: str, distance_cm: 
     edges = board.edges(trigger)
     for rose, fell in zip(edges[::2], edges[1::2], strict=False):
         assert 10 <= (fell - rose) * 1e6 / HERTZ < 200
-    assert board.motors(START + 95)[0] == f"pwm {min(distance_cm, 100) * 653 >> 8}"
+    assert board.motors(START_MS + 95)[0] == f"pwm {min(distance_cm, 100) * 653 >> 8}"
 
 
 def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.01);END_LOOP"
-    board = board_with_distances(text, *[20] * FIRST_SAMPLES, 60).run_for(START + 160)
+    board = board_with_distances(text, *[20] * FIRST_SAMPLES, 60).run_for(START_MS + 160)
     first, second, third = ping_starts_ms(board, sonar_pins(board.robot)[0])[
         FIRST_SAMPLES - 1 : FIRST_SAMPLES + 2
     ]
@@ -80,11 +80,11 @@ def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
 def test_until_checks_again_every_40_ms() -> None:
     """The check runs every 20 ms, with a fresh reading every second time."""
     text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
-    board = board_with_distances(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START + 250)
-    ping_ms = [ms - START for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
+    board = board_with_distances(text, *[50] * FIRST_SAMPLES, 50, 8).run_for(START_MS + 250)
+    ping_ms = [ms - START_MS for ms in ping_starts_ms(board, sonar_pins(board.robot)[0])]
     assert [round(ms / 10) for ms in ping_ms] == [0, 3, 6, 10, 14, 17]
-    assert board.motors(START + 173)[0] == "pwm 51"
-    assert board.motors(START + 178)[0] == "low"
+    assert board.motors(START_MS + 173)[0] == "pwm 51"
+    assert board.motors(START_MS + 178)[0] == "low"
 
 
 RESTART_CODE = """
@@ -108,11 +108,11 @@ def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
     robot = robots.load("tinibot")
     trigger, _ = sonar_pins(robot)
     text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
-    plain_board = board_with_distances(text, 20, 70).run_for(START + 40)
+    plain_board = board_with_distances(text, 20, 70).run_for(START_MS + 40)
     first_ping_ms = plain_board.edges(trigger)[0] / MS
     board = board_with_distances(text, 20, 70, robot=robot, extra_code=RESTART_CODE)
     board.level(first_ping_ms + after_ms, 19, True)
-    board.run_for(START + 160)
+    board.run_for(START_MS + 160)
     first, second, *others = ping_starts_ms(board, trigger)
     assert SPACING_MS <= second - first < SPACING_MS + 2
     drive_starts_ms = driven_ms(board, 1)
@@ -149,7 +149,7 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
         trigger, echo = sonar_pins(robot, number)
         board.watch(trigger)
         board.echoes(trigger, echo, [distance * US_PER_CM for distance in distances])
-    board.run_for(START + 600)
+    board.run_for(START_MS + 600)
     starts_ms = [ping_starts_ms(board, sonar_pins(robot, number)[0]) for number, _ in rows]
     all_starts_ms = sorted(ms for times in starts_ms for ms in times)
     assert min(b - a for a, b in pairwise(all_starts_ms)) >= SPACING_MS
@@ -193,7 +193,7 @@ def find_glitches(width_us: float) -> list[tuple[int, int]]:
     board.watch(trigger)
     rows = [(0.0, 0.0)] * FIRST_SAMPLES + [(phase, width_us) for phase in PHASES]
     board.echoes(trigger, echo, [ECHO_US] * (len(rows) + 1), rows)
-    times = ping_starts_ms(board.run_for(START + 33 * len(rows)), trigger)[FIRST_SAMPLES:]
+    times = ping_starts_ms(board.run_for(START_MS + 33 * len(rows)), trigger)[FIRST_SAMPLES:]
     gaps = [b - a for a, b in pairwise(times)]
     assert max(gaps) < 33  # no reading came late
     return [
@@ -221,10 +221,10 @@ def test_a_glitch_without_an_echo_is_far_away() -> None:
     text = "SI|IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;W(5)"
     board = board_with_distances(text, 0)
     for ms in (1.0, 3.0, 10.0, 20.0):
-        board.level(START + ms, echo, True)
-        board.level(START + ms + 0.06, echo, False)
-    board.run_for(START + 110)
-    assert read_power_cm(board, START + 100) == 10
+        board.level(START_MS + ms, echo, True)
+        board.level(START_MS + ms + 0.06, echo, False)
+    board.run_for(START_MS + 110)
+    assert read_power_cm(board, START_MS + 100) == 10
 
 
 # -- an echo that stays high
@@ -239,9 +239,9 @@ def test_a_healthy_sensor_that_hears_nothing_is_far_away(high_ms: float) -> None
     text = "SI|LOOP(FOREVER);IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;END_LOOP"
     robot = robots.load("tinibot")
     board = board_with_distances(text, high_ms * 1000 / US_PER_CM, robot=robot).run_for(
-        START + 1000
+        START_MS + 1000
     )
-    assert read_power_cm(board, START + 3 * high_ms) == 10
+    assert read_power_cm(board, START_MS + 3 * high_ms) == 10
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {10}
     assert len(ping_starts_ms(board, sonar_pins(robot)[0])) >= 5
 
@@ -257,7 +257,7 @@ def test_an_echo_that_stays_high_is_read_as_0_until_it_answers(chip: str) -> Non
         text, *[50] * FIRST_SAMPLES, 1_000_000 / US_PER_CM, 50, robot=robot
     )
     board.watch(echo)
-    board.run_for(START + 1300)
+    board.run_for(START_MS + 1300)
     hangs = ping_starts_ms(board, sonar_pins(robot)[0])[FIRST_SAMPLES]
     assert read_power_cm(board, hangs) == 10
     assert read_power_cm(board, hangs + HANG_END_MS - 1) == 10, "it may be one that hears nothing"
@@ -277,9 +277,9 @@ def test_a_briefly_high_line_is_not_a_hung_sensor() -> None:
     robot = robots.load("tinibot")
     board = board_with_distances(text, 50, robot=robot)
     for number in range(200):
-        board.level(START + 400 + 3 * number, sonar_pins(robot)[1], True)
-        board.level(START + 401.5 + 3 * number, sonar_pins(robot)[1], False)
-    board.run_for(START + 1200)
+        board.level(START_MS + 400 + 3 * number, sonar_pins(robot)[1], True)
+        board.level(START_MS + 401.5 + 3 * number, sonar_pins(robot)[1], False)
+    board.run_for(START_MS + 1200)
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {10}
 
 
@@ -292,7 +292,7 @@ def test_one_wrong_sample_in_fifty_never_becomes_a_reading(seed: int) -> None:
     """Whenever it comes, at the first ping of a run too: a reading is off by 20 % at most."""
     true, heard_cm = approaching_obstacle(seed, 100)
     board = board_with_distances("SI|LOOP(FOREVER);M(DISTANCE / 2, 0);END_LOOP", *heard_cm)
-    times = ping_starts_ms(board.run_for(START + 2900), sonar_pins(board.robot)[0])
+    times = ping_starts_ms(board.run_for(START_MS + 2900), sonar_pins(board.robot)[0])
     assert len(times) > 90
     readings = driven_ms(board, 1)
     assert len(readings) > 60
@@ -311,14 +311,14 @@ def test_a_first_value_is_the_median_of_three(number: int, wrong_cm: float) -> N
     heard_cm[number] = wrong_cm
     board = board_with_distances(
         "SI|LOOP(FOREVER);M(DISTANCE / 10, 0);END_LOOP", *heard_cm
-    ).run_for(START + 200)
+    ).run_for(START_MS + 200)
     assert {read_power_cm(board, ms) for ms in driven_ms(board, 1)} == {5}
 
 
 @pytest.mark.parametrize("before_cm", [400, 100])
 def test_a_sudden_obstacle_needs_a_second_ping(before_cm: float) -> None:
     text = "SI|LOOP(FOREVER);IF(DISTANCE < 15);M(90, 0);ELSE;M(10, 0);ENDIF;END_LOOP"
-    board = board_with_distances(text, *[before_cm] * 10, 8).run_for(START + 500)
+    board = board_with_distances(text, *[before_cm] * 10, 8).run_for(START_MS + 500)
     comes, confirmed = ping_starts_ms(board, sonar_pins(board.robot)[0])[10:12]
     assert read_power_cm(board, confirmed) == 10
     assert read_power_cm(board, confirmed + 2) == 90

@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 from tests.machines.board import MS, Board
-from tests.support.board_states import START, STEADY, STOPS, WORKSHOP, on_board, pulses, start_board
+from tests.support.board_states import (
+    START_MS,
+    STEADY_MS,
+    STOPS,
+    WORKSHOP,
+    on_board,
+    pulses,
+    start_board,
+)
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 
@@ -43,25 +51,25 @@ def pulses_from(board: Board, ms: float) -> int:
 def test_a_stop_turns_actuators_off(holds_position: bool) -> None:
     """A lamp in any case; a servo gets no more pulses, unless its profile says that it holds."""
     board = busy(grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)")
-    board.press(START + 105, START + 300)
-    board.run_for(START + 280)
-    assert board.pin(LED, START + 104) == "high"
-    assert board.pin(LED, START + 106) == "low"
-    assert pulses_from(board, START) >= 5
-    assert (pulses_from(board, START + 106) >= 5) == holds_position
+    board.press(START_MS + 105, START_MS + 300)
+    board.run_for(START_MS + 280)
+    assert board.pin(LED, START_MS + 104) == "high"
+    assert board.pin(LED, START_MS + 106) == "low"
+    assert pulses_from(board, START_MS) >= 5
+    assert (pulses_from(board, START_MS + 106) >= 5) == holds_position
     assert all(abs(us - 1500) < 6 for _, us in pulses(board, GRIPPER)), "a pulse was cut"
 
 
 def test_a_stopped_actuator_stays_off_until_a_program_sets_it() -> None:
     board = busy(grabber_robot(), "SI|W(0.1);GRIPPER(90);LED(TRUE);W(5)")
-    board.press(START + 150, START + 200)
-    board.press(START + 300, START + 400 - STEADY)
-    board.run_for(START + 600)
-    assert board.pin(LED, START + 140) == "high"
+    board.press(START_MS + 150, START_MS + 200)
+    board.press(START_MS + 300, START_MS + 400 - STEADY_MS)
+    board.run_for(START_MS + 600)
+    assert board.pin(LED, START_MS + 140) == "high"
     for ms in (152, 299, 399, 450, 498):
-        assert board.pin(LED, START + ms) == "low"
-    assert board.pin(LED, START + 505) == "high"
-    times = [at_ms - START for at_ms, _ in pulses(board, GRIPPER)]
+        assert board.pin(LED, START_MS + ms) == "low"
+    assert board.pin(LED, START_MS + 505) == "high"
+    times = [at_ms - START_MS for at_ms, _ in pulses(board, GRIPPER)]
     assert not [at_ms for at_ms in times if 151 < at_ms < 499]
     assert [at_ms for at_ms in times if at_ms > 500]
 
@@ -70,9 +78,9 @@ def test_a_program_that_is_being_stopped_sets_nothing() -> None:
     """The interrupt has turned the motors off, and the main loop does not know it yet."""
     stop = "ISR(PCINT0_vect) { tiniscript::motors_stop(); }"
     board = busy(grabber_robot(), "SI|LOOP(FOREVER);LED(TRUE);LED(FALSE);END_LOOP", interrupt(stop))
-    board.level(START + 50.123, WIRE, True)
-    board.run_for(START + 80)
-    edges = [cycle / MS - START for cycle in board.edges(LED)]
+    board.level(START_MS + 50.123, WIRE, True)
+    board.run_for(START_MS + 80)
+    edges = [cycle / MS - START_MS for cycle in board.edges(LED)]
     assert [at_ms for at_ms in edges if at_ms < 50.1]
     assert not [at_ms for at_ms in edges if at_ms > 50.3]
 
@@ -84,19 +92,19 @@ def test_a_hanging_main_loop_turns_everything_off(holds_position: bool) -> None:
     board = busy(
         grabber_robot(holds_position), "SI|GRIPPER(90);LED(TRUE);W(5)", interrupt(HANGING_HANDLER)
     )
-    board.level(START + 50, WIRE, True)
-    board.run_for(START + 170)
-    assert board.pin(LED, START + 140) == "high"
-    assert board.pin(LED, START + 160) == "low"
-    assert pulses_from(board, START + 60) >= 4
-    assert pulses_from(board, START + 160) == 0
+    board.level(START_MS + 50, WIRE, True)
+    board.run_for(START_MS + 170)
+    assert board.pin(LED, START_MS + 140) == "high"
+    assert board.pin(LED, START_MS + 160) == "low"
+    assert pulses_from(board, START_MS + 60) >= 4
+    assert pulses_from(board, START_MS + 160) == 0
 
 
 def test_a_stop_turns_off_a_fan_and_an_active_low_lamp() -> None:
     board = start_board(on_board("tinibot", "uno", *WORKSHOP), "SI|FAN(80);LAMP(TRUE);W(5)")
     for pin in (9, 19):
         board.watch(pin)
-    board.press(START + 100, START + 200)
-    board.run_for(START + 150)
-    assert [board.pin(9, START + ms) for ms in (90, 101)] == ["pwm 128", "low"]
-    assert [board.pin(19, START + ms) for ms in (90, 101)] == ["low", "high"]
+    board.press(START_MS + 100, START_MS + 200)
+    board.run_for(START_MS + 150)
+    assert [board.pin(9, START_MS + ms) for ms in (90, 101)] == ["pwm 128", "low"]
+    assert [board.pin(19, START_MS + ms) for ms in (90, 101)] == ["low", "high"]

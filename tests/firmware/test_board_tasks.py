@@ -9,7 +9,14 @@ from tests.support.casefile import ROOT, Case, read
 from tests.support.robot_on_host import outcome
 from tests.support.robot_on_uno import FORWARD, MOTORS, OFF, computer, send, states
 from tests.support.task_states import STATES
-from tests.support.uno_trace import OFF_MS, Setting, check_pins, last_zero, motor_settings, program
+from tests.support.uno_trace import (
+    OFF_MS,
+    MotorSetting,
+    check_pins,
+    last_zero,
+    motor_settings,
+    program,
+)
 from tiniscript.link.messages import STATE_STOPPED
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
@@ -46,7 +53,7 @@ def test_the_clock_runs_on_while_four_tasks_count(robot: Uno) -> None:
     )
 
 
-def list_settings(robot: Uno, since_cycle: int) -> list[Setting]:
+def list_settings(robot: Uno, since_cycle: int) -> list[MotorSetting]:
     """Return the motor settings since a cycle, without those of standing."""
     return [setting for setting in motor_settings(robot, since_cycle) if setting[1:] != (0, 0)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.machines.host_firmware import drives
-from tests.support.debugging import Debugged, Halt, debug
+from tests.support.debugging import DebuggedRobot, Halt, debug
 from tests.support.images import image_of
 from tests.support.robot_on_host import KIT, computer, fetch_image, switched_on, wait_until_saved
 from tiniscript.base.trace import TracedRobot
@@ -36,7 +36,7 @@ MAIN_TASK = 4  # the last task
 BAD_VALUE = STATUSES["BAD_VALUE"]
 
 
-def state(it: Debugged) -> int:
+def state(it: DebuggedRobot) -> int:
     return it.robot.complete(it.session, it.session.status()).state
 
 
@@ -87,7 +87,7 @@ def test_a_step_is_a_statement() -> None:
     ],
 )
 def test_an_offset_inside_a_statement_is_not_a_place(text: str) -> None:
-    it = Debugged(text)
+    it = DebuggedRobot(text)
     starts = statement_starts(it.image.code)
     for offset in range(len(it.image.code) + 3):
         assert it.places(offset) == (OK if offset in starts else BAD_VALUE), offset
@@ -98,14 +98,14 @@ def test_an_offset_inside_a_statement_is_not_a_place(text: str) -> None:
 def test_invalid_breakpoint_requests_are_refused() -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.break_at((0,))) == STATUSES["NO_PROGRAM"]
-    it = Debugged(DRIVE_PROGRAM)
+    it = DebuggedRobot(DRIVE_PROGRAM)
     for payload in (b"\0", b"\0\0\0", b"\0" * 10):
         assert bytes((STATUSES["BAD_LENGTH"],)) in answer(it, "BREAK", payload)
     assert it.robot.until(it.session, it.session.resume(2)) == BAD_VALUE
     assert it.robot.until(it.session, it.session.read_variables(32)) == BAD_VALUE
 
 
-def answer(it: Debugged, name: str, payload: bytes) -> bytes:
+def answer(it: DebuggedRobot, name: str, payload: bytes) -> bytes:
     """Return the robot's answer to a request that no session sends."""
     it.session._seq += 1
     frame = Frame(BY_NAME[name].number, it.session._seq & 255, it.session._epoch, payload)
@@ -296,7 +296,7 @@ def test_a_new_session_has_no_breakpoints() -> None:
 
 def test_nothing_halts_without_a_client() -> None:
     robot = switched_on()
-    it = Debugged("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
+    it = DebuggedRobot("SI|LOOP(FOREVER);F(1.2, 80);END_LOOP", robot)
     assert it.places(1) == OK
     it.start(is_detached=True)
     assert it.halt() == Halt(1, MAIN_TASK)
@@ -307,7 +307,7 @@ def test_nothing_halts_without_a_client() -> None:
 
 
 def test_a_halted_run_becomes_attached() -> None:
-    it = Debugged("SI|LOOP(FOREVER);F(0.2, 80);W(0.2);END_LOOP")
+    it = DebuggedRobot("SI|LOOP(FOREVER);F(0.2, 80);W(0.2);END_LOOP")
     assert it.places(1) == OK
     it.start(is_detached=True)
     assert it.halt()
@@ -317,7 +317,7 @@ def test_a_halted_run_becomes_attached() -> None:
 
 
 def test_the_longest_run_time_counts_halts() -> None:
-    it = Debugged("SI|W(5);SHOW(1)", switched_on(max_run_ms=3000))
+    it = DebuggedRobot("SI|W(5);SHOW(1)", switched_on(max_run_ms=3000))
     assert it.places(0) == OK
     it.start(is_detached=True)
     assert it.halt()
@@ -326,7 +326,7 @@ def test_the_longest_run_time_counts_halts() -> None:
 
 def test_a_halt_stops_the_motors_and_a_move_keeps_its_remaining_time() -> None:
     """Another task halts while a move of one second has 600 ms left."""
-    it = Debugged("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
+    it = DebuggedRobot("SI|TASK;F(1, 80);END_TASK;W(0.4);SHOW(1);W(2);SHOW(TIME)")
     show = statement_starts(it.image.code)[4]
     assert it.places(show) == OK
     it.start()
@@ -352,7 +352,7 @@ def test_a_measured_move_continues_with_its_rest() -> None:
     for is_halted in (False, True):
         robot = switched_on()
         robot.discs(cm=100_000, degrees=20_000)
-        it = Debugged("SI|TASK;F(30 CM, 80);END_TASK;W(0.2);SHOW(1)", robot)
+        it = DebuggedRobot("SI|TASK;F(30 CM, 80);END_TASK;W(0.2);SHOW(1)", robot)
         show = statement_starts(it.image.code)[4]
         assert it.places(*[show] * is_halted) == OK
         it.start()
@@ -370,7 +370,7 @@ def test_a_measured_move_continues_with_its_rest() -> None:
 
 
 def test_a_check_that_is_repeated_halts_once() -> None:
-    it = Debugged("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
+    it = DebuggedRobot("SI|LOOP(2);F(0.3, 40) UNTIL(DISTANCE < 10);END_LOOP;SHOW(1)")
     code = it.image.code
     _, check = statement_starts(code)[1:3]
     it.robot.sense(*[30_000] * len(KIT.sensors))
@@ -384,7 +384,7 @@ def test_a_check_that_is_repeated_halts_once() -> None:
 
 
 def test_a_when_halts_once_until_it_has_gone_through() -> None:
-    it = Debugged("SI|WHEN(LIGHT_R > 5);SHOW(1);END_WHEN;W(3)")
+    it = DebuggedRobot("SI|WHEN(LIGHT_R > 5);SHOW(1);END_WHEN;W(3)")
     check = statement_starts(it.image.code)[1]
     quiet, loud = ([0] * len(KIT.sensors) for _ in range(2))
     loud[KIT.names.index("LIGHT_R")] = 9000
@@ -421,7 +421,7 @@ def test_a_loop_around_one_statement_halts_each_time() -> None:
         "SI|N = 0;LOOP(2);LOOP(2);N = N + 1;END_LOOP;LOOP(0);W(9);END_LOOP;END_LOOP;SHOW(N)",
         "SI|N = 0;WHILE(N < 3);N = N + 1;IF(N = 2);BREAK;ENDIF;END_WHILE;W(0.1)",
     ):
-        it = Debugged(text)
+        it = DebuggedRobot(text)
         for offset in statement_starts(it.image.code):
             session = it.session
             assert it.robot.until(session, session.break_at((offset,))) == OK
@@ -481,7 +481,7 @@ def test_breakpoints_may_change_while_running_or_halted() -> None:
 
 def test_a_step_stays_in_its_task_unless_another_task_reaches_a_breakpoint() -> None:
     text = "SI|TASK;W(0.1);SHOW(1);W(0.1);SHOW(2);END_TASK;W(0.15);SHOW(8);W(1);SHOW(9)"
-    it = Debugged(text)
+    it = DebuggedRobot(text)
     places = statement_starts(it.image.code)
     main = places.index(next(offset for offset in places if offset >= places[6]))
     assert it.places(places[1]) == OK
@@ -504,7 +504,7 @@ def test_a_typed_program_also_halts() -> None:
 
 
 def test_a_session_sets_breakpoints_only_on_robots_that_can_halt() -> None:
-    it = Debugged(DRIVE_PROGRAM)
+    it = DebuggedRobot(DRIVE_PROGRAM)
     assert it.session.robot
     features = it.session.robot.values.features & ~BREAKPOINTS
     it.session._handshake._take_features(features)
@@ -514,7 +514,7 @@ def test_a_session_sets_breakpoints_only_on_robots_that_can_halt() -> None:
 
 def test_a_line_asked_to_halt_does_so_before_its_first_statement() -> None:
     """It has no breakpoint when it runs again, and neither has the stored program."""
-    it = Debugged(DRIVE_PROGRAM)
+    it = DebuggedRobot(DRIVE_PROGRAM)
     code = image_of(DRIVE_PROGRAM).code
     assert it.robot.until(it.session, it.session.live(code, halts=True)) == OK
     assert it.halt() == Halt(0, MAIN_TASK) and it.variables()[0] == 0
@@ -538,7 +538,7 @@ def test_a_line_asked_to_halt_does_so_before_its_first_statement() -> None:
 def test_a_halted_line_does_the_same_as_an_unhalted_one(text: str) -> None:
     variables = []
     for halts in (True, False):
-        it = Debugged(DRIVE_PROGRAM)
+        it = DebuggedRobot(DRIVE_PROGRAM)
         request = it.session.live(image_of(f"SI|{text}").code, halts=halts)
         assert it.robot.until(it.session, request) == OK
         while it.halt(200):
@@ -553,6 +553,6 @@ def test_a_halted_line_does_the_same_as_an_unhalted_one(text: str) -> None:
     [("PROGRAM", b"\0"), ("BEGIN", bytes((ISA_MAJOR, 0, 0, 16, 0, 0, 1, 0))), ("START", b"")],
 )
 def test_only_a_line_can_be_asked_to_halt(name: str, extra_bytes: bytes) -> None:
-    it = Debugged(DRIVE_PROGRAM)
+    it = DebuggedRobot(DRIVE_PROGRAM)
     mode = HALTS | RUN * (name != "START")
     assert bytes((BAD_VALUE,)) in answer(it, name, bytes((mode,)) + extra_bytes)

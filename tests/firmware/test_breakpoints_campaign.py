@@ -13,7 +13,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.oracle import programs
-from tests.support.debugging import Debugged
+from tests.support.debugging import DebuggedRobot
 from tests.support.images import image_of
 from tests.support.kits import KITS
 from tiniscript.base.kit import Kit
@@ -41,7 +41,7 @@ def run(image: Image, kit: Kit, seed: int, mode: str) -> list[str]:
     without the motor changes of halts, up to the first event after LIMIT_MS of its own time.
     """
     rng = random.Random(seed)
-    it = Debugged(image, switched_on(kit, seed), kit.fingerprint)
+    it = DebuggedRobot(image, switched_on(kit, seed), kit.fingerprint)
     statements = statement_starts(image.code)
     if mode != "alone":
         some = (
@@ -115,7 +115,7 @@ def test_a_stepped_program_does_the_same_as_an_unstepped_one(seed: int) -> None:
 NEXT_PROGRAM = (
     "SI|BEEP(0.001, 31);LOOP(3);SHOW(TIME);F(0.06, 80);END_LOOP;W(0.1);M(30, 30);W(0.2);SHOW(9)"
 )
-STOPS: dict[str, Callable[[Debugged], object]] = {
+STOPS: dict[str, Callable[[DebuggedRobot], object]] = {
     "nothing": lambda it: None,  # the next run ends it
     "zeros": lambda it: it.session.receive(it.robot.step(bytes(4)), it.robot.now_ms),
     "its computer": lambda it: it.session.stop(it.robot.now_ms),
@@ -124,7 +124,7 @@ STOPS: dict[str, Callable[[Debugged], object]] = {
 }
 
 
-def halts_before(it: Debugged, rng: random.Random) -> None:
+def halts_before(it: DebuggedRobot, rng: random.Random) -> None:
     """Start the program, step it, resume it, leave it halted, and end it in some way."""
     for _ in range(rng.randint(1, 3)):
         statements = statement_starts(it.image.code)
@@ -143,7 +143,7 @@ def halts_before(it: Debugged, rng: random.Random) -> None:
         it.talk(rng.choice((300, 700)))
 
 
-def list_next_run(it: Debugged, places: list[int]) -> list[str]:
+def list_next_run(it: DebuggedRobot, places: list[int]) -> list[str]:
     """Return the actions and events of a run, with its halts, from its request on."""
     assert it.places(*places) == OK
     it.events.clear()
@@ -170,7 +170,7 @@ def list_next_run(it: Debugged, places: list[int]) -> list[str]:
 @pytest.mark.parametrize("seed", range(24))
 def test_a_run_after_any_halts_is_as_on_a_fresh_robot(seed: int) -> None:
     rng = random.Random(seed)
-    it, fresh = Debugged(NEXT_PROGRAM), Debugged(NEXT_PROGRAM)
+    it, fresh = DebuggedRobot(NEXT_PROGRAM), DebuggedRobot(NEXT_PROGRAM)
     halts_before(it, rng)
     places = rng.sample(statement_starts(it.image.code), rng.choice((0, 0, 1, 2)))
     runs = []

@@ -11,7 +11,14 @@ from functools import lru_cache
 import pytest
 
 from tests.support.button_signals import button_events
-from tests.support.button_states import LINE, OTHER, SAVED, STATES, TYPED, Table
+from tests.support.button_states import (
+    LINE_POWER,
+    OTHER_POWER,
+    SAVED_POWER,
+    STATES,
+    TYPED_POWER,
+    Table,
+)
 from tests.support.casefile import ROOT
 from tests.support.images import image_of
 from tests.support.owners import BUTTON_HELD, BUTTON_PRESSED, BUTTON_RELEASED
@@ -157,8 +164,8 @@ def test_only_a_start_discards_text(press: str, has_draft: bool) -> None:
 @pytest.mark.parametrize("press", PRESSES)
 def test_only_a_start_discards_an_upload(press: str) -> None:
     table = Table()
-    table.upload_program(SAVED)
-    image = image_of(f"SI|{f'F(1, {OTHER}); ' * 90}")
+    table.upload_program(SAVED_POWER)
+    image = image_of(f"SI|{f'F(1, {OTHER_POWER}); ' * 90}")
     request = table.session.upload(image)
     while request.done_bytes < 60:
         table.talk(1)
@@ -169,7 +176,7 @@ def test_only_a_start_discards_an_upload(press: str) -> None:
         now_ms = at_ms
     if press != HELD_FOR_EVER and now_ms < 2500:
         outcome = table.robot.until(table.session, request, 30_000)
-        drives = f"MOTORS {OTHER} {OTHER}" in " ".join(table.robot.did)
+        drives = f"MOTORS {OTHER_POWER} {OTHER_POWER}" in " ".join(table.robot.did)
         assert (outcome == OK) == drives == (SHORT_COLUMN not in PRESSES[press][1])
 
 
@@ -177,10 +184,12 @@ def test_only_a_start_discards_an_upload(press: str) -> None:
 # the release.
 ACTIONS_DURING_PRESS: dict[str, Callable[[Table], object]] = {
     "nothing": lambda table: None,
-    "a line": lambda table: table.session.live(image_of(f"SI|F(600, {LINE})").code),
-    "a short line": lambda table: table.session.live(image_of(f"SI|F(0.05, {LINE})").code),
-    "an upload": lambda table: table.session.upload(image_of(f"SI|F(600, {OTHER})"), saves=False),
-    "text": lambda table: type_text(table.robot, f"SI|F(0.05, {TYPED})\n"),
+    "a line": lambda table: table.session.live(image_of(f"SI|F(600, {LINE_POWER})").code),
+    "a short line": lambda table: table.session.live(image_of(f"SI|F(0.05, {LINE_POWER})").code),
+    "an upload": lambda table: table.session.upload(
+        image_of(f"SI|F(600, {OTHER_POWER})"), saves=False
+    ),
+    "text": lambda table: type_text(table.robot, f"SI|F(0.05, {TYPED_POWER})\n"),
     "a stop": lambda table: table.session.stop(table.robot.now_ms),
     "zeros": lambda table: table.robot.step(bytes(4)),
     "a stop by text": lambda table: type_text(table.robot, "S\n"),
@@ -191,7 +200,7 @@ ACTIONS_DURING_PRESS: dict[str, Callable[[Table], object]] = {
 @pytest.mark.parametrize("meanwhile", ACTIONS_DURING_PRESS)
 def test_a_release_starts_nothing_after_a_run_or_a_stop(meanwhile: str, is_sure: bool) -> None:
     table = Table()
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
     if "text" in meanwhile:
         table.quiet()
     table.talk(1, BUTTON_PRESSED)
@@ -204,5 +213,5 @@ def test_a_release_starts_nothing_after_a_run_or_a_stop(meanwhile: str, is_sure:
         table.talk(1, BUTTON_HELD)
     table.talk(1, BUTTON_RELEASED)
     table.talk(700)
-    starts = f"MOTORS {SAVED} {SAVED}" in " ".join(table.robot.did)
+    starts = f"MOTORS {SAVED_POWER} {SAVED_POWER}" in " ".join(table.robot.did)
     assert starts == (meanwhile == "nothing")

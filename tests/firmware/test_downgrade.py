@@ -16,7 +16,7 @@ import pytest
 
 from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
-from tests.support.owners import FOREVER, Keys, Owned
+from tests.support.owners import FOREVER, Keys, OwnedRobot
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decode_frame, encode_frame
@@ -52,7 +52,7 @@ class End:
 
     def __init__(self, which: int = KEY_OWNER) -> None:
         self.keys = Keys()
-        self.table = Owned()
+        self.table = OwnedRobot()
         session = self.table.claim_session(self.keys, which)
         assert self.table.outcome(session, session.name(NAME)) == "OK"
         self.keys.stored_keys = [key._replace(name=NAME.decode()) for key in self.keys.stored_keys]
@@ -69,7 +69,7 @@ class Stranger(End):
 
     def __init__(self) -> None:
         self.keys = Keys()
-        self.table = Owned(seed=OTHER_SEED)
+        self.table = OwnedRobot(seed=OTHER_SEED)
         session = self.table.session(self.keys)
         assert self.table.outcome(session, session.name(NAME)) == "OK"
 

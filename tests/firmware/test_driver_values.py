@@ -12,7 +12,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.machines.board import Board, simulates
-from tests.support.board_states import START, pulses, start_board
+from tests.support.board_states import START_MS, pulses, start_board
 from tests.support.wired_robots import DEVICES, MOTORS, robot_with
 from tiniscript.robots.boards import CHIPS
 from tiniscript.robots.driver import Driver, SensorDriver
@@ -87,7 +87,7 @@ def test_a_sensor_reads_its_simulated_input(driver: Driver) -> None:
             ROBOT_WITH_ALL_DRIVERS, SHOW_PROGRAMS[driver.used_by.split()[1]].format(name)
         )
         INPUTS_BY_ABILITY[driver.pins[-1].ability](board, wiring, is_much)
-        readings.add(board.run_for(START + 100).motors(START + 95))
+        readings.add(board.run_for(START_MS + 100).motors(START_MS + 95))
     assert len(readings) == 2, "its reading is the same whatever it feels"
 
 
@@ -103,10 +103,10 @@ def test_an_actuators_setting_appears_at_its_pins(driver: Driver) -> None:
     pins = wiring.pins.values()
     for pin in pins:
         board.watch(pin)
-    board.run_for(START + 2 * SET_MS)
+    board.run_for(START_MS + 2 * SET_MS)
 
     def pin_states(after_ms: float) -> list[tuple[str, list[int]]]:
-        begins = START + after_ms
+        begins = START_MS + after_ms
         return [
             (
                 "" if pulses(board, pin)[1:] else board.pin(pin, begins),

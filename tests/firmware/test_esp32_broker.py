@@ -18,7 +18,7 @@ from tests.support.esp32_broker import (
     motor_state,
     until,
 )
-from tests.support.esp32_radio import Bytes, set_network_in_reach, talk
+from tests.support.esp32_radio import RawClient, set_network_in_reach, talk
 from tests.support.esp32_wifi import (
     join_network,
     remote,
@@ -189,7 +189,7 @@ def test_a_driver_keeps_the_robot_while_it_sends_messages(broker: Mosquitto) -> 
     talk(robot, [(end, other_session)], 300)
     assert end.has_ended, "it is told that another one has the robot"
     teacher.publish(topic + teacher.peer, b"")  # this client leaves
-    talk(robot, [(end, Bytes())], 100)
+    talk(robot, [(end, RawClient())], 100)
     end, other_session = AtBroker(robot, stranger), remote(robot, None, 13)
     end.port._patient_until_s = 0.0
     assert wait_for_outcome(robot, [(end, other_session)], other_session.ping()) == "OK"

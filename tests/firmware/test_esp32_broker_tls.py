@@ -27,7 +27,7 @@ from tests.support.esp32_broker import (
 )
 from tests.support.esp32_radio import announce_computer, talk
 from tests.support.esp32_wifi import join_network, remote, restart_with_school_in_reach
-from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto
+from tests.support.mosquitto import LOCAL_ADDRESS, AtBroker, Mosquitto
 from tests.support.network import CuttingNetwork
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import Ends, upload_text, wait_for_outcome
@@ -65,7 +65,7 @@ class Room(NamedTuple):
 def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Room]:
     folder = tmp_path_factory.mktemp("tls")
     authority = Authority(folder)
-    made_room = Room(Mosquitto(folder, more=authority.rules(NAME)), authority)
+    made_room = Room(Mosquitto(folder, extra_lines=authority.rules(NAME)), authority)
     yield made_room
     made_room.broker.kill()
 
@@ -257,7 +257,7 @@ def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Roo
 
 
 @pytest.mark.parametrize(("name", "address", "is_found"), [
-    (NAME, NOBODY, True), ("nobody.aula", LOCAL, True), ("nobody.aula", NOBODY, False),
+    (NAME, NOBODY, True), ("nobody.aula", LOCAL_ADDRESS, True), ("nobody.aula", NOBODY, False),
 ])  # fmt: skip
 def test_a_broker_is_found_by_name_or_at_its_last_address(
     brokers: Callable[..., Mosquitto], name: str, address: bytes, is_found: bool
@@ -273,7 +273,7 @@ def test_a_broker_is_found_by_name_or_at_its_last_address(
 
 
 TRUST = bytes(range(1, 201))
-PLAIN = wifi.BrokerSettings(LOCAL, 8883, "aula", name=b"x")
+PLAIN = wifi.BrokerSettings(LOCAL_ADDRESS, 8883, "aula", name=b"x")
 
 
 def test_invalid_tls_settings_are_refused() -> None:

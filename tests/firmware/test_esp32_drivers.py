@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.esp32_radio import LowEnergy, RawClient, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -99,7 +99,7 @@ def test_a_detached_run_can_be_taken_over_once_its_client_is_silent(
 
 def test_a_page_gives_way_only_to_clients_with_a_key() -> None:
     robot, page, _ = pair(is_owned=True)
-    stranger, typed_bytes = session(5, robot), Bytes()
+    stranger, typed_bytes = session(5, robot), RawClient()
     end = LowEnergy(robot)
     assert upload_text(robot, [(None, page)], page, SHORT) == "OK"
     talk(robot, [(None, page)], 5000)

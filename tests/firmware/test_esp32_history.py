@@ -21,7 +21,7 @@ from tests.machines.esp32 import Esp32Robot, Kept
 from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, make_options
 from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
-from tests.support.esp32_radio import Bytes, Client, End, radios, talk
+from tests.support.esp32_radio import Client, End, RawClient, radios, talk
 from tests.support.esp32_wifi import join_network, remote, remote_with_wrong_key, school_in_reach
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -94,7 +94,7 @@ class Scene:
             return remote(self.robot, keys, self.nonce)
         if role == "thief":
             return remote_with_wrong_key(self.robot, keys, self.nonce)
-        return remote(self.robot, None, self.nonce) if role == "stranger" else Bytes()
+        return remote(self.robot, None, self.nonce) if role == "stranger" else RawClient()
 
     def connect_guest(self, place: int, role: str) -> Guest | None:
         """Connect a guest over a radio or the cable, unless the slot is taken."""
@@ -139,7 +139,7 @@ def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     elif kind == 3 and rng.random() < 0.3:
         scene.talk(1, rng.choice((1, 2)))
         scene.talk(60)
-    elif isinstance(guest.who, Bytes):
+    elif isinstance(guest.who, RawClient):
         guest.who.to_send = rng.choice((rng.choice(LINES), rng.choice(PIECES), bytes(STOP_BYTES)))
         scene.talk(rng.choice((2, 30, 300)))
     elif isinstance(guest.who, Session):
@@ -166,7 +166,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
         if isinstance(session, Session):
             name = rng.choice([question for question in REQUEST_MAKERS if question != "a claim"])
             request = REQUEST_MAKERS[name](session)
-        elif isinstance(session, Bytes):
+        elif isinstance(session, RawClient):
             session.to_send = rng.choice(LINES)
         scene.talk(rng.choice((100, 400, 1500)))
         states.append((name, answer_without_counts(request, *MEMORY_FIELDS)))
@@ -177,7 +177,7 @@ def observe(scene: Scene, first: int, rng: random.Random) -> list[object]:
         states.append([(int(ms) - begun_ms, action) for ms, action in rows])
         robot.did.clear()
     scene.talk(1200)  # a text answer waits after a frame that did not report the stop
-    texts = [client.heard for _, client, *_ in guests if isinstance(client, Bytes)]
+    texts = [client.received for _, client, *_ in guests if isinstance(client, RawClient)]
     return [*states, [sorted(re.findall(rb"// [^\r\n]*\r\n", data)) for data in texts]]
 
 

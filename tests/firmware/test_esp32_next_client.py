@@ -11,11 +11,11 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
-    Bytes,
     Client,
     End,
     LowEnergy,
     Network,
+    RawClient,
     SerialPort,
     limit_accepted_bytes,
     radios,
@@ -62,7 +62,7 @@ def claim_as_stranger(robot: Esp32Robot, end: End, keys: Keys) -> None:
 
 def sender_of(data: bytes) -> Callable[[Esp32Robot, End, Keys], None]:
     def send(robot: Esp32Robot, end: End, keys: Keys) -> None:
-        talk(robot, [(end, Bytes(data))], 30)
+        talk(robot, [(end, RawClient(data))], 30)
 
     return send
 
@@ -100,7 +100,7 @@ def test_errors_of_one_client_do_not_affect_the_next(make: Make, disturbance: st
         return robot, keys
 
     robot, keys = connected_place()
-    talk(robot, [(end := make(robot), Bytes())], 300)
+    talk(robot, [(end := make(robot), RawClient())], 300)
     end.leave()
     talk(robot, [], 5)
     usual_ms = owner_time_ms(robot, make, keys)
@@ -120,11 +120,11 @@ def test_errors_of_one_client_do_not_affect_the_next(make: Make, disturbance: st
 def test_typed_text_is_never_shown_to_other_clients(make: Make, typed_bytes: bytes) -> None:
     robot, _ = make_owned_robot(Keys())
     talk(robot, [], AUTHORITY_MS)
-    talk(robot, [(end := make(robot), Bytes(typed_bytes))], 2)
+    talk(robot, [(end := make(robot), RawClient(typed_bytes))], 2)
     end.leave()
     talk(robot, [], 1)
-    talk(robot, [(make(robot), listener := Bytes(b"\0"))], 4000)
-    assert listener.heard == b""
+    talk(robot, [(make(robot), listener := RawClient(b"\0"))], 4000)
+    assert listener.received == b""
 
 
 STOPS = (bytes(4), b"S\n", b"stop\r", b"\0S\n", b"\0stop\0", b"\x03\n", b"SSS", b"stop stop",
@@ -154,11 +154,11 @@ def test_bytes_of_two_clients_do_not_form_a_stop(make: Make, pause_ms: int) -> N
     assert upload_text(robot, clients, owner, AWAY_PROGRAM) == "OK"
     for parts in CUT_STOPS:
         for part in parts:
-            talk(robot, [*clients, (other_end := make(robot), Bytes(part))], 20)
+            talk(robot, [*clients, (other_end := make(robot), RawClient(part))], 20)
             other_end.leave()
             talk(robot, clients, 5 + pause_ms)
         assert actions_of(robot)[-1] == "MOTORS 80 80", parts
-    talk(robot, [*clients, (make(robot), Bytes(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
+    talk(robot, [*clients, (make(robot), RawClient(b"\0" + b"".join(CUT_STOPS[-1]) + b"\0"))], 100)
     assert actions_of(robot)[-1] == "MOTORS 0 0", "of one it is a stop"
 
 
@@ -180,18 +180,18 @@ def test_the_next_client_gets_no_remainder_of_a_partial_message(
     rests = 0
     for moment_ms in (1, 2, 3, 5, 9, 100):
         limit_accepted_bytes(robot, most_bytes)
-        first = Bytes(b"\0" + frames)
+        first = RawClient(b"\0" + frames)
         talk(robot, [(end := Network(robot), first)], moment_ms)
         end.leave()
         talk(robot, [], 3)
         limit_accepted_bytes(robot, 1000)
-        next_client = Bytes(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
+        next_client = RawClient(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, PING_SEQ, 0)))
         talk(robot, [(end := Network(robot), next_client)], 60)
         end.leave()
         talk(robot, [], 3)
-        answers = [decode_frame(data) for data in next_client.heard.split(b"\0") if data]
+        answers = [decode_frame(data) for data in next_client.received.split(b"\0") if data]
         assert [answer and answer.seq for answer in answers] == [PING_SEQ], moment_ms
-        rests += len(first.heard) < len(next_client.heard)
+        rests += len(first.received) < len(next_client.received)
     assert rests or most_bytes == 1000
 
 
@@ -217,19 +217,19 @@ class Late(LowEnergy):
 
 def test_the_next_client_gets_only_its_own_answers_after_subscribing() -> None:
     robot, _ = make_owned_robot(Keys())
-    talk(robot, [(end := LowEnergy(robot), Bytes(b"\0"))], 20)
+    talk(robot, [(end := LowEnergy(robot), RawClient(b"\0"))], 20)
     for number in range(3):
         end.leave()
         talk(robot, [], 5)
-        end, client = Late(robot), Bytes()
+        end, client = Late(robot), RawClient()
         for seq in (number, PING_SEQ):
             end.send(b"\0" + encode_frame(Frame(BY_NAME["PING"].number, seq, 0)))
             talk(robot, [(end, client)], 30)
-        assert client.heard == b"", "nobody would hear it"
+        assert client.received == b"", "nobody would hear it"
         if number == 1:  # the one before has left without
             end.subscribe(True)
             talk(robot, [(end, client)], 100)
-            answers = [decode_frame(data) for data in client.heard.split(b"\0") if data]
+            answers = [decode_frame(data) for data in client.received.split(b"\0") if data]
             assert [answer and answer.seq for answer in answers] == [number, PING_SEQ]
 
 
@@ -246,11 +246,11 @@ def test_a_silent_phone_keeps_nobody_off_bluetooth() -> None:
     talk(robot, [], AUTHORITY_MS)
     phone, first = LowEnergy(robot), remote(robot, keys, 2)
     assert upload_text(robot, [(phone, first)], first, "SI|F(0.1, 30)") == "OK"
-    talk(robot, [(phone, Bytes())], PLACE_MS - 50)
+    talk(robot, [(phone, RawClient())], PLACE_MS - 50)
     early = LowEnergy(robot)
     assert early.has_ended and not phone.has_ended, "never before"
     assert wait_for_outcome(robot, [(phone, first)], first.ping()) == "OK"
-    talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
+    talk(robot, [(phone, RawClient())], 3 * PLACE_MS)
     assert not phone.has_ended, "while nobody else comes"
     owner = remote(robot, keys, 3)
     clients: Ends = [(end := LowEnergy(robot), owner)]
@@ -294,7 +294,7 @@ def test_a_disconnect_during_another_connect_is_attributed_correctly() -> None:
     for _ in range(5):
         phone, first = LowEnergy(robot), remote(robot, keys, 2)
         assert wait_for_outcome(robot, [(phone, first)], first.ping()) == "OK"
-        talk(robot, [(phone, Bytes())], PLACE_MS)
+        talk(robot, [(phone, RawClient())], PLACE_MS)
         end, owner = LowEnergy(robot), remote(robot, keys, 3)
         phone.leave()  # again, and the number of its connection is free
         refused_low_energy = LowEnergy(robot)
@@ -332,7 +332,7 @@ def test_surplus_network_clients_are_disconnected(seed: int) -> None:
     for number in range(15):
         end = Network(robot)
         if rng.random() < 0.6:
-            guests.append((end, Bytes(rng.choice(FIRST_BYTES))))
+            guests.append((end, RawClient(rng.choice(FIRST_BYTES))))
         else:
             owners.append((end, remote(robot, keys if rng.random() < 0.7 else None, 20 + number)))
             guests.append(owners[-1])
@@ -372,10 +372,10 @@ def test_a_silent_phone_keeps_nobody_off_the_serial_port() -> None:
     assert actions_of(robot)[-1] == "MOTORS 80 80"
     first.stop(robot.now_ms)
     talk(robot, [(phone, first)], 20)
-    talk(robot, [(phone, Bytes())], PLACE_MS - 1000)
+    talk(robot, [(phone, RawClient())], PLACE_MS - 1000)
     SerialPort(robot)
     assert has_client(robot), "never before"
-    talk(robot, [(phone, Bytes())], 3 * PLACE_MS)
+    talk(robot, [(phone, RawClient())], 3 * PLACE_MS)
     assert has_client(robot), "while nobody else comes"
     owner = remote(robot, keys, 3)
     SerialPort(robot)

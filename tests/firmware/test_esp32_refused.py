@@ -12,7 +12,7 @@ from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_broker import broker_settings_of, until
 from tests.support.esp32_radio import radios, talk
 from tests.support.esp32_wifi import HOTSPOT, join_network, make_owned_robot, state
-from tests.support.mosquitto import LOCAL
+from tests.support.mosquitto import LOCAL_ADDRESS
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import Ends, wait_for_outcome
 from tiniscript.link import wifi
@@ -36,7 +36,7 @@ class StrictBroker:
         threading.Thread(target=self._serve, daemon=True).start()
 
     def settings(self) -> wifi.BrokerSettings:
-        return wifi.BrokerSettings(LOCAL, self.listener.getsockname()[1], "aula", b"", b"")
+        return wifi.BrokerSettings(LOCAL_ADDRESS, self.listener.getsockname()[1], "aula", b"", b"")
 
     def close(self) -> None:
         self.listener.close()

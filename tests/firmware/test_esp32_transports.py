@@ -9,10 +9,10 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.support.esp32_radio import (
     LEAST_MTU,
-    Bytes,
     Client,
     End,
     LowEnergy,
+    RawClient,
     SerialPort,
     radios,
     session,
@@ -248,7 +248,7 @@ def test_an_overtaken_upload_is_not_started() -> None:
     talk(robot, clients[1:], AUTHORITY_MS + 50)  # the first one is out of reach
     assert upload_text(robot, clients[1:], second, "SB|F(1, 10)") == "OK"
     talk(robot, clients[1:], 20)
-    talk(robot, [(clients[1][0], Bytes())], AUTHORITY_MS + 50)
+    talk(robot, [(clients[1][0], RawClient())], AUTHORITY_MS + 50)
     assert wait_for_outcome(robot, clients[:1], request, 20_000) in ("OK", "NOT_BEGUN")
     fetch = first.fetch()
     assert wait_for_outcome(robot, clients[:1], fetch) == "OK"
@@ -276,7 +276,7 @@ def test_notifications_fit_the_negotiated_mtu() -> None:
 def test_slow_notifications_delay_nobody_else() -> None:
     robot = boot()
     driver, slow_session = session(1, robot), session(2, robot)
-    clients: Ends = [(None, driver), (LowEnergy(robot, slow=100), slow_session)]
+    clients: Ends = [(None, driver), (LowEnergy(robot, look_interval=100), slow_session)]
     request = slow_session.status()
     assert upload_text(robot, clients, driver) == "OK"
     begun_ms = robot.now_ms
@@ -290,23 +290,23 @@ def test_slow_notifications_delay_nobody_else() -> None:
 
 def test_output_refused_by_a_congested_stack_is_sent_later() -> None:
     robot = boot()
-    once = Bytes(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
+    once = RawClient(b"\0" + encode_frame(Frame(BY_NAME["STATUS"].number, 1, 0, b"")))
     end = LowEnergy(robot)
     clients: Ends = [(end, once)]
     robot.radio("k", b"\1")
     talk(robot, clients, 100)
-    assert not once.heard
+    assert not once.received
     for is_congested in (b"\0", b"\1") * 20:
         robot.radio("k", is_congested)
         talk(robot, clients, 3)
-    frame = decode_frame(once.heard.strip(b"\0"))
+    frame = decode_frame(once.received.strip(b"\0"))
     assert frame and len(end.lengths) == 2, "whole, and never asked for again"
     robot.radio("k", b"\1")
     talk(robot, [(end, session(1, robot))], 40)
     end.leave()
     second = LowEnergy(robot)
     robot.radio("k", b"\0")
-    talk(robot, [(second, Bytes())], 100)
+    talk(robot, [(second, RawClient())], 100)
     assert not second.lengths, "what waits for one client is not told to the next one"
 
 
@@ -319,7 +319,9 @@ def test_a_client_that_reads_nothing_blocks_nobody() -> None:
     assert upload_text(robot, clients, driver) == "OK"
     end.subscribe(False)
     talk(
-        robot, [(None, driver), (end, Bytes(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))], 3000
+        robot,
+        [(None, driver), (end, RawClient(b"\0" + encode_frame(Frame(3, 1, 0, b"")) * 40))],
+        3000,
     )
     assert actions_of(robot) == ["MOTORS 80 80"]
     end.send(bytes(STOP_BYTES))
@@ -342,18 +344,18 @@ def test_a_returning_client_starts_afresh() -> None:
 
 def test_text_is_accepted_over_a_radio_unless_another_client_drives() -> None:
     robot = boot()
-    driver, typed_bytes = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
+    driver, typed_bytes = session(1, robot), RawClient(b"SI|F(0.2, 50)\n")
     end = SerialPort(robot)
     talk(robot, [(end, typed_bytes)], 400)
     assert actions_of(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
-    assert b"// OK" in typed_bytes.heard
+    assert b"// OK" in typed_bytes.received
     talk(robot, [], AUTHORITY_MS)
     clients: Ends = [(None, driver), (end, typed_bytes)]
     assert upload_text(robot, clients, driver) == "OK"
-    typed_bytes.to_send, typed_bytes.heard = b"F(0.2, 20)\n", b""
+    typed_bytes.to_send, typed_bytes.received = b"F(0.2, 20)\n", b""
     talk(robot, clients, 300)
     assert actions_of(robot)[-1] == "MOTORS 80 80"
-    assert b"Not possible here" in typed_bytes.heard
+    assert b"Not possible here" in typed_bytes.received
     typed_bytes.to_send = b"S\n"
     talk(robot, clients, 50)
     assert actions_of(robot)[-1] == "MOTORS 0 0"
@@ -364,12 +366,12 @@ def test_line_endings_are_tracked_per_client(make: Make) -> None:
     """An app that ends no lines may follow one that does: its line runs after three seconds all the
     same."""
     robot = boot()
-    end, typed_bytes = make(robot), Bytes(b"SHOW(1)\n")
+    end, typed_bytes = make(robot), RawClient(b"SHOW(1)\n")
     talk(robot, [(end, typed_bytes)], 100)
-    assert b"// OK" in typed_bytes.heard
+    assert b"// OK" in typed_bytes.received
     end.leave()
     talk(robot, [], AUTHORITY_MS)
-    clients: Ends = [(make(robot), Bytes(b"SI|F(60, 50)"))]
+    clients: Ends = [(make(robot), RawClient(b"SI|F(60, 50)"))]
     talk(robot, clients, 2900)
     assert "MOTORS 50 50" not in actions_of(robot)
     talk(robot, clients, 300)
@@ -379,7 +381,7 @@ def test_line_endings_are_tracked_per_client(make: Make) -> None:
 def test_of_two_simultaneous_typists_the_first_line_is_read() -> None:
     """Both would be read in the same memory: no program is of two."""
     robot = boot()
-    first, second = Bytes(b"SI|LOOP(2);"), Bytes()
+    first, second = RawClient(b"SI|LOOP(2);"), RawClient()
     clients: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, clients, 50)
     second.to_send = b"SI|F(0.1, "
@@ -392,7 +394,7 @@ def test_of_two_simultaneous_typists_the_first_line_is_read() -> None:
         "MOTORS 44 44",
         "MOTORS 0 0",
     ]
-    assert b"// OK" in first.heard and b"Send it again" in second.heard
+    assert b"// OK" in first.received and b"Send it again" in second.received
 
 
 @pytest.mark.parametrize(
@@ -400,12 +402,12 @@ def test_of_two_simultaneous_typists_the_first_line_is_read() -> None:
 )
 def test_a_stop_of_an_idle_robot_discards_text_typed_elsewhere(stop: bytes) -> None:
     robot = boot()
-    first, second = Bytes(bytes(4)), Bytes()
+    first, second = RawClient(bytes(4)), RawClient()
     clients: Ends = [(None, first), (SerialPort(robot), second)]
     talk(robot, clients, 1500)
     first.to_send = b"SI|LOOP(2)\n"
     talk(robot, clients, 1500)
-    assert b"END_LOOP" in first.heard
+    assert b"END_LOOP" in first.received
     second.to_send = stop
     talk(robot, clients, 1500)
     first.to_send = b"F(0.1, 44)\nEND_LOOP\n"
@@ -456,7 +458,7 @@ def test_overflowing_input_is_counted_and_no_stop_is_lost(make: Make) -> None:
     for stop in (bytes(STOP_BYTES), b"\r\nS\r\n"):
         robot = boot()
         end = make(robot)
-        talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
+        talk(robot, [(end, RawClient(b"F(60, 80)\r\n"))], 50)
         assert actions_of(robot) == ["MOTORS 80 80"]
         end.send(b"// " + b"x" * 600 + stop)
         robot.wait(3)
@@ -471,7 +473,7 @@ def test_a_serial_port_whose_client_reads_nothing_accepts_a_stop() -> None:
     """The core's `write` waits for a second meanwhile."""
     robot = boot()
     end = SerialPort(robot)
-    talk(robot, [(end, Bytes(b"F(60, 80)\r\n"))], 50)
+    talk(robot, [(end, RawClient(b"F(60, 80)\r\n"))], 50)
     robot.radio("Z", b"\1")
     end.send(b"?\r\n")  # the client has data to send
     robot.wait(100)
@@ -493,10 +495,12 @@ def test_an_upload_in_long_packets_of_a_serial_port_loses_nothing() -> None:
     assert (status.outcome.values.damaged, status.outcome.values.overrun) == (0, 0)
 
 
-def paste(size: int, burst: int, gap_ms: int) -> Callable[[Esp32Robot, End, bytes, Bytes], None]:
+def paste(
+    size: int, burst: int, gap_ms: int
+) -> Callable[[Esp32Robot, End, bytes, RawClient], None]:
     """Return a function that sends a text at a radio's pace: writes of a size, so many at once."""
 
-    def send(robot: Esp32Robot, end: End, text: bytes, client: Bytes) -> None:
+    def send(robot: Esp32Robot, end: End, text: bytes, client: RawClient) -> None:
         for offset in range(0, len(text), size * burst):
             for k in range(offset, min(offset + size * burst, len(text)), size):
                 end.send(text[k : k + size])
@@ -525,10 +529,10 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     by_cable.wait(2500)
     robot = boot()
     make, send = PACES[pace]
-    end, client = make(robot), Bytes()
+    end, client = make(robot), RawClient()
     send(robot, end, text, client)
     talk(robot, [(end, client)], 2500)
-    assert client.heard == b"// OK\r\n// DONE\r\n"
+    assert client.received == b"// OK\r\n// DONE\r\n"
     assert actions_of(robot) == actions_of(by_cable) and len(actions_of(robot)) > 30
     assert overrun(robot) == 0
 
@@ -537,7 +541,7 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
 def test_lines_wait_while_their_answers_are_not_read(make: Make) -> None:
     """Each has an answer, which a client reads late; earlier lines are not lost either."""
     robot = boot()
-    end, client = make(robot), Bytes()
+    end, client = make(robot), RawClient()
     if isinstance(end, LowEnergy):
         robot.radio("k", b"\1")
     else:
@@ -549,7 +553,7 @@ def test_lines_wait_while_their_answers_are_not_read(make: Make) -> None:
     else:
         robot.radio("Z", b"\0")
     talk(robot, [(end, client)], 9000)
-    assert b"lost" not in client.heard and client.heard.rstrip().endswith(b"// DONE")
+    assert b"lost" not in client.received and client.received.rstrip().endswith(b"// DONE")
     assert overrun(robot) == 0
 
 

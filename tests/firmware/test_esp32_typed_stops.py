@@ -11,7 +11,7 @@ import random
 import pytest
 
 from tests.machines.esp32 import Esp32Robot
-from tests.support.esp32_radio import Bytes, End, Network, session, talk
+from tests.support.esp32_radio import End, Network, RawClient, session, talk
 from tests.support.esp32_wifi import join_network
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -45,12 +45,12 @@ def check_stop(
     robot: Esp32Robot, end: End | None, clients: Ends, data: bytes, description: str
 ) -> None:
     """Send bytes that end with a stop. From then on, the robot does not drive."""
-    typed: Ends = [*clients, (end, Bytes(data))]
+    typed: Ends = [*clients, (end, RawClient(data))]
     talk(robot, typed, LATE_MS)
     if not has_stopped(robot):
         talk(robot, typed, SHORTEST_STOP_MS)  # inside a started frame
     assert has_stopped(robot), description
-    talk(robot, [*clients, (end, Bytes(b"SI|F(1,80)\n"))], 50)  # before a second of silence
+    talk(robot, [*clients, (end, RawClient(b"SI|F(1,80)\n"))], 50)  # before a second of silence
     assert has_stopped(robot), description
 
 
@@ -169,7 +169,7 @@ def test_lost_bytes_cause_no_stop(make: Make) -> None:
     code = b"Z\n\nS\n\xcc\x03"
     for bytes_before in (b"F(1,80)\n" * 400, WHOLE * 400, b"FT\nS T\n\0\0FT" * 400):
         end.send(bytes_before)
-        talk(robot, [*clients, (end, Bytes())], 2500)  # until the waiting lines are answered
+        talk(robot, [*clients, (end, RawClient())], 2500)  # until the waiting lines are answered
         frame = encode_frame(Frame(BY_NAME["LIVE"].number, 9, 0, b"\1" + code))
         assert b"\nS\n" in frame
         end.send(b"\0" + frame)
@@ -195,7 +195,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
     clients = start_drive(robot, driver)
     few_lines, many_lines = LINES[: 8 * 40], LINES[: 8 * 100]
     for bytes_before in (few_lines, many_lines, many_lines + b"LOOP(2)\n", b"\0" + many_lines):
-        client = Bytes()
+        client = RawClient()
         end.send(bytes_before + stop)
         robot.wait(1)
         assert has_stopped(robot), (bytes_before[-20:], stop)
@@ -206,7 +206,7 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
         talk(robot, [(end, client)], 1500)
         assert motor_actions(robot)[-2:] == ["MOTORS 33 33", "MOTORS 0 0"], (
             bytes_before[-20:],
-            client.heard,
+            client.received,
         )
         talk(robot, clients, 1500)
         clients = start_drive(robot, driver)
@@ -216,15 +216,15 @@ def test_a_stop_overtakes_the_lines_that_wait(make: Make, stop: bytes) -> None:
 def test_a_stop_inside_a_waiting_open_block_belongs_to_the_block(make: Make) -> None:
     """As over a cable, it ends the running program at once and also becomes part of the line."""
     robot = boot()
-    end, client = make(robot), Bytes()
-    talk(robot, [(end, Bytes(b"SI|F(60, 80)\n"))], 100)
+    end, client = make(robot), RawClient()
+    talk(robot, [(end, RawClient(b"SI|F(60, 80)\n"))], 100)
     lines = b"".join(b"F(0.01,%d) // one of twenty\n" % (20 + k) for k in range(20))
     end.send(b"LOOP(1)\n" + lines + b"S\nF(0.01,80)\nEND_LOOP\n")
     robot.wait(1)
     assert motor_actions(robot)[-1] == "MOTORS 0 0"
     talk(robot, [(end, client)], 2000)
     assert motor_actions(robot)[-3:] == ["MOTORS 39 39", "MOTORS 80 80", "MOTORS 0 0"]
-    assert client.heard.endswith(b"// OK\r\n// DONE\r\n")
+    assert client.received.endswith(b"// OK\r\n// DONE\r\n")
 
 
 @pytest.mark.parametrize("make", RADIOS)
@@ -278,10 +278,10 @@ def test_a_stop_of_a_client_that_leaves_keeps_nobody_from_driving(make: Make) ->
             ((b"S\n", b""), (b"", b"S\n"), (b"S\n", b"S\n"), (bytes(4), b"S\n"))
         )
         (end := make(robot)).send(waiting + first)
-        talk(robot, [(end, Bytes())], left_ms)
+        talk(robot, [(end, RawClient())], left_ms)
         end.leave()
         (end := make(robot)).send(second)
-        talk(robot, [(end, Bytes())], left_ms)
+        talk(robot, [(end, RawClient())], left_ms)
         end.leave()
         talk(robot, [], 300)  # until all of it is read
         who = session(100 + number, robot)

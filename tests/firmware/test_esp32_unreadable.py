@@ -12,7 +12,7 @@ from tests.machines.esp32 import (
     Esp32Robot,
     Kept,
 )
-from tests.support.esp32_radio import Bytes, LowEnergy, session, talk
+from tests.support.esp32_radio import LowEnergy, RawClient, session, talk
 from tests.support.esp32_wifi import make_owned_robot, remote
 from tests.support.images import image_of
 from tests.support.owners import Keys
@@ -48,7 +48,7 @@ def read_saved_state(robot: Esp32Robot, session: Session) -> str:
 @FAULTS
 def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     robot = boot(claimed_with_program(Keys()), fault)
-    stranger, typed_bytes = session(2, robot), Bytes(b"SI|F(60, 80)\n")
+    stranger, typed_bytes = session(2, robot), RawClient(b"SI|F(60, 80)\n")
     clients: Ends = [(None, stranger)]
     assert read_saved_state(robot, stranger) == "UNREADABLE"
     for request in (
@@ -60,7 +60,7 @@ def test_strangers_do_not_drive_a_claimed_robot(fault: int) -> None:
     thief = remote(robot, Keys(80), 4)
     assert wait_for_outcome(robot, [(None, thief)], thief.claim(0)) == "UNREADABLE"
     talk(robot, [(LowEnergy(robot), typed_bytes)], 1500)
-    assert b"//" in typed_bytes.heard
+    assert b"//" in typed_bytes.received
     robot.step(flags=1)
     robot.wait(100)
     robot.step(flags=2)

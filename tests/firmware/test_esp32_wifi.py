@@ -17,9 +17,9 @@ from tests.machines.esp32 import (
     Kept,
 )
 from tests.support.esp32_radio import (
-    Bytes,
     LowEnergy,
     Network,
+    RawClient,
     port_of,
     radios,
     session,
@@ -225,15 +225,15 @@ def test_no_two_transports_have_the_same_challenge() -> None:
         "major": MAJOR, "minor": MINOR, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
     })  # fmt: skip
     request_bytes = b"\0" + encode_frame(Frame(1, 1, 0, hello))
-    first, second = Bytes(request_bytes), Bytes(request_bytes)
+    first, second = RawClient(request_bytes), RawClient(request_bytes)
     clients: Ends = [(None, first), (LowEnergy(rebooted_robot), second)]
     talk(rebooted_robot, clients, 60)
-    frames = [decode_frame(client.heard.strip(b"\0")) for client in (first, second)]
+    frames = [decode_frame(client.received.strip(b"\0")) for client in (first, second)]
     [epoch] = {frame.epoch for frame in frames if frame}
     first.to_send = second.to_send = encode_frame(Frame(17, 2, epoch, b"\0"))
-    first.heard = second.heard = b""
+    first.received = second.received = b""
     talk(rebooted_robot, clients, 60)
-    assert len(first.heard) == 20 and first.heard != second.heard
+    assert len(first.received) == 20 and first.received != second.received
 
 
 # -- over TCP -----------------------------------------------------------------------------------
@@ -261,7 +261,7 @@ def test_a_robot_without_its_former_owner_does_not_move_over_wifi() -> None:
     assert wait_for_outcome(robot, [(None, owner)], owner.disown(0)) == "OK"
     talk(robot, [], AUTHORITY_MS + 100)
     count_before = len(robot.did)
-    client, typed_bytes = remote(robot, None), Bytes(b"SI|F(1, 80)\n")
+    client, typed_bytes = remote(robot, None), RawClient(b"SI|F(1, 80)\n")
     clients: Ends = [(Network(robot), client), (Network(robot), typed_bytes)]
     for request in (client.hello(), client.ping(), client.status(), client.identify()):
         assert wait_for_outcome(robot, clients, request) == "OK"
@@ -271,7 +271,7 @@ def test_a_robot_without_its_former_owner_does_not_move_over_wifi() -> None:
         client.name(b"x"), client.undo(), client.clear(),
     ):  # fmt: skip
         assert wait_for_outcome(robot, clients, acting) == "UNOWNED"
-    assert "Not possible here" in typed_bytes.heard.decode()
+    assert "Not possible here" in typed_bytes.received.decode()
     assert not [line for line in robot.did[count_before:] if "MOTORS" in line]
     cable = session(3, robot)
     assert upload_text(robot, [(None, cable)], cable) == "OK"

@@ -24,7 +24,7 @@ from tests.support.bytes_around import PIECES
 from tests.support.campaign import each_seed, make_options
 from tests.support.compared_answers import answer_without_counts, first_difference, without_counts
 from tests.support.images import image_of
-from tests.support.owners import Keys, Owned
+from tests.support.owners import Keys, OwnedRobot
 from tests.support.robot_on_host import KIT
 from tests.support.small_robot import READINGS, SmallRobot, draw_program, without_readings
 from tiniscript.link.connection import PendingRequest
@@ -480,14 +480,16 @@ def new_memory() -> bytes:
 @lru_cache(maxsize=1)
 def claimed_memory_and_keys() -> tuple[bytes, KeyRings]:
     """Return the memory of a robot with an owner and a teacher, and everybody's keys."""
-    table, keys = Owned(new_memory()), Keys()
+    table, keys = OwnedRobot(new_memory()), Keys()
     for which in (KEY_OWNER, KEY_TEACHER):
         table.claim_session(keys, which)
     table.robot.wait(1000)
     owner_key, teacher_key = keys.stored_keys
     wrong_key = owner_key._replace(key=bytes(range(16)))
     key_by_name = {"owner": owner_key, "teacher": teacher_key, "thief": wrong_key}
-    rings = {role: Keys(first=10 * k) for k, role in enumerate(("stranger", *key_by_name), 1)}
+    rings = {
+        role: Keys(first_number=10 * k) for k, role in enumerate(("stranger", *key_by_name), 1)
+    }
     for role, key in key_by_name.items():
         rings[role].stored_keys = [key]
     return table.robot.memory(), rings

@@ -12,8 +12,8 @@ import pytest
 from tests.machines.host_firmware import HostFirmware
 from tests.support.button_states import SmallRobot
 from tests.support.images import image_of
-from tests.support.owners import Keys, Owned
-from tests.support.remote_readings import RELEASED, remote_readings
+from tests.support.owners import Keys, OwnedRobot
+from tests.support.remote_readings import RELEASED_READINGS, remote_readings
 from tests.support.robot_on_host import KIT, computer
 from tests.support.text_robot import type_text
 from tiniscript.link.messages import HOLD_MS
@@ -55,7 +55,7 @@ def test_a_key_line_holds_its_keys_for_half_a_second(
     robot.wait(HOLD_MS - 40)
     assert robot.remote() == remote_readings(held_state)
     robot.wait(40)
-    assert robot.remote() == RELEASED and robot.did == []
+    assert robot.remote() == RELEASED_READINGS and robot.did == []
 
 
 @pytest.mark.parametrize("kind", [HostFirmware, SmallRobot])
@@ -92,7 +92,7 @@ def test_any_other_line_is_read_as_before(line: str) -> None:
     type_text(robot, "KEY_A\n")
     type_text(robot, line + "\n")
     robot.wait(HOLD_MS)
-    assert robot.remote() == RELEASED
+    assert robot.remote() == RELEASED_READINGS
 
 
 def test_unread_keys_are_reported_once() -> None:
@@ -134,8 +134,8 @@ def test_key_lines_end_and_start_nothing_and_work_beside_live() -> None:
 
 def test_in_an_open_block_a_key_line_belongs_to_the_program() -> None:
     robot = boot()
-    assert type_text(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == RELEASED
-    assert robot.remote() == RELEASED
+    assert type_text(robot, "SI|LOOP(2)\nKEY_A\n", 100) != [] or robot.remote() == RELEASED_READINGS
+    assert robot.remote() == RELEASED_READINGS
 
 
 @pytest.mark.parametrize("stop_kind", ["text", "zeros", "button"])
@@ -171,11 +171,11 @@ def test_a_wrong_line_has_the_same_effect_while_a_key_is_held() -> None:
 
 
 def test_text_without_permission_to_drive_presses_no_keys() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     table.robot.wait(3000)
     type_text(table.robot, "KEY_A\n", 1500)
-    assert table.robot.remote() == RELEASED
+    assert table.robot.remote() == RELEASED_READINGS
 
 
 def test_a_burst_of_a_thousand_key_lines_is_handled() -> None:

@@ -16,7 +16,7 @@ from tests.support.owners import (
     BUTTON_RELEASED,
     FOREVER,
     Keys,
-    Owned,
+    OwnedRobot,
     owner_of,
     robots_of_both_kinds,
     state_of,
@@ -44,30 +44,30 @@ __all__ = ("robots_of_both_kinds",)  # a fixture
 
 
 def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     assert [key.is_pending for key in keys.stored_keys] == [False]
     assert owner_of(table, session) == OWNED_BY_YOU
     assert table.tries(session) == "OK"
-    restarted = Owned(table.robot.memory(), seed=7)
+    restarted = OwnedRobot(table.robot.memory(), seed=7)
     assert owner_of(restarted, restarted.session()) == OWNED_BY_OTHER
     assert owner_of(restarted, restarted.session(keys, nonce=2)) == OWNED_BY_YOU
 
 
-def a_shorter_press(table: Owned, session: Session) -> PendingRequest[Any]:
+def a_shorter_press(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     table.hold(session, 1900)
     return request
 
 
-def a_press_before_it(table: Owned, session: Session) -> PendingRequest[Any]:
+def a_press_before_it(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     assert table.outcome(session, session.hello()) == "OK"
     table.hold(session, 2500)
     return session.claim(KEY_OWNER)
 
 
-def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
+def spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     for _ in range(40):  # edges down that no press follows
@@ -78,9 +78,9 @@ def spikes_on_the_wire(table: Owned, session: Session) -> PendingRequest[Any]:
 
 @pytest.mark.parametrize("act", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
 def test_other_button_actions_confirm_no_claim(
-    act: Callable[[Owned, Session], PendingRequest[Any]],
+    act: Callable[[OwnedRobot, Session], PendingRequest[Any]],
 ) -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     assert table.outcome(session, act(table, session)) == "HOLD_BUTTON"
     assert keys.stored_keys == []
@@ -90,7 +90,7 @@ def test_other_button_actions_confirm_no_claim(
 class Late:
     """A session and its robot, with a line between them on which bytes are late, or is cut."""
 
-    def __init__(self, table: Owned, session: Session, late_ms: int) -> None:
+    def __init__(self, table: OwnedRobot, session: Session, late_ms: int) -> None:
         self.table, self.session = table, session
         self.ways = [Way(Fault("late", late_ms=late_ms), False, Random(0)) for _ in range(2)]
         self.is_cut = False
@@ -126,7 +126,7 @@ CLAIM_CASES = ["nothing", "cut", "cut, later not", "held", "held and cut", "take
 def test_a_claim_ends_within_the_documented_time(late_ms: int, ending: str) -> None:
     """However long answers take, and whatever the result of the press. A key that the robot may
     have taken is kept: it is shown the next time."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     line = Late(table, session, late_ms)
     began_ms = table.robot.now_ms
@@ -153,7 +153,7 @@ def test_a_claim_ends_within_the_documented_time(late_ms: int, ending: str) -> N
 
 
 def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
-    table = Owned()
+    table = OwnedRobot()
     first, second = Keys(1), Keys(50)
     early_session, late_session = table.session(first, nonce=1), table.session(second, nonce=2)
     early_session.claim(KEY_OWNER)
@@ -179,7 +179,7 @@ def test_a_claim_without_frames_expires_and_the_next_one_succeeds() -> None:
 @pytest.mark.sampled("cut_ms", keep=9)
 @pytest.mark.parametrize("cut_ms", range(1, 260, 7))
 def test_a_power_cut_leaves_the_old_or_the_new_key(cut_ms: int) -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     session.claim(KEY_OWNER)
     table.pass_time(session, 300)
@@ -187,13 +187,13 @@ def test_a_power_cut_leaves_the_old_or_the_new_key(cut_ms: int) -> None:
     table.pass_time(session, 31)
     table.pass_time(session, 2100, BUTTON_HELD)
     table.pass_time(session, cut_ms)
-    restarted = Owned(table.robot.memory(), seed=cut_ms)
+    restarted = OwnedRobot(table.robot.memory(), seed=cut_ms)
     assert len(keys.stored_keys) in (1, 2)
     assert owner_of(restarted, restarted.session(keys, nonce=77)) == OWNED_BY_YOU
 
 
 def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     for _ in range(7):  # claims that were left before the button was held
         session.claim(KEY_OWNER)
@@ -219,7 +219,7 @@ def test_a_claim_with_a_lost_answer_is_settled_by_using_its_key() -> None:
 
 
 def test_a_key_that_one_side_cannot_store_grants_nothing() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     keys.is_full = True
     session = table.session(keys)
     assert table.outcome(session, session.claim(KEY_OWNER)) == str(UNKEPT)
@@ -232,7 +232,7 @@ def test_a_key_that_one_side_cannot_store_grants_nothing() -> None:
 
 
 def test_a_claim_is_stored_despite_an_unsaved_name_that_stays_reported() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     for place in (4, 4 + 31):  # both slots of the name
         table.robot.wear_out(place + 12)  # the first letter of its name
     session = table.session(keys)
@@ -240,12 +240,12 @@ def test_a_claim_is_stored_despite_an_unsaved_name_that_stays_reported() -> None
     table.pass_time(session, 500)  # the robot has tried again
     assert table.claim(session) == "OK"
     assert table.outcome(session, session.name(b"NEW")) == "NOT_KEPT"
-    restarted_robot = Owned(table.robot.memory())
+    restarted_robot = OwnedRobot(table.robot.memory())
     assert owner_of(restarted_robot, restarted_robot.session()) == OWNED_BY_OTHER
 
 
 def test_a_name_is_stored_despite_an_unsaved_key() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.session(keys)
     assert table.outcome(session, session.name(b"NEW")) == "OK"
     table.robot.wear_out(536 + 8)
@@ -259,7 +259,7 @@ def test_a_name_is_stored_despite_an_unsaved_key() -> None:
 @pytest.mark.parametrize("by", ["the same session", "the next one", "one whose answer was lost"])
 def test_each_claim_needs_its_own_press(first: int, second: int, by: str) -> None:
     """A confirmed claim does not confirm the next one, whatever its number of requests."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys, first)
     if by == "one whose answer was lost":
         session = table.claim_session(keys, first)
@@ -280,7 +280,7 @@ def test_a_press_for_an_absent_claimant_confirms_nobody_else(
     which: int, has_pressed: bool, silent_ms: int
 ) -> None:
     """Nor does that client's request turn the next press into another client's."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     first = table.session()
     assert table.outcome(first, first.hello()) == "OK"
     answer = table.ask_unsealed(first, "CLAIM", bytes([which]) + bytes([70] * KEY_BYTES))
@@ -301,7 +301,7 @@ def test_a_press_for_an_absent_claimant_confirms_nobody_else(
 
 
 def test_a_stale_key_is_tried_at_most_once_at_hello() -> None:
-    table, teacher_session, other_keys = Owned(), Keys(), Keys(70)
+    table, teacher_session, other_keys = OwnedRobot(), Keys(), Keys(70)
     table.claim_session(teacher_session)
     session = table.session(teacher_session, nonce=2)
     assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
@@ -316,7 +316,7 @@ def test_a_stale_key_is_tried_at_most_once_at_hello() -> None:
 
 def test_a_stale_key_that_works_is_no_longer_stale() -> None:
     """Another session may come between challenge and tag."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     keys.mark_stale(keys.stored_keys[0])
     session = table.session(keys, nonce=9)
@@ -330,7 +330,7 @@ def test_a_stale_key_that_works_is_no_longer_stale() -> None:
 
 
 def test_a_teachers_key_drives_and_releases_a_robot() -> None:
-    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     session = table.session(teacher, nonce=2)
     assert table.claim(session, KEY_TEACHER) == "OK"
     assert owner_of(table, session) == FREE
@@ -347,7 +347,7 @@ def test_a_teachers_key_drives_and_releases_a_robot() -> None:
 
 
 def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
-    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     teacher_session = table.session(pupil, nonce=5)
@@ -376,7 +376,7 @@ def test_a_teachers_stop_is_released_by_the_teacher_or_the_button() -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_a_robot_stays_blocked_by_a_teachers_stop_until_released(seed: int) -> None:
     """This holds for any number of stops, and for any stops, starts and presses in between."""
-    rng, table, pupil, teacher = Random(seed), Owned(), Keys(), Keys(90)
+    rng, table, pupil, teacher = Random(seed), OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     teacher_session = table.session(pupil, nonce=5)
@@ -412,7 +412,7 @@ def test_a_robot_stays_blocked_by_a_teachers_stop_until_released(seed: int) -> N
 
 
 def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys, KEY_TEACHER)
     table.claim_session(keys)
     table.hold(None, 11_000)
@@ -420,7 +420,7 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
         "later they forget nothing"
     )
     for milliseconds, owner in ((9800, OWNED_BY_YOU), (10_800, FREE)):
-        table = Owned(table.robot.memory(), seed=milliseconds)
+        table = OwnedRobot(table.robot.memory(), seed=milliseconds)
         table.pass_time(None, 1, BUTTON_HELD)  # a button that was down before the reset
         table.pass_time(None, milliseconds - 1)
         table.pass_time(None, 1, BUTTON_RELEASED)
@@ -436,7 +436,7 @@ def test_ten_seconds_of_the_button_from_power_on_forget_both_keys() -> None:
 
 def test_text_drives_an_owned_robot_only_with_permission() -> None:
     """The owner may allow text, or a press of two seconds does until power-off."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
 
     def answer(line: bytes = b"SI|F(1, 80)\n") -> bytes:
@@ -455,12 +455,12 @@ def test_text_drives_an_owned_robot_only_with_permission() -> None:
     assert table.robot.is_latched, "S stops it whatever text may do"
     table.hold(None, 2100)
     assert b"OK" in answer()
-    table = Owned(table.robot.memory())
+    table = OwnedRobot(table.robot.memory())
     assert b"tsc set text on" in answer()
 
 
 def test_a_robot_identifies_itself_but_leaves_the_buzzer_to_a_program() -> None:
-    table = Owned()
+    table = OwnedRobot()
     session = table.session()
     assert table.outcome(session, session.identify()) == "OK"
     table.pass_time(session, 3500)
@@ -482,7 +482,7 @@ HELD_PROGRAMS = {"nothing": "", "a program for the button": "SB|F(1, 50)", "what
 @pytest.mark.parametrize("held_program", HELD_PROGRAMS)
 def test_each_identify_request_shows_the_robot_for_three_seconds(held_program: str) -> None:
     """Also while it still shows itself, or has just done so. Then its light shows the result."""
-    table = Owned()
+    table = OwnedRobot()
     robot, session = table.robot, table.session()
     assert table.outcome(session, session.hello()) == "OK"
     if text := HELD_PROGRAMS[held_program]:
@@ -513,7 +513,7 @@ def test_each_identify_request_shows_the_robot_for_three_seconds(held_program: s
 
 def test_a_storm_of_identify_requests_affects_no_run_or_stop() -> None:
     """A stranger may ask as often as the line carries it."""
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     session = table.claim_session(keys)
     assert table.tries(session) == "OK"
     table.robot.did.clear()
@@ -529,7 +529,7 @@ def test_a_storm_of_identify_requests_affects_no_run_or_stop() -> None:
 
 @pytest.mark.sampled(of="other builds of the firmware")
 def test_firmware_without_owner_support_announces_this_and_is_free() -> None:
-    table = Owned(defines=("tiniscript_without_owners",))
+    table = OwnedRobot(defines=("tiniscript_without_owners",))
     session = table.session(Keys())
     assert table.claim(session) == "UNKNOWN_MESSAGE"
     assert session.robot

@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines.host_firmware import HostFirmware
 from tests.support.images import image_of
-from tests.support.owners import Keys, Owned, owner_of
+from tests.support.owners import Keys, OwnedRobot, owner_of
 from tests.support.robot_on_host import KIT, computer, switched_on
 from tiniscript.base.trace import TracedRobot
 from tiniscript.bytecode.image import Image
@@ -127,7 +127,7 @@ def test_runs_started_by_the_button_and_lines_also_report_places() -> None:
 
 
 def test_a_sealed_session_gets_sealed_places() -> None:
-    table, keys = Owned(), Keys()
+    table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)
     session = table.session(keys, nonce=4)
     assert owner_of(table, session) == OWNED_BY_YOU

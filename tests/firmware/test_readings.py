@@ -10,7 +10,7 @@ from math import inf
 
 import pytest
 
-from tests.support.debugging import Debugged
+from tests.support.debugging import DebuggedRobot
 from tests.support.robot_on_host import KIT
 from tests.support.sensed_runs import BYTE_TICKS, LARGEST_DELAY_MS, is_steady, sensed_run
 from tests.support.shown_in_loops import largest_difference_ms, program
@@ -104,7 +104,7 @@ def test_a_reading_message_is_no_longer_than_a_value_message() -> None:
 
 
 def test_other_sessions_get_no_readings() -> None:
-    robot = Debugged("SI|LOOP(FOREVER);X = DISTANCE;W(0.05);END_LOOP")
+    robot = DebuggedRobot("SI|LOOP(FOREVER);X = DISTANCE;W(0.05);END_LOOP")
     assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
     robot.session = Session(2, 9600, KIT.fingerprint)
     assert robot.robot.until(robot.session, robot.session.hello()) == OK
@@ -113,7 +113,7 @@ def test_other_sessions_get_no_readings() -> None:
 
 
 def test_robots_without_reading_reports_are_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    robot = Debugged("SI|SHOW(1)")
+    robot = DebuggedRobot("SI|SHOW(1)")
     assert robot.session.robot is not None
     assert robot.session.robot.values.features & READINGS
     monkeypatch.setattr(handshake, "READINGS", 0)

@@ -17,7 +17,7 @@ from tests.support.owners import (
     BUTTON_PRESSED,
     FOREVER,
     Keys,
-    Owned,
+    OwnedRobot,
     grants_key_request,
     owner_of,
     state_of,
@@ -51,15 +51,15 @@ MOST_TIMES, SHOWN_MS = 3, 500  # each piece again, and a key is shown
 
 
 def upload_and_capture(
-    table: Owned, session: Session, text: str
+    table: OwnedRobot, session: Session, text: str
 ) -> tuple[list[bytes], list[bytes]]:
     """Run a program; return the frames to the robot and those back."""
     return table.frames(session, session.upload(image_of(text), saves=False))
 
 
-def open_sealed_session(*defines: str) -> tuple[Owned, Session, Keys]:
+def open_sealed_session(*defines: str) -> tuple[OwnedRobot, Session, Keys]:
     """Return a robot, and a session whose seal both know, with its keys."""
-    table, keys = Owned(defines=defines), Keys()
+    table, keys = OwnedRobot(defines=defines), Keys()
     table.claim_session(keys)
     session = table.session(keys, nonce=4)
     assert owner_of(table, session) == OWNED_BY_YOU
@@ -161,7 +161,7 @@ def test_a_relay_cannot_fake_success() -> None:
     assert request.outcome and request.outcome.status in (LOST, STATUSES["NOT_OWNER"])
 
 
-def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply[HelloReply]:
+def refused_by_a_stranger(table: OwnedRobot, session: Session, is_cut: bool) -> Reply[HelloReply]:
     """Open a session while a stranger refuses each tag before the robot answers; where the line
     `is_cut`, the tags do not reach the robot.
     """
@@ -223,7 +223,7 @@ def test_a_stop_with_a_wrong_seal_still_stops(payload: bytes) -> None:
     for is_claimed in (False, True):
         table, session, _ = open_sealed_session()
         if not is_claimed:
-            table = Owned()
+            table = OwnedRobot()
             session = table.session()
         upload_and_capture(table, session, FOREVER)
         table.answer(Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
@@ -232,7 +232,7 @@ def test_a_stop_with_a_wrong_seal_still_stops(payload: bytes) -> None:
 
 def test_a_teachers_stop_needs_the_teachers_seal() -> None:
     """A STOP written into the teacher's line has no authority: the owner's program continues."""
-    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table, pupil, teacher = OwnedRobot(), Keys(), Keys(90)
     table.claim_session(teacher, KEY_TEACHER)
     table.claim_session(pupil)
     session = table.session(teacher, nonce=6)
@@ -272,12 +272,12 @@ def test_an_expired_seal_is_renewed_for_the_same_request() -> None:
 PIECES = {1: "F(0.1, 80);", 3: "F(0.1, 80);B(0.1, 60);" * 20, 7: "F(0.1, 80);B(0.1, 60);" * 45}
 
 
-def unplug_cable(table: Owned, session: Session) -> None:
+def unplug_cable(table: OwnedRobot, session: Session) -> None:
     """The robot forgets the seal."""
     table.robot.step(flags=UNPLUGGED)
 
 
-def spend_number(table: Owned, session: Session) -> None:
+def spend_number(table: OwnedRobot, session: Session) -> None:
     """The session has one more number for it."""
     if session._sealing.seal:
         session._sealing.seal.sent_counter = LAST_COUNTER - 1
@@ -286,7 +286,7 @@ def spend_number(table: Owned, session: Session) -> None:
 @pytest.mark.parametrize("loses", [unplug_cable, spend_number])
 @pytest.mark.parametrize("pieces", PIECES)
 def test_a_seal_lost_during_an_upload_loses_no_piece(
-    pieces: int, loses: Callable[[Owned, Session], None]
+    pieces: int, loses: Callable[[OwnedRobot, Session], None]
 ) -> None:
     """It costs no time either: the computer waits for no piece that was under way."""
     image = image_of("SI|" + PIECES[pieces])
@@ -308,7 +308,7 @@ def test_a_seal_lost_during_an_upload_loses_no_piece(
 def test_a_sealed_session_is_renewed_with_a_reset_robot() -> None:
     """This holds whatever the first request is, including one that needs no HELLO."""
     table, session, _ = open_sealed_session()
-    restarted = Owned(table.robot.memory(), seed=7)
+    restarted = OwnedRobot(table.robot.memory(), seed=7)
     restarted.robot.now_ms = table.robot.now_ms
     assert restarted.outcome(session, session.status()) == "OK"
     assert session._sealing.seal
@@ -321,7 +321,7 @@ def test_sessions_with_the_same_numbers_have_different_seals() -> None:
     table.robot.did.clear()
     memory = table.robot.memory()
     for seed in (0x12345678, 7):  # the same noise at the start, and another one
-        restarted = Owned(memory, seed=seed)
+        restarted = OwnedRobot(memory, seed=seed)
         assert owner_of(restarted, restarted.session(keys, nonce=4)) == OWNED_BY_YOU
         for data in sent_bytes * 3:
             restarted.robot.wait(5, b"\0" + data + b"\0")
@@ -367,10 +367,10 @@ def attack(frames: int, seed: int) -> Counter[str]:
                 robot.wait(20, bytes(8) if chance.random() < 0.5 else b"\0" + _stop(chance) + b"\0")
                 assert robot.is_latched, f"frame {count} of seed {seed}: a stop is not obeyed"
                 counts["stops"] += 1
-            thief.old += thief.sent[-3:]
+            thief.old_frames += thief.sent_frames[-3:]
             session = table.session(_keys, nonce=chance.getrandbits(32))
             recorded_frames, replies = upload_and_capture(table, session, SHORT)
-            thief.sent = [frame for frame in recorded_frames if _is_sealed(frame)]
+            thief.sent_frames = [frame for frame in recorded_frames if _is_sealed(frame)]
             thief.replies = [data for data in replies if _is_sealed(data)]
             table.pass_time(session, 300)
             robot.did.clear()

@@ -29,8 +29,8 @@ from tests.support.robot_on_host import (
     wait_until_saved,
 )
 from tests.support.text_robot import (
+    HOLDING_ACTIONS,
     LINE,
-    SAVED_BACK,
     SAVED_MEMORY,
     fetch_image,
     read_back,
@@ -289,7 +289,7 @@ def test_typed_lines_leave_the_stored_program(is_saved: bool) -> None:
     assert fetch_image(robot, session) == bytes_before
     assert status(robot, session).saved == (SAVED_STORED if is_saved else SAVED_MEMORY)
     robot.wait(4000)
-    assert push_button(robot) == SAVED_BACK
+    assert push_button(robot) == HOLDING_ACTIONS
 
 
 def test_a_typed_sb_program_waits_for_the_button_and_is_lost_at_power_off() -> None:
@@ -304,7 +304,7 @@ def test_a_typed_sb_program_waits_for_the_button_and_is_lost_at_power_off() -> N
     assert push_button(robot) == LINE, "a line that runs at once leaves the button's program"
     assert status(robot, session).saved == SAVED_MEMORY
     restarted_robot = switched_on(robot.memory())
-    assert push_button(restarted_robot) == SAVED_BACK
+    assert push_button(restarted_robot) == HOLDING_ACTIONS
     assert fetch_image(restarted_robot, computer(2)) == bytes_before
 
 
@@ -340,7 +340,7 @@ def test_a_stop_of_a_typed_program_latches(stop_kind: str) -> None:
     assert type_text(robot, "F(1,50)\n", 1100) == ["// It was stopped. Begin with SI|"]
     assert actions_of(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    assert push_button(robot) == SAVED_BACK
+    assert push_button(robot) == HOLDING_ACTIONS
 
 
 @pytest.mark.parametrize("is_stopped_before", [False, True])

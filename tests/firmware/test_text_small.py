@@ -21,8 +21,8 @@ from tests.support.robot_on_host import (
     wait_until_saved,
 )
 from tests.support.text_robot import (
+    HOLDING_ACTIONS,
     LINE,
-    SAVED_BACK,
     SAVED_MEMORY,
     fetch_image,
     read_back,
@@ -59,7 +59,7 @@ def test_a_stored_program_comes_back_with_the_button() -> None:
     assert fetch_image(robot, session) == bytes_before
     assert status(robot, session).saved == SAVED_STORED
     robot.wait(4000)
-    assert push_button(robot) == SAVED_BACK
+    assert push_button(robot) == HOLDING_ACTIONS
 
 
 @pytest.mark.parametrize("has_stored", [True, False])
@@ -70,7 +70,7 @@ def test_the_loss_of_an_unsaved_program_is_reported(has_stored: bool) -> None:
     robot.wait(4000)
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", LOST, "// DONE"]
     assert type_text(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
-    assert push_button(robot) == (SAVED_BACK if has_stored else [])
+    assert push_button(robot) == (HOLDING_ACTIONS if has_stored else [])
     assert robot.is_lit == has_stored
 
 
@@ -84,7 +84,7 @@ def test_sb_keeps_the_button_until_the_next_line() -> None:
     assert actions_of(robot) == LINE * 2
     robot.did.clear()
     assert type_text(robot, "SI|R(0.1,40)\n", 300) == ["// OK", LOST, "// DONE"]
-    assert push_button(robot) == SAVED_BACK
+    assert push_button(robot) == HOLDING_ACTIONS
     assert fetch_image(robot, session) == bytes_before
 
 
@@ -128,7 +128,7 @@ def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
     assert fetch_image(robot, session) == bytes_before
     assert robot.until(session, session.start()) == OK
     robot.talk(session, 400)
-    assert actions_of(robot) == SAVED_BACK
+    assert actions_of(robot) == HOLDING_ACTIONS
 
 
 @pytest.mark.sampled("at_ms", keep=3)
@@ -137,7 +137,7 @@ def test_a_power_cut_while_text_is_read_loses_nothing_stored(at_ms: int) -> None
     robot, _, bytes_before = read_back()
     type_text(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
     restarted_robot = switched_on(robot.memory())
-    assert push_button(restarted_robot) == SAVED_BACK
+    assert push_button(restarted_robot) == HOLDING_ACTIONS
     assert fetch_image(restarted_robot, computer(2)) == bytes_before
 
 

@@ -12,7 +12,7 @@ from itertools import product
 import pytest
 
 from tests.machines.host_firmware import HostFirmware
-from tests.support.button_states import OTHER, SAVED, STATES, Table
+from tests.support.button_states import OTHER_POWER, SAVED_POWER, STATES, Table
 from tests.support.images import image_of
 from tests.support.kept_programs import (
     DRIVE_PROGRAM,
@@ -342,8 +342,8 @@ def power_after_undo(state: str) -> int:
     if state == "holds no program":
         return 0  # EARLIER is the only one
     if state == "is bringing back the previous program":
-        return OTHER
-    return SAVED if state in STATES_IN_MEMORY else EARLIER_POWER
+        return OTHER_POWER
+    return SAVED_POWER if state in STATES_IN_MEMORY else EARLIER_POWER
 
 
 @pytest.mark.sampled("has_draft")
@@ -392,9 +392,9 @@ def test_two_undos_at_once_count_as_two(state: str) -> None:
 def test_a_power_cut_during_undo_leaves_an_existing_program(state: str, cut_ms: int) -> None:
     table, session = robot_in_state(state)
     robot = table.robot
-    programs_there = {after_power_off(table), program_of(EARLIER_POWER), program_of(SAVED)}
+    programs_there = {after_power_off(table), program_of(EARLIER_POWER), program_of(SAVED_POWER)}
     programs_there |= (
-        {program_of(OTHER)} if state == "is bringing back the previous program" else set()
+        {program_of(OTHER_POWER)} if state == "is bringing back the previous program" else set()
     )
     session.undo()
     robot.talk(session, cut_ms)

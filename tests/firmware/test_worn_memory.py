@@ -16,7 +16,7 @@ import pytest
 from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
 from tests.support.kept_programs import bytes_of
-from tests.support.owners import Keys, Owned, owner_of
+from tests.support.owners import Keys, OwnedRobot, owner_of
 from tests.support.robot_on_host import fetch_image
 from tiniscript.link.authority import FREE, OWNED_BY_YOU
 from tiniscript.link.messages import SAVED_STORED
@@ -48,7 +48,7 @@ def count_worn_slots(worn_bytes: set[int], slots: Sequence[tuple[int, int]]) -> 
 
 def check(seed: int) -> str:
     rng = random.Random(seed)
-    table, keys = Owned(seed=seed | 1), Keys()
+    table, keys = OwnedRobot(seed=seed | 1), Keys()
     robot, session = table.robot, table.session(keys)
     worn_bytes: set[int] = set()
     name, program = Known(b""), Known(b"")
@@ -96,7 +96,7 @@ def check(seed: int) -> str:
             outcome = "it says what is not kept"
             assert count_worn_slots(worn_bytes, slots), f"{seed} {kind} {worn_bytes}"
     robot.talk(session, 1000)
-    restarted_robot = Owned(robot.memory())
+    restarted_robot = OwnedRobot(robot.memory())
     later_session = restarted_robot.session(keys, nonce=9)
     whose = owner_of(restarted_robot, later_session)
     # A robot that cannot store its identity has no keys.

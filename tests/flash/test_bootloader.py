@@ -55,19 +55,31 @@ def needs_a_chip() -> None:
     skip_unless_available()
 
 
-def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
+def avrdude(uno: Uno, loader: Bootloader, file: Path) -> str:
     """Write a sketch and read it back, as the Arduino IDE and PlatformIO do."""
     if not shutil.which("avrdude"):
         need("no avrdude on this computer")
     completed = subprocess.run(
-        ["avrdude", "-c", of.programmer, "-p", of.part, "-P", uno.pty, "-b", str(of.baud), "-D",
-         "-U", f"flash:w:{file}:i"],
+        [
+            "avrdude",
+            "-c",
+            loader.programmer,
+            "-p",
+            loader.part,
+            "-P",
+            uno.pty,
+            "-b",
+            str(loader.baud),
+            "-D",
+            "-U",
+            f"flash:w:{file}:i",
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
         timeout=120,
         check=False,
-    )  # fmt: skip
+    )
     assert completed.returncode == 0, completed.stdout
     return completed.stdout
 
@@ -78,21 +90,25 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
 def test_avrdude_writes_the_sketch_and_the_robot_drives(
     board: str, builder: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    common = shared_folder(tmp_path_factory)
+    build_folder = shared_folder(tmp_path_factory)
     if builder == "PlatformIO":
-        elf = firmware(board, tmp_path, common)
+        elf = firmware(board, tmp_path, build_folder)
         sketch = tmp_path / "firmware.hex"
         subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, sketch], check=True)
     else:
-        sketch = arduino_builder.firmware(board, tmp_path, common).hex
-    of = bootloader(board)
+        sketch = arduino_builder.firmware(board, tmp_path, build_folder).hex
+    loader = bootloader(board)
     program = tmp_path / "drive.ts"
     program.write_text(DRIVE_PROGRAM, encoding="utf-8")
     with Uno(
-        nothing_but("nothing"), bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False
+        nothing_but("nothing"),
+        bootloader=loader.file,
+        names=NAMES,
+        baud=loader.baud,
+        tells_sleep=False,
     ) as uno:
         uno.go()
-        assert "bytes of flash verified" in avrdude(uno, of, sketch)
+        assert "bytes of flash verified" in avrdude(uno, loader, sketch)
         identified = process("doctor", "--identify", "--port", uno.pty).gives(0)
         assert identified.out.startswith(f"tinibot on {uno.pty}")
         assert states(uno) == OFF
@@ -116,7 +132,7 @@ def test_optiboot_lets_a_hung_robot_continue(tmp_path: Path) -> None:
     """
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=WATCHDOG_MS)
+        hang(uno, watchdog_ms=WATCHDOG_MS)
         uno.run_ms(500)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
@@ -127,7 +143,7 @@ def test_optiboot_lets_a_hung_robot_continue(tmp_path: Path) -> None:
 def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=TIMER_MS)
+        hang(uno, watchdog_ms=TIMER_MS)
         uno.run_ms(700)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on", "watchdog"]
@@ -139,7 +155,7 @@ def test_an_old_nano_continues_without_its_bootloader(tmp_path: Path) -> None:
     """The old bootloader would leave the watchdog on, so the robot restarts without it."""
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=TIMER_MS)
+        hang(uno, watchdog_ms=TIMER_MS)
         uno.run_ms(1000)
         causes = [event["cause"] for event in uno.events if event.kind == "reset"]
         assert causes == ["power-on"]
@@ -150,7 +166,7 @@ def test_an_old_nano_continues_without_its_bootloader(tmp_path: Path) -> None:
 def test_an_old_nano_that_hangs_permanently_stays_off_until_a_power_cycle(tmp_path: Path) -> None:
     elf = build_hanging_firmware(tmp_path, HANGING_LOOP_WITHOUT_INTERRUPTS, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hang(uno, limit_ms=WATCHDOG_MS)
+        hang(uno, watchdog_ms=WATCHDOG_MS)
         event_count_before = len(uno.events)
         uno.run_ms(300)
         causes = {
@@ -163,13 +179,13 @@ def test_an_old_nano_that_hangs_permanently_stays_off_until_a_power_cycle(tmp_pa
         assert read_reset_report(uno) == (POWER_RESET, 0, 0)
 
 
-def hang(uno: Uno, limit_ms: int) -> None:
+def hang(uno: Uno, watchdog_ms: int) -> None:
     """Make a driving robot hang: its motors must go off."""
     uno.run_ms(WAIT_MS)
     send(computer(uno), AWAY_PROGRAM)
     assert states(uno) == FORWARD
     uno.drive("button", False)
-    uno.run_ms(limit_ms + 5)
+    uno.run_ms(watchdog_ms + 5)
     assert not is_on(uno)
     uno.drive("button", None)
 

@@ -50,7 +50,7 @@ def clone(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def own(tmp_path: Path) -> Path:
+def robot_file(tmp_path: Path) -> Path:
     """A profile of one's own: the paper's robot with another name for a sensor."""
     profile = tmp_path / "mine.toml"
     profile.write_text(TEXTS["tinibot"].replace("LIGHT_R", "LIGHT_X"), encoding="utf-8")
@@ -61,28 +61,30 @@ def own(tmp_path: Path) -> Path:
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-def test_a_custom_robot_is_built_and_written(clone: Path, own: Path) -> None:
+def test_a_custom_robot_is_built_and_written(clone: Path, robot_file: Path) -> None:
     """It is built once and stays ready until one of its sources changes."""
     skip_unless_available()
-    variables, why = prepare()
-    need(why or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
+    variables, reason = prepare()
+    need(reason or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
     with new_board(bootloader("uno")) as uno:
-        result = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
+        result = tsc(clone, "--port", uno.pty, "--robot", str(robot_file), **variables)
         assert result.code == 0, result.err
         assert "PlatformIO is building the firmware of mine for the uno" in result.err
-        first = result.out.splitlines()[0]
-        assert first.startswith("The firmware for mine was written to the uno and verified: ")
+        first_line = result.out.splitlines()[0]
+        assert first_line.startswith("The firmware for mine was written to the uno and verified: ")
         info = process("doctor", "--json", "--port", uno.pty)
-        assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
+        assert f'"kit": "{robots.load(str(robot_file)).kit.fingerprint:04x}"' in info.out, info.err
     files = ready.files(ready.firmware_cache())
     assert [(file.title, file.board) for file in files] == [("mine", "uno")]
-    second_build = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could not build now
+    second_build = tsc(
+        clone, "--build", "--robot", str(robot_file)
+    )  # PlatformIO could not build now
     assert (second_build.code, second_build.err) == (0, "")
     assert second_build.out == f"mine on uno: ready, {files[0].flash_bytes:,} bytes\n"
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")
-    broken_result = tsc(clone, "--build", "--robot", str(own), **variables)
+    broken_result = tsc(clone, "--build", "--robot", str(robot_file), **variables)
     assert broken_result.code == 2
     assert "could not be built" in broken_result.err and "error" in broken_result.err
     log = broken_result.err.split()[-1]
@@ -92,12 +94,16 @@ def test_a_custom_robot_is_built_and_written(clone: Path, own: Path) -> None:
 # -- outdated files are not written
 
 
-def test_the_digest_covers_sources_robot_and_board(clone: Path, own: Path) -> None:
+def test_the_digest_covers_sources_robot_and_board(clone: Path, robot_file: Path) -> None:
     sources = building.sources()
     assert sources is not None
     digests = {
         sources.digest(robot)
-        for robot in (robots.load("tinibot"), robots.load("tinibot", "nano"), robots.load(str(own)))
+        for robot in (
+            robots.load("tinibot"),
+            robots.load("tinibot", "nano"),
+            robots.load(str(robot_file)),
+        )
     }
     assert len(digests) == 3
     spanish = robots.load("tinibot").with_language("es")
@@ -138,8 +144,8 @@ def test_firmware_with_breakpoints_is_cached_beside_that_without(clone: Path) ->
     confused.
     """
     skip_unless_available()
-    variables, why = prepare()
-    need(why)
+    variables, reason = prepare()
+    need(reason)
     for _ in range(2):
         result = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
         assert result.code == 0, result.err
@@ -213,7 +219,7 @@ def source_bytes(clone: Path) -> dict[str, bytes]:
 ROW = ":0400000001020304F2\n"
 
 
-@pytest.mark.parametrize(("text", "whole"), [
+@pytest.mark.parametrize(("text", "is_whole"), [
     (ROW + ":00000001FF\n", True),
     (ROW, False),  # a disk that was full
     ("", False),
@@ -221,13 +227,13 @@ ROW = ":0400000001020304F2\n"
     (ROW + ":0000", False),
     ("<p>no file</p>", False),
 ])  # fmt: skip
-def test_an_incomplete_file_is_rebuilt(text: str, whole: bool) -> None:
+def test_an_incomplete_file_is_rebuilt(text: str, is_whole: bool) -> None:
     folder = ready.firmware_cache()
     folder.mkdir(parents=True)
     (folder / ready.file_name_of("mine", "uno", "12")).write_text(text)
-    assert (ready.find("mine", "uno", "12") is not None) == whole
+    assert (ready.find("mine", "uno", "12") is not None) == is_whole
     assert ready.find("mine", "uno", "13") is None
-    assert len(ready.files(folder)) == whole
+    assert len(ready.files(folder)) == is_whole
 
 
 def test_the_cache_does_not_grow_for_ever() -> None:
@@ -256,7 +262,7 @@ print("Compiling a"); \
 print("Error: The program size (33000 bytes) is greater than maximum allowed (32256 bytes)"); \
 sys.exit(1)"""
 # Makes the file of a board: its name, and the rows in it.
-MAKES = """
+BUILD_CODE = """
 def make(name, rows):
     made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", name)
     os.makedirs(made)
@@ -305,13 +311,13 @@ def test_firmware_too_large_for_the_board_is_refused_before_writing(
 
 
 @pytest.mark.parametrize(
-    ("chip", "lacks"), [("uno", "sin TASK ni WHEN"), ("nano", "sin control remoto")]
+    ("chip", "missing_text"), [("uno", "sin TASK ni WHEN"), ("nano", "sin control remoto")]
 )
 def test_oversized_firmware_is_built_with_fewer_features_and_a_notice(
-    chip: str, lacks: str, clone: Path, tmp_path: Path
+    chip: str, missing_text: str, clone: Path, tmp_path: Path
 ) -> None:
     body = f"""
-{MAKES}
+{BUILD_CODE}
 name = sys.argv[sys.argv.index("-e") + 1]
 if name == "{chip}":
     {TOO_LARGE}
@@ -319,12 +325,12 @@ make(name, ":00000001FF\\n")
 """
     words = ("--chip", chip, "--lang", "es")
     result = build_firmware(clone, fake_platformio(tmp_path, body), *words).gives(0)
-    assert result.err.count(f"queda {lacks}") == 1, result
+    assert result.err.count(f"queda {missing_text}") == 1, result
     assert len(list(ready.firmware_cache().glob("*.hex"))) == 1
 
 
 def test_a_partial_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
-    body = f'{MAKES}\nmake("uno", ":0400")'
+    body = f'{BUILD_CODE}\nmake("uno", ":0400")'
     build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
@@ -333,7 +339,7 @@ def test_a_partial_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path)
 @pytest.mark.parametrize("end", CHILD_ENDS)
 def test_a_failed_build_leaves_nothing(end: str, clone: Path, tmp_path: Path) -> None:
     """Files that it leaves do not count."""
-    body = f'import signal\n{MAKES}\nmake("uno", ":00000001FF\\n")\n{end}'
+    body = f'import signal\n{BUILD_CODE}\nmake("uno", ":00000001FF\\n")\n{end}'
     build_firmware(clone, fake_platformio(tmp_path, body)).gives(2, "could not be built")
     assert not list(ready.firmware_cache().glob("*.hex"))
 
@@ -353,12 +359,12 @@ def test_custom_settings_do_not_affect_the_build(clone: Path, tmp_path: Path) ->
 
 def test_a_pupils_files_are_not_mistaken_for_platformios(clone: Path, tmp_path: Path) -> None:
     """A folder with programs may have a `serial.py` of the pupil's own."""
-    mine = tmp_path / "mine"
-    mine.mkdir()
-    (mine / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
+    own_folder = tmp_path / "mine"
+    own_folder.mkdir()
+    (own_folder / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
     completed = subprocess.run(
         command("--build"),
-        cwd=mine,
+        cwd=own_folder,
         env={**os.environ, **fake_platformio(tmp_path, "import serial\nprint(serial.__file__)")},
         capture_output=True,
         text=True,
@@ -369,7 +375,7 @@ def test_a_pupils_files_are_not_mistaken_for_platformios(clone: Path, tmp_path: 
 
 
 def test_an_unwritable_cache_is_reported(clone: Path, tmp_path: Path) -> None:
-    body = f'{MAKES}\nmake("uno", ":00000001FF\\n")'
+    body = f'{BUILD_CODE}\nmake("uno", ":00000001FF\\n")'
     (tmp_path / "cache").write_text("a file")
     result = build_firmware(clone, fake_platformio(tmp_path, body))
     result.gives(2, "make room there", str(tmp_path / "cache"))

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
 PARENT_SCRIPT = 'sleep 3600 </dev/null >/dev/null 2>&1 & echo $! > "$1"; echo begun; {}'
 
 
-class Broken(Exception):
+class ProgressError(Exception):
     """The look at it has failed."""
 
 
@@ -32,7 +32,7 @@ def let_continue(text: str) -> None:
 
 def break_at_begin(text: str) -> None:
     if "begun" in text:
-        raise Broken
+        raise ProgressError
 
 
 def interrupt_at_begin(text: str) -> None:
@@ -47,10 +47,10 @@ CHILD_ENDS: dict[str, tuple[str, Callable[[str], None], type[BaseException] | No
     "it is killed": ("kill -9 $$", let_continue, None),
     "it closes its ends and stays": ("exec sleep 3600 >&- 2>&-", let_continue,
                                      subprocess.TimeoutExpired),
-    "it is not waited for": ("sleep 3600", break_at_begin, Broken),
+    "it is not waited for": ("sleep 3600", break_at_begin, ProgressError),
     "Ctrl-C": ("sleep 3600", interrupt_at_begin, KeyboardInterrupt),
-    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", break_at_begin, Broken),
-    FIRST_WAITS_FOR_END: ("sleep 0.2", break_at_begin, Broken),
+    "it takes no Ctrl-C": ("trap '' INT; sleep 3600", break_at_begin, ProgressError),
+    FIRST_WAITS_FOR_END: ("sleep 0.2", break_at_begin, ProgressError),
 }  # fmt: skip
 
 
@@ -62,21 +62,23 @@ def is_over(process: int) -> bool:
     return completed.stdout.strip()[:1] in ("", "Z")
 
 
-@pytest.mark.parametrize("way", CHILD_ENDS)
+@pytest.mark.parametrize("end_kind", CHILD_ENDS)
 def test_no_child_process_is_left(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end_kind: str
 ) -> None:
-    end, look, failure = CHILD_ENDS[way]
+    end, on_output, failure = CHILD_ENDS[end_kind]
     monkeypatch.setattr(children, "KILL_DELAY_S", 0.2)
     for round_ in range(2):  # the second one as the first one
         noted_path = tmp_path / f"{round_}"
         words = ["sh", "-c", PARENT_SCRIPT.format(end), "sh", str(noted_path)]
         if failure is None:
-            code, text = children.run(words, None, look)
-            assert text == "begun\n" and (code == 0) == (way == "it ends well")
+            code, text = children.run(words, None, on_output)
+            assert text == "begun\n" and (code == 0) == (end_kind == "it ends well")
         else:
             with pytest.raises(failure):
-                children.run(words, None, look, None, lambda _: way != FIRST_WAITS_FOR_END, 0.2)
+                children.run(
+                    words, None, on_output, None, lambda _: end_kind != FIRST_WAITS_FOR_END, 0.2
+                )
         child = int(noted_path.read_text(encoding="utf-8"))
         until(partial(is_over, child), "what it has started ends")
 

@@ -32,12 +32,12 @@ def write_and_watch(folder: Path, body: str) -> tuple[WriteResult, list[StepProg
     program.write_text(body, encoding="utf-8")
     steps: list[StepProgress | None] = []
 
-    def look(progress: StepProgress | None) -> None:
+    def note_progress(progress: StepProgress | None) -> None:
         steps.append(progress)
         if progress:
             (folder / "seen").touch()
 
-    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, look), steps
+    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, note_progress), steps
 
 
 @pytest.mark.parametrize("message", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "#"])
@@ -48,10 +48,12 @@ def test_an_avrdude_that_writes_for_ever_is_ended(tmp_path: Path, message: str) 
 
 
 def test_progress_is_reported_until_avrdude_is_ended(tmp_path: Path) -> None:
-    waits = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
-    body = f'print("{HALF_OUTPUT}", flush=True)\n' + waits + WRITING_CODE.format(said=" waiting\n")
-    how, steps = write_and_watch(tmp_path, body)
-    assert how.outcome == avrdude.ENDLESS
+    wait_code = f"import os\nwhile not os.path.exists({str(tmp_path / 'seen')!r}): pass\n"
+    body = (
+        f'print("{HALF_OUTPUT}", flush=True)\n' + wait_code + WRITING_CODE.format(said=" waiting\n")
+    )
+    result, steps = write_and_watch(tmp_path, body)
+    assert result.outcome == avrdude.ENDLESS
     assert StepProgress(avrdude.WRITING, 50) in steps
 
 
@@ -97,26 +99,27 @@ def test_a_slow_reader_reads_nothing_of_the_next_opened_file(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there a program gets no Ctrl-C")
 def test_a_second_ctrl_c_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    running = subprocess.Popen(["sleep", "600"], start_new_session=True)
+    child = subprocess.Popen(["sleep", "600"], start_new_session=True)
 
     def interrupt_wait(seconds_s: float) -> int:
         monkeypatch.undo()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running, "wait", interrupt_wait)
+    monkeypatch.setattr(child, "wait", interrupt_wait)
     with pytest.raises(KeyboardInterrupt):
-        children._end(running)
-    assert running.poll() is not None
+        children._end(child)
+    assert child.poll() is not None
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")
-@pytest.mark.parametrize("rest", [WRITING_CODE.format(said="x"), "sys.exit(1)"])
-def test_children_of_avrdude_end_with_it(tmp_path: Path, rest: str) -> None:
+@pytest.mark.parametrize("parent_code", [WRITING_CODE.format(said="x"), "sys.exit(1)"])
+def test_children_of_avrdude_end_with_it(tmp_path: Path, parent_code: str) -> None:
     note = tmp_path / "child"
     sleep = f"[{sys.executable!r}, '-c', 'import time; time.sleep(600)']"
     body = (
         f"import subprocess, sys\nchild = subprocess.Popen({sleep}, stdout=subprocess.DEVNULL,"
-        f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n{rest}\n"
+        f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n"
+        f"{parent_code}\n"
     )
     write_and_watch(tmp_path, body)
     until(partial(has_ended, note.read_text()), "its child has ended")
@@ -130,10 +133,10 @@ def test_the_message_names_the_next_step() -> None:
 def test_ctrl_c_during_the_start_of_avrdude_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """The signal is heard before anybody knows the program."""
     processes: list[subprocess.Popen[bytes]] = []
-    begin = subprocess.Popen
+    real_popen = subprocess.Popen
 
     def interrupt_first(*arguments: object, **options: object) -> subprocess.Popen[bytes]:
-        processes.append(begin(*arguments, **options))  # type: ignore[call-overload]
+        processes.append(real_popen(*arguments, **options))  # type: ignore[call-overload]
         if len(processes) == 1:  # Windows starts another program to end it
             signal.raise_signal(signal.SIGINT)
         return processes[-1]

@@ -56,8 +56,8 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
     """PlatformIO works here, with the offline stand-ins where it needs them."""
-    variables, why = prepare()
-    need(why)
+    variables, reason = prepare()
+    need(reason)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
 
@@ -76,11 +76,11 @@ def test_a_new_board_becomes_a_robot(
 ) -> None:
     with new_board(bootloader(board)) as uno:
         result = tsc(package, "--port", uno.pty, "--robot", robot, "--chip", option).gives(0)
-        first, second = result.out.splitlines()[:2]
+        first_line, second_line = result.out.splitlines()[:2]
         message = f"The firmware for {robot} was written to the {board} and verified: "
-        assert first.startswith(message)
-        assert int(first.removeprefix(message).split()[0].replace(",", "")) > bytes_least
-        assert second.startswith(f"{robot} on {uno.pty}, id ")
+        assert first_line.startswith(message)
+        assert int(first_line.removeprefix(message).split()[0].replace(",", "")) > bytes_least
+        assert second_line.startswith(f"{robot} on {uno.pty}, id ")
 
 
 def test_a_board_without_a_bootloader_is_not_changed(
@@ -94,23 +94,23 @@ def test_a_board_without_a_bootloader_is_not_changed(
         assert not [event for event in uno.events if event.kind == "crash"]
 
 
-def changed_optiboot(folder: Path, old: str, new: str) -> Bootloader:
+def changed_optiboot(folder: Path, old_text: str, new_text: str) -> Bootloader:
     source = (FOLDER / "optiboot" / "optiboot.c").read_text(encoding="utf-8", errors="replace")
-    assert old in source
-    return bootloader("uno")._replace(file=optiboot(folder, source.replace(old, new)))
+    assert old_text in source
+    return bootloader("uno")._replace(file=optiboot(folder, source.replace(old_text, new_text)))
 
 
 def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
-    of = changed_optiboot(tmp_path, "putch(SIGNATURE_1)", "putch(0x94)")  # an ATmega168P's
-    with new_board(of) as uno:
+    loader = changed_optiboot(tmp_path, "putch(SIGNATURE_1)", "putch(0x94)")  # an ATmega168P's
+    with new_board(loader) as uno:
         result = tsc(package, "--port", uno.pty, "--lang", "es")
         assert result.code == 3
         assert f"la placa en {uno.pty} no es un uno" in result.err
 
 
 def test_a_faulty_flash_memory_is_noticed(package: Path, tmp_path: Path) -> None:
-    of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
-    with new_board(of) as uno:
+    loader = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
+    with new_board(loader) as uno:
         tsc(package, "--port", uno.pty).gives(
             3, "the firmware on the board does not match what was written. Unplug"
         )
@@ -152,8 +152,8 @@ def fake(folder: Path, body: str) -> dict[str, str]:
 def test_a_nano_is_tried_with_both_of_its_bootloaders(
     package: Path, board: Uno, tmp_path: Path
 ) -> None:
-    silent = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
-    body = f'{silent}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
+    silent_body = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
+    body = f'{silent_body}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
     result = tsc(package, "--port", board.pty, "--chip", "nano", **fake(tmp_path, body))
     assert result.code == 3
     assert "trying an older Nano" in result.err and "Is it a nano" in result.err
@@ -188,10 +188,10 @@ def test_ctrl_c_reports_a_partial_firmware_from_the_first_byte_on(
     """Before the first byte there is no such warning, because the board is unchanged."""
 
     def write(*words: object) -> None:
-        look = cast("Callable[[StepProgress | None], None]", words[-1])
+        on_progress = cast("Callable[[StepProgress | None], None]", words[-1])
         steps = (StepProgress(avrdude.WRITING, 9 * k) for k in range(count))
         for progress in [None, None, *steps, None]:
-            look(progress)
+            on_progress(progress)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(avrdude, "write", write)
@@ -225,13 +225,15 @@ def test_the_avrdude_of_another_program_is_found(
     program.parent.mkdir(parents=True)
     program.touch(mode=0o755)
     assert avrdude.find_avrdude() is None  # avrdude does not work without its configuration
-    inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
-    inside.mkdir(exist_ok=True)
-    (inside / "avrdude.conf").touch()
-    assert avrdude.find_avrdude() == [str(program), "-C", str(inside / "avrdude.conf")]
+    config_folder = (
+        program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
+    )
+    config_folder.mkdir(exist_ok=True)
+    (config_folder / "avrdude.conf").touch()
+    assert avrdude.find_avrdude() == [str(program), "-C", str(config_folder / "avrdude.conf")]
 
 
-@pytest.mark.parametrize(("how", "name"), [
+@pytest.mark.parametrize(("outcome", "name"), [
     (avrdude.NOBODY, "avrdude: stk500_getsync() attempt 10 of 10: not in sync: resp=0xc9"),
     (avrdude.NOBODY, "avrdude: stk500v2_ReceiveMessage(): timeout"),
     (avrdude.NOBODY, "avrdude error: unable to open programmer arduino on port /dev/ttyUSB0"),
@@ -250,14 +252,14 @@ def test_the_avrdude_of_another_program_is_found(
     (avrdude.FAILED, "avrdude: cannot find its settings"),
     (avrdude.FAILED, ""),
 ])  # fmt: skip
-def test_messages_of_avrdude_map_to_outcomes(how: str, name: str) -> None:
+def test_messages_of_avrdude_map_to_outcomes(outcome: str, name: str) -> None:
     for code in (1, 255, -9, -15):  # including exits by a signal from outside
-        assert avrdude.result_of(code, name).outcome == how
+        assert avrdude.result_of(code, name).outcome == outcome
 
 
 def test_every_outcome_has_its_message() -> None:
-    for how in avrdude.OUTCOMES:
-        assert has_text(f"flash_{how}")
+    for outcome in avrdude.OUTCOMES:
+        assert has_text(f"flash_{outcome}")
 
 
 @pytest.mark.parametrize(("expected", "progress"), [
@@ -292,11 +294,11 @@ def test_a_firmware_is_the_same_however_it_is_built(
     """`pio run` builds shipped robots, and `tsc firmware` any robot, in another folder."""
     path = firmware_files.build(robots.load("tinibot"), tmp_path)
     assert path.name.startswith("tinibot-uno-")
-    halting = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
-    assert halting.name.startswith("tinibot_breakpoints-uno-")
-    one, other = (file.read_text().split() for file in (
+    halting_firmware = firmware_files.build(robots.load("tinibot"), tmp_path, has_breakpoints=True)
+    assert halting_firmware.name.startswith("tinibot_breakpoints-uno-")
+    words, other_words = (file.read_text().split() for file in (
         path, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
-    assert one == other
+    assert words == other_words
 
 
 def test_every_board_of_the_option_is_built() -> None:
@@ -316,12 +318,12 @@ def test_every_board_of_the_option_is_built() -> None:
 def test_breakpoints_are_built_only_if_they_replace_the_text_reader() -> None:
     """For each robot on each board that lacks one of the two."""
     for robot in firmware_files.shipped_robots():
-        halting = [
-            halting for halting in firmware_files.halting_robots()
-            if (halting.name, halting.board.chip) == (robot.name, robot.board.chip)
+        halting_boards = [
+            halting_robot for halting_robot in firmware_files.halting_robots()
+            if (halting_robot.name, halting_robot.board.chip) == (robot.name, robot.board.chip)
         ]  # fmt: skip
         is_small = robot.board.chip in ("uno", "nano")
-        assert len(halting) == (is_small and not robot.board.discs), robot
+        assert len(halting_boards) == (is_small and not robot.board.discs), robot
 
 
 def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:

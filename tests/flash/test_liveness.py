@@ -41,10 +41,10 @@ def output(rng: random.Random, whole_s: float, longest_s: float) -> list[tuple[f
     parts = [SIGNATURE, "Writing | ", *"#" * BAR_MARKS, " |\nReading | ", *"#" * BAR_MARKS, " |\n"]
     gaps_s = [rng.random() ** 4 for _ in parts]
     total = sum(gaps_s)
-    at_s, lines = 0.0, []
+    time_s, lines = 0.0, []
     for gap_s, part in zip(gaps_s, parts, strict=True):
-        at_s += min(gap_s / total * whole_s, longest_s)
-        lines.append((at_s, part))
+        time_s += min(gap_s / total * whole_s, longest_s)
+        lines.append((time_s, part))
     return lines
 
 
@@ -54,13 +54,13 @@ def watch_parts(
     """Return the watch's verdict, or None, and its time."""
     all_progress: list[StepProgress | None] = []
     watch = avrdude._Watch(all_progress.append)
-    began_s = clock.now_s
-    while clock.now_s - began_s < until_s:
-        passed_s = clock.now_s - began_s
+    start_s = clock.now_s
+    while clock.now_s - start_s < until_s:
+        passed_s = clock.now_s - start_s
         try:
-            watch("".join(part for at_s, part in parts if at_s <= passed_s))
-        except avrdude._GivenUp as over:
-            return over.result, passed_s
+            watch("".join(part for time_s, part in parts if time_s <= passed_s))
+        except avrdude._GivenUp as given_up:
+            return given_up.result, passed_s
         clock.now_s += LOOK_S
     percents = [
         progress.percent + 100 * (progress.phase == avrdude.READING)
@@ -83,12 +83,14 @@ def test_a_write_that_progresses_is_waited_for(clock: Clock, seed: int) -> None:
 def test_a_write_without_progress_is_ended(clock: Clock, seed: int) -> None:
     rng = random.Random(seed)
     parts = output(rng, MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
-    some = parts[: rng.randrange(len(parts) - 1)]
-    last_s = some[-1][0] if some else 0.0
-    how, at_s = watch_parts(clock, some, RUN_TIMEOUT_S + 1)
-    assert how and how.outcome == (avrdude.BROKEN_OFF if len(some) > 1 else avrdude.NOBODY)
-    timeout_s = SILENCE_TIMEOUT_S if len(some) > 1 else NO_ANSWER_TIMEOUT_S
-    assert timeout_s - LOOK_S < at_s - last_s < timeout_s + 2 * LOOK_S
+    first_parts = parts[: rng.randrange(len(parts) - 1)]
+    last_s = first_parts[-1][0] if first_parts else 0.0
+    result, end_s = watch_parts(clock, first_parts, RUN_TIMEOUT_S + 1)
+    assert result and result.outcome == (
+        avrdude.BROKEN_OFF if len(first_parts) > 1 else avrdude.NOBODY
+    )
+    timeout_s = SILENCE_TIMEOUT_S if len(first_parts) > 1 else NO_ANSWER_TIMEOUT_S
+    assert timeout_s - LOOK_S < end_s - last_s < timeout_s + 2 * LOOK_S
 
 
 @pytest.mark.parametrize("failed", range(4))
@@ -98,14 +100,14 @@ def test_a_bootloader_that_misses_the_first_try_is_waited_for(clock: Clock, fail
         (5.0 * k, f"avrdude: stk500_getsync() attempt {k} of 10: not in sync: resp=0x00\n")
         for k in range(1, failed + 1)
     ]
-    good = output(random.Random(failed), MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
-    parts = [*tries, *((5.0 * failed + at_s, part) for at_s, part in good)]
-    how, at_s = watch_parts(clock, parts, parts[-1][0] + 1)
-    assert how == (WriteResult(avrdude.NOBODY) if failed > 1 else None)
-    assert failed < 2 or at_s < 5.0 * 2 + 2 * LOOK_S
+    good_parts = output(random.Random(failed), MEGA_S, NO_ANSWER_TIMEOUT_S - 1)
+    parts = [*tries, *((5.0 * failed + time_s, part) for time_s, part in good_parts)]
+    result, end_s = watch_parts(clock, parts, parts[-1][0] + 1)
+    assert result == (WriteResult(avrdude.NOBODY) if failed > 1 else None)
+    assert failed < 2 or end_s < 5.0 * 2 + 2 * LOOK_S
 
 
 def test_output_without_progress_does_not_prevent_the_timeout(clock: Clock) -> None:
     parts = [(0.0, SIGNATURE + "Writing | #"), *((k * 1.0, ".") for k in range(1000))]
-    how, at_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
-    assert how == WriteResult(avrdude.ENDLESS) and at_s < RUN_TIMEOUT_S + 2 * LOOK_S
+    result, end_s = watch_parts(clock, parts, RUN_TIMEOUT_S + 10)
+    assert result == WriteResult(avrdude.ENDLESS) and end_s < RUN_TIMEOUT_S + 2 * LOOK_S

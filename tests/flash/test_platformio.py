@@ -42,9 +42,9 @@ def change_file(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
     """Change a file of the copy, and put it back afterwards."""
     text_before = path.read_text(encoding="utf-8")
     before_after = text_before
-    for old, new in changes:
-        assert old in before_after, f"{path.name} has no {old}"
-        before_after = before_after.replace(old, new)
+    for old_text, new_text in changes:
+        assert old_text in before_after, f"{path.name} has no {old_text}"
+        before_after = before_after.replace(old_text, new_text)
     path.unlink()
     path.write_text(before_after, encoding="utf-8")
     try:
@@ -107,7 +107,7 @@ SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber", "
             "nano_elegoo4", "mega_elegoo4", "uno_sumo", "nano_sumo", "mega_sumo", "uno_tinibot2",
             "nano_tinibot2", "mega_tinibot2")  # fmt: skip
 
-NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner",
+OLD_BY_NEW_NANO = {"nano_new": "nano", "nano_new_liner": "nano_liner",
              "nano_new_elegoo4": "nano_elegoo4", "nano_new_sumo": "nano_sumo",
              "nano_new_tinibot2": "nano_tinibot2"}  # fmt: skip
 # Boards of PlatformIO, and where Arduino's `boards.txt` has them.
@@ -124,7 +124,7 @@ ESP32 = {"esp32dev": "tinibot32", "esp32c3": "tinibotc3"}
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     names = re.findall(r"\[env:(\w+)\]", text)
-    assert set(names) == {*SKETCHES, *NEW_NANOS, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
+    assert set(names) == {*SKETCHES, *OLD_BY_NEW_NANO, *ESP32, *SMALLER_ENVIRONMENTS, "native"}
     assert set(environments()) == set(SKETCHES)
     for board, name in ESP32.items():
         assert robots.load(name).board.chip == board
@@ -139,9 +139,9 @@ def test_the_sketch_builds(project: Path, name: str) -> None:
     log = pio(project, "run", "-e", name).gives(0).out
     assert names_stand_in_if_used(log)
     assert "warning" not in log, log
-    used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
-    assert 0 < used["Flash"] < (FLASH_BYTES if "mega" not in name else 7 * FLASH_BYTES)
-    assert 0 < used["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
+    used_bytes = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
+    assert 0 < used_bytes["Flash"] < (FLASH_BYTES if "mega" not in name else 7 * FLASH_BYTES)
+    assert 0 < used_bytes["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
     assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
 
 
@@ -171,13 +171,15 @@ def test_the_capacity_of_a_board_follows_its_fuses(board: str, arduino: str) -> 
     path = ARDUINO / "boards.txt"
     need("" if path.exists() else f"{DEBIAN_PACKAGES[ARDUINO]} is not installed")
     rows = dict(re.findall(rf"^{re.escape(arduino)}\.(\S+)=(\S+)$", path.read_text("utf-8"), re.M))
-    flash, least = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[rows["build.mcu"]]
-    section = least << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)
+    flash, min_section = {"atmega328p": (32_768, 512), "atmega2560": (262_144, 1024)}[
+        rows["build.mcu"]
+    ]
+    section = min_section << (~int(rows["bootloader.high_fuses"], 16) >> 1 & 3)
     assert BOARDS[board][4] == flash - section == int(rows["upload.maximum_size"])
 
 
 @pytest.mark.sampled(of="builds of PlatformIO")
-@pytest.mark.parametrize(("new_env", "old_env"), NEW_NANOS.items())
+@pytest.mark.parametrize(("new_env", "old_env"), OLD_BY_NEW_NANO.items())
 def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
     project: Path, new_env: str, old_env: str
 ) -> None:
@@ -198,20 +200,20 @@ def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
 @pytest.mark.sampled(of="builds of PlatformIO")
 def test_the_sketch_of_a_custom_robot_builds(project: Path) -> None:
     """`tsc firmware --board` writes its header, and from then on the sketch is for it."""
-    own = project / "src" / "boards" / "kits" / "own.h"
+    kit_header = project / "src" / "boards" / "kits" / "own.h"
     pio(project, "run", "-e", "uno").gives(0)
     profile = Path(robots.__file__).parent / "tinibot.toml"
     try:
-        assert main(["firmware", "--board", str(profile), "-o", str(own)]) == 0
+        assert main(["firmware", "--board", str(profile), "-o", str(kit_header)]) == 0
         log = pio(project, "run", "-e", "uno").gives(0).out
         assert re.search(r"(Compiling |Retrieved `)\S+/boards/motors.cpp.o", log)
-        with change_file(own, ("kBuzzer", "kNothingLikeIt")):
+        with change_file(kit_header, ("kBuzzer", "kNothingLikeIt")):
             pio(project, "run", "-e", "uno").gives(1, out="kBuzzer")
-        fits = "is wired to another board. It fits: uno."
-        pio(project, "run", "-e", "mega").gives(1, out=fits)
+        board_message = "is wired to another board. It fits: uno."
+        pio(project, "run", "-e", "mega").gives(1, out=board_message)
         pio(project, "run", "-e", "mega_grabber").gives(0)
     finally:
-        own.unlink(missing_ok=True)
+        kit_header.unlink(missing_ok=True)
 
 
 def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from tests.support.text_only_words import CODE, END_WORD, has_line_on_floor, text_only_words
+from tests.support.text_only_words import CODE_PATTERN, END_WORD, has_line_on_floor, text_only_words
 from tests.support.texts import LANGUAGES
 from tiniscript.base.languages import texts
 from tiniscript.lessons import catalogue
@@ -38,7 +38,7 @@ def test_a_lesson_mentions_blocks_to_block_users(number: int, language: str) -> 
         assert text_only_words(step_sentence, language, is_line_on_floor=is_line_on_floor) == [], (
             step_sentence
         )
-        for code in CODE.findall(step_sentence):
+        for code in CODE_PATTERN.findall(step_sentence):
             assert is_on_a_block(code, spoken_blocks), (code, step_sentence)
 
 
@@ -94,8 +94,8 @@ def test_block_users_get_findings_about_blocks(language: str) -> None:
             assert text_only_words(on_blocks, language, is_line_on_floor=is_line_on_floor) == [], (
                 on_blocks
             )
-            spoken_blocks = block_speech.blocks_of(CODE.findall(on_blocks), kit)
-            for code in CODE.findall(on_blocks):
+            spoken_blocks = block_speech.blocks_of(CODE_PATTERN.findall(on_blocks), kit)
+            for code in CODE_PATTERN.findall(on_blocks):
                 assert is_on_a_block(code, spoken_blocks), (code, on_blocks)
 
 

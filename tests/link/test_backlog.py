@@ -22,21 +22,21 @@ from tiniscript.link.port_connection import PortConnection
 from tiniscript.link.session import Session
 
 CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
-PIECES = 400  # of it, 8,000 lines: half a minute at 115200 baud
-MOST_BYTES = 500_000  # most bytes kept of these
+PIECE_COUNT = 400  # of it, 8,000 lines: half a minute at 115200 baud
+MAX_KEPT_BYTES = 500_000  # most bytes kept of these
 
 
 class Chatterbox:
     """A port at which something talks, as fast as it is heard, and ends."""
 
     def __init__(self) -> None:
-        self.pieces = PIECES
-        self.rest = b""
+        self.pieces = PIECE_COUNT
+        self.unread = b""
         self.is_over = threading.Event()
 
     @property
     def in_waiting(self) -> int:
-        return len(self.rest)
+        return len(self.unread)
 
     def read(self, count: int) -> bytes:
         if count == 1:
@@ -45,9 +45,9 @@ class Chatterbox:
                 self.is_over.set()
                 self.is_over.wait(0.01)
                 return b""
-            self.rest = CHATTER[1:]
+            self.unread = CHATTER[1:]
             return CHATTER[:1]
-        data, self.rest = self.rest, b""
+        data, self.unread = self.unread, b""
         return data
 
     def write(self, data: bytes) -> int:
@@ -71,10 +71,10 @@ def test_an_unread_line_keeps_few_events() -> None:
     while (row := line.event(0.5)) is not None:
         events.append(row[1])
     line.close()
-    assert kept_bytes < MOST_BYTES
+    assert kept_bytes < MAX_KEPT_BYTES
     assert len(events) <= MOST_EVENTS + 1
     assert events[0].name == "MISSED"
-    assert events[0].count + len(events) - 1 == 20 * PIECES
+    assert events[0].count + len(events) - 1 == 20 * PIECE_COUNT
 
 
 class Socket(Chatterbox):
@@ -82,14 +82,14 @@ class Socket(Chatterbox):
 
     def __init__(self) -> None:
         super().__init__()
-        self.rest = CHATTER
+        self.unread = CHATTER
 
     @property
     def in_waiting(self) -> int:
         return 1
 
     def read(self, count: int) -> bytes:
-        data, self.rest = self.rest[:count], self.rest[count:]
+        data, self.unread = self.unread[:count], self.unread[count:]
         if not data:
             raise OSError("socket disconnected")
         return data

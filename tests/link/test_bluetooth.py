@@ -12,8 +12,8 @@ import tiniscript
 from tests.support.ble_robot import (
     ADDRESS,
     ADDRESS_PORT,
-    DRIVE,
     DRIVE_ACTIONS,
+    DRIVE_PROGRAM,
     HM10,
     LAMP_SERVICE,
     NAME,
@@ -23,7 +23,7 @@ from tests.support.ble_robot import (
     Peripheral,
     start_endless_upload,
 )
-from tests.support.command import LONG, Command, run_in_process
+from tests.support.command import LONG_PROGRAM, Command, run_in_process
 from tests.support.fake_bluez import ADVERTISING_INTERVAL_S, FakeBluez
 from tests.support.interrupted import interrupted_bell
 from tests.support.pty_robot import PtyRobot
@@ -31,7 +31,7 @@ from tests.support.waiting import until
 from tiniscript.link import known_ports
 from tiniscript.link.transports import event_loop
 
-OTHER = "AA:BB:CC:DD:EE:02"
+OTHER_ADDRESS = "AA:BB:CC:DD:EE:02"
 LARGEST = 65  # bytes of a frame on the wire
 
 
@@ -53,13 +53,13 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_program_is_uploaded_and_lines_run_at_once(ble: BleRobot) -> None:
     for count, port in enumerate((NAME, ADDRESS_PORT, "BLE://tini 1", ADDRESS_PORT.lower()), 1):
-        result = run_in_process("upload", "-e", DRIVE, "--port", port)
+        result = run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert result.out.splitlines()[-2:] == ["Done.", "Saved. The button starts it."]
         assert (ble.robot.actions, ble.connections) == (DRIVE_ACTIONS * count, 2 * count - 1)
         assert run_in_process("set", "trim", "--show").code == 0  # the port is remembered
-    assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
-    assert max(len(data) for _, data in ble.written) == 20
+    assert {kind for kind, _ in ble.writes} == {"command"}  # an HM-10 answers no write
+    assert max(len(data) for _, data in ble.writes) == 20
     run_in_process("live", "-", "--port", ADDRESS_PORT, data=b"F(0.1, 50)\nR(0.1, 40)\n").gives(
         0, ""
     )
@@ -77,22 +77,22 @@ def test_a_long_program_arrives_complete(
     """This holds for any negotiated size, and for late notifications."""
     ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
     bluez.add(ble)
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    run_in_process("compile", "-e", LONG, "-o", ours)
-    assert run_in_process("upload", ours, "--no-run", "--port", ADDRESS_PORT).code == 0
-    assert run_in_process("show", "-o", theirs, "--port", ADDRESS_PORT).code == 0
-    assert theirs.read_bytes() == ours.read_bytes()
-    longest = max(len(data) for _, data in ble.written)
-    assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
-    assert max(map(len, ble.sent)) <= mtu - 3
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    run_in_process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
+    assert run_in_process("upload", compiled_file, "--no-run", "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("show", "-o", robot_file, "--port", ADDRESS_PORT).code == 0
+    assert robot_file.read_bytes() == compiled_file.read_bytes()
+    longest_bytes = max(len(data) for _, data in ble.writes)
+    assert longest_bytes == (20 if service == HM10 else min(mtu - 3, LARGEST))
+    assert max(map(len, ble.sent_packets)) <= mtu - 3
 
 
 def test_write_responses_of_a_module_are_waited_for(bluez: FakeBluez, pty_robot: PtyRobot) -> None:
     ble = BleRobot(pty_robot)
     ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
     bluez.add(ble)
-    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
-    assert {kind for kind, _ in ble.written} == {"request"}
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
+    assert {kind for kind, _ in ble.writes} == {"request"}
     assert pty_robot.actions == DRIVE_ACTIONS
 
 
@@ -116,8 +116,8 @@ def test_commands_share_a_connection_under_any_name(ble: BleRobot, port: str) ->
 
 
 def test_two_simultaneous_commands_take_turns(ble: BleRobot) -> None:
-    both = [Command("doctor", "--identify", "--port", port) for port in (NAME, ADDRESS_PORT)]
-    results = [command.wait_for_result() for command in both]
+    commands = [Command("doctor", "--identify", "--port", port) for port in (NAME, ADDRESS_PORT)]
+    results = [command.wait_for_result() for command in commands]
     assert 0 in [result.code for result in results]
     for result in results:
         assert (
@@ -151,29 +151,29 @@ def test_after_a_killed_command_the_robot_stops_and_is_reachable(
     ble.robot.until(lambda: not ble.robot.moves, "the dead-man timer stops it")
     assert bluez.devices[ADDRESS].is_connected
     for port in (NAME, ADDRESS_PORT):
-        assert run_in_process("upload", "-e", DRIVE, "--port", port).code == 0
+        assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", port).code == 0
     assert ble.robot.actions[-3:] == DRIVE_ACTIONS
 
 
 # -- which robot --------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("late", [0, 4])
+@pytest.mark.parametrize("late_rounds", [0, 4])
 def test_two_robots_with_one_name_are_not_chosen(
-    ble: BleRobot, bluez: FakeBluez, late: int
+    ble: BleRobot, bluez: FakeBluez, late_rounds: int
 ) -> None:
     """Also where one says its name later."""
-    twin = Peripheral("TINI 1", OTHER)
-    twin.late = late
+    twin = Peripheral("TINI 1", OTHER_ADDRESS)
+    twin.late_rounds = late_rounds
     bluez.add(twin)
-    run_in_process("upload", "-e", DRIVE, "--port", NAME).gives(
-        3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER}"
+    run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", NAME).gives(
+        3, f"several robots are called {NAME}", f"{ADDRESS_PORT}, ble://{OTHER_ADDRESS}"
     )
     assert ble.connections == 0
-    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
 
 
-@pytest.mark.parametrize(("name", "typed"), [
+@pytest.mark.parametrize(("name", "typed_name"), [
     ("Ñandú 7", "ñandú 7"),
     ("Mi robot", "mi robot"),
     ("a/b?c%20://d", "a/b?c%20://d"),
@@ -182,14 +182,14 @@ def test_two_robots_with_one_name_are_not_chosen(
     ("Cafe\u0301", "Caf\u00e9"),
 ])  # fmt: skip
 def test_names_with_special_characters_are_text(
-    bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed: str
+    bluez: FakeBluez, pty_robot: PtyRobot, name: str, typed_name: str
 ) -> None:
     bluez.add(BleRobot(pty_robot, name))
-    assert run_in_process("doctor", "--identify", "--port", f"ble://{typed}").code == 0
+    assert run_in_process("doctor", "--identify", "--port", f"ble://{typed_name}").code == 0
 
 
 def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: BleRobot) -> None:
-    fake = Peripheral(ADDRESS, OTHER)
+    fake = Peripheral(ADDRESS, OTHER_ADDRESS)
     bluez.add(fake)
     assert run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).code == 0
     assert (ble.connections, fake.connections) == (1, 0)
@@ -197,12 +197,15 @@ def test_a_name_that_looks_like_an_address_is_not_a_name(bluez: FakeBluez, ble: 
 
 def test_all_robots_in_reach_are_listed_and_queried(ble: BleRobot, bluez: FakeBluez) -> None:
     hostile = "\x1b[31mNo\r\ntsc: \u202ename"
-    bluez.add(Echo(hostile, OTHER))
+    bluez.add(Echo(hostile, OTHER_ADDRESS))
     bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP_SERVICE))
     result = run_in_process("doctor", "--ports", "--ask").gives(0)
     rows = {line.split("   ")[0]: line.split("   ")[1:] for line in result.out.splitlines()}
     assert rows[ADDRESS_PORT] == ["Tini 1, Bluetooth LE", "robot tinibot (free)"]
-    assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", ADDRESS_PORT]
+    assert [port for port in rows if port.startswith("ble")] == [
+        f"ble://{OTHER_ADDRESS}",
+        ADDRESS_PORT,
+    ]
     assert not any(sign in result.out for sign in "\x1b\r\u202e")
     # from now on it has this name
     assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
@@ -216,17 +219,17 @@ def test_all_robots_in_reach_are_listed_and_queried(ble: BleRobot, bluez: FakeBl
 
 
 def test_several_robots_are_used_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
-    with PtyRobot(ble.robot.kit) as second:
-        bluez.add(BleRobot(second, "Tini 2", OTHER, NORDIC))
+    with PtyRobot(ble.robot.kit) as second_robot:
+        bluez.add(BleRobot(second_robot, "Tini 2", OTHER_ADDRESS, NORDIC))
         ports = ("--port", NAME, "--port", "ble://tini 2")
-        for words in (("upload", "-e", DRIVE), ("stop",)):
+        for words in (("upload", "-e", DRIVE_PROGRAM), ("stop",)):
             run_in_process(*words, *ports).gives(0, "Done: 2 of 2.")
-        assert (ble.robot.actions[:3], second.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
+        assert (ble.robot.actions[:3], second_robot.actions[:3]) == (DRIVE_ACTIONS, DRIVE_ACTIONS)
 
 
 def test_all_includes_known_robots(ble: BleRobot) -> None:
     assert run_in_process("doctor", "--identify", "--port", NAME).code == 0
-    for words in (("stop",), ("upload", "-e", DRIVE)):
+    for words in (("stop",), ("upload", "-e", DRIVE_PROGRAM)):
         run_in_process(*words, "--all").gives(0, "Done: 1 of 1.")
 
 
@@ -234,7 +237,7 @@ def test_a_device_that_is_not_a_robot_is_reported(
     bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_TIMEOUT_MS", 1500)
-    bluez.add(Peripheral("lamp", OTHER, LAMP_SERVICE))
+    bluez.add(Peripheral("lamp", OTHER_ADDRESS, LAMP_SERVICE))
     run_in_process("doctor", "--identify", "--port", "ble://lamp").gives(
         3, "does not offer a robot's"
     )
@@ -258,7 +261,7 @@ def test_a_closed_connection_is_free_while_its_process_runs(
 ) -> None:
     for count in (1, 2):
         with tiniscript.connect(ADDRESS_PORT) as robot:
-            robot.upload(DRIVE)
+            robot.upload(DRIVE_PROGRAM)
             robot.wait()
             assert bluez.devices[ADDRESS].is_connected
         assert not bluez.devices[ADDRESS].is_connected

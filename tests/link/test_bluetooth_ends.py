@@ -12,8 +12,8 @@ import pytest
 
 from tests.support.ble_robot import (
     ADDRESS_PORT,
-    DRIVE,
     DRIVE_ACTIONS,
+    DRIVE_PROGRAM,
     HM10,
     NAME,
     NORDIC,
@@ -21,7 +21,7 @@ from tests.support.ble_robot import (
     Peripheral,
     start_endless_upload,
 )
-from tests.support.command import LONG, Tsc, run_in_process
+from tests.support.command import LONG_PROGRAM, Tsc, run_in_process
 from tests.support.fake_bluez import FakeBluez
 from tiniscript.link import errors, ports
 
@@ -36,16 +36,16 @@ def wait_for_dead_man_stop(ble: BleRobot) -> None:
 
 @pytest.mark.parametrize("stage", ["connect", "services", "notify"])
 def test_a_connection_that_is_never_made_is_reported(ble: BleRobot, stage: str) -> None:
-    ble.fails_at = stage
+    ble.failing_stage = stage
     for language in ("en", "es"):
         result = run_in_process(
-            "upload", "-e", DRIVE, "--port", ADDRESS_PORT, "--lang", language
+            "upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT, "--lang", language
         ).gives(3, out="")
         assert result.err.startswith("tsc: ")
         assert ADDRESS_PORT.upper() in result.err.upper()
     assert ble.robot.actions == []
-    ble.fails_at = ""
-    assert run_in_process("upload", "-e", DRIVE, "--port", ADDRESS_PORT).code == 0
+    ble.failing_stage = ""
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", ADDRESS_PORT).code == 0
     assert ble.robot.actions == DRIVE_ACTIONS
 
 
@@ -55,20 +55,22 @@ def test_a_truncated_upload_leaves_the_previous_program(
     ble: BleRobot, tmp_path: Path, heard_count: int
 ) -> None:
     """The connection ends within HELLO, or a frame of the program, or before the last answer."""
-    before, after = tmp_path / "before.bin", tmp_path / "after.bin"
+    old_path, new_path = tmp_path / "before.bin", tmp_path / "after.bin"
     assert run_in_process("upload", "-e", "SB|F(1, 10)", "--port", ADDRESS_PORT).code == 0
-    assert run_in_process("show", "-o", before, "--port", ADDRESS_PORT).code == 0
+    assert run_in_process("show", "-o", old_path, "--port", ADDRESS_PORT).code == 0
     ble.parts_after = len(ble.received_data) + heard_count
-    result = run_in_process("upload", "-e", LONG, "--port", ADDRESS_PORT)
+    result = run_in_process("upload", "-e", LONG_PROGRAM, "--port", ADDRESS_PORT)
     assert result.code == 3
     assert f"lost the Bluetooth connection to {ADDRESS_PORT}" in result.err
     ble.parts_after = None
     wait_for_dead_man_stop(ble)
-    ours = tmp_path / "ours.bin"
-    run_in_process("compile", "-e", LONG, "-o", ours)
-    assert run_in_process("show", "-o", after, "--port", ADDRESS_PORT).code == 0
-    assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
-    assert run_in_process("upload", "-e", LONG, "--no-run", "--port", ADDRESS_PORT).code == 0
+    compiled_file = tmp_path / "ours.bin"
+    run_in_process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
+    assert run_in_process("show", "-o", new_path, "--port", ADDRESS_PORT).code == 0
+    assert new_path.read_bytes() in (old_path.read_bytes(), compiled_file.read_bytes())
+    assert (
+        run_in_process("upload", "-e", LONG_PROGRAM, "--no-run", "--port", ADDRESS_PORT).code == 0
+    )
 
 
 def test_a_pure_reader_notices_the_end_of_a_connection(ble: BleRobot, bluez: FakeBluez) -> None:
@@ -76,7 +78,7 @@ def test_a_pure_reader_notices_the_end_of_a_connection(ble: BleRobot, bluez: Fak
     bluez.part(ble)
     command.wait_for_result().gives(3, f"lost the Bluetooth connection to {ADDRESS_PORT}")
     wait_for_dead_man_stop(ble)
-    assert run_in_process("upload", "-e", DRIVE, "--port", NAME).code == 0
+    assert run_in_process("upload", "-e", DRIVE_PROGRAM, "--port", NAME).code == 0
     port = ports.open_port(ADDRESS_PORT, 9600)
     assert port.read(1) == b""
     bluez.part(ble)
@@ -95,12 +97,12 @@ def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBlue
     )
 
 
-@pytest.mark.parametrize("what", ["power", "unplug", "vanish"])
-def test_a_removed_adapter_ends_the_command(ble: BleRobot, bluez: FakeBluez, what: str) -> None:
+@pytest.mark.parametrize("failure", ["power", "unplug", "vanish"])
+def test_a_removed_adapter_ends_the_command(ble: BleRobot, bluez: FakeBluez, failure: str) -> None:
     command = start_endless_upload(ble)
-    if what == "power":
+    if failure == "power":
         bluez.power(False)
-    elif what == "unplug":
+    elif failure == "unplug":
         bluez.unplug()
     else:
         bluez.vanish()
@@ -108,7 +110,9 @@ def test_a_removed_adapter_ends_the_command(ble: BleRobot, bluez: FakeBluez, wha
     assert result.err.count("\n") == 1  # no part of bleak
     wait_for_dead_man_stop(ble)
     result = run_in_process("stop", "--port", ADDRESS_PORT, "--lang", "es")
-    message = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
+    message = (
+        "el servicio de Bluetooth" if failure == "vanish" else "el Bluetooth de esta computadora"
+    )
     assert (result.code, message in result.err) == (3, True)
 
 
@@ -119,10 +123,10 @@ def test_a_flood_of_bytes_is_not_a_robot(bluez: FakeBluez, monkeypatch: pytest.M
         def begin(self) -> None:
             self.flood(2000)
 
-        def flood(self, left: int) -> None:
+        def flood(self, frame_count: int) -> None:
             self.tell(bytes(range(1, 21)))
-            if left:
-                self.loop.call_soon(self.flood, left - 1)
+            if frame_count:
+                self.loop.call_soon(self.flood, frame_count - 1)
 
     bluez.add(Flood("flood"))
     run_in_process("doctor", "--identify", "--port", ADDRESS_PORT).gives(3, "not TiniScript")
@@ -196,12 +200,12 @@ def test_a_missing_bluetooth_package_is_reported_with_the_next_step(
 # -- the pace -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("service", "sizes", "waits"), [
+@pytest.mark.parametrize(("service", "sizes", "wanted_pauses_s"), [
     (HM10, [20, 20, 20, 5], [0.0208, 0.0208, 0.0208]),
     (NORDIC, [65], []),
 ])  # fmt: skip
 def test_an_hm10_gets_no_more_than_its_uart_passes_on(
-    service: str, sizes: list[int], waits: list[float], monkeypatch: pytest.MonkeyPatch
+    service: str, sizes: list[int], wanted_pauses_s: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It drops earlier bytes; 20 bytes take 20.8 ms at 9600 baud."""
     from tiniscript.link.transports import bluetooth
@@ -233,7 +237,7 @@ def test_an_hm10_gets_no_more_than_its_uart_passes_on(
         get_running_loop=lambda: SimpleNamespace(time=lambda: now_s[0]),
     ))  # fmt: skip
     port.write(bytes(65))
-    assert (write_sizes, slept) == (sizes, waits)
+    assert (write_sizes, slept) == (sizes, wanted_pauses_s)
 
 
 def test_a_scan_that_fails_or_is_cancelled_is_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

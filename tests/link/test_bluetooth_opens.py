@@ -27,15 +27,15 @@ class Device:
     """A device as the radio sees it, with its connections."""
 
     def __init__(self) -> None:
-        self.fails_at = ""
+        self.failing_stage = ""
         self.failure: BaseException | None = None
-        self.lacks = ""
+        self.missing_uuid = ""
         self.clients: list[Client] = []
-        self.notified = 0
+        self.notify_count = 0
 
     async def reach(self, stage: str) -> None:
         await asyncio.sleep(0)
-        if self.fails_at == stage:
+        if self.failing_stage == stage:
             if self.failure is None:
                 await asyncio.Event().wait()  # it never ends
             else:
@@ -65,21 +65,23 @@ class Client:
 
     @property
     def services(self) -> list[Any]:
-        lacks = self.device.lacks
+        missing_uuid = self.device.missing_uuid
 
         def characteristic(uuid: str) -> Any:
             is_writes = uuid == UART.write_uuid
-            if lacks == ("writes" if is_writes else "notifies"):
+            if missing_uuid == ("writes" if is_writes else "notifies"):
                 return None
-            properties = ["read"] if lacks == "write" else ["write-without-response", "notify"]
+            properties = (
+                ["read"] if missing_uuid == "write" else ["write-without-response", "notify"]
+            )
             return SimpleNamespace(uuid=uuid, properties=properties)
 
-        uuid = "of something else" if lacks == "service" else UART.service_uuid
+        uuid = "of something else" if missing_uuid == "service" else UART.service_uuid
         return [SimpleNamespace(uuid=uuid, get_characteristic=characteristic)]
 
     async def start_notify(self, *_: object) -> None:
         await self.device.reach("notify")
-        self.device.notified += 1
+        self.device.notify_count += 1
 
 
 FAILURES: dict[str, tuple[BaseException | None, str]] = {
@@ -110,15 +112,15 @@ def connects(loop: event_loop.EventLoop, device: Any) -> bluetooth.BluetoothPort
 
 def check_next_client_works(loop: event_loop.EventLoop, device: Device) -> None:
     """The next one gets the device, and leaves it."""
-    device.fails_at = device.lacks = ""
-    before = device.notified
+    device.failing_stage = device.missing_uuid = ""
+    notified_before = device.notify_count
     for _ in range(2):
         port = connects(loop, device)
         assert len(device.clients) == 1
         port.close()
         assert device.clients == []
         port.close()  # no effect
-    assert device.notified == before + 2
+    assert device.notify_count == notified_before + 2
 
 
 @pytest.mark.parametrize("failure", FAILURES)
@@ -128,21 +130,23 @@ def test_a_failed_open_releases_the_device(
 ) -> None:
     device = Device()
     for _ in range(2):
-        device.fails_at = stage
+        device.failing_stage = stage
         device.failure, reason = FAILURES[failure]
-        with monkeypatch.context() as short, pytest.raises(PortError) as exception_info:
+        with monkeypatch.context() as patch, pytest.raises(PortError) as exception_info:
             if device.failure is None:
-                short.setattr(bluetooth, "QUEUE_S", 0.1)
+                patch.setattr(bluetooth, "QUEUE_S", 0.1)
             connects(loop, device)
         assert exception_info.value.reason == reason or not reason
         assert device.clients == []
         check_next_client_works(loop, device)
 
 
-@pytest.mark.parametrize("lacks", ["service", "writes", "notifies", "write"])
-def test_a_device_that_is_not_a_robot_is_released(loop: event_loop.EventLoop, lacks: str) -> None:
+@pytest.mark.parametrize("missing_uuid", ["service", "writes", "notifies", "write"])
+def test_a_device_that_is_not_a_robot_is_released(
+    loop: event_loop.EventLoop, missing_uuid: str
+) -> None:
     device = Device()
-    device.lacks = lacks
+    device.missing_uuid = missing_uuid
     with pytest.raises(PortError) as exception_info:
         connects(loop, device)
     assert exception_info.value.reason == errors.NO_ROBOT
@@ -156,18 +160,18 @@ def test_ctrl_c_releases_the_device(
 ) -> None:
     """It may come during any check of a waiting caller."""
     device = Device()
-    device.fails_at = stage
+    device.failing_stage = stage
 
     bell = interrupted_bell(lambda: sleep(event_loop.POLL_INTERVAL_S))
-    with monkeypatch.context() as pressed:
-        pressed.setattr(event_loop, "Bell", bell)
+    with monkeypatch.context() as patch:
+        patch.setattr(event_loop, "Bell", bell)
         with pytest.raises(KeyboardInterrupt):
-            connects_until(loop, device, pressed)
+            connects_until(loop, device, patch)
     assert device.clients == []
     check_next_client_works(loop, device)
 
 
-def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.MonkeyPatch) -> None:
+def connects_until(loop: event_loop.EventLoop, device: Device, patch: pytest.MonkeyPatch) -> None:
     """Press Ctrl-C once during a connection; the clean-up afterwards is not interrupted."""
     run = loop.run
     runs = 0
@@ -176,9 +180,9 @@ def connects_until(loop: event_loop.EventLoop, device: Device, pressed: pytest.M
         nonlocal runs
         runs += 1
         if runs == 2:
-            pressed.undo()
+            patch.undo()
         return run(coroutine, timeout_s)
 
     port = bluetooth.BluetoothPort(loop, 9600)
-    pressed.setattr(loop, "run", count_runs)
+    patch.setattr(loop, "run", count_runs)
     port.connect(device)  # type: ignore[arg-type]

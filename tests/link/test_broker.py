@@ -26,9 +26,9 @@ from tiniscript.link.transports import broker  # noqa: E402
 from tiniscript.link.transports.broker import MESSAGE_BYTES, SKIPPED_BYTES, Access, Broker  # noqa: E402
 
 ROBOTS = 30
-LAST = "tests/last"
-LET_IN = bytes((0x20, 2, 0, 0))
-PIECE = bytes(65_536)
+LAST_TOPIC = "tests/last"
+CONNACK = bytes((0x20, 2, 0, 0))
+LARGE_PIECE = bytes(65_536)
 
 
 @pytest.fixture
@@ -54,7 +54,7 @@ class SlowNetwork(Network):
     of the retained messages; `is_cut` drops those.
     """
 
-    most = 200
+    max_bytes = 200
 
     def __init__(self, target: int, late_s: float, gap_s: float, is_cut: bool) -> None:
         self.late_s, self.gap_s, self.is_cut = late_s, gap_s, is_cut
@@ -100,26 +100,26 @@ def test_a_process_reconnects_when_its_broker_is_available(tmp_path: Path, seed:
     """However often it was not, and whether somebody wanted it meanwhile: robots share a connection
     as long as that lasts.
     """
-    chance, own, is_there = Random(seed), Mosquitto(tmp_path), True
-    connections = [broker.connect("127.0.0.1", own.port)]
+    rng, mosquitto, is_running = Random(seed), Mosquitto(tmp_path), True
+    connections = [broker.connect("127.0.0.1", mosquitto.port)]
     try:
         for _ in range(12):
-            if chance.random() < 0.5:
-                is_there = not is_there
-                own.start() if is_there else own.kill()
-            if not is_there:
+            if rng.random() < 0.5:
+                is_running = not is_running
+                mosquitto.start() if is_running else mosquitto.kill()
+            if not is_running:
                 until(lambda: connections[-1].end_reason != "", "the connection ends")
-            port = broker.port_of("127.0.0.1", own.port, "aula", f"{chance.randrange(3):08x}")
-            if is_there:
+            port = broker.port_of("127.0.0.1", mosquitto.port, "aula", f"{rng.randrange(3):08x}")
+            if is_running:
                 broker.open_port(port, 0, 1.0).write(bytes(STOP_BYTES))
-                connections.append(broker.connect("127.0.0.1", own.port))
+                connections.append(broker.connect("127.0.0.1", mosquitto.port))
                 assert connections[-1].stop("aula")
                 assert connections[-1] is connections[-2] or connections[-2].end_reason
             else:
                 with pytest.raises(PortError):
                     broker.open_port(port, 0, 1.0)
     finally:
-        own.kill()
+        mosquitto.kill()
         for connection in connections:
             connection.close()
 
@@ -129,43 +129,43 @@ def test_a_process_reconnects_when_its_broker_is_available(tmp_path: Path, seed:
 
 def flush(client: Broker) -> None:
     """Wait until the broker has taken all that a client has said."""
-    client._client.publish(LAST, b"", qos=1).wait_for_publish(HANG_LIMIT_S)
+    client._client.publish(LAST_TOPIC, b"", qos=1).wait_for_publish(HANG_LIMIT_S)
 
 
-def retained_topics(own: Mosquitto) -> list[str]:
+def retained_topics(mosquitto: Mosquitto) -> list[str]:
     """Return the topics of all that a broker retains."""
-    late = own.connect_client()
+    late_client = mosquitto.connect_client()
     texts: list[str] = []
 
     def keep(_: Any, __: Any, message: Any) -> None:
         texts.append(message.topic)
 
-    late._client.on_message = keep
-    late._client.subscribe("#")
-    late._client.publish(LAST, b"")  # retained messages precede later ones
-    until(lambda: LAST in texts, "all that is retained has come")
-    late.close()
-    return texts[: texts.index(LAST)]
+    late_client._client.on_message = keep
+    late_client._client.subscribe("#")
+    late_client._client.publish(LAST_TOPIC, b"")  # retained messages precede later ones
+    until(lambda: LAST_TOPIC in texts, "all that is retained has come")
+    late_client.close()
+    return texts[: texts.index(LAST_TOPIC)]
 
 
 def test_stops_and_frames_are_not_retained(tmp_path: Path) -> None:
-    own = Mosquitto(tmp_path)
+    mosquitto = Mosquitto(tmp_path)
     try:
-        teacher = own.connect_client()
+        teacher = mosquitto.connect_client()
         port = teacher.port_of("aula", "12345678")
         port.write(bytes(STOP_BYTES))
         teacher.stop("aula")
         port.close()
         flush(teacher)
-        assert retained_topics(own) == []
+        assert retained_topics(mosquitto) == []
         teacher._client.publish("tiniscript/aula/12345678", b"+x", retain=True)
         flush(teacher)
-        assert retained_topics(own) == ["tiniscript/aula/12345678"], (
+        assert retained_topics(mosquitto) == ["tiniscript/aula/12345678"], (
             "what is retained would be seen"
         )
         teacher.close()
     finally:
-        own.kill()
+        mosquitto.kill()
 
 
 # -- a broker that sends more than a robot says ---------------------------------------------------
@@ -186,10 +186,14 @@ def message(bytes_of_it: int) -> bytes:
 def test_an_oversized_retained_message_is_left_out(school: Mosquitto, size: int) -> None:
     """It may come before a robot, between robots and after one, and is named."""
     topics = [f"{broker.ROOT}/3b/{name}" for name in ("0000000f", "fff", "x" * 300)]
-    more = [{"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics]
-    more.append({"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True})
+    retained_messages = [
+        {"topic": topic, "payload": bytes(size), "qos": 1, "retain": True} for topic in topics
+    ]
+    retained_messages.append(
+        {"topic": f"{broker.ROOT}/3b/ffffffff", "payload": "+Z", "qos": 1, "retain": True}
+    )
     access = {"username": "robots", "password": "word"}
-    paho.multiple(more, "127.0.0.1", school.port, auth=access)
+    paho.multiple(retained_messages, "127.0.0.1", school.port, auth=access)
     with closing(Broker("127.0.0.1", school.port, Access("robots", "word"))) as school_broker:
         for _ in range(2):
             assert len(school_broker.list_robots("3b")) == ROBOTS  # one of them was written over
@@ -206,21 +210,21 @@ def test_a_large_message_ends_the_connection_before_it_is_buffered(size: int) ->
 
     def serve() -> None:
         nonlocal sent_count
-        peer, _ = listening.accept()
+        peer, _ = server_socket.accept()
         with peer:
             peer.recv(4096)
-            peer.sendall(LET_IN + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
+            peer.sendall(CONNACK + message(MESSAGE_BYTES) + b"\0\1x" + bytes(MESSAGE_BYTES - 3))
             peer.sendall(message(size))
             try:
                 while sent_count < size:
-                    sent_count += peer.send(PIECE)
+                    sent_count += peer.send(LARGE_PIECE)
             except ConnectionError:
                 pass
 
-    with socket.create_server(("127.0.0.1", 0)) as listening:
+    with socket.create_server(("127.0.0.1", 0)) as server_socket:
         serving = Thread(target=serve, daemon=True)
         serving.start()
-        client = Broker("127.0.0.1", listening.getsockname()[1], Access())
+        client = Broker("127.0.0.1", server_socket.getsockname()[1], Access())
         until(lambda: client.end_reason != "", "the connection ends")
         assert client.end_reason == f"the broker sends a message of {size} bytes"
         serving.join(HANG_LIMIT_S)

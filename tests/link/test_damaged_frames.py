@@ -22,9 +22,9 @@ from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
 FRAMES = 250_000  # damaged ones, in the tests
 LARGE_FRAMES = 100_000
 LINES = 200  # that are judged at a time; a line has about 500 damaged frames
-SAMPLED = 5  # lines in the tests
-LARGE_SAMPLED = 1
-SAMPLED_OF = 1000  # one in so many lines, in a campaign
+LINE_COUNT = 5  # lines in the tests
+LARGE_LINE_COUNT = 1
+SAMPLE_INTERVAL = 1000  # one in so many lines, in a campaign
 SEED = 4
 
 
@@ -36,20 +36,20 @@ class Line(NamedTuple):
     is_damaged: list[bool]
 
 
-def judge(sent_line: Line, accepted: list[Frame]) -> None:
+def judge(sent_line: Line, accepted_frames: list[Frame]) -> None:
     """Assert that no wrong frame was accepted, and that damage costs at most one more frame."""
     numbers = {frame: number for number, frame in enumerate(sent_line.frames)}
     judgements = []
-    for frame in accepted:
+    for frame in accepted_frames:
         assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
         judgements.append(numbers[frame])
     assert judgements == sorted(set(judgements)), (
         "a frame came twice, or before one that was sent earlier"
     )
-    arrived = set(judgements)
+    arrived_numbers = set(judgements)
     for number, is_damaged in enumerate(sent_line.is_damaged):
         if not is_damaged and (number == 0 or not sent_line.is_damaged[number - 1]):
-            assert number in arrived, (
+            assert number in arrived_numbers, (
                 f"frame {number} is lost without damage to it or the one before"
             )
 
@@ -78,13 +78,13 @@ def whole_frames(rows: list[str]) -> list[Frame]:
 def judge_in_python(line: DamagedLine, is_large: bool) -> None:
     """Assert that Python encodes, receives and decodes a line as the C++ does."""
     sent_line = Line(line.data, [frame_of(frame) for frame in line.frames], line.is_damaged)
-    at = 0
+    offset = 0
     for frame, is_damaged in zip(sent_line.frames, sent_line.is_damaged, strict=True):
         if not is_damaged:
             wire = encode_frame(frame)
-            start = sent_line.data.find(wire, at)
+            start = sent_line.data.find(wire, offset)
             assert start >= 0, f"the C++ encodes it in another way: {frame}"
-            at = start + len(wire)
+            offset = start + len(wire)
     stream = [(0, byte) for byte in sent_line.data]
     rows = packets_of(stream, is_large=is_large)
     assert cpp_link(is_large).packets(stream) == rows
@@ -109,14 +109,14 @@ def test_damaged_frames_never_decode_to_wrong_ones(is_large: bool) -> None:
 
 @pytest.mark.parametrize("is_large", [False, True])
 def test_python_decodes_damaged_frames_alike(is_large: bool) -> None:
-    for number in range(LARGE_SAMPLED if is_large else SAMPLED):
+    for number in range(LARGE_LINE_COUNT if is_large else LINE_COUNT):
         judge_in_python(cpp_damage(is_large).line(SEED, number), is_large)
 
 
 if __name__ == "__main__":
-    given = make_options(10_000_000, 1_000_000, "large")
-    judges = cpp_damage(given.large)
-    damaged, lines = damage_frames(judges, given.count, given.seed)
-    for sampled in range(0, lines, SAMPLED_OF):
-        judge_in_python(judges.line(given.seed, sampled), given.large)
-    print(f"{damaged} damaged frames in {lines} lines: nothing wrong")
+    options = make_options(10_000_000, 1_000_000, "large")
+    judges = cpp_damage(options.large)
+    damaged_count, lines = damage_frames(judges, options.count, options.seed)
+    for sampled in range(0, lines, SAMPLE_INTERVAL):
+        judge_in_python(judges.line(options.seed, sampled), options.large)
+    print(f"{damaged_count} damaged frames in {lines} lines: nothing wrong")

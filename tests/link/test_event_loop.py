@@ -17,7 +17,7 @@ async def fail() -> None:
     raise ValueError("so it is")
 
 
-class Endless:
+class EndlessCoroutine:
     """A coroutine that ends when it is cancelled."""
 
     def __init__(self) -> None:
@@ -42,20 +42,20 @@ def test_results_and_failures_are_returned() -> None:
 
 
 def test_a_timed_out_task_is_cancelled_before_the_failure() -> None:
-    loop, endless = EventLoop(), Endless()
+    loop, coroutine = EventLoop(), EndlessCoroutine()
     with pytest.raises(TimeoutError):
-        loop.run(endless.work(), 0)
+        loop.run(coroutine.work(), 0)
     loop.run(asyncio.sleep(0), 100)
-    assert endless.is_cancelled or not endless.has_begun.is_set()
+    assert coroutine.is_cancelled or not coroutine.has_begun.is_set()
     loop.close()
 
 
 def test_ctrl_c_cancels_the_interrupted_task(monkeypatch: pytest.MonkeyPatch) -> None:
-    loop, endless = EventLoop(), Endless()
+    loop, coroutine = EventLoop(), EndlessCoroutine()
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(event_loop, "Bell", interrupted_bell(lambda: endless.has_begun.wait(100)))
-        loop.run(endless.work(), 100)
-    assert endless.is_cancelled
+        patch.setattr(event_loop, "Bell", interrupted_bell(lambda: coroutine.has_begun.wait(100)))
+        loop.run(coroutine.work(), 100)
+    assert coroutine.is_cancelled
     loop.close()
 
 

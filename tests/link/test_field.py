@@ -57,7 +57,7 @@ class Robot:
     def __init__(self, cpp: CppLink) -> None:
         self.cpp = cpp
         self.now_ms = 5000
-        self.sent = b""
+        self.sent_bytes = b""
         self.did: list[str] = []
         cpp.begin(kit=KIT)
         self.wait(20)
@@ -73,12 +73,12 @@ class Robot:
     def _step(self, passed_ms: int, data: bytes = b"") -> None:
         self.now_ms += passed_ms
         step = self.cpp.step(self.now_ms, data)
-        self.sent += step.sent
+        self.sent_bytes += step.sent
         self.did += step.did
 
     @property
     def answers(self) -> list[bytes]:
-        return re.findall(rb"// [^\r]*\r\n", self.sent)
+        return re.findall(rb"// [^\r]*\r\n", self.sent_bytes)
 
     @property
     def programs(self) -> set[str]:
@@ -87,25 +87,27 @@ class Robot:
 
 
 def check_never_silent(cpp: CppLink, seed: int) -> str:
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     robot = Robot(cpp)
-    before = [draw.choice(NOISE_BEFORE) for _ in range(draw.randint(0, 4))]
+    noise = [rng.choice(NOISE_BEFORE) for _ in range(rng.randint(0, 4))]
     # Before the last silence, because a mistake removes all lines that follow it directly.
-    answered = 0
-    in_frames = False  # only if a line needs its end
-    for data in before:
+    answer_count = 0
+    is_in_frames = False  # only if a line needs its end
+    for data in noise:
         robot.type(data)
-        pause_ms = draw.choice(PAUSES_MS)
+        pause_ms = rng.choice(PAUSES_MS)
         robot.wait(pause_ms)
-        in_frames = in_frames or b"\0" in data
+        is_in_frames = is_in_frames or b"\0" in data
         if pause_ms > SILENCE_MS:
-            answered, in_frames = len(robot.answers), False
-    line = draw.choice(LINES).encode() + draw.choice(LINE_ENDS[: -1 if in_frames else None])
+            answer_count, is_in_frames = len(robot.answers), False
+    line = rng.choice(LINES).encode() + rng.choice(LINE_ENDS[: -1 if is_in_frames else None])
     event_count = len(robot.did)
     robot.type(line)
     robot.wait(4200)
     is_done = any(row.startswith("TEXT") for row in robot.did[event_count:])
-    assert is_done or len(robot.answers) > answered, f"seed {seed}: silence for {before} {line!r}"
+    assert is_done or len(robot.answers) > answer_count, (
+        f"seed {seed}: silence for {noise} {line!r}"
+    )
     return "runs" if is_done else "told"
 
 
@@ -120,46 +122,46 @@ def programs_of(cpp: CppLink, text: str) -> frozenset[str]:
 
 def check_no_other_program(cpp: CppLink, seed: int) -> str:
     """A glitch is at one byte of a program: a 0x00, in its place or before it."""
-    draw = random.Random(seed)
-    text = draw.choice(PROGRAMS)
+    rng = random.Random(seed)
+    text = rng.choice(PROGRAMS)
     data = text.encode() + b"\n"
-    at = draw.randrange(len(data))
+    offset = rng.randrange(len(data))
     # without its first byte a first line is another one, and the next ones are lines of their own
-    after = at + (at > 0 and draw.randrange(2))
+    text_end = offset + (offset > 0 and rng.randrange(2))
     wanted_programs = programs_of(cpp, text)
     robot = Robot(cpp)
-    robot.type(data[:at] + b"\0" + data[after:])
+    robot.type(data[:offset] + b"\0" + data[text_end:])
     robot.wait(4200)
-    assert robot.programs <= wanted_programs, f"seed {seed}: {text!r} with a 0x00 at {at}"
-    assert robot.programs or robot.answers, f"seed {seed}: silence for {text!r}, a 0x00 at {at}"
+    assert robot.programs <= wanted_programs, f"seed {seed}: {text!r} with a 0x00 at {offset}"
+    assert robot.programs or robot.answers, f"seed {seed}: silence for {text!r}, a 0x00 at {offset}"
     return "runs" if robot.programs else "told"
 
 
 def check_both_are_heard(cpp: CppLink, seed: int) -> str:
     """A person and a computer, in turns, on one port."""
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     wanted_of = {text: programs_of(cpp, text) for text in TYPED_PROGRAMS}
     robot = Robot(cpp)
-    session = Session(draw.getrandbits(32), 115_200, KIT)
+    session = Session(rng.getrandbits(32), 115_200, KIT)
     session.is_attached = False
 
     def ask(request: PendingRequest[Any]) -> None:
         end_ms = robot.now_ms + 3000
         while request.outcome is None and robot.now_ms < end_ms:
-            before = len(robot.sent)
+            sent_before = len(robot.sent_bytes)
             robot.type(session.poll(robot.now_ms))
             robot.wait(20)
-            session.receive(robot.sent[before:], robot.now_ms)
+            session.receive(robot.sent_bytes[sent_before:], robot.now_ms)
         assert request.outcome and request.outcome.status == OK, f"seed {seed}: {request.outcome}"
 
     heard_count = 0
     ask(session.hello())
     for _ in range(12):
-        robot.wait(draw.choice((0, 20, 160, 360, 440, 900, 1200)))
-        if draw.random() < 0.5:
+        robot.wait(rng.choice((0, 20, 160, 360, 440, 900, 1200)))
+        if rng.random() < 0.5:
             ask(session.status())
             continue
-        event_count, text = len(robot.did), draw.choice(TYPED_PROGRAMS)
+        event_count, text = len(robot.did), rng.choice(TYPED_PROGRAMS)
         robot.type(text.encode() + b"\n")
         robot.wait(40)
         # a computer's frame without a 0x00, where the person's line has ended, may be a stop
@@ -177,13 +179,13 @@ def check_both_are_heard(cpp: CppLink, seed: int) -> str:
 CHECKS = (check_never_silent, check_no_other_program, check_both_are_heard)
 
 
-@pytest.mark.parametrize("holds", CHECKS, ids=lambda holds: holds.__name__)
-def test_each_law_of_the_wire_holds(holds: object) -> None:
+@pytest.mark.parametrize("check_law", CHECKS, ids=lambda holds: holds.__name__)
+def test_each_law_of_the_wire_holds(check_law: object) -> None:
     for seed in range(SEEDS):
-        holds(cpp_link(), seed)  # type: ignore[operator]
+        check_law(cpp_link(), seed)  # type: ignore[operator]
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 1_000_000)
+    options = make_options(10_000, 1_000_000)
     for check in CHECKS:
-        each_seed(partial(check, link_library()), given)
+        each_seed(partial(check, link_library()), options)

@@ -38,12 +38,12 @@ def recorded_bytes() -> list[bytes]:
     return recordings
 
 
-OWN_ROWS = recorded_bytes()
+ROBOT_RECORDING = recorded_bytes()
 
 
 def test_recorded_robot_bytes_exist() -> None:
-    assert len(OWN_ROWS) > 100
-    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in OWN_ROWS) > 20
+    assert len(ROBOT_RECORDING) > 100
+    assert sum(row_of_ours.startswith(b"// ") for row_of_ours in ROBOT_RECORDING) > 20
 
 
 # -- each board ---------------------------------------------------------------------------------
@@ -65,37 +65,43 @@ def test_each_row_has_a_recording() -> None:
 @each_recording
 def test_a_truncated_recording_is_recognized_correctly_or_not_at_all(recording: Recording) -> None:
     """A piece identifies less, but nothing wrong: an ESP32's boot messages precede the sketch's."""
-    also = {recording.name, "esp32", None}
+    possible_names = {recording.name, "esp32", None}
     if recording.data.endswith(b">>> "):
-        also |= {"micropython"}
-    chance = random.Random(recording.shown_text)
+        possible_names |= {"micropython"}
+    rng = random.Random(recording.shown_text)
     for _ in range(400):
-        first, last = sorted(chance.randrange(len(recording.data) + 1) for _ in range(2))
-        board = identify_board(recording.data[first:last])
-        assert (board and board.name) in also, recording.data[first:last]
+        start, end = sorted(rng.randrange(len(recording.data) + 1) for _ in range(2))
+        board = identify_board(recording.data[start:end])
+        assert (board and board.name) in possible_names, recording.data[start:end]
 
 
 @each_recording
 def test_a_recording_is_recognized_in_any_pieces(recording: Recording) -> None:
     line = LinkLine()
-    for at in range(0, len(recording.data), 3):
-        line.note_heard(recording.data[at : at + 3])
+    for offset in range(0, len(recording.data), 3):
+        line.note_heard(recording.data[offset : offset + 3])
     assert line.early_bytes == recording.data and line.heard_count == len(recording.data)
     assert identify_board(line.early_bytes) == identify_board(recording.data)
 
 
 @each_recording
-@pytest.mark.parametrize("before", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
-def test_noise_before_a_recording_changes_nothing(recording: Recording, before: bytes) -> None:
-    board = identify_board(before + b"\r\n" + recording.data)
+@pytest.mark.parametrize("noise", [b"", b"\xf8\x00\x80", b"x\xfe\r\n"])
+def test_noise_before_a_recording_changes_nothing(recording: Recording, noise: bytes) -> None:
+    board = identify_board(noise + b"\r\n" + recording.data)
     assert board is not None and board.name == recording.name
 
 
 def test_two_bytes_identify_nothing() -> None:
     """Neither those of an mBot nor the version of Firmata's protocol prove anything: noise contains
     them, too."""
-    for few in (b"\xff\x55", b"\xf9\x02\x05", b"\xff\x55\r", b"\xf0\x79\x02\x05\xf7", b"\r\n"):
-        assert identify_stranger(few) is None
+    for short_data in (
+        b"\xff\x55",
+        b"\xf9\x02\x05",
+        b"\xff\x55\r",
+        b"\xf0\x79\x02\x05\xf7",
+        b"\r\n",
+    ):
+        assert identify_stranger(short_data) is None
 
 
 def test_the_two_boards_that_send_high_bytes_are_told_apart() -> None:
@@ -111,13 +117,13 @@ def test_the_two_boards_that_send_high_bytes_are_told_apart() -> None:
 
 @each_recording
 def test_noise_of_a_wrong_baud_rate_is_not_a_board(recording: Recording) -> None:
-    for sent in BAUDS:
+    for sent_baud in BAUDS:
         for heard_baud in BAUDS:
-            noise = at_speed(recording.data, sent, heard_baud)
-            assert (noise == recording.data) == (sent == heard_baud)
-            if sent != heard_baud:
-                assert identify_board(noise) is None, (sent, heard_baud)
-                assert identify_stranger(noise) is None, (sent, heard_baud)
+            noise = at_speed(recording.data, sent_baud, heard_baud)
+            assert (noise == recording.data) == (sent_baud == heard_baud)
+            if sent_baud != heard_baud:
+                assert identify_board(noise) is None, (sent_baud, heard_baud)
+                assert identify_stranger(noise) is None, (sent_baud, heard_baud)
 
 
 @given(st.binary(max_size=300))
@@ -126,12 +132,12 @@ def test_random_bytes_are_no_board(data: bytes) -> None:
 
 
 def test_much_noise_is_not_a_board() -> None:
-    chance = random.Random(5)
+    rng = random.Random(5)
     for _ in range(300):
-        assert identify_stranger(bytes(chance.choices(range(256), k=500))) is None
+        assert identify_stranger(bytes(rng.choices(range(256), k=500))) is None
 
 
-@given(st.lists(st.sampled_from(OWN_ROWS), min_size=1, max_size=6), st.binary(max_size=20))
+@given(st.lists(st.sampled_from(ROBOT_RECORDING), min_size=1, max_size=6), st.binary(max_size=20))
 def test_a_robot_is_not_a_board(traffic: list[bytes], noise: bytes) -> None:
     """Frames and lines are recognized first, with any noise around them."""
     for data in (b"".join(traffic), noise + b"\0" + b"".join(traffic) + noise):
@@ -155,10 +161,10 @@ def test_a_frame_that_contains_the_bytes_of_a_board_is_a_robots(
 @pytest.mark.sampled("piece", keep=40)
 @pytest.mark.parametrize("piece", range(200))
 def test_a_piece_of_a_robots_bytes_is_not_a_board(piece: int) -> None:
-    chance = random.Random(piece)
-    data = b"".join(chance.choices(OWN_ROWS, k=5))
-    first, last = sorted(chance.randrange(len(data) + 1) for _ in range(2))
-    assert identify_board(data[first:last]) is None
+    rng = random.Random(piece)
+    data = b"".join(rng.choices(ROBOT_RECORDING, k=5))
+    start, end = sorted(rng.randrange(len(data) + 1) for _ in range(2))
+    assert identify_board(data[start:end]) is None
 
 
 def test_bytes_of_a_computer_are_not_mistaken_for_a_robots() -> None:
@@ -241,7 +247,7 @@ def test_the_page_names_the_foreign_device_at_its_port(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("came", "is_echoed", "reason"),
+    ("heard_bytes", "is_echoed", "reason"),
     [
         (b"", False, "link_silent"), (b"\xff\xfe\x80\x00", False, "link_other"),
         (b"Distance: 34 cm\r\n", False, FOREIGN), (b"Distance: 34 cm\r\n", True, "link_echo"),
@@ -249,10 +255,10 @@ def test_the_page_names_the_foreign_device_at_its_port(name: str) -> None:
     ],
 )  # fmt: skip
 def test_the_message_without_a_robot_fits_the_received_bytes(
-    came: bytes, is_echoed: bool, reason: str
+    heard_bytes: bytes, is_echoed: bool, reason: str
 ) -> None:
     line = LinkLine()
-    line.note_heard(came)
+    line.note_heard(heard_bytes)
     line.is_echoed = is_echoed
     assert reason_of(line, Reply(LOST)) == reason
 

@@ -52,13 +52,13 @@ def test_the_run_of_a_leaving_client_ends_and_others_continue(
     request = make_request(session) if make_request else None
     robot.talk(session, after_ms)
     session.end_run(run, robot.now_ms)
-    began_ms = robot.now_ms
+    start_ms = robot.now_ms
     if request is not None:
         assert robot.until(session, request) == OK
     robot.talk(session, 1000)
     assert not is_moving(robot)
-    ends = [line for line in robot.did if line.endswith("MOTORS 0 0")]
-    assert int(ends[-1].split()[0]) - began_ms < 300
+    motor_stops = [line for line in robot.did if line.endswith("MOTORS 0 0")]
+    assert int(motor_stops[-1].split()[0]) - start_ms < 300
     events = [event.name for event in session.events()]
     assert events.count("STOPPED") <= 1
     if make_request in (live, upload, long_upload):
@@ -77,23 +77,27 @@ def test_a_run_of_another_client_continues() -> None:
 @pytest.mark.parametrize("after_ms", range(5))
 def test_a_withdrawn_upload_starts_nothing_and_the_next_is_done(after_ms: int) -> None:
     session, robot = open_session()
-    long = image("F(1, 80);" * 40)
-    withdrawn_request = session.upload(long)
-    other = live(session)
+    long_image = image("F(1, 80);" * 40)
+    withdrawn_request = session.upload(long_image)
+    other_request = live(session)
     robot.talk(session, after_ms)
     session.withdraw(withdrawn_request)
     assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
-    assert robot.until(session, other) == OK
+    assert robot.until(session, other_request) == OK
     robot.talk(session, 1000)
     assert not is_moving(robot) and "MOTORS 80 80" not in "".join(robot.did)
 
 
 def test_a_waiting_request_is_withdrawn() -> None:
     session, robot = open_session()
-    first, withdrawn_request, last = live(session), session.upload(DRIVE_IMAGE), live(session)
+    first_request, withdrawn_request, last_request = (
+        live(session),
+        session.upload(DRIVE_IMAGE),
+        live(session),
+    )
     session.withdraw(withdrawn_request)
     assert withdrawn_request.outcome is not None and withdrawn_request.outcome.status == CANCELLED
-    assert robot.until(session, last) == OK and first.outcome
+    assert robot.until(session, last_request) == OK and first_request.outcome
     assert not is_moving(robot)
 
 

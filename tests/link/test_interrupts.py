@@ -22,16 +22,16 @@ from tiniscript.link.transports.pushed import PushedTransport
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no timer of signals")
 
 INTERRUPT_COUNT = 1_500
-FEW_HAILS = 8  # a task that takes a while to cancel
+HAIL_COUNT = 8  # a task that takes a while to cancel
 
 
 class Port(PushedTransport):
     def __init__(self) -> None:
         super().__init__()
-        self.written = b""
+        self.written_bytes = b""
 
     def write(self, data: bytes) -> None:
-        self.written += data
+        self.written_bytes += data
 
     def close(self) -> None:
         self.end("closed")
@@ -40,22 +40,22 @@ class Port(PushedTransport):
 def interrupt_often(work: Callable[[], object], count: int = INTERRUPT_COUNT) -> None:
     """Repeat work while Ctrl-C is pressed again and again. All other exceptions pass."""
     rng = random.Random(1)
-    pressed: list[int] = []  # the interpreter discards exceptions in a callback
+    pressed_numbers: list[int] = []  # the interpreter discards exceptions in a callback
 
     def press(number: int, _: object) -> None:
-        pressed.append(number)
+        pressed_numbers.append(number)
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGALRM, press)
+    old_handler = signal.signal(signal.SIGALRM, press)
     try:
         for _ in range(count):
-            pressed.clear()
+            pressed_numbers.clear()
             with suppress(KeyboardInterrupt):
                 signal.setitimer(signal.ITIMER_REAL, rng.uniform(1e-5, 4e-4))
-                while not pressed:
+                while not pressed_numbers:
                     work()
     finally:
-        signal.signal(signal.SIGALRM, before)
+        signal.signal(signal.SIGALRM, old_handler)
 
 
 def test_a_line_continues_and_can_still_stop() -> None:
@@ -68,15 +68,15 @@ def test_a_line_continues_and_can_still_stop() -> None:
             line.end_run(1)
 
         interrupt_often(work)
-        port.written = b""
+        port.written_bytes = b""
         line.stop()
-        until(lambda: bytes(STOP_BYTES) in port.written, "the stop is sent")
+        until(lambda: bytes(STOP_BYTES) in port.written_bytes, "the stop is sent")
 
 
 @pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
 def test_an_event_loop_continues_after_an_interrupt() -> None:
     loop = EventLoop()
-    interrupt_often(lambda: loop.run(asyncio.sleep(0), 100), FEW_HAILS)
+    interrupt_often(lambda: loop.run(asyncio.sleep(0), 100), HAIL_COUNT)
     assert loop.run(asyncio.sleep(0, "done"), 100) == "done"
     loop.close()
 

@@ -19,7 +19,7 @@ from tiniscript.link.requests import ACCEPTING_STATUSES, OK, DeviceInfo, Exchang
 from tiniscript.link.seal import siphash
 from tiniscript.studio.page_line import PageKeys
 
-SLOTS = [(robot, which) for robot in (1, 2) for which in (KEY_OWNER, KEY_TEACHER)]
+SLOTS = [(robot, kind) for robot in (1, 2) for kind in (KEY_OWNER, KEY_TEACHER)]
 CHANGE_COUNT = 40
 CHALLENGE, NONCE = b"12345678", 7
 T = TypeVar("T")
@@ -40,24 +40,24 @@ def test_a_claim_stays_until_it_is_confirmed_or_given_up(
 ) -> None:
     """The robot may have taken its key, and keeps no second copy. A robot that confirms another key
     does not have the claimed one; only the newest claims of a robot and a person are kept."""
-    chance = Random(seed)
+    rng = Random(seed)
     ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
     claims: list[RobotKey] = []
     lists = [
-        [RobotKey(*slot, chance.randbytes(KEY_BYTES)) for slot in chance.sample(SLOTS, k)]
+        [RobotKey(*slot, rng.randbytes(KEY_BYTES)) for slot in rng.sample(SLOTS, k)]
         for k in (1, 2, len(SLOTS))
     ]
     for _ in range(CHANGE_COUNT):
-        slot, known_keys = chance.choice(SLOTS), ring.keys_of_robot(None)
-        key = chance.choice([*known_keys, *chance.choice(lists)])
-        match chance.choice(["claim", "import", "refuse", "confirm", "drop", "forget", "load"]):
+        slot, known_keys = rng.choice(SLOTS), ring.keys_of_robot(None)
+        key = rng.choice([*known_keys, *rng.choice(lists)])
+        match rng.choice(["claim", "import", "refuse", "confirm", "drop", "forget", "load"]):
             case "claim":
                 claim = ring.create_pending_key(*slot, "TINI")
                 assert claim is not None
-                older_claims = [other for other in claims if other.slot == slot]
+                older_claims = [claim for claim in claims if claim.slot == slot]
                 claims = [c for c in claims if c not in older_claims[:-MOST_PENDING_KEYS]] + [claim]
             case "import":
-                add(ring, chance.choice(lists))
+                add(ring, rng.choice(lists))
             case "refuse":
                 ring.mark_stale(key)
             case "confirm":
@@ -82,8 +82,8 @@ class Robot:
     """A robot that has a key for each person who has claimed it. Its answers are lost now and then,
     and its answer to a new key is arbitrary: it has it, it will keep it, or it accepts none."""
 
-    def __init__(self, chance: Random) -> None:
-        self.chance = chance
+    def __init__(self, rng: Random) -> None:
+        self.rng = rng
         self.keys: dict[int, bytes] = {}
         self.loss = 0.0
         self.has_seals = False
@@ -100,7 +100,7 @@ class Robot:
         try:
             request = next(exchange)
             while True:
-                is_heard, is_answered = (self.chance.random() >= self.loss for _ in range(2))
+                is_heard, is_answered = (self.rng.random() >= self.loss for _ in range(2))
                 reply = self._reply(request) if is_heard else None
                 if reply is None or not is_answered:
                     return None
@@ -109,29 +109,29 @@ class Robot:
             return cast(Reply[T], end.value)
 
     def _reply(self, request: Request) -> Reply[Any]:
-        which = int(request.values["kind"])
+        kind = int(request.values["kind"])
         if request.name == "CLAIM":
-            status = self._take(which, cast(bytes, request.values["key"]))
+            status = self._take(kind, cast(bytes, request.values["key"]))
             return Reply(status, 0, EmptyReply())
         assert request.name == "AUTHENTICATE"
-        tag, key = request.values["tag"], self.keys.get(which)
+        tag, key = request.values["tag"], self.keys.get(kind)
         if not tag:
             return Reply(OK, 0, AuthenticateReply(0, CHALLENGE))
-        self._is_stale = not self._is_stale and self.chance.random() < 0.2
+        self._is_stale = not self._is_stale and self.rng.random() < 0.2
         if self._is_stale:  # it was stopped in this moment
             return Reply(STATUSES["STALE"])
-        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, which])
+        message = CHALLENGE + NONCE.to_bytes(4, "little") + bytes([0, kind])
         is_right = key is not None and tag == siphash(key, message)
         return Reply(OK, 0, AuthenticateReply(0, b"")) if is_right else Reply(STATUSES["WRONG_KEY"])
 
-    def _take(self, which: int, key: bytes) -> int:
+    def _take(self, kind: int, key: bytes) -> int:
         if not key:
-            self.keys.pop(which, None)
+            self.keys.pop(kind, None)
             return OK
         statuses = [OK, *ACCEPTING_STATUSES, STATUSES["NOT_OWNER"]]
-        status = self._status_by_key.setdefault(key, self.chance.choice(statuses))
+        status = self._status_by_key.setdefault(key, self.rng.choice(statuses))
         if status in (OK, *ACCEPTING_STATUSES):
-            self.keys[which] = key
+            self.keys[kind] = key
         return status
 
 
@@ -142,28 +142,28 @@ def test_a_robot_stays_its_owners_whatever_claims_were_lost(
 ) -> None:
     """The key that a robot has is never gone here, and it is shown; then it is known that this one
     is right, and that its robot seals, for ever."""
-    chance = Random(seed)
+    rng = Random(seed)
     ring: KeyRing = KeyFile(tmp_path / "keys.json") if kind is KeyFile else PageKeys(b"")
-    robot = Robot(chance)
+    robot = Robot(rng)
     sealing_keys = set[bytes]()
     for _ in range(CHANGE_COUNT):
-        robot.loss, which = chance.choice((0.0, 0.3)), chance.choice((KEY_OWNER, KEY_TEACHER))
-        robot.has_seals = chance.random() < 0.5  # it may have older firmware
-        if chance.random() < 0.7:
-            robot.does(authority.claim(ring, robot.info, which))
+        robot.loss, role = rng.choice((0.0, 0.3)), rng.choice((KEY_OWNER, KEY_TEACHER))
+        robot.has_seals = rng.random() < 0.5  # it may have older firmware
+        if rng.random() < 0.7:
+            robot.does(authority.claim(ring, robot.info, role))
         else:
-            robot.does(authority.disown(ring, robot.info, which))
+            robot.does(authority.disown(ring, robot.info, role))
         robot.does(authority.show_keys(ring, robot.info, NONCE, lambda: 0, is_needed=False))
         kept_keys = {key.key for key in ring.keys_of_robot(1)}
         assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
-        for which, right in robot.keys.items():
+        for role, robot_key in robot.keys.items():
             key_proof = authority.show_keys(
-                ring, robot.info, NONCE, lambda: 0, which, is_needed=False
+                ring, robot.info, NONCE, lambda: 0, role, is_needed=False
             )
             reply = robot.does(key_proof)
             assert reply is not None and reply.status == OK
-            [own] = [key for key in ring.keys_of_robot(1) if key.key == right]
-            sealing_keys |= {right} if robot.has_seals else set()
-            assert (own.kind, own.is_pending, own.is_stale) == (which, False, False)
-            assert own.uses_seals == (right in sealing_keys)
+            [own_key] = [key for key in ring.keys_of_robot(1) if key.key == robot_key]
+            sealing_keys |= {robot_key} if robot.has_seals else set()
+            assert (own_key.kind, own_key.is_pending, own_key.is_stale) == (role, False, False)
+            assert own_key.uses_seals == (robot_key in sealing_keys)

@@ -10,19 +10,22 @@ import pytest
 
 from tiniscript.link import known_ports
 
-COMMANDS, PORTS = 6, 8
-REMEMBERS = f"""
+COMMAND_COUNT, PORT_COUNT = 6, 8
+REMEMBER_SCRIPT = f"""
 import sys
 from tiniscript.link import known_ports
-for number in range({PORTS}):
+for number in range({PORT_COUNT}):
     known_ports.remember(f"socket://10.0.{{sys.argv[1]}}.{{number}}:1", "R", is_used=False)
 """
 
 
 def test_commands_at_once_lose_no_port() -> None:
-    running = [subprocess.Popen([sys.executable, "-c", REMEMBERS, str(k)]) for k in range(COMMANDS)]
-    assert [process.wait() for process in running] == [0] * COMMANDS
-    assert len(known_ports.remembered_ports().name_by_port) == COMMANDS * PORTS
+    processes = [
+        subprocess.Popen([sys.executable, "-c", REMEMBER_SCRIPT, str(k)])
+        for k in range(COMMAND_COUNT)
+    ]
+    assert [process.wait() for process in processes] == [0] * COMMAND_COUNT
+    assert len(known_ports.remembered_ports().name_by_port) == COMMAND_COUNT * PORT_COUNT
 
 
 def test_more_than_a_hundred_robots_are_remembered() -> None:
@@ -51,17 +54,19 @@ PORTS_BY_NAME = {
 def test_the_newest_port_is_first_and_the_last_used_one_is_known(seed: int) -> None:
     """This holds whatever was remembered before, and whether the port was used or only seen; a port
     of several names has the last one."""
-    chance, last_port, names = Random(seed), None, dict[str, str]()
+    rng, last_port, names = Random(seed), None, dict[str, str]()
     for _ in range(20):
         port, name, is_used = (
-            chance.choice([*PORTS_BY_NAME]),
-            chance.choice("AB"),
-            chance.random() < 0.5,
+            rng.choice([*PORTS_BY_NAME]),
+            rng.choice("AB"),
+            rng.random() < 0.5,
         )
         known_ports.remember(port, name, is_used)
         last_port = port if is_used else last_port
         other_names = {
-            other: names[other] for other in names if PORTS_BY_NAME[other] != PORTS_BY_NAME[port]
+            other_name: names[other_name]
+            for other_name in names
+            if PORTS_BY_NAME[other_name] != PORTS_BY_NAME[port]
         }
         names = {port: name, **other_names}
         assert known_ports.remembered_ports() == (last_port, names)

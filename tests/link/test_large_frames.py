@@ -93,13 +93,13 @@ def test_frames_wait_until_they_are_read_and_an_excess_one_is_dropped() -> None:
 
 
 def test_live_code_of_a_large_frame_runs() -> None:
-    most = payload_bytes(LARGE_FRAME) - 1
-    for length in (54, 55, 56, 57, 58, most):
+    max_bytes = payload_bytes(LARGE_FRAME) - 1
+    for length in (54, 55, 56, 57, 58, max_bytes):
         for is_late in (False, True):
             robot = open_link()
             code = large_upload.program(length).code
-            live = Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)
-            step = robot.step(10, b"\0" + encode_frame(live), is_late)
+            live_frame = Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)
+            step = robot.step(10, b"\0" + encode_frame(live_frame), is_late)
             checksum = unpack(pack("SI", 0, code)).checksum
             assert f"TAKE live {checksum:08x}" in step.did, length
             assert sum(row.startswith("START") for row in step.did) == 1
@@ -126,8 +126,8 @@ def with_checksum(body: bytes) -> bytes:
     return wire
 
 
-@pytest.mark.parametrize(("is_large", "most"), [(True, 239), (False, 53)])
-def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: int) -> None:
+@pytest.mark.parametrize(("is_large", "max_bytes"), [(True, 239), (False, 53)])
+def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, max_bytes: int) -> None:
     robot = open_link(is_large=is_large)
     session = Session(7, BAUD, KIT)
     pending_request = session.upload(IMAGE, runs=False)
@@ -141,51 +141,51 @@ def test_a_computer_gets_the_image_in_the_largest_frames(is_large: bool, most: i
     hello = struct.pack("<BBBBHI", MAJOR, MINOR, *LEAST_ISA, KIT, 8)
     list_answers(robot, Frame(HELLO, 1, 0, hello))
     image = b""
-    whole = len(pack("SI", 0, CODE))
-    while len(image) < whole:
+    image_bytes = len(pack("SI", 0, CODE))
+    while len(image) < image_bytes:
         (wire,) = sent_by(robot, Frame(FETCH, 2, 0, struct.pack("<H", len(image))))
         frame = decode_frame(wire)
         assert frame and frame.payload[0] == OK
-        assert struct.unpack("<H", frame.payload[1:3])[0] == whole
-        assert len(frame.payload) - 3 == min(most, whole - len(image))
-        assert len(wire) <= (LARGE_PACKET if most > 53 else SMALL_PACKET)
+        assert struct.unpack("<H", frame.payload[1:3])[0] == image_bytes
+        assert len(frame.payload) - 3 == min(max_bytes, image_bytes - len(image))
+        assert len(wire) <= (LARGE_PACKET if max_bytes > 53 else SMALL_PACKET)
         image += frame.payload[3:]
     assert image == pack("SI", 0, CODE)
 
 
 def test_both_receivers_agree_on_waiting_frames() -> None:
     """Frames, noise and silence, while some of them are not taken yet."""
-    draw = random.Random(3)
+    rng = random.Random(3)
     print("seed 3")
-    waited = 0
+    wait_count = 0
     for _ in range(300):
         stream: list[tuple[int, int]] = []
         now_ms = 0
-        for number in range(draw.randrange(1, 12)):
-            payload = draw.randbytes(draw.choice((0, 3, 56, 57, 100, 242)))
-            data = encode_frame(Frame(draw.choice(REQUESTS), number, draw.randrange(256), payload))
-            if draw.random() < 0.2:
-                noise = draw.randbytes(draw.randrange(1, 300)).replace(b"\0", b"")
-                data = draw.choice((b"\1", b"\2", b"\4", b"\5", b"\x1f")) + noise + b"\0"
-            wait_ms = draw.choice((0, 0, 0, 1200))
+        for number in range(rng.randrange(1, 12)):
+            payload = rng.randbytes(rng.choice((0, 3, 56, 57, 100, 242)))
+            data = encode_frame(Frame(rng.choice(REQUESTS), number, rng.randrange(256), payload))
+            if rng.random() < 0.2:
+                noise = rng.randbytes(rng.randrange(1, 300)).replace(b"\0", b"")
+                data = rng.choice((b"\1", b"\2", b"\4", b"\5", b"\x1f")) + noise + b"\0"
+            wait_ms = rng.choice((0, 0, 0, 1200))
             now_ms += wait_ms
             data = b"\0" * (wait_ms > 0 or number == 0) + data
             stream += [(now_ms, byte) for byte in data]
-        held_ms = draw.choice((0, 10, 100, 250))
+        held_ms = rng.choice((0, 10, 100, 250))
         rows = packets_of(stream, held_ms, is_large=True)
         assert cpp_link(is_large=True).packets(stream, held_ms) == rows
-        waited += held_ms > 0
-    assert waited > 100
+        wait_count += held_ms > 0
+    assert wait_count > 100
 
 
 # -- the computer ---------------------------------------------------------------------------------
 
 
-WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the checksum
+SENT_BYTES = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the checksum
 
 
 @pytest.mark.parametrize(
-    ("lost", "unanswered", "count"),
+    ("lost_numbers", "unanswered", "count"),
     [
         ((), (), 7),
         ((), (2, 3), 7),  # the next answer reports them
@@ -196,12 +196,12 @@ WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # bytes after the
     ],
 )
 def test_only_lost_pieces_are_sent_again(
-    lost: tuple[int, ...], unanswered: tuple[int, ...], count: int
+    lost_numbers: tuple[int, ...], unanswered: tuple[int, ...], count: int
 ) -> None:
-    taking = InOrderReceiver(lost, unanswered)
-    robot = AnsweringRobot(taking)
+    receiver = InOrderReceiver(lost_numbers, unanswered)
+    robot = AnsweringRobot(receiver)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.received == WHOLE and robot.has_commit
+    assert receiver.received == SENT_BYTES and robot.has_commit
     assert len(robot.data) == count
     assert len({seq for seq, *_ in robot.data}) == count, "two frames have one number"
     assert 2 <= robot.most_waiting <= LARGE_WINDOW
@@ -215,12 +215,12 @@ def test_only_lost_pieces_are_sent_again(
 def test_frames_follow_the_robots_window_up_to_the_available_data(
     largest: int, window: int
 ) -> None:
-    taking = InOrderReceiver()
-    robot = AnsweringRobot(taking, largest, window)
+    receiver = InOrderReceiver()
+    robot = AnsweringRobot(receiver, largest, window)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert taking.received == WHOLE
+    assert receiver.received == SENT_BYTES
     is_small = largest <= SMALL_FRAME
-    assert robot.longest == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
+    assert robot.longest_bytes == (SMALL_PACKET if is_small else min(largest, LARGE_FRAME) + 1)
     assert robot.most_waiting == max(1, min(window, LARGE_WINDOW))
     assert not is_small or {length for *_, length in robot.data[:-1]} == {54}
 
@@ -228,7 +228,7 @@ def test_frames_follow_the_robots_window_up_to_the_available_data(
 def test_a_slow_line_buffers_little_before_a_stop() -> None:
     robot = AnsweringRobot(InOrderReceiver(), baud=9600)
     assert robot.run(robot.session.upload(IMAGE)) == OK
-    assert robot.most_waiting * robot.longest <= 9600 // 10 * 0.25
+    assert robot.most_waiting * robot.longest_bytes <= 9600 // 10 * 0.25
 
 
 @pytest.mark.parametrize(
@@ -250,8 +250,8 @@ def test_a_robot_that_accepts_nothing_is_given_up(
 
 
 def test_a_robot_with_erratic_offsets_is_given_up() -> None:
-    draw = random.Random(5)
-    robot = AnsweringRobot(lambda *_: (OK, draw.randrange(len(WHOLE))))
+    rng = random.Random(5)
+    robot = AnsweringRobot(lambda *_: (OK, rng.randrange(len(SENT_BYTES))))
     assert robot.run(robot.session.upload(IMAGE)) == LOST
     assert not robot.has_commit
 
@@ -266,7 +266,7 @@ def test_a_stop_ends_the_upload() -> None:
     robot = AnsweringRobot(InOrderReceiver())
     request = robot.session.upload(IMAGE)
     robot.session.receive(b"", 0)
-    robot.takes = lambda *_: None
+    robot.take_data = lambda *_: None
     for _ in range(40):
         if robot.data:
             break
@@ -280,8 +280,8 @@ def test_a_stop_ends_the_upload() -> None:
     assert request.outcome is not None
     assert robot.session.poll(robot.now_ms).strip(b"\0") == b""
     seq = robot.data[0][0]
-    late = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
-    robot.session.receive(encode_frame(late), robot.now_ms)  # the answer arrives anyway
+    late_reply = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
+    robot.session.receive(encode_frame(late_reply), robot.now_ms)  # the answer arrives anyway
     assert robot.session.poll(robot.now_ms + 50).strip(b"\0") == b""
 
 
@@ -294,7 +294,7 @@ def test_the_largest_program_takes_little_longer_than_its_bytes() -> None:
     assert profile.board.program_bytes == 8192
     robot = Esp32Robot(profile)
     robot.wait(300)
-    took = large_upload.upload(robot, profile.kit.fingerprint, 8192)
+    upload_times = large_upload.upload(robot, profile.kit.fingerprint, 8192)
     robot.close()
-    assert took.times_of_wire <= large_upload.MOST_TIMES
-    assert took.sent_bytes < 8192 * 1.1
+    assert upload_times.times_of_wire <= large_upload.MOST_TIMES
+    assert upload_times.sent_bytes < 8192 * 1.1

@@ -9,7 +9,7 @@ from tests.support.link_cases import (
     CppSide,
     LinkCase,
     SessionSide,
-    Written,
+    WrittenSide,
     accept,
     computer_of,
     has_session,
@@ -20,8 +20,8 @@ from tests.support.link_cases import (
     with_new_results,
 )
 
-TALKS = link_cases("link")
-SESSIONS = [case for case in TALKS if has_session(case)]
+LINK_CASES = link_cases("link")
+SESSIONS = [case for case in LINK_CASES if has_session(case)]
 PACKETS = link_cases("packets")
 COMPUTERS, ROBOTS = link_cases("computer packets"), link_cases("robot packets")
 
@@ -32,17 +32,17 @@ def test_the_computer_acts_as_its_cases_state(
 ) -> None:
     if request.config.getoption("--accept"):
         pytest.skip("both halves are written by the next test")
-    assert play(case.rows, SessionSide(), Written(case.rows)) == case.rows
+    assert play(case.rows, SessionSide(), WrittenSide(case.rows)) == case.rows
 
 
-@pytest.mark.parametrize("case", TALKS, ids=lambda case: case.id)
+@pytest.mark.parametrize("case", LINK_CASES, ids=lambda case: case.id)
 def test_the_robot_acts_as_its_cases_state(case: LinkCase, request: pytest.FixtureRequest) -> None:
     if request.config.getoption("--accept"):
         rows = play(case.rows, computer_of(case), CppSide(cpp_link()))
         if rows != case.rows:
             accept(case, rows)
         return
-    assert play(case.rows, Written(case.rows), CppSide(cpp_link())) == case.rows
+    assert play(case.rows, WrittenSide(case.rows), CppSide(cpp_link())) == case.rows
 
 
 @pytest.mark.parametrize("case", [*PACKETS, *COMPUTERS], ids=lambda case: case.id)
@@ -70,4 +70,4 @@ def test_the_receiver_in_cpp_acts_as_its_cases_state(
 
 
 def test_link_cases_exist() -> None:
-    assert len(TALKS) >= 25 and len(PACKETS) >= 12
+    assert len(LINK_CASES) >= 25 and len(PACKETS) >= 12

@@ -25,60 +25,64 @@ UNDOS = 100
 # -- a radio --------------------------------------------------------------------------------------
 
 
-class Split(World):
+class SplitWorld(World):
     """Radios that send pieces."""
 
     is_split = True
 
 
-@pytest.mark.sampled("is_large", "count", "least")
-@pytest.mark.parametrize(("is_large", "count", "least"), [(False, 300, 0.9), (True, 100, 0.85)])
-def test_uploads_survive_a_bad_radio(is_large: bool, count: int, least: float) -> None:
+@pytest.mark.sampled("is_large", "count", "min_share")
+@pytest.mark.parametrize(("is_large", "count", "min_share"), [(False, 300, 0.9), (True, 100, 0.85)])
+def test_uploads_survive_a_bad_radio(is_large: bool, count: int, min_share: float) -> None:
     """No upload falsely reports success, and none is done twice.
 
     Several large frames are under way; some arrive twice or out of order.
     """
     counts = Counter(run_upload_scenario(cpp_link(is_large), seed) for seed in range(count))
-    assert counts["done"] > count * least, counts
+    assert counts["done"] > count * min_share, counts
 
 
-@pytest.mark.sampled("is_large", "count", "least")
-@pytest.mark.parametrize(("is_large", "count", "least"), [(False, 150, 0.85), (True, 50, 0.6)])
-def test_uploads_in_pieces_survive_a_bad_radio(is_large: bool, count: int, least: float) -> None:
+@pytest.mark.sampled("is_large", "count", "min_share")
+@pytest.mark.parametrize(("is_large", "count", "min_share"), [(False, 150, 0.85), (True, 50, 0.6)])
+def test_uploads_in_pieces_survive_a_bad_radio(
+    is_large: bool, count: int, min_share: float
+) -> None:
     """After a second of silence the rest of a frame is text; the frame comes again."""
-    counts = Counter(run_upload_scenario(cpp_link(is_large), seed, Split) for seed in range(count))
-    assert counts["done"] > count * least, counts
+    counts = Counter(
+        run_upload_scenario(cpp_link(is_large), seed, SplitWorld) for seed in range(count)
+    )
+    assert counts["done"] > count * min_share, counts
 
 
 def one_undo(cpp: CppLink, seed: int) -> str:
     """Bring the program before back several times; return how many were confirmed."""
-    draw = random.Random(seed)
-    world = World(cpp, draw, 0, 0)
-    images = [pack("SI", 0, program(draw)) for _ in range(2)]
+    rng = random.Random(seed)
+    world = World(cpp, rng, 0, 0)
+    images = [pack("SI", 0, program(rng)) for _ in range(2)]
     for image in images:
         request = world.session.upload(unpack(image), runs=False)
         world.run(request)
     if images[0] == images[1]:
         return "the same"
-    world.to_robot.faults = world.to_computer.faults = draw.choice((0.001, 0.01, 0.03))
-    world.drops = draw.choice((0, 0.0002, 0.002))
-    confirmed = 0
+    world.to_robot.faults = world.to_computer.faults = rng.choice((0.001, 0.01, 0.03))
+    world.drop_rate = rng.choice((0, 0.0002, 0.002))
+    confirmed_count = 0
     for _ in range(4):
-        before = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
+        old_undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
         pending_request = world.session.undo()
         world.run(pending_request)
         assert pending_request.outcome, f"seed {seed}: an undo has no end"
-        undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - before
+        undo_count = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - old_undo_count
         assert undo_count <= 1, f"seed {seed}: undone {undo_count} times"
         if pending_request.outcome.status == 0:
             assert undo_count == 1, (
                 f"seed {seed}: the computer says undone, the robot has done nothing"
             )
-            confirmed += 1
+            confirmed_count += 1
         if undo_count:
             images.reverse()
         assert cpp.fetch_image() == images[1], f"seed {seed}: the robot holds another program"
-    return f"{confirmed} confirmed"
+    return f"{confirmed_count} confirmed"
 
 
 def test_undos_survive_a_bad_radio() -> None:
@@ -88,10 +92,10 @@ def test_undos_survive_a_bad_radio() -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 1_000_000, "large", "undos", "pieces")
+    options = make_options(10_000, 1_000_000, "large", "undos", "pieces")
     one = (
         one_undo
-        if given.undos
-        else partial(run_upload_scenario, world_of=Split if given.pieces else World)
+        if options.undos
+        else partial(run_upload_scenario, world_of=SplitWorld if options.pieces else World)
     )
-    each_seed(partial(one, link_library(given.large)), given)
+    each_seed(partial(one, link_library(options.large)), options)

@@ -17,7 +17,7 @@ from tiniscript.link.frames import decode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.statuses import name_of
 
-LIVES = 2000  # in the tests
+LINE_COUNT = 2000  # in the tests
 LINES = 50  # of one robot
 SEED = 4
 LIVE = BY_NAME["LIVE"].number
@@ -26,36 +26,38 @@ LIVE = BY_NAME["LIVE"].number
 class LiveWorld(World):
     """`sent` counts the times that a line goes out, the repeated ones too."""
 
-    sent = 0
+    sent_count = 0
 
     def overhear(self, data: bytes) -> None:
         frame = decode_frame(data.strip(b"\0"))
-        self.sent += frame is not None and frame.number == LIVE and not frame.is_reply
+        self.sent_count += frame is not None and frame.number == LIVE and not frame.is_reply
 
 
 def send_live_lines(cpp: CppLink, count: int, seed: int) -> Counter[str]:
     """Send so many lines, each with its own code, over radios that lose answers; return the
     results. A line that the computer confirms begins once, and no line twice.
     """
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     counts: Counter[str] = Counter()
-    for first in range(0, count, LINES):
-        world = LiveWorld(cpp, draw, draw.choice((0.001, 0.005, 0.01)), draw.choice((0, 0.0005)))
-        for number in range(first, min(first + LINES, count)):
-            world.sent = 0
+    for first_number in range(0, count, LINES):
+        world = LiveWorld(cpp, rng, rng.choice((0.001, 0.005, 0.01)), rng.choice((0, 0.0005)))
+        for number in range(first_number, min(first_number + LINES, count)):
+            world.sent_count = 0
             request = world.session.live(line_of(number))
             world.run(request)
             assert request.outcome, f"seed {seed}, line {number} has no end"
             status = request.outcome.status
             times = Counter(row for row in world.did if row.startswith("TAKE"))
             image = pack("SI", 0, line_of(number))
-            mine = times[f"TAKE live {unpack(image).checksum:08x}"]
-            assert mine == 1 if status == 0 else mine <= 1, f"seed {seed}, line {number}: {mine}"
+            take_count = times[f"TAKE live {unpack(image).checksum:08x}"]
+            assert take_count == 1 if status == 0 else take_count <= 1, (
+                f"seed {seed}, line {number}: {take_count}"
+            )
             assert set(times.values()) <= {1}, f"seed {seed}: an earlier line again, {number}"
-            starts = sum(row.startswith("START") for row in world.did)
-            assert starts == len(times), f"seed {seed}, line {number}: {starts} starts"
+            start_count = sum(row.startswith("START") for row in world.did)
+            assert start_count == len(times), f"seed {seed}, line {number}: {start_count} starts"
             counts[OUTCOMES.get(status) or name_of(status)] += 1
-            counts["sent again"] += world.sent > 1
+            counts["sent again"] += world.sent_count > 1
             if status != 0:
                 world.reconnect()
     return counts
@@ -70,10 +72,10 @@ def line_of(number: int) -> bytes:
 
 def test_live_lines_survive_a_bad_radio() -> None:
     """None is executed twice, however many times its answer is lost."""
-    counts = send_live_lines(cpp_link(), LIVES, SEED)
-    assert counts["OK"] > LIVES * 0.8 and counts["sent again"] > LIVES * 0.1, counts
+    counts = send_live_lines(cpp_link(), LINE_COUNT, SEED)
+    assert counts["OK"] > LINE_COUNT * 0.8 and counts["sent again"] > LINE_COUNT * 0.1, counts
 
 
 if __name__ == "__main__":
-    given = make_options(100_000, 1_000_000)
-    print(send_live_lines(link_library(), given.count, given.seed))
+    options = make_options(100_000, 1_000_000)
+    print(send_live_lines(link_library(), options.count, options.seed))

@@ -49,7 +49,7 @@ class BadLine:
 
     def __init__(self, rng: random.Random) -> None:
         self.rng = rng
-        self.lost = 0
+        self.lost_in_a_row = 0
         kind = rng.choice(("losses", "losses", "bursts", "late"))
         self.is_bursty = kind == "bursts"
         self.likely = rng.choice((0.2, 0.5, 0.8)) if kind == "losses" else 0
@@ -65,8 +65,10 @@ class BadLine:
             return data if now_ms % (self.dead_ms + LINE_ALIVE_MS) < LINE_ALIVE_MS else b""
         before_ms, is_lost = self.packets[is_answer]
         if now_ms > before_ms + 2:  # another packet
-            is_lost = self.lost < CONSECUTIVE_LOSSES and self.rng.random() < self.likely
-            self.lost = self.lost + 1 if is_lost else 0 if is_answer else self.lost
+            is_lost = self.lost_in_a_row < CONSECUTIVE_LOSSES and self.rng.random() < self.likely
+            self.lost_in_a_row = (
+                self.lost_in_a_row + 1 if is_lost else 0 if is_answer else self.lost_in_a_row
+            )
         self.packets[is_answer] = now_ms, is_lost
         return b"" if is_lost else data
 
@@ -86,10 +88,10 @@ def turn(session: Session, robot: HostFirmware, line: BadLine) -> None:
     data = line.takes(polled_when_due(session, robot.now_ms), robot.now_ms)
     line.under_way.append((robot.now_ms + line.late_ms, data))
     due_ms, data = line.under_way[0]
-    is_there = due_ms <= robot.now_ms
-    if is_there:
+    is_due = due_ms <= robot.now_ms
+    if is_due:
         line.under_way.popleft()
-    sent_bytes = robot.wait(10 if line.late_ms else 1, data if is_there else b"")
+    sent_bytes = robot.wait(10 if line.late_ms else 1, data if is_due else b"")
     session.receive(line.takes(sent_bytes, robot.now_ms, True), robot.now_ms)
 
 
@@ -98,10 +100,10 @@ def finish_request(
     robot: HostFirmware,
     line: BadLine,
     request: PendingRequest[Any],
-    limit_ms: int,
+    timeout_ms: int,
 ) -> int:
     """Return how a request has ended, which it does in so long a time."""
-    end_ms = robot.now_ms + limit_ms
+    end_ms = robot.now_ms + timeout_ms
     while request.outcome is None:
         assert robot.now_ms < end_ms, "it waits for ever"
         turn(session, robot, line)
@@ -151,13 +153,13 @@ def test_each_request_to_a_silent_robot_ends_and_the_next_succeeds(part: int) ->
             polled_when_due(session, robot.now_ms)
             robot.wait(50)
         if rng.random() < 0.5:
-            fresh = HostFirmware(TINIBOT, robot.memory(), seed=rng.getrandbits(32) | 1)
-            fresh.now_ms = robot.now_ms
-            fresh.wait(200)
-            robot = fresh
-        limit_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
+            new_robot = HostFirmware(TINIBOT, robot.memory(), seed=rng.getrandbits(32) | 1)
+            new_robot.now_ms = robot.now_ms
+            new_robot.wait(200)
+            robot = new_robot
+        timeout_ms = len(pending_requests) * (EXCHANGE_TIMEOUT_MS + DEAF_MS) + 5000
         for request in pending_requests:
-            finish_request(session, robot, line, request, limit_ms)
+            finish_request(session, robot, line, request, timeout_ms)
         robot.talk(session, 2000)
         if finish_request(session, robot, line, session.hello(), EXCHANGE_TIMEOUT_MS) != OK:
             raise AssertionError(f"seed {seed}: it is there")
@@ -186,8 +188,8 @@ def test_polling_on_demand_is_rare_and_misses_nothing(seed: int) -> None:
                 is_dead = False
         for _ in range(rng.choice((1, 10, 100, 400))):
             data = polled_when_due(session, robot.now_ms)
-            sent = robot.wait(10, b"" if is_dead else data)
-            session.receive(b"" if is_dead else sent, robot.now_ms)
+            sent_bytes = robot.wait(10, b"" if is_dead else data)
+            session.receive(b"" if is_dead else sent_bytes, robot.now_ms)
     line = BadLine(rng)
     line.is_bursty, line.likely, line.late_ms = False, 0, 0
     session.stop(robot.now_ms)
@@ -196,12 +198,12 @@ def test_polling_on_demand_is_rare_and_misses_nothing(seed: int) -> None:
 
 def lost_after_ms(session: Session, robot: HostFirmware) -> int:
     """Return how long a line is dead before the session reports it."""
-    began_ms = robot.now_ms
+    start_ms = robot.now_ms
     while "LOST" not in [event.name for event in session.events()]:
         session.poll(robot.now_ms)
         robot.wait(10)
-        assert robot.now_ms - began_ms < 3 * DEAF_MS, "it is never told"
-    return robot.now_ms - began_ms
+        assert robot.now_ms - start_ms < 3 * DEAF_MS, "it is never told"
+    return robot.now_ms - start_ms
 
 
 REQUESTS_AND_STOPS: dict[str, Callable[[Session, HostFirmware], object]] = {
@@ -236,11 +238,11 @@ def test_late_answers_to_keys_keep_the_line(late_ms: int) -> None:
     """Later than the next word is said."""
     robot, session = switched_on(), computer()
     assert robot.until(session, session.hello()) == OK
-    under_way = deque[bytes](b"" for _ in range(late_ms // 10))
+    answers_under_way = deque[bytes](b"" for _ in range(late_ms // 10))
     for _ in range(3 * DEAF_MS // 10):
         session.press(1)
-        under_way.append(robot.wait(10, session.poll(robot.now_ms)))
-        session.receive(under_way.popleft(), robot.now_ms)
+        answers_under_way.append(robot.wait(10, session.poll(robot.now_ms)))
+        session.receive(answers_under_way.popleft(), robot.now_ms)
     assert session.events() == []
 
 

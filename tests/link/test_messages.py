@@ -63,22 +63,25 @@ def test_no_request_number_is_text_or_a_line_end() -> None:
 
 
 def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> None:
-    every = [bits for bits, *_ in FEATURES]
-    assert sum(every) == functools.reduce(operator.or_, every) < 1 << 16
+    all_bits = [bits for bits, *_ in FEATURES]
+    assert sum(all_bits) == functools.reduce(operator.or_, all_bits) < 1 << 16
     names = [name.lower() for name, _ in TEXT_LEVELS]
     assert names == ["none", *LEVELS] and len(names) == TEXT_LEVEL + 1
 
 
 def test_every_payload_fits_a_frame() -> None:
     """It fits a small one; a payload that fills a frame can fill a large one, too."""
-    large = payload_bytes(LARGE_FRAME)
+    large_bytes = payload_bytes(LARGE_FRAME)
     for message in MESSAGES:
-        for fields, before in ((message.request, 0), (message.reply, message.number < FIRST_EVENT)):
+        for fields, size_before in (
+            (message.request, 0),
+            (message.reply, message.number < FIRST_EVENT),
+        ):
             fills = any(field.fills_frame for field in fields)
-            most = before + sizes(fields)[1]
-            assert most == large if fills else most <= PAYLOAD_BYTES, message.name
+            max_bytes = size_before + sizes(fields)[1]
+            assert max_bytes == large_bytes if fills else max_bytes <= PAYLOAD_BYTES, message.name
     assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55
-    assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)
+    assert (large_bytes - MODE_BYTES, large_bytes - OFFSET_BYTES) == (241, 240)
 
 
 @each_row("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
@@ -122,8 +125,8 @@ def test_sentences_have_all_gaps_filled() -> None:
         for status in range(1, 256):
             sentence, advice = statuses.status_text(status, 0x1234, lang)
             assert sentence and advice and "{" not in sentence + advice, (status, lang)
-    too_large = "The program is too large: the robot has room for 430 bytes of code."
-    assert statuses.status_text(71, 430, "en").message == too_large
+    too_large_text = "The program is too large: the robot has room for 430 bytes of code."
+    assert statuses.status_text(71, 430, "en").message == too_large_text
     refused = "The robot's verifier refuses the code at 5: BAD_OPERAND."
     assert statuses.status_text(23, 5, "en").message == refused
     assert "DAMAGED" in statuses.status_text(6, 0, "es").message

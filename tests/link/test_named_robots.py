@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.command import LONG, Command, Tsc, process, run_in_process
+from tests.support.command import LONG_PROGRAM, Command, Tsc, process, run_in_process
 from tests.support.network import BadNetwork
 from tests.support.virtual_command import FOREVER, Robot, robot
 from tests.support.waiting import HANG_LIMIT_S, until
@@ -45,12 +45,12 @@ LOSS_PROBABILITY = 0.05  # of the pieces
 @pytest.fixture
 def listing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """No other test lists or announces names meanwhile."""
-    shared = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
+    shared_file = tmp_path_factory.getbasetemp().parent / "listing"  # by the workers of a run
     end_s = time.monotonic() + HANG_LIMIT_S
     with ExitStack() as stack:
         while True:
             with suppress(TimeoutError):
-                stack.enter_context(files.lock_file(shared))
+                stack.enter_context(files.lock_file(shared_file))
                 break
             assert time.monotonic() < end_s, "another test does not end"
         yield
@@ -90,27 +90,29 @@ def packets(*names: str, number: int, lonely: int = 0) -> Iterator[None]:
     from tiniscript.link.transports.network import SERVICE
 
     packet = DNSOutgoing(_FLAGS_QR_RESPONSE)
-    for whole in (f"{name}.{SERVICE}" for name in names):
-        packet.add_answer_at_time(DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, whole), 0)
-        service = DNSService(whole, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, FAR_HOST)
+    for service_name in (f"{name}.{SERVICE}" for name in names):
+        packet.add_answer_at_time(DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, service_name), 0)
+        service = DNSService(service_name, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, FAR_HOST)
         packet.add_answer_at_time(service, 0)
-        packet.add_answer_at_time(DNSText(whole, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
+        packet.add_answer_at_time(DNSText(service_name, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
     address = DNSAddress(FAR_HOST, _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
     packet.add_answer_at_time(address, 0)
     for k in range(lonely):
-        alone = DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, f"a{k}.{SERVICE}")
-        packet.add_answer_at_time(alone, 0)
+        pointer = DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, f"a{k}.{SERVICE}")
+        packet.add_answer_at_time(pointer, 0)
     is_over = threading.Event()
 
     def send() -> None:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
-            out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, bytes((127, 0, 0, 1)))
-            out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-            out.bind(("127.0.0.1", 5353))  # names from elsewhere are ignored
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as multicast_socket:
+            multicast_socket.setsockopt(
+                socket.IPPROTO_IP, socket.IP_MULTICAST_IF, bytes((127, 0, 0, 1))
+            )
+            multicast_socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            multicast_socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+            multicast_socket.bind(("127.0.0.1", 5353))  # names from elsewhere are ignored
             while not is_over.wait(0.1):
                 for data in packet.packets():
-                    out.sendto(data, ("224.0.0.251", 5353))
+                    multicast_socket.sendto(data, ("224.0.0.251", 5353))
 
     sender = threading.Thread(target=send, daemon=True)
     sender.start()
@@ -139,9 +141,9 @@ def tini() -> Iterator[Robot]:
 
 
 def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
-    for run, typed in ((process, "tcp://Ñ tini {}"), (run_in_process, "tcp://ñ tini {}.local"),
+    for run, address in ((process, "tcp://Ñ tini {}"), (run_in_process, "tcp://ñ tini {}.local"),
                        (run_in_process, "TCP://ñ TINI {}")):  # fmt: skip
-        port = typed.format(PROCESS_ID)
+        port = address.format(PROCESS_ID)
         result = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (result.code, result.err) == (0, ""), port
         assert known_ports.remembered_ports().last_port == port
@@ -159,9 +161,9 @@ def test_a_robot_announces_itself_only_when_asked(
     listing: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ports, "list_ports", list)
-    with robot("--name", "quiet") as running_robot, robot("--announce") as other:
-        name = other.line()
-        assert name == f"tcp://tinibot-{number_of(other.port)}"
+    with robot("--name", "quiet") as running_robot, robot("--announce") as other_robot:
+        name = other_robot.line()
+        assert name == f"tcp://tinibot-{number_of(other_robot.port)}"
         rows = run_in_process("doctor", "--ports", "--ask").out.splitlines()
         assert any(row.startswith(f"{name} ") for row in rows)
         assert [row.split("   ")[0] for row in rows if "quiet" in row] == [running_robot.port]
@@ -224,9 +226,9 @@ def test_names_without_an_address_do_not_delay_the_list(
 ) -> None:
     query, limits_ms = network.query_service, []
 
-    def look(zeroconf: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
-        limits_ms.append(limit_ms)
-        service_info: ServiceInfo | None = query(zeroconf, name, limit_ms)
+    def look(zeroconf: Zeroconf, name: str, timeout_ms: int) -> ServiceInfo | None:
+        limits_ms.append(timeout_ms)
+        service_info: ServiceInfo | None = query(zeroconf, name, timeout_ms)
         return service_info
 
     monkeypatch.setattr(network, "ADDRESSES_S", 0.5)
@@ -286,11 +288,16 @@ def test_a_bad_network_costs_time_and_nothing_else() -> None:
     with (
         robot() as running_robot,
         closing(
-            BadNetwork(number_of(running_robot.port), LATE_S, every=2000, lost=LOSS_PROBABILITY)
+            BadNetwork(
+                number_of(running_robot.port),
+                LATE_S,
+                resend_interval=2000,
+                loss_rate=LOSS_PROBABILITY,
+            )
         ) as network,
         announce(f"far-{PROCESS_ID}", "127.0.0.1", network.port),
     ):
-        result = run_in_process("upload", "-e", f"SB|{LONG}", "--port", port).gives(0, "")
+        result = run_in_process("upload", "-e", f"SB|{LONG_PROGRAM}", "--port", port).gives(0, "")
         checksum = result.out.partition("checksum ")[2][:8]
         assert f"program {checksum}" in run_in_process("doctor", "--port", port).out
         command = Command("upload", "-e", FOREVER, "--port", port)

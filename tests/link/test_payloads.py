@@ -49,7 +49,7 @@ def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
         assert list(event_fields(event)) == [field.name for field in message.reply]
 
 
-OTHERS: tuple[Event, ...] = (
+OTHER_EVENTS: tuple[Event, ...] = (
     TextEvent(b"hello"), MissedEvent(3), EchoEvent(), JoinedEvent(b"live"), LeftEvent(b"live"),
     PlaceEvent(255, 2**32 - 1, -1), RestartedEvent(),
 )  # fmt: skip
@@ -57,7 +57,7 @@ OTHERS: tuple[Event, ...] = (
 
 def test_every_event_comes_through_a_shared_port() -> None:
     """Its fields are written as JSON and read again."""
-    events = (*SOME_EVENTS, *OTHERS)
+    events = (*SOME_EVENTS, *OTHER_EVENTS)
     assert {type(event) for event in events} == set(get_args(Event)) == {*EVENTS.values()}
     reader = protocol.MessageReader(protocol.LINE_BYTES)
     for event in events:

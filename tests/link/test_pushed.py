@@ -12,7 +12,7 @@ from tiniscript.link.transports import READ_S
 from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, PushedTransport
 
 
-class Waits:
+class Bell:
     """The bell of one thread, which counts how many times it would have waited.
 
     `then` delivers the frames that arrive meanwhile.
@@ -20,7 +20,7 @@ class Waits:
 
     def __init__(self) -> None:
         self.count = 0
-        self.then: list[bytes] = []
+        self.late_pieces: list[bytes] = []
         self.port: PushedTransport | None = None
 
     def ring(self) -> None:
@@ -29,51 +29,51 @@ class Waits:
     def wait(self, timeout_s: float) -> None:
         assert timeout_s == READ_S
         self.count += 1
-        if self.then and self.port is not None:
-            self.port.add_received(self.then.pop())
+        if self.late_pieces and self.port is not None:
+            self.port.add_received(self.late_pieces.pop())
 
 
-def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Waits]:
-    port, waits = PushedTransport(), Waits()
-    monkeypatch.setattr(port, "_bell", waits)
-    waits.port = port
-    return port, waits
+def port_and_waits(monkeypatch: pytest.MonkeyPatch) -> tuple[PushedTransport, Bell]:
+    port, bell = PushedTransport(), Bell()
+    monkeypatch.setattr(port, "_bell", bell)
+    bell.port = port
+    return port, bell
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_a_read_waits_like_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     rng = random.Random(seed)
-    port, waits = port_and_waits(monkeypatch)
-    unread, is_cancelled, why = b"", False, ""
+    port, bell = port_and_waits(monkeypatch)
+    unread, is_cancelled, failure = b"", False, ""
     for _ in range(200):
-        what = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
+        action = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
         if rng.random() < 0.002:
-            what = "end"
-        if what == "bring":
+            action = "end"
+        if action == "bring":
             data = rng.randbytes(rng.choice((1, 20, 300)))
             port.add_received(data)
             unread += data
-        elif what == "cancel":
+        elif action == "cancel":
             port.cancel_read()
             is_cancelled = True
-        elif what == "end":
+        elif action == "end":
             port.end("")
-            why = why or END_REASON
+            failure = failure or END_REASON
         else:
             size = rng.choice((1, 20, 4096))
-            late = rng.randbytes(5) if what == "while it waits" else b""
-            waits.then = [late] if late else []
-            has_to_wait = not (unread or is_cancelled or why)
+            late_bytes = rng.randbytes(5) if action == "while it waits" else b""
+            bell.late_pieces = [late_bytes] if late_bytes else []
+            has_to_wait = not (unread or is_cancelled or failure)
             if has_to_wait:
-                unread += late
-            before = waits.count
-            if why and not unread:
-                with pytest.raises(OSError, match=why):
+                unread += late_bytes
+            count_before = bell.count
+            if failure and not unread:
+                with pytest.raises(OSError, match=failure):
                     port.read(size)
             else:
                 assert port.read(size) == unread[:size]
             unread = unread[size:]
-            assert waits.count - before == has_to_wait, "it waits once, or not at all"
+            assert bell.count - count_before == has_to_wait, "it waits once, or not at all"
             is_cancelled = False
         assert port.in_waiting == len(unread)
 

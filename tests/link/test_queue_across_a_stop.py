@@ -17,9 +17,9 @@ from tests.support.campaign import each_seed, make_options
 from tests.support.images import image_of
 from tests.support.queued_requests import (
     ACTING_REQUESTS,
-    NOTHING,
-    OTHERS,
-    OWN,
+    NO_LOSSES,
+    OTHER_REQUESTS,
+    OWN_STOP,
     STOPS,
     Ask,
     Losses,
@@ -33,8 +33,8 @@ RUNS = "SI|F(60, 80)"
 
 
 def is_driving(robot: HostFirmware) -> bool:
-    driven = [line.split()[2:] for line in robot.did if " MOTORS " in line]
-    return driven[-1:] not in ([], [["0", "0"]])
+    motor_powers = [line.split()[2:] for line in robot.did if " MOTORS " in line]
+    return motor_powers[-1:] not in ([], [["0", "0"]])
 
 
 def check(seed: int) -> str:
@@ -42,17 +42,19 @@ def check(seed: int) -> str:
     wire = Wire(rng)
     robot, session = wire.robot, wire.session
     assert robot.until(session, session.upload(image_of(RUNS), saves=False)) == OK
-    how = rng.choice([*STOPS, OWN])
-    pending_requests = [rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHERS)(session)
-                        for _ in range(rng.randint(2, 5))]  # fmt: skip
-    wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0, 1)))
+    stop_kind = rng.choice([*STOPS, OWN_STOP])
+    pending_requests = [
+        rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHER_REQUESTS)(session)
+        for _ in range(rng.randint(2, 5))
+    ]
+    wire.losses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0, 1)))
     wire.turns(rng.choice((0, 0, 1, 2, 3, 5, 8, 13, 30)))
-    if how == "the button" and not is_driving(robot):  # it would start the stored program
-        how = "zeros"
+    if stop_kind == "the button" and not is_driving(robot):  # it would start the stored program
+        stop_kind = "zeros"
     open_ones = [
         pending_request for pending_request in pending_requests if pending_request.outcome is None
     ]
-    if how == OWN:
+    if stop_kind == OWN_STOP:
         session.stop(robot.now_ms)
         assert all(pending_request.outcome is not None for pending_request in pending_requests), (
             f"seed {seed}"
@@ -60,33 +62,32 @@ def check(seed: int) -> str:
         wire.turns(wire.late_ms + 3)  # until it is there
         sent_bytes = b""
     else:
-        sent_bytes = STOPS[how](robot, session)
+        sent_bytes = STOPS[stop_kind](robot, session)
     robot.codes()
     robot.did.clear()
-    wire.loses = rng.choice((NOTHING, Losses(0, 0.3)))
+    wire.losses = rng.choice((NO_LOSSES, Losses(0, 0.3)))
     wire.turn(b"" if rng.random() < 0.5 else sent_bytes)  # the event, if the session heard it
     wire.turns(rng.choice((1, 5, 200)))
-    wire.loses = NOTHING
+    wire.losses = NO_LOSSES
     wire.turns(wire.late_ms)
     robot.step(b"".join(wire.under_way))
     robot.talk(session, 6000)
-    explanation = (
-        f"seed {seed}, {how}: {robot.did}, {[request.outcome for request in pending_requests]}"
-    )
+    outcomes = [request.outcome for request in pending_requests]
+    explanation = f"seed {seed}, {stop_kind}: {robot.did}, {outcomes}"
     assert robot.codes() == [], explanation
     assert all(request.outcome is not None for request in pending_requests), explanation
     assert robot.complete(session, session.status()).state == STATE_STOPPED, explanation
-    new = session.live(image_of("SI|F(0.2, 100)").code)
-    status = robot.until(session, new)
+    new_request = session.live(image_of("SI|F(0.2, 100)").code)
+    status = robot.until(session, new_request)
     if status != OK:
         assert robot.until(session, session.hello()) == OK
         assert robot.until(session, session.live(image_of("SI|F(0.2, 100)").code)) == OK, (
             explanation
         )
-    return f"{how} meets a queue" if len(open_ones) > 1 else "nothing waits"
+    return f"{stop_kind} meets a queue" if len(open_ones) > 1 else "nothing waits"
 
 
-@pytest.mark.parametrize("ask", [*OTHERS[:4], Session.clear])
+@pytest.mark.parametrize("ask", [*OTHER_REQUESTS[:4], Session.clear])
 def test_requests_of_others_leave_a_run_to_its_client(ask: Ask) -> None:
     """A latch that is not set is released, too; and the run still ends with its client."""
     wire = Wire(random.Random(1))

@@ -40,8 +40,8 @@ def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
 @pytest.mark.parametrize("start", [0, 0xFFFFFFFF - 2000])
 def test_an_attached_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
     cpp = robot_with_session()
-    live = messages.encode_payload(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
-    cpp.step(start, b"\0" + encode_frame(Frame(8, 2, 10, live)))
+    live_payload = messages.encode_payload(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
+    cpp.step(start, b"\0" + encode_frame(Frame(8, 2, 10, live_payload)))
     cpp.step(start + 700, b"\0" + encode_frame(Frame(2, 3, 10)))
     cpp.step(start + 900, encode_frame(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
     assert ends_at(cpp, start + 900, start + 2000) == start + 700 + DEAD_MAN_MS
@@ -96,24 +96,26 @@ def test_many_unread_stops_are_not_lost() -> None:
 @pytest.mark.sampled("late_ms", keep=2)
 @pytest.mark.parametrize("late_ms", [0, 300, 1500, 2900, 4000])
 @pytest.mark.parametrize(("piece_bytes", "gap_ms"), [(99, 0), (10, 0), (7, 1100), (45, 1100)])
-@pytest.mark.parametrize("before", [b"", b"> "], ids=["plain", "prompt"])
+@pytest.mark.parametrize("noise", [b"", b"> "], ids=["plain", "prompt"])
 def test_an_echo_of_everything_starts_no_endless_conversation(
-    late_ms: int, piece_bytes: int, gap_ms: int, before: bytes
+    late_ms: int, piece_bytes: int, gap_ms: int, noise: bytes
 ) -> None:
     """A terminal or a radio module echoes its input, whole and in pieces."""
     cpp = cpp_link()
     cpp.begin(kit=KIT)
-    under_way = [(0, b"F(2,800)\r\n")]
+    packets_under_way = [(0, b"F(2,800)\r\n")]
     answers = []
     for now_ms in range(0, 60_000, 10):
-        came = b"".join(data for at, data in under_way if at == now_ms)
-        under_way = [pair for pair in under_way if pair[0] > now_ms]
-        sent_bytes = cpp.step(now_ms, came).sent.replace(b"\0", b"")
+        arrived_bytes = b"".join(
+            data for arrival_ms, data in packets_under_way if arrival_ms == now_ms
+        )
+        packets_under_way = [pair for pair in packets_under_way if pair[0] > now_ms]
+        sent_bytes = cpp.step(now_ms, arrived_bytes).sent.replace(b"\0", b"")
         answers += [now_ms] * sent_bytes.count(b"\n")
-        echo = before + sent_bytes if sent_bytes else b""
+        echo = noise + sent_bytes if sent_bytes else b""
         for k in range(-(-len(echo) // piece_bytes)):
             piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
-            under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
+            packets_under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
     assert 1 <= len(answers) <= ANSWERS, answers
 
 

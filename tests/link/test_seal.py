@@ -18,7 +18,7 @@ from tiniscript.link.seal import LAST_COUNTER, Seal, session_key, siphash
 
 KEY = bytes(range(16))
 CHALLENGE = bytes.fromhex("a1a2a3a4a5a6a7a8")
-NONCE, ROBOT_NONCE, EPOCH, WHICH = 0x01020304, 0x08070605, 10, 0
+NONCE, ROBOT_NONCE, EPOCH, KEY_KIND = 0x01020304, 0x08070605, 10, 0
 NUMBERS = [
     number for number in range(1, 64) if number != BY_NAME["WIFI"].number
 ]  # that is covered, too
@@ -60,7 +60,7 @@ def sealed_by_hand(frame: Frame, counter: int) -> bytes:
 
 
 def seal(heard_counter: int = 0, sent_counter: int = 0) -> Seal:
-    made_seal = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH))
+    made_seal = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, KEY_KIND))
     made_seal.heard_counter, made_seal.sent_counter = heard_counter, sent_counter
     return made_seal
 
@@ -70,15 +70,15 @@ def frame_of(data: bytes) -> Frame:
     return Frame(kind & 0x3F, seq, epoch, data[3:], bool(kind & 0x80), bool(kind & 0x40))
 
 
-def random_frame(chance: random.Random, is_reply: bool) -> Frame:
-    payload = chance.randbytes(chance.randrange(SEALED_PAYLOAD_BYTES + 1))
-    number, seq, epoch = chance.choice(NUMBERS), chance.randrange(256), chance.randrange(256)
+def random_frame(rng: random.Random, is_reply: bool) -> Frame:
+    payload = rng.randbytes(rng.randrange(SEALED_PAYLOAD_BYTES + 1))
+    number, seq, epoch = rng.choice(NUMBERS), rng.randrange(256), rng.randrange(256)
     return Frame(number, seq, epoch, payload, is_reply)
 
 
-def counters(chance: random.Random) -> int:
-    return chance.choice(
-        (1, 2, 0xFF, 0x100, LAST_COUNTER - 1, LAST_COUNTER, chance.randrange(1, LAST_COUNTER))
+def counters(rng: random.Random) -> int:
+    return rng.choice(
+        (1, 2, 0xFF, 0x100, LAST_COUNTER - 1, LAST_COUNTER, rng.randrange(1, LAST_COUNTER))
     )
 
 
@@ -87,32 +87,35 @@ def test_the_hash_matches_the_authors_test_vectors() -> None:
 
 
 def test_the_robot_computes_the_same_hash() -> None:
-    chance = random.Random(1)
+    rng = random.Random(1)
     for _ in range(500):
-        key, message = chance.randbytes(16), chance.randbytes(chance.randrange(200))
+        key, message = rng.randbytes(16), rng.randbytes(rng.randrange(200))
         assert cpp_link().siphash(key, message) == siphash(key, message)
 
 
 def test_the_robot_opens_only_fresh_seals_of_the_computer() -> None:
-    chance = random.Random(1)
+    rng = random.Random(1)
     for _ in range(300):
-        frame, counter = random_frame(chance, False), counters(chance)
-        sent = sealed_by_hand(frame, counter)
-        assert whole_frame(seal(sent_counter=counter - 1).seal_frame(frame)) == sent
-        assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
-        assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
+        frame, counter = random_frame(rng, False), counters(rng)
+        sealed_bytes = sealed_by_hand(frame, counter)
+        assert whole_frame(seal(sent_counter=counter - 1).seal_frame(frame)) == sealed_bytes
+        assert cpp_link().opens(KEY, ORIGIN, counter - 1, sealed_bytes)
+        assert not cpp_link().opens(KEY, ORIGIN, counter, sealed_bytes)
 
 
 def test_the_computer_opens_only_fresh_seals_of_the_robot() -> None:
-    chance = random.Random(2)
+    rng = random.Random(2)
     for _ in range(300):
-        frame, counter = random_frame(chance, True), counters(chance)
-        marked, sent = whole_frame(frame._replace(is_sealed=True)), sealed_by_hand(frame, counter)
-        assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked) == sent
-        mine = seal(heard_counter=counter - 1)
-        assert mine.open_frame(frame_of(sent)) == frame._replace(is_sealed=True)
-        assert mine.open_frame(frame_of(sent)) is None  # once
-        assert seal(heard_counter=counter).open_frame(frame_of(sent)) is None
+        frame, counter = random_frame(rng, True), counters(rng)
+        marked_frame, sealed_bytes = (
+            whole_frame(frame._replace(is_sealed=True)),
+            sealed_by_hand(frame, counter),
+        )
+        assert cpp_link().seal(KEY, ORIGIN, 0, counter - 1, marked_frame) == sealed_bytes
+        robot_seal = seal(heard_counter=counter - 1)
+        assert robot_seal.open_frame(frame_of(sealed_bytes)) == frame._replace(is_sealed=True)
+        assert robot_seal.open_frame(frame_of(sealed_bytes)) is None  # once
+        assert seal(heard_counter=counter).open_frame(frame_of(sealed_bytes)) is None
 
 
 def test_each_bit_and_each_length_counts() -> None:
@@ -126,38 +129,38 @@ def test_each_bit_and_each_length_counts() -> None:
     for bit in range(8 * len(to_robot)):
         change = 1 << bit % 8
         for data in (to_robot, to_computer):
-            other = bytearray(data)
-            other[bit // 8] ^= change
-            assert seal(0).open_frame(frame_of(bytes(other))) is None
-            assert not cpp_link().opens(KEY, ORIGIN, 0, bytes(other))
+            changed_data = bytearray(data)
+            changed_data[bit // 8] ^= change
+            assert seal(0).open_frame(frame_of(bytes(changed_data))) is None
+            assert not cpp_link().opens(KEY, ORIGIN, 0, bytes(changed_data))
     for length in range(3, len(to_robot)):
         assert seal(0).open_frame(frame_of(to_computer[:length])) is None
         assert not cpp_link().opens(KEY, ORIGIN, 0, to_robot[:length])
 
 
 def test_a_different_origin_gives_a_different_key() -> None:
-    sent = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
-    assert cpp_link().opens(KEY, ORIGIN, 0, sent)
-    keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH)}
-    for at in range(len(ORIGIN)):
-        other = bytearray(ORIGIN)
-        other[at] ^= 1
-        assert not cpp_link().opens(KEY, bytes(other), 0, sent)
-        nonces = (int.from_bytes(other[at : at + 4], "little") for at in (8, 12))
-        keys.add(session_key(KEY, bytes(other[:8]), *nonces, *other[16:]))
+    sealed_bytes = sealed_by_hand(Frame(7, 1, 10, b"\0"), 1)
+    assert cpp_link().opens(KEY, ORIGIN, 0, sealed_bytes)
+    keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, KEY_KIND)}
+    for index in range(len(ORIGIN)):
+        other_origin = bytearray(ORIGIN)
+        other_origin[index] ^= 1
+        assert not cpp_link().opens(KEY, bytes(other_origin), 0, sealed_bytes)
+        nonces = (int.from_bytes(other_origin[offset : offset + 4], "little") for offset in (8, 12))
+        keys.add(session_key(KEY, bytes(other_origin[:8]), *nonces, *other_origin[16:]))
     assert len(keys) == len(ORIGIN) + 1
 
 
 def test_an_exhausted_counter_seals_nothing_more() -> None:
-    mine = seal(sent_counter=LAST_COUNTER - 1)
-    assert not mine.is_spent
-    mine.seal_frame(Frame(2, 1, 1))
-    assert mine.is_spent
+    full_seal = seal(sent_counter=LAST_COUNTER - 1)
+    assert not full_seal.is_spent
+    full_seal.seal_frame(Frame(2, 1, 1))
+    assert full_seal.is_spent
     with pytest.raises(AssertionError):
-        mine.seal_frame(Frame(2, 1, 1))
-    marked = whole_frame(Frame(2, 1, 1, is_reply=True, is_sealed=True))
-    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked)
-    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked) == b""
+        full_seal.seal_frame(Frame(2, 1, 1))
+    marked_frame = whole_frame(Frame(2, 1, 1, is_reply=True, is_sealed=True))
+    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER - 1, marked_frame)
+    assert cpp_link().seal(KEY, ORIGIN, 0, LAST_COUNTER, marked_frame) == b""
     assert not cpp_link().opens(
         KEY, ORIGIN, LAST_COUNTER, sealed_by_hand(Frame(2, 1, 1), LAST_COUNTER)
     )
@@ -165,10 +168,10 @@ def test_an_exhausted_counter_seals_nothing_more() -> None:
 
 def test_no_sealed_frame_can_be_a_line_of_text() -> None:
     """Its 0 comes early: so it begins with a byte up to 4."""
-    chance = random.Random(5)
+    rng = random.Random(5)
     for _ in range(2000):
         wire = encode_frame(
-            seal(sent_counter=counters(chance) - 1).seal_frame(random_frame(chance, False))
+            seal(sent_counter=counters(rng) - 1).seal_frame(random_frame(rng, False))
         )
         assert wire[0] <= 4
         receiver = Receiver()

@@ -47,13 +47,13 @@ class SealedWorld(World):
 
     has_hello = True
 
-    def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
+    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drop_rate: float) -> None:
         self.keys = Keys()
-        self.says = 0.0
+        self.forgery_rate = 0.0
         self.frames: list[bytes] = []
-        self.asked: Frame | None = None  # the last request
+        self.last_request: Frame | None = None  # the last request
         self.greeting = b""  # the robot's answer to HELLO
-        super().__init__(cpp, draw, 0, 0)
+        super().__init__(cpp, rng, 0, 0)
         largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
         self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
         cpp.happens("o", OWNERS | SEALS)
@@ -67,60 +67,60 @@ class SealedWorld(World):
 
     def reconnect(self) -> None:
         """The stranger comes when a program is on the robot."""
-        self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
-        self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
+        self.forgery_rate = self.rng.choice((0, 0.02, 0.1)) if self.keys.stored_keys else 0
+        self.session = Session(self.rng.getrandbits(32), 9600, KIT, keys=self.keys)
 
     def overhear(self, data: bytes) -> None:
         self.frames += [part + b"\0" for part in data.split(b"\0") if part]
         del self.frames[:-KEPT_FRAMES]
         for frame in filter(None, map(decode_frame, filter(None, data.split(b"\0")))):
             if not frame.is_reply:
-                self.asked = frame
+                self.last_request = frame
             elif frame.number == BY_NAME["HELLO"].number and frame.payload[0] == 0:
                 self.greeting = frame.payload
 
     def disturb(self) -> None:
-        if self.says == 0 or self.draw.random() >= self.says or not self.frames:
+        if self.forgery_rate == 0 or self.rng.random() >= self.forgery_rate or not self.frames:
             return
         data = self.forge_frame()
-        (self.to_computer if self.draw.random() < 0.4 else self.to_robot).send(
+        (self.to_computer if self.rng.random() < 0.4 else self.to_robot).send(
             b"\0" + data, self.now_ms
         )
 
     def forge_frame(self) -> bytes:
-        draw = self.draw
-        how = draw.randrange(7)
-        old = draw.choice(self.frames)
-        if how == 6 and self.asked is not None:
-            return self.answer_unsealed(self.asked)
-        if how == 0:
-            return damage_frame(old, draw)
-        frame = decode_frame(old.rstrip(b"\0"))
-        if how < 3 or frame is None:
-            return old
-        if how == 3:  # a seal is removed, added, or moved to an expected frame
-            number = draw.choice((frame.number, BY_NAME["LIVE"].number))
-            frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
-            return encode_frame(frame._replace(is_sealed=draw.random() < 0.5))
-        if how == 4:  # the attacker claims that the robot has no seal, or has done it
-            status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
-            payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
+        rng = self.rng
+        forgery = rng.randrange(7)
+        old_frame = rng.choice(self.frames)
+        if forgery == 6 and self.last_request is not None:
+            return self.answer_unsealed(self.last_request)
+        if forgery == 0:
+            return damage_frame(old_frame, rng)
+        frame = decode_frame(old_frame.rstrip(b"\0"))
+        if forgery < 3 or frame is None:
+            return old_frame
+        if forgery == 3:  # a seal is removed, added, or moved to an expected frame
+            number = rng.choice((frame.number, BY_NAME["LIVE"].number))
+            frame = frame._replace(number=number, seq=(frame.seq + rng.randrange(3)) & 0xFF)
+            return encode_frame(frame._replace(is_sealed=rng.random() < 0.5))
+        if forgery == 4:  # the attacker claims that the robot has no seal, or has done it
+            status = rng.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
+            payload = bytes([status]) + rng.randbytes(rng.choice((0, 2, 8)))
             return encode_frame(frame._replace(payload=payload, is_reply=True, is_sealed=False))
         requests = [message for message in MESSAGES if message.number < 32]
-        message = draw.choice(requests if self.has_hello else requests[1:])
-        most = sum(field.most_bytes for field in message.request)
-        least = sum(field.least_bytes for field in message.request)
-        payload = draw.randbytes(draw.randint(least, most))
-        seq, epoch = draw.randrange(256), frame.epoch
+        message = rng.choice(requests if self.has_hello else requests[1:])
+        max_bytes = sum(field.most_bytes for field in message.request)
+        min_bytes = sum(field.least_bytes for field in message.request)
+        payload = rng.randbytes(rng.randint(min_bytes, max_bytes))
+        seq, epoch = rng.randrange(256), frame.epoch
         return encode_frame(Frame(message.number, seq, epoch, payload))
 
     def answer_unsealed(self, request_frame: Frame) -> bytes:
         """Return an unsealed answer: HELLO as from a robot without seals, or success."""
         message = next(message for message in MESSAGES if message.number == request_frame.number)
-        payload = b"\0" + self.draw.randbytes(sum(field.least_bytes for field in message.reply))
+        payload = b"\0" + self.rng.randbytes(sum(field.least_bytes for field in message.reply))
         if message.name == "HELLO" and self.greeting:
             values = decode_payload(message.reply, self.greeting[1:])
-            cleared = self.draw.choice((OWNED, SEALS, OWNED | SEALS))
+            cleared = self.rng.choice((OWNED, SEALS, OWNED | SEALS))
             values["features"] = int(values["features"]) & ~cleared
             payload = b"\0" + encode_payload(message.reply, values)
         return encode_frame(request_frame._replace(payload=payload, is_reply=True, is_sealed=False))
@@ -132,9 +132,9 @@ class QuietWorld(SealedWorld):
     def disturb(self) -> None: ...
 
 
-@pytest.mark.sampled("world", "is_large", "least")
+@pytest.mark.sampled("world", "is_large", "min_share")
 @pytest.mark.parametrize(
-    ("world", "is_large", "least"),
+    ("world", "is_large", "min_share"),
     [
         (QuietWorld, False, 0.9),
         (QuietWorld, True, 0.85),
@@ -143,19 +143,19 @@ class QuietWorld(SealedWorld):
     ],
 )
 def test_sealed_uploads_survive_a_bad_radio(
-    world: type[World], is_large: bool, least: float
+    world: type[World], is_large: bool, min_share: float
 ) -> None:
     """A stranger may end sessions; no forged frame is obeyed or trusted, and many requests still
     succeed."""
     counts = Counter(
         run_upload_scenario(cpp_link(is_large), seed, world) for seed in range(UPLOAD_COUNT)
     )
-    assert counts["done"] > UPLOAD_COUNT * least, counts
+    assert counts["done"] > UPLOAD_COUNT * min_share, counts
 
 
 def test_the_frames_of_a_session_are_sealed() -> None:
     world = QuietWorld(cpp_link(), random.Random(1), 0, 0)
-    request = world.session.live(program(world.draw)[: world.line])
+    request = world.session.live(program(world.rng)[: world.line])
     world.run(request)
     assert request.outcome and request.outcome.status == 0
     frames = [decode_frame(frame.rstrip(b"\0")) for frame in world.frames[-2:]]
@@ -178,7 +178,7 @@ def test_an_unsealed_event_is_trusted_only_if_the_robot_may_have_lost_its_seal(
         return bool(world.session.events())
 
     for _ in range(10):
-        world.run(None, world.draw.choice((1, 100, 1000, 3000)))
+        world.run(None, world.rng.choice((1, 100, 1000, 3000)))
         assert not hears_forged()
     world.now_ms += AUTHORITY_MS  # in which nobody talks
     assert hears_forged()
@@ -189,7 +189,7 @@ def test_a_stop_works_despite_any_error_in_its_seal() -> None:
     stop = BY_NAME["STOP"].number
     for payload, is_sealed in ((b"", False), (b"", True), (bytes(13), True), (bytes(30), True)):
         assert world.session.robot
-        request = world.session.live(program(world.draw)[: world.line])
+        request = world.session.live(program(world.rng)[: world.line])
         world.run(request)
         assert request.outcome and request.outcome.status == 0
         frame = Frame(stop, 1, 0, payload, is_sealed=is_sealed)
@@ -200,6 +200,6 @@ def test_a_stop_works_despite_any_error_in_its_seal() -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 1, "large")
-    robot = link_library(given.large)
-    each_seed(lambda seed: run_upload_scenario(robot, seed, SealedWorld), given)
+    options = make_options(10_000, 1, "large")
+    robot = link_library(options.large)
+    each_seed(lambda seed: run_upload_scenario(robot, seed, SealedWorld), options)

@@ -24,9 +24,9 @@ from tests.support.campaign import each_seed, make_options
 from tests.support.images import TINIBOT, image_of
 from tests.support.queued_requests import (
     ACTING_REQUESTS,
-    LONG,
-    NOTHING,
-    OTHERS,
+    LONG_PROGRAM,
+    NO_LOSSES,
+    OTHER_REQUESTS,
     STOPS,
     Losses,
     Wire,
@@ -47,11 +47,16 @@ from tiniscript.link.session import Session
 
 QUIET_MS = 8000
 LATER_MS = 600  # extra or missing wait of a session with losses
-PROGRAMS = ("SI|SHOW(1);F(0.2, 50);SHOW(2)", LONG, "SI|X = 0;W(0.1);SHOW(1 / X)", "SI|F(60, 50)")
+PROGRAMS = (
+    "SI|SHOW(1);F(0.2, 50);SHOW(2)",
+    LONG_PROGRAM,
+    "SI|X = 0;W(0.1);SHOW(1 / X)",
+    "SI|F(60, 50)",
+)
 
 
-class Said(NamedTuple):
-    what: list[str]
+class UseResult(NamedTuple):
+    rows: list[str]
     took_ms: list[int]
 
 
@@ -64,11 +69,11 @@ def first_use(rng: random.Random) -> Wire:
         wire.turns(300)
     for _ in range(rng.randint(1, 4)):
         for _ in range(rng.randint(0, 3)):
-            rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHERS)(wire.session)
-        wire.loses = rng.choice((NOTHING, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
+            rng.choice(ACTING_REQUESTS if rng.random() < 0.6 else OTHER_REQUESTS)(wire.session)
+        wire.losses = rng.choice((NO_LOSSES, Losses(0.3, 0.3), Losses(0.9, 0.9), Losses(0, 1)))
         wire.turns(rng.choice((1, 3, 8, 30, 300)))
         end_first_use(rng, wire)
-    wire.loses = NOTHING
+    wire.losses = NO_LOSSES
     wire.turns(wire.late_ms)
     wire.robot.step(b"".join(wire.under_way))
     wire.under_way.clear()
@@ -77,19 +82,29 @@ def first_use(rng: random.Random) -> Wire:
 
 def end_first_use(rng: random.Random, wire: Wire) -> None:
     # A STOP from a client without HELLO may have a number ahead of ours: not "a message".
-    how = rng.choice(("zeros", "the button", "the cable", "its own stop", "a reset", "a silence",
-                      "a dead line", "a dead line"))  # fmt: skip
-    if how in STOPS:
-        wire.turn(STOPS[how](wire.robot, wire.session))
-    elif how == "its own stop":
+    end_kind = rng.choice(
+        (
+            "zeros",
+            "the button",
+            "the cable",
+            "its own stop",
+            "a reset",
+            "a silence",
+            "a dead line",
+            "a dead line",
+        )
+    )
+    if end_kind in STOPS:
+        wire.turn(STOPS[end_kind](wire.robot, wire.session))
+    elif end_kind == "its own stop":
         wire.session.stop(wire.robot.now_ms)
-    elif how == "a silence":
+    elif end_kind == "a silence":
         wire.robot.wait(rng.choice((400, 4000)))
-    elif how == "a dead line":  # usually long enough for the robot to be given up
+    elif end_kind == "a dead line":  # usually long enough for the robot to be given up
         for _ in range(rng.choice((40, 400, 1200))):
             wire.session.poll(wire.robot.now_ms)
             wire.robot.wait(10)
-    elif how == "a reset":
+    elif end_kind == "a reset":
         restart(rng, wire)
 
 
@@ -101,39 +116,47 @@ def restart(rng: random.Random, wire: Wire) -> None:
     """
     epoch = wire.session._epoch + 128 & 0xFF
     seed = (rng.getrandbits(24) | 1) << 8 | epoch
-    fresh = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
-    fresh.now_ms = wire.robot.now_ms
-    fresh.wait(200)
-    wire.robot = fresh
+    new_robot = HostFirmware(TINIBOT, wire.robot.memory(), seed=seed)
+    new_robot.now_ms = wire.robot.now_ms
+    new_robot.wait(200)
+    wire.robot = new_robot
 
 
-def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> Said:
+def second_use(rng: random.Random, session: Session, robot: HostFirmware) -> UseResult:
     """Make some requests one after the other; return the results."""
-    what: list[str] = []
+    results: list[str] = []
     took_ms: list[int] = []
     for _ in range(4):
         upload = partial(session.upload, image_of(rng.choice(PROGRAMS)), saves=rng.random() < 0.5)
-        live = partial(session.live, image_of(PROGRAMS[0]).code)
-        asks: list[Callable[[], PendingRequest[Any]]] = [
-            live, upload, session.start, session.status, session.ping, session.trim, session.undo,
-            session.fetch, session.identify,
-        ]  # fmt: skip
-        began_ms = robot.now_ms
-        request = rng.choice(asks)()
+        live_request = partial(session.live, image_of(PROGRAMS[0]).code)
+        request_makers: list[Callable[[], PendingRequest[Any]]] = [
+            live_request,
+            upload,
+            session.start,
+            session.status,
+            session.ping,
+            session.trim,
+            session.undo,
+            session.fetch,
+            session.identify,
+        ]
+        start_ms = robot.now_ms
+        request = rng.choice(request_makers)()
         status = robot.until(session, request)
         assert request.outcome
-        what.append(f"{status} {request.outcome.values if status == OK else ''}")
-        took_ms.append(robot.now_ms - began_ms)
-        began_ms = robot.now_ms
+        results.append(f"{status} {request.outcome.values if status == OK else ''}")
+        took_ms.append(robot.now_ms - start_ms)
+        start_ms = robot.now_ms
         if rng.random() < 0.3:
             session.stop(robot.now_ms)
         elif rng.random() < 0.3 and session.is_running:  # a robot at rest was stopped earlier
             session.receive(robot.step(bytes(4)), robot.now_ms)  # another client
         robot.talk(session, rng.choice((5, 700)))
-        what += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
+        results += [str(event) for event in session.events() if not isinstance(event, MissedEvent)]
     robot.talk(session, 1500)
-    what += [str(event) for event in session.events()]
-    return Said([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1", one) for one in what],
+    results += [str(event) for event in session.events()]
+    return UseResult([re.sub(r"\b(run|boot|damaged|dropped|nonce)=\d+", r"\1",
+        row) for row in results],
                 took_ms)  # fmt: skip
 
 
@@ -150,23 +173,23 @@ def ends_are_told_once(events: list[Event]) -> bool:
 
 
 def check(seed: int) -> str:
-    used, other = first_use(random.Random(seed)), first_use(random.Random(seed))
-    for wire in (used, other):
+    used_wire, other_use = first_use(random.Random(seed)), first_use(random.Random(seed))
+    for wire in (used_wire, other_use):
         wire.robot.talk(wire.session, QUIET_MS)
         if not wire.robot.is_latched:  # detached programs continue
             wire.session.stop(wire.robot.now_ms)
             wire.robot.talk(wire.session, 300)
-    events = used.session.events()
+    events = used_wire.session.events()
     assert ends_are_told_once(events), f"seed {seed} {events}"
     session = computer(77)
     session.tells_starts = True
-    assert other.robot.until(session, session.hello()) == OK
-    actual = second_use(random.Random(seed), used.session, used.robot)
-    want = second_use(random.Random(seed), session, other.robot)
-    assert actual.what == want.what, f"seed {seed}\n{actual.what}\nnot\n{want.what}"
-    late = [a - b for a, b in zip(actual.took_ms, want.took_ms, strict=True)]
-    assert all(abs(delay_ms) < LATER_MS for delay_ms in late), f"seed {seed} {late}"
-    return "it runs" if "DoneEvent" in str(want) else "it stands"
+    assert other_use.robot.until(session, session.hello()) == OK
+    actual = second_use(random.Random(seed), used_wire.session, used_wire.robot)
+    wanted_use = second_use(random.Random(seed), session, other_use.robot)
+    assert actual.rows == wanted_use.rows, f"seed {seed}\n{actual.rows}\nnot\n{wanted_use.rows}"
+    delays_ms = [a - b for a, b in zip(actual.took_ms, wanted_use.took_ms, strict=True)]
+    assert all(abs(delay_ms) < LATER_MS for delay_ms in delays_ms), f"seed {seed} {delays_ms}"
+    return "it runs" if "DoneEvent" in str(wanted_use) else "it stands"
 
 
 def open_wire(rng: random.Random) -> Wire:
@@ -195,10 +218,10 @@ def test_a_restarted_robot_executes_requests_once_the_line_is_back(
     assert wire.robot.until(wire.session, wire.session.identify()) == OK
 
 
-@pytest.mark.parametrize("how", STOPS)
-def test_a_request_after_a_stop_seen_in_an_answer_is_executed(how: str) -> None:
+@pytest.mark.parametrize("stop_kind", STOPS)
+def test_a_request_after_a_stop_seen_in_an_answer_is_executed(stop_kind: str) -> None:
     wire = open_wire(random.Random(1))
-    STOPS[how](wire.robot, wire.session)  # no client hears it
+    STOPS[stop_kind](wire.robot, wire.session)  # no client hears it
     wire.robot.until(wire.session, wire.session.fetch())
     assert wire.robot.until(wire.session, wire.session.identify()) == OK
 

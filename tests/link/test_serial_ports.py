@@ -18,38 +18,38 @@ tty = pytest.importorskip("tty", reason=NO_PTY)
 
 
 class Line(NamedTuple):
-    ours: FileIO  # the other end
+    our_end: FileIO  # the other end
     port: Port
 
 
 @pytest.fixture(params=[True, False], ids=["alone", "past a lock"])
 def line(request: pytest.FixtureRequest) -> Iterator[Line]:
-    end, theirs = pty.openpty()
-    tty.setraw(theirs)
-    device = serial.open_port(os.ttyname(theirs), 9600, 20.0, is_exclusive=request.param)
-    os.close(theirs)
-    with FileIO(end, "r+") as ours:
-        yield Line(ours, device)
+    end, device_end = pty.openpty()
+    tty.setraw(device_end)
+    device = serial.open_port(os.ttyname(device_end), 9600, 20.0, is_exclusive=request.param)
+    os.close(device_end)
+    with FileIO(end, "r+") as our_end:
+        yield Line(our_end, device)
     device.close()
 
 
 @pytest.fixture
-def ready(monkeypatch: pytest.MonkeyPatch) -> None:
+def without_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     """Simulate a wait that reports bytes at once, like that of a process suspended afterwards."""
     monkeypatch.setattr(select, "select", lambda readers, *_: (readers[:1], [], []))
 
 
-@pytest.mark.usefixtures("ready")
+@pytest.mark.usefixtures("without_wait")
 def test_bytes_read_by_another_program_end_nothing(line: Line) -> None:
-    line.ours.write(b"ab")
+    line.our_end.write(b"ab")
     assert [line.port.read(1) for _ in range(4)] == [b"a", b"b", b"", b""]
-    line.ours.write(b"c")
+    line.our_end.write(b"c")
     assert line.port.read(1) == b"c"
 
 
 def test_a_vanished_port_raises_an_error(line: Line) -> None:
-    line.ours.write(b"a")
+    line.our_end.write(b"a")
     assert line.port.read(1) == b"a"
-    line.ours.close()
+    line.our_end.close()
     with pytest.raises(OSError):
         line.port.read(1)

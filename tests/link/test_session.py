@@ -48,31 +48,31 @@ LOW_SUPPLY, SAVING = STATUSES["LOW_SUPPLY"], STATUSES["SAVING"]
 def list_packets(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
     """Return a session's output if it is woken exactly when it requested."""
     packets = []
-    while (at := session.next_wake_ms()) is not None and at <= until_ms:
-        data = session.poll(at)
+    while (poll_ms := session.next_wake_ms()) is not None and poll_ms <= until_ms:
+        data = session.poll(poll_ms)
         if data:
-            packets.append((at, data))
-        assert session.next_wake_ms() != at or session.next_wake_ms() is None, (
+            packets.append((poll_ms, data))
+        assert session.next_wake_ms() != poll_ms or session.next_wake_ms() is None, (
             "it wants to be woken at once"
         )
     return packets
 
 
-@pytest.mark.parametrize(("baud", "first"), [(9600, 200), (57600, 134), (115200, 127)])
+@pytest.mark.parametrize(("baud", "first_wait_ms"), [(9600, 200), (57600, 134), (115200, 127)])
 def test_a_retry_waits_for_the_line_and_then_twice_as_long_up_to_a_second(
-    baud: int, first: int
+    baud: int, first_wait_ms: int
 ) -> None:
     session = greet(baud)
     session.is_attached = False
     request = session.live(FORWARD)
     session.poll(0)
     packets = list_packets(session, EXCHANGE_TIMEOUT_MS)
-    times = [at for at, _ in packets]
+    times = [sent_ms for sent_ms, _ in packets]
     # a byte more, the 0x00 before, from the second one on is no matter
-    assert abs(times[0] - first) <= 2
-    gaps = [later - earlier for earlier, later in pairwise(times)]
+    assert abs(times[0] - first_wait_ms) <= 2
+    gaps = [later_ms - earlier_ms for earlier_ms, later_ms in pairwise(times)]
     doubled = [min(times[0] << k, MOST_DOUBLED_MS) for k in range(1, len(gaps) + 1)]
-    assert all(abs(gap - wanted) <= 2 for gap, wanted in zip(gaps, doubled, strict=True))
+    assert all(abs(gap - wanted_gap) <= 2 for gap, wanted_gap in zip(gaps, doubled, strict=True))
     assert len({data for _, data in packets}) == 1 and packets[0][1][:1] == b"\0"
     assert 20 <= len(packets) + 1 <= TRIES
     list_packets(session, 2 * EXCHANGE_TIMEOUT_MS)
@@ -91,37 +91,39 @@ def test_a_retry_learns_how_long_an_answer_takes() -> None:
         """Ask, and be answered; return how long after each sending the next one came."""
         nonlocal now_ms
         session.ping()
-        begun_ms = now_ms
+        start_ms = now_ms
         data = session.poll(now_ms)
-        times = [at - begun_ms for at, _ in list_packets(session, begun_ms + took_ms)]
-        now_ms = begun_ms + took_ms
+        times = [sent_ms - start_ms for sent_ms, _ in list_packets(session, start_ms + took_ms)]
+        now_ms = start_ms + took_ms
         session.receive(answer(data, {"state": 0, "run": 0, "place": b""}), now_ms)
-        return [later - earlier for earlier, later in pairwise([0, *times])]
+        return [later_ms - earlier_ms for earlier_ms, later_ms in pairwise([0, *times])]
 
     assert measure_waits(600) == [127, 254]  # and 508, which is not over
     assert measure_waits(500) == []  # it stays, and this one is certain: 500 and 4 * 250
-    silent = session.ping()
+    silent_ping = session.ping()
     session.poll(now_ms)
-    first = list_packets(session, now_ms + 2000)[0][0] - now_ms
-    assert silent.outcome is None
+    first_wait_ms = list_packets(session, now_ms + 2000)[0][0] - now_ms
+    assert silent_ping.outcome is None
     # HELLO's round trip took no time: a mean of 500 / 8, a variation of 500 / 4
-    assert first == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
+    assert first_wait_ms == pytest.approx(500 / 8 + 4 * 500 / 4, abs=80)
 
 
 def test_requests_are_retried_before_the_dead_man_timer_ends_a_program() -> None:
     """However long its answers have taken."""
     session = greet(115_200)
-    live = session.live(FORWARD)
+    live_request = session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
-    assert live.outcome and session.is_running
+    assert live_request.outcome and session.is_running
     for _ in range(3):
-        begun_ms = session.next_wake_ms()
-        assert begun_ms is not None
-        data = session.poll(begun_ms)
-        late_ms = begun_ms + 900
+        start_ms = session.next_wake_ms()
+        assert start_ms is not None
+        data = session.poll(start_ms)
+        late_ms = start_ms + 900
         gaps = [
             b - a
-            for a, b in pairwise([begun_ms, *(at for at, _ in list_packets(session, late_ms))])
+            for a, b in pairwise(
+                [start_ms, *(sent_ms for sent_ms, _ in list_packets(session, late_ms))]
+            )
         ]
         assert gaps and max(gaps) <= MOST_RETRY_MS < messages.DEAD_MAN_MS / 2
         session.receive(answer(data, {"state": 1, "run": 1, "place": b""}), late_ms)
@@ -142,14 +144,14 @@ def test_a_stop_preempts_everything() -> None:
 def test_an_unanswered_stop_is_reported_and_delays_others_for_a_few_seconds() -> None:
     session = greet()
     session.stop(0)
-    early = session.ping()
+    early_request = session.ping()
     assert len(list_packets(session, CONFIRM_MS)) == CONFIRM_MS // STOP_MS
     assert [event.name for event in session.events()] == ["LOST"]
-    assert early.outcome and early.outcome.status == LOST
-    late = session.ping()
+    assert early_request.outcome and early_request.outcome.status == LOST
+    late_request = session.ping()
     data = session.poll(CONFIRM_MS + 1)
     session.receive(answer(data, {"state": 0, "run": 0}), CONFIRM_MS + 2)
-    assert late.outcome and late.outcome.status == 0
+    assert late_request.outcome and late_request.outcome.status == 0
 
 
 def test_messages_before_a_stop_was_sent_do_not_confirm_it() -> None:
@@ -187,10 +189,10 @@ def test_a_robot_stopped_by_another_client_confirms_in_its_epoch(cause: int) -> 
             session.receive(event("STOPPED", 0, {"cause": cause}), 0)
             session.events()
         session.stop(10)
-        for number, at in ((1, 10), (2, 110)):
-            assert session.poll(at) == bytes(8)
+        for number, poll_ms in ((1, 10), (2, 110)):
+            assert session.poll(poll_ms) == bytes(8)
             assert session.events() == []
-            session.receive(event("STOPPED", number, {"cause": cause}), at + 20)
+            session.receive(event("STOPPED", number, {"cause": cause}), poll_ms + 20)
             if is_known:
                 break
         assert [event.name for event in session.events()] == ["STOPPED"]
@@ -202,9 +204,12 @@ def test_a_move_after_another_stop_does_not_go_unseen() -> None:
     session, robot = running()
     stopped_event = robot.step(flags=1) + robot.wait(60)  # stopped, and STOPPED is under way
     robot.step(flags=2)
-    other = Session(2, 9600, KIT)
-    assert robot.until(other, other.clear()) == 0
-    assert robot.until(other, other.live(compile_text("F(200, 80)", ROBOT.kit).code)) == 0
+    other_session = Session(2, 9600, KIT)
+    assert robot.until(other_session, other_session.clear()) == 0
+    assert (
+        robot.until(other_session, other_session.live(compile_text("F(200, 80)", ROBOT.kit).code))
+        == 0
+    )
     session.stop(robot.now_ms)
     assert session.poll(robot.now_ms)  # no client hears it
     session.receive(stopped_event, robot.now_ms)
@@ -218,12 +223,15 @@ def test_possibly_executed_requests_are_not_reported_as_void_after_a_stop() -> N
     """The frame that does it is under way. Requests that were not sent, or were refused, have no
     effect."""
     session = greet()
-    live, waits = session.live(FORWARD), session.start()
+    live_request, start_request = session.live(FORWARD), session.start()
     session.poll(0)
     session.stop(5)
-    assert [reason_of(NO_CONNECTION, it.outcome) for it in (live, waits) if it.outcome] == [
-        "stopped_midway", "stopped_elsewhere",
-    ]  # fmt: skip
+    assert [
+        reason_of(NO_CONNECTION, it.outcome) for it in (live_request, start_request) if it.outcome
+    ] == [
+        "stopped_midway",
+        "stopped_elsewhere",
+    ]
     for is_cleared in (False, True):  # the latch has to be released before the program
         session = greet()
         session.receive(event("STOPPED", 0, {"cause": 3}), 0)
@@ -231,18 +239,20 @@ def test_possibly_executed_requests_are_not_reported_as_void_after_a_stop() -> N
         session.receive(
             answer(session.poll(0), {**DESCRIPTION, "state": STATE_STOPPED}, epoch=11), 0
         )
-        live = session.live(FORWARD)
+        live_request = session.live(FORWARD)
         clear = session.poll(10)
         if is_cleared:
             session.receive(answer(clear, {}, epoch=11), 20)
         session.poll(20)
         session.stop(25)
-        assert live.outcome and live.outcome.detail == (DETAIL_MIDWAY if is_cleared else 0)
+        assert live_request.outcome and live_request.outcome.detail == (
+            DETAIL_MIDWAY if is_cleared else 0
+        )
     session = greet()
-    live = session.live(FORWARD)
+    live_request = session.live(FORWARD)
     session.receive(answer(session.poll(0), {}, status=STATUSES["BUSY"]), 5)
     session.stop(10)
-    assert live.outcome and live.outcome.detail == 0
+    assert live_request.outcome and live_request.outcome.detail == 0
 
 
 def test_one_stop_is_reported_once_however_late_its_answers_come() -> None:
@@ -264,9 +274,9 @@ def test_a_late_answer_to_a_stop_ends_no_later_run() -> None:
     session.stop(0)
     session.poll(0)
     session.receive(event("STOPPED", 0, {"cause": 1}), 20)
-    live = session.live(FORWARD)
+    live_request = session.live(FORWARD)
     now_ms = 20
-    while live.outcome is None:
+    while live_request.outcome is None:
         now_ms += 5
         data = session.poll(now_ms)
         frame = decode_frame(data.strip(b"\0")) if data else None
@@ -312,14 +322,14 @@ def test_a_second_confirmation_of_a_stop_ends_no_later_request() -> None:
 
 def test_an_old_answer_is_ignored() -> None:
     session = greet()
-    first = session.live(FORWARD)
+    old_request = session.live(FORWARD)
     data = session.poll(0)
     session.receive(answer(data, receipt(1)), 10)
-    assert first.outcome
-    second = session.live(FORWARD)
+    assert old_request.outcome
+    second_request = session.live(FORWARD)
     session.poll(20)
     session.receive(answer(data, receipt(1)), 30)
-    assert second.outcome is None
+    assert second_request.outcome is None
 
 
 def test_a_program_that_ends_before_its_receipt_is_not_running() -> None:
@@ -368,8 +378,8 @@ def test_programs_that_do_not_fit_are_not_sent() -> None:
         (image._replace(code=bytes(389), later_fields=b"x"), STATUSES["TOO_LARGE"], 389),
     ]
     session = greet()
-    for too_large, status, detail in cases:
-        request = session.upload(too_large)
+    for large_image, status, detail in cases:
+        request = session.upload(large_image)
         assert session.poll(0) == b""
         assert request.outcome
         assert (request.outcome.status, request.outcome.detail) == (status, detail)
@@ -410,18 +420,18 @@ def upload_image(image: Image, kit: int | None, is_refused: int = 0) -> tuple[li
 
 def test_code_with_devices_is_sent_with_its_header_to_a_different_kit() -> None:
     """A frame alone does not name the devices: the robot compares them."""
-    free, used = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
-    later = unpack(pack("SI", 0, FORWARD, b"later"))
+    portable, bound = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
+    extended = unpack(pack("SI", 0, FORWARD, b"later"))
     in_pieces = ["BEGIN", "DATA", "COMMIT"]
     for image, kit, expected in (
-        (free, KIT ^ 1, ["PROGRAM"]), (used, KIT, ["PROGRAM"]), (used, None, ["PROGRAM"]),
-        (used, KIT ^ 1, in_pieces), (used, 0, in_pieces), (later, KIT, in_pieces),
+        (portable, KIT ^ 1, ["PROGRAM"]), (bound, KIT, ["PROGRAM"]), (bound, None, ["PROGRAM"]),
+        (bound, KIT ^ 1, in_pieces), (bound, 0, in_pieces), (extended, KIT, in_pieces),
     ):  # fmt: skip
         names, request = upload_image(image, kit)
         assert names == expected
         assert request.outcome and request.outcome.status == 0
     for refused_status in (STATUSES["WRONG_KIT"], RULES["NO_SUCH_DEVICE"][0]):
-        _, request = upload_image(used, KIT ^ 1, refused_status)
+        _, request = upload_image(bound, KIT ^ 1, refused_status)
         assert request.outcome and request.outcome.status == STATUSES["WRONG_KIT"]
 
 
@@ -461,8 +471,8 @@ def test_a_line_unknown_to_an_older_machine_is_refused(
     assert request.outcome and (request.outcome.status, request.outcome.detail) == version
 
 
-@pytest.mark.parametrize(("busy_ms", "ends"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
-def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, ends: int) -> None:
+@pytest.mark.parametrize(("busy_ms", "wanted_status"), [(60_000, STATUSES["BUSY"]), (1000, LOST)])
+def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, wanted_status: int) -> None:
     """One that answers is not lost; one that falls silent then is."""
     session = greet()
     request = session.upload(unpack(pack("SI", 0, FORWARD)))
@@ -472,7 +482,7 @@ def test_a_busy_robot_is_retried_for_a_limited_time(busy_ms: int, ends: int) -> 
         if data and now_ms < busy_ms:
             session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
         now_ms += 10
-    assert request.outcome and request.outcome.status == ends
+    assert request.outcome and request.outcome.status == wanted_status
     assert now_ms <= EXCHANGE_TIMEOUT_MS + 1000
 
 
@@ -494,24 +504,24 @@ def test_hello_decides_whether_a_new_epoch_voids_waiting_requests(
     """The answer has another epoch, which was not announced."""
     session = Session(1, kit=KIT)
     session.hello()
-    first, second = session.live(FORWARD), session.live(FORWARD)
+    first_request, second_request = session.live(FORWARD), session.live(FORWARD)
     session.receive(answer(session.poll(0), DESCRIPTION), 0)
-    assert first.outcome is None  # HELLO begins an epoch, and does not end one
+    assert first_request.outcome is None  # HELLO begins an epoch, and does not end one
     session.receive(answer(session.poll(1), receipt(1), epoch=epoch), 1)
-    assert first.outcome and first.outcome.status == 0
-    assert second.outcome is None
+    assert first_request.outcome and first_request.outcome.status == 0
+    assert second_request.outcome is None
     session.receive(answer(session.poll(2), {**DESCRIPTION, **values}, epoch=epoch), 2)
-    assert (second.outcome is not None) == is_void
-    assert second.outcome is None or second.outcome.status == STATUSES["STALE"]
+    assert (second_request.outcome is not None) == is_void
+    assert second_request.outcome is None or second_request.outcome.status == STATUSES["STALE"]
 
 
 def time_lost_ms(session: Session, now_ms: int = 0) -> int:
     """Leave all frames unanswered, and check every millisecond; return when the robot is given
     up."""
-    for at in range(now_ms, now_ms + 10_000):
-        session.poll(at)
+    for time_ms in range(now_ms, now_ms + 10_000):
+        session.poll(time_ms)
         if [event.name for event in session.events()] == ["LOST"]:
-            return at
+            return time_ms
     raise AssertionError("it waits for ever")
 
 
@@ -520,17 +530,17 @@ def session_after_run() -> tuple[Session, int]:
     session = greet()
     session.live(FORWARD)
     session.receive(answer(session.poll(0), receipt(1)), 0)
-    at = session.next_wake_ms()
-    assert at is not None
-    session.receive(answer(session.poll(at), {"state": 0, "run": 1}), at)
-    return session, at
+    poll_ms = session.next_wake_ms()
+    assert poll_ms is not None
+    session.receive(answer(session.poll(poll_ms), {"state": 0, "run": 1}), poll_ms)
+    return session, poll_ms
 
 
 def test_heartbeats_and_run_end_queries_time_out_after_three_seconds() -> None:
     assert 3000 <= time_lost_ms(greet()) - IDLE_HEARTBEAT_MS < 3500  # the end of a try
-    session, at = session_after_run()
-    assert session.poll(at), "it asks how the run has ended"
-    assert 3000 <= time_lost_ms(session, at) - at < 3500
+    session, poll_ms = session_after_run()
+    assert session.poll(poll_ms), "it asks how the run has ended"
+    assert 3000 <= time_lost_ms(session, poll_ms) - poll_ms < 3500
 
 
 IDLE_STATUS: dict[str, int | bytes] = {
@@ -543,32 +553,32 @@ IDLE_STATUS: dict[str, int | bytes] = {
 @pytest.mark.parametrize("is_event_first", [True, False])
 def test_the_end_of_a_run_is_reported_once(is_event_first: bool) -> None:
     """A heartbeat's reply may report it in the same moment as its event."""
-    session, at = session_after_run()
-    frames = [answer(session.poll(at), IDLE_STATUS),
+    session, poll_ms = session_after_run()
+    frames = [answer(session.poll(poll_ms), IDLE_STATUS),
               event("DONE", 0, {"run": 1}, epoch=10)]  # fmt: skip
     for frame in reversed(frames) if is_event_first else frames:
-        session.receive(frame, at)
+        session.receive(frame, poll_ms)
     assert [event.name for event in session.events()] == ["DONE"]
 
 
 @pytest.mark.parametrize("reading_count", [0, 3, 12, 10_000])
 def test_the_end_of_a_run_waits_for_its_readings_and_nobody_else_does(reading_count: int) -> None:
     """Its event is lost; a robot that sends readings endlessly still obeys requests."""
-    session, at = session_after_run()
+    session, poll_ms = session_after_run()
     values: dict[str, int | bytes] = {"run": 1, "sensor": 0, "value": 7, "ms": 0}
     told_count, request = 0, session.name(b"Ana")
     for _ in range(100):
-        at += 20
-        data = session.poll(at)
+        poll_ms += 20
+        data = session.poll(poll_ms)
         if told_count < reading_count:
-            session.receive(event("READING", told_count, values, epoch=10), at)
+            session.receive(event("READING", told_count, values, epoch=10), poll_ms)
             told_count += 1
         if data:
             frame = decode_frame(data.strip(b"\0"))
             assert frame
             asked_for = messages.BY_NUMBER[frame.number].reply
             reply = {field.name: IDLE_STATUS.get(field.name, b"") for field in asked_for}
-            session.receive(answer(data, reply), at)
+            session.receive(answer(data, reply), poll_ms)
     assert request.outcome and request.outcome.status == 0
     names = [event.name for event in session.events()]
     assert names == ["READING"] * told_count + ["DONE"] * (told_count == reading_count)
@@ -581,8 +591,8 @@ def test_an_upload_waiting_for_the_button_reports_the_end_of_the_previous_run() 
     session = Session(1, kit=KIT)
     forever = compile_text("F(200, 80)", ROBOT.kit).code
     assert robot.until(session, session.live(forever)) == 0
-    shows = unpack(compile_text("SHOW(1)", ROBOT.kit).image or b"")
-    assert robot.until(session, session.upload(shows, runs=False, saves=False)) == 0
+    show_program = unpack(compile_text("SHOW(1)", ROBOT.kit).image or b"")
+    assert robot.until(session, session.upload(show_program, runs=False, saves=False)) == 0
     assert session.events() == [DoneEvent(1)]
     assert not session.is_running
     robot.talk(session, 100, flags=1)
@@ -607,7 +617,7 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("statuses", "times", "ends"),
+    ("statuses", "times", "wanted_status"),
     [
         ([LOW_SUPPLY], 1 + 4, LOW_SUPPLY),
         ([SAVING], 1 + 12, SAVING),
@@ -619,8 +629,10 @@ def count_namings(statuses: list[int]) -> tuple[int, int]:
         ),
     ],
 )
-def test_a_low_voltage_has_a_shorter_timeout(statuses: list[int], times: int, ends: int) -> None:
-    assert count_namings(statuses) == (times, ends)
+def test_a_low_voltage_has_a_shorter_timeout(
+    statuses: list[int], times: int, wanted_status: int
+) -> None:
+    assert count_namings(statuses) == (times, wanted_status)
 
 
 def places_told(*replies: bytes) -> list[tuple[int, int]]:
@@ -642,9 +654,9 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
 
 
 def test_a_place_is_reported_when_it_changes() -> None:
-    place, other = b"\3\0abcd", b"\3\0abce"
+    place, other_place = b"\3\0abcd", b"\3\0abce"
     assert places_told(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
-    places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other)
+    places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other_place)
     assert places == [(1, 3), (2, 3), (2, 3)]
 
 

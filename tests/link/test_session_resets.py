@@ -51,9 +51,9 @@ def test_a_reset_during_a_run_first_noticed_by_a_request_is_reported() -> None:
 def test_a_robot_that_was_reset_and_started_by_its_button_has_another_run() -> None:
     session, robot = running()
     robot = reset(robot)
-    other = Session(2, 9600, KIT.fingerprint)
+    other_session = Session(2, 9600, KIT.fingerprint)
     code = compile_text("F(200, 80)", KIT).code
-    assert robot.until(other, other.live(code)) == OK  # run 1, as ours was
+    assert robot.until(other_session, other_session.live(code)) == OK  # run 1, as ours was
     robot.talk(session, 1500)
     assert [event.name for event in session.events()][:1] == ["RESTARTED"]
 
@@ -61,10 +61,12 @@ def test_a_robot_that_was_reset_and_started_by_its_button_has_another_run() -> N
 def test_another_run_in_place_of_ours_does_not_end_it() -> None:
     """The robot was not reset: another client has started another run on it."""
     session, robot = running()
-    other = Session(2, 9600, KIT.fingerprint)
-    other.hello()
-    robot.talk(other, 200)
-    assert robot.until(other, other.live(compile_text("F(300, 80)", KIT).code)) == OK
+    other_session = Session(2, 9600, KIT.fingerprint)
+    other_session.hello()
+    robot.talk(other_session, 200)
+    assert (
+        robot.until(other_session, other_session.live(compile_text("F(300, 80)", KIT).code)) == OK
+    )
     robot.talk(session, 1500)
     events = session.events()
     assert StartedEvent in [type(event) for event in events], events
@@ -76,8 +78,8 @@ def test_an_unreported_stop_is_not_a_reset() -> None:
     session, robot = running()
     robot.push()  # STOPPED is lost
     robot.talk(session, 1500)
-    [ended] = session.events()
-    assert ended == StoppedEvent(0) and session.is_latched
+    [end_event] = session.events()
+    assert end_event == StoppedEvent(0) and session.is_latched
 
 
 def test_an_unreported_fault_is_queried() -> None:

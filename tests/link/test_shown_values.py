@@ -15,7 +15,7 @@ from tiniscript.link.payloads import DoneEvent
 from tiniscript.link.session import PLACE_QUESTION, Session
 
 PROGRAM = unpack(pack("SI", 0, FORWARD)).checksum
-OTHER = 0xABCDEF01
+OTHER_CHECKSUM = 0xABCDEF01
 EPOCH = 10
 
 
@@ -25,8 +25,8 @@ def value(seq: int, run: int | None, at: int = 2, epoch: int = EPOCH) -> bytes:
     return event("SHOW", seq, {"value": 1500, "is_yes_no": 0, "place": place}, epoch)
 
 
-def make_shown_event(run: int = 0, program: int = 0, at: int = -1) -> ShownEvent:
-    return ShownEvent(1500, 0, run, program, at)
+def make_shown_event(run: int = 0, program: int = 0, place: int = -1) -> ShownEvent:
+    return ShownEvent(1500, 0, run, program, place)
 
 
 def new_session(run: int = 5, features: int = PLACES) -> Session:
@@ -38,8 +38,8 @@ def new_session(run: int = 5, features: int = PLACES) -> Session:
     return session
 
 
-def events_after(session: Session, *arrived: bytes, now_ms: int = 10) -> list[Event]:
-    session.receive(b"".join(arrived), now_ms)
+def events_after(session: Session, *frames: bytes, now_ms: int = 10) -> list[Event]:
+    session.receive(b"".join(frames), now_ms)
     return session.events()
 
 
@@ -70,8 +70,8 @@ def test_values_of_an_older_robot_have_no_place() -> None:
 @pytest.mark.parametrize("place", [b"\5", b"\5\2"])
 def test_a_truncated_place_is_ignored(place: bytes) -> None:
     session = new_session()
-    cut = event("SHOW", 1, {"value": 1500, "is_yes_no": 0, "place": place}, EPOCH)
-    assert events_after(session, cut) == [make_shown_event()]
+    truncated_event = event("SHOW", 1, {"value": 1500, "is_yes_no": 0, "place": place}, EPOCH)
+    assert events_after(session, truncated_event) == [make_shown_event()]
 
 
 def test_the_program_of_another_clients_run_is_queried() -> None:
@@ -79,13 +79,13 @@ def test_the_program_of_another_clients_run_is_queried() -> None:
     order."""
     session = greet(features=PLACES)
     assert events_after(session, value(1, 3, 2)) == [], "it waits"
-    reply = answer_to_ping(session, 3, OTHER, 20)
+    reply = answer_to_ping(session, 3, OTHER_CHECKSUM, 20)
     assert events_after(session, value(2, 3, 7)) == []
     assert events_after(session, reply) == [
-        make_shown_event(3, OTHER, 2),
-        make_shown_event(3, OTHER, 7),
+        make_shown_event(3, OTHER_CHECKSUM, 2),
+        make_shown_event(3, OTHER_CHECKSUM, 7),
     ]
-    assert events_after(session, value(3, 3, 2)) == [make_shown_event(3, OTHER, 2)]
+    assert events_after(session, value(3, 3, 2)) == [make_shown_event(3, OTHER_CHECKSUM, 2)]
     assert session.poll(30) == b""
     assert events_after(session, value(4, 4, 2)) == []
     assert events_after(session, answer_to_ping(session, 4, PROGRAM, 40)) == [
@@ -96,7 +96,7 @@ def test_the_program_of_another_clients_run_is_queried() -> None:
 def test_a_program_that_ended_meanwhile_has_no_name() -> None:
     session = greet(features=PLACES)
     assert events_after(session, value(1, 3)) == []
-    assert events_after(session, answer_to_ping(session, 3, OTHER, 20, STATE_IDLE)) == [
+    assert events_after(session, answer_to_ping(session, 3, OTHER_CHECKSUM, 20, STATE_IDLE)) == [
         make_shown_event()
     ]
     assert events_after(session, value(2, 3)) == [make_shown_event()], "it is not asked again"
@@ -118,10 +118,13 @@ def test_nothing_but_values_waits_for_the_answer() -> None:
 def test_a_late_value_never_gets_the_next_programs_name() -> None:
     session = new_session(run=5)
     session.live(FORWARD[:-1] + b"\3")
-    next_one = answer(session.poll(20), {**receipt(6), "program": OTHER})
+    next_one = answer(session.poll(20), {**receipt(6), "program": OTHER_CHECKSUM})
     assert events_after(session, value(1, 5), next_one) == [make_shown_event(5, PROGRAM, 2)]
     assert events_after(session, value(2, 5)) == [], "no robot does that: nothing is guessed"
-    assert events_after(session, value(3, 6)) == [make_shown_event(), make_shown_event(6, OTHER, 2)]
+    assert events_after(session, value(3, 6)) == [
+        make_shown_event(),
+        make_shown_event(6, OTHER_CHECKSUM, 2),
+    ]
 
 
 def test_runs_with_one_number_in_two_epochs_are_distinct() -> None:
@@ -134,8 +137,8 @@ def test_runs_with_one_number_in_two_epochs_are_distinct() -> None:
 def test_a_reused_run_number_is_a_different_run() -> None:
     session = new_session(run=5, features=0)
     session.ping()
-    other = answer(session.poll(20), {"state": STATE_RUNNING, "run": 6, "place": b""})
-    events_after(session, other, now_ms=20)
+    other_run = answer(session.poll(20), {"state": STATE_RUNNING, "run": 6, "place": b""})
+    events_after(session, other_run, now_ms=20)
     assert events_after(session, value(1, 5)) == [make_shown_event()]
 
 
@@ -156,5 +159,6 @@ def test_only_subscribers_get_places() -> None:
     session = greet(features=PLACES)
     events_after(session, value(1, 3))
     assert [
-        event.name for event in events_after(session, answer_to_ping(session, 3, OTHER, 20))
+        event.name
+        for event in events_after(session, answer_to_ping(session, 3, OTHER_CHECKSUM, 20))
     ] == ["SHOW"]

@@ -72,61 +72,61 @@ class Line:
         return frames, lines
 
 
-def random_frame(draw: random.Random) -> Frame:
+def random_frame(rng: random.Random) -> Frame:
     """Return a frame of a computer or of a robot, of any length."""
-    is_reply, is_sealed = draw.random() < 0.5, draw.random() < 0.4
-    most = payload_bytes(draw.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
-    payload = draw.randbytes(draw.randint(0, most))
-    if draw.random() < 0.3:
-        payload = bytes(draw.choice(b"\0\0\r\n S~") for _ in payload)
+    is_reply, is_sealed = rng.random() < 0.5, rng.random() < 0.4
+    max_bytes = payload_bytes(rng.choice((SMALL_FRAME, SMALL_FRAME, LARGE_FRAME)))
+    payload = rng.randbytes(rng.randint(0, max_bytes))
+    if rng.random() < 0.3:
+        payload = bytes(rng.choice(b"\0\0\r\n S~") for _ in payload)
     if is_sealed:
-        payload = b"\0" + payload[: most - 1]
-    number = draw.choice(REQUESTS + EVENTS * is_reply)
-    return Frame(number, draw.randrange(256), draw.randrange(256), payload, is_reply, is_sealed)
+        payload = b"\0" + payload[: max_bytes - 1]
+    number = rng.choice(REQUESTS + EVENTS * is_reply)
+    return Frame(number, rng.randrange(256), rng.randrange(256), payload, is_reply, is_sealed)
 
 
-def check_all_arrive(sender: TextSender, draw: random.Random) -> None:
+def check_all_arrive(sender: TextSender, rng: random.Random) -> None:
     """Frames and lines, whatever the pauses between them."""
     line = Line()
     for _ in range(FRAMES):
-        line.now_ms += draw.choice(PAUSES_MS)
-        if draw.random() < 0.3:
-            typed_line = draw.choice(LINES)
+        line.now_ms += rng.choice(PAUSES_MS)
+        if rng.random() < 0.3:
+            typed_line = rng.choice(LINES)
             data = sender.text(typed_line, line.now_ms)
             assert not data or line.put(data) == ([], [typed_line])
         else:
-            frame = random_frame(draw)
+            frame = random_frame(rng)
             data = sender.prepare_frames(encode_frame(frame), line.now_ms)
             assert line.put(data) == ([frame], [])
     assert line.receiver.damaged_count == line.receiver.dropped_count == 0
 
 
-def check_torn_lines_arrive_when_repeated(sender: TextSender, draw: random.Random) -> None:
+def check_torn_lines_arrive_when_repeated(sender: TextSender, rng: random.Random) -> None:
     """Check lines with a pause between any two bytes, which ends the text before it, or with lost
     bytes.
     """
     line = Line()
     for _ in range(FRAMES):
-        frame = random_frame(draw)
+        frame = random_frame(rng)
         data = sender.prepare_frames(encode_frame(frame), line.now_ms)
-        at = draw.randrange(len(data))
+        offset = rng.randrange(len(data))
         line.receiver.put(data[0], line.now_ms)  # no client looks
-        for byte in data[1:at]:
+        for byte in data[1:offset]:
             line.now_ms += 1
             line.receiver.put(byte, line.now_ms)
-        line.now_ms += draw.choice((0, 20, 150, 900, SILENCE_MS, 1500))
-        for byte in data[at:] if draw.random() < 0.5 else b"":
+        line.now_ms += rng.choice((0, 20, 150, 900, SILENCE_MS, 1500))
+        for byte in data[offset:] if rng.random() < 0.5 else b"":
             line.receiver.put(byte, line.now_ms)
         line.receiver.take()
-        line.now_ms += draw.choice((0, 30, 200))
+        line.now_ms += rng.choice((0, 30, 200))
         data = sender.prepare_frames(encode_frame(frame), line.now_ms, is_repeated=True)
         assert line.put(data)[0][-1:] == [frame]
 
 
-def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> None:
+def check_no_two_zeros_before_frame(sender: TextSender, rng: random.Random) -> None:
     """Check a session that sends a program over a lossy line, stops and sends HELLO."""
-    lost = tuple(draw.randrange(12) for _ in range(draw.randrange(6)))
-    robot = AnsweringRobot(InOrderReceiver(lost), baud=draw.choice((9600, 115_200)))
+    lost_numbers = tuple(rng.randrange(12) for _ in range(rng.randrange(6)))
+    robot = AnsweringRobot(InOrderReceiver(lost_numbers), baud=rng.choice((9600, 115_200)))
     session = robot.session
     session._sender = sender
     sent_chunks: list[bytes] = []
@@ -139,9 +139,9 @@ def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> 
 
     session.poll = poll_and_record  # type: ignore[method-assign]
     robot.run(session.upload(IMAGE))
-    robot.now_ms += draw.choice((0, 300, 500))
+    robot.now_ms += rng.choice((0, 300, 500))
     session.stop(robot.now_ms)
-    for _ in range(draw.randrange(1, 20)):
+    for _ in range(rng.randrange(1, 20)):
         session.poll(robot.now_ms)
         robot.now_ms += 10
     session._stop.end()
@@ -149,15 +149,15 @@ def check_no_two_zeros_before_frame(sender: TextSender, draw: random.Random) -> 
     request = session.hello()
     robot.run(request, robot.now_ms + 3000)
     assert any(data == bytes(STOP_BYTES) for data in sent_chunks)
-    before = b""
+    sent_before = b""
     for data in sent_chunks:
         zeros = len(data) - len(data.lstrip(b"\0"))
         assert zeros <= 1 or data == bytes(STOP_BYTES), data.hex()
         assert b"\0\0" not in data.strip(b"\0"), data.hex()
         if data and data != bytes(STOP_BYTES):
-            is_begun = before[-1:] == b"\0"
+            is_begun = sent_before[-1:] == b"\0"
             assert zeros or is_begun, "the first frame has no 0x00 before it"
-        before = data or before
+        sent_before = data or sent_before
 
 
 Property = Callable[[TextSender, random.Random], None]
@@ -171,7 +171,7 @@ def test_a_sender_that_keeps_the_rule_is_accepted(law: Property, seed: int) -> N
     law(TextSender(), random.Random(seed))
 
 
-class Late(TextSender):
+class LateZeroSender(TextSender):
     """A sender that sends a 0x00 only if the receiver already treats the bytes as text."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
@@ -180,7 +180,7 @@ class Late(TextSender):
         return super().prepare_frames(frames, now_ms, is_repeated)
 
 
-class WithoutFirst(TextSender):
+class NoFirstZeroSender(TextSender):
     """Sends no zero before the first frame, and none after text."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
@@ -188,30 +188,31 @@ class WithoutFirst(TextSender):
         return super().prepare_frames(frames, now_ms, is_repeated)
 
 
-class WithoutRepeated(TextSender):
+class NoRepeatedZeroSender(TextSender):
     """Sends no zero before a repeated frame."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         return super().prepare_frames(frames, now_ms, False)
 
 
-class Twice(TextSender):
+class TwiceSender(TextSender):
     """Sends one for each reason."""
 
     def prepare_frames(self, frames: bytes, now_ms: int, is_repeated: bool = False) -> bytes:
         return b"\0" * is_repeated + super().prepare_frames(frames, now_ms, False)
 
 
-class Hasty(TextSender):
+class HastySender(TextSender):
     """Sends text right after a frame."""
 
     text_ms = 100
 
 
 @pytest.mark.parametrize(("law", "sender"), [
-    (check_all_arrive, Late), (check_all_arrive, WithoutFirst), (check_all_arrive, Hasty),
-    (check_torn_lines_arrive_when_repeated, WithoutRepeated),
-    (check_no_two_zeros_before_frame, Twice),
+    (check_all_arrive, LateZeroSender), (check_all_arrive, NoFirstZeroSender),
+    (check_all_arrive, HastySender),
+    (check_torn_lines_arrive_when_repeated, NoRepeatedZeroSender),
+    (check_no_two_zeros_before_frame, TwiceSender),
 ])  # fmt: skip
 def test_a_sender_that_breaks_the_rule_is_noticed(law: Property, sender: type[TextSender]) -> None:
     def violates_law(seed: int) -> bool:

@@ -53,12 +53,12 @@ def test_few_damaged_frames_stop() -> None:
 
 
 if __name__ == "__main__":
-    given = make_options(1_000_000, 1_000_000)
+    options = make_options(1_000_000, 1_000_000)
     for both in (False, True):
-        for begin in range(0, given.count, PREFIXES):
-            some = min(PREFIXES, given.count - begin)
-            cpp_damage(both).type_after(given.seed, begin, some)
-    looked_at, stops = false_stops(cpp_damage(), 100 * given.count, given.seed)
+        for start_index in range(0, options.count, PREFIXES):
+            prefix_count = min(PREFIXES, options.count - start_index)
+            cpp_damage(both).type_after(options.seed, start_index, prefix_count)
+    looked_at, stops = false_stops(cpp_damage(), 100 * options.count, options.seed)
     assert stops == 0, f"{stops} of {looked_at} undamaged frames stop"
-    of, stops = false_stops(cpp_damage(), FRAMES, given.seed, is_damaged=True, is_odd=False)
+    of, stops = false_stops(cpp_damage(), FRAMES, options.seed, is_damaged=True, is_odd=False)
     print(f"{stops} of {of} damaged frames stop, and none of {looked_at} whole ones")

@@ -19,18 +19,18 @@ from tiniscript.link.payloads import EmptyReply, ReceiptReply
 from tiniscript.link.requests import OK, Exchange, Reply, Request, send_single
 from tiniscript.link.session import Session
 
-FAULTS = "SHOW(1 / DISTANCE)"  # at once
-FAULTS_SOON = "W(0.6); SHOW(1 / DISTANCE)"
+FAULTING_PROGRAM = "SHOW(1 / DISTANCE)"  # at once
+SOON_FAULTING_PROGRAM = "W(0.6); SHOW(1 / DISTANCE)"
 Happens = Callable[[HostFirmware], HostFirmware]
 Ask = Callable[[Session], PendingRequest[ReceiptReply]]
 
 
-def busy_line(session: Session, robot: HostFirmware, asks: str) -> None:
+def busy_line(session: Session, robot: HostFirmware, kind: str) -> None:
     """Send a request that the robot does not hear."""
-    if asks == "heartbeat":
+    if kind == "heartbeat":
         robot.now_ms += 2000
     else:
-        getattr(session, asks)()
+        getattr(session, kind)()
     assert session.poll(robot.now_ms)
 
 
@@ -43,21 +43,21 @@ REQUEST_NAMES = ["heartbeat", "status", "fetch", "identify", "clear"]
 
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-@pytest.mark.parametrize("asks", REQUEST_NAMES)
-def test_an_unsent_request_is_executed_after_a_reset(asks: str, make_request: Ask) -> None:
+@pytest.mark.parametrize("kind", REQUEST_NAMES)
+def test_an_unsent_request_is_executed_after_a_reset(kind: str, make_request: Ask) -> None:
     for seed in (0x9ABCDEF1, 3, 4, 5):
         session, robot = open_session()
-        busy_line(session, robot, asks)
+        busy_line(session, robot, kind)
         request = make_request(session)
         robot = reset(robot, seed)
         assert robot.until(session, request) == OK, seed
 
 
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-@pytest.mark.parametrize("asks", REQUEST_NAMES)
-def test_an_unsent_request_is_void_after_a_stop(asks: str, make_request: Ask) -> None:
+@pytest.mark.parametrize("kind", REQUEST_NAMES)
+def test_an_unsent_request_is_void_after_a_stop(kind: str, make_request: Ask) -> None:
     session, robot = running()
-    busy_line(session, robot, asks)
+    busy_line(session, robot, kind)
     requests = [make_request(session), make_request(session)]
     robot = stopped_by_hand(robot)
     robot.codes()
@@ -71,7 +71,7 @@ def test_an_unsent_request_is_void_after_a_stop(asks: str, make_request: Ask) ->
 @pytest.mark.parametrize("is_told", [True, False])
 def test_an_unsent_request_is_executed_after_a_fault(is_told: bool, make_request: Ask) -> None:
     session, robot = open_session()
-    assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
+    assert robot.until(session, session.live(image(SOON_FAULTING_PROGRAM).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
     request = make_request(session)
@@ -82,12 +82,12 @@ def test_an_unsent_request_is_executed_after_a_fault(is_told: bool, make_request
     assert robot.until(session, request) == OK
 
 
-@pytest.mark.parametrize("first", ["upload", "live"])
+@pytest.mark.parametrize("verb", ["upload", "live"])
 @pytest.mark.parametrize("make_request", [live, upload, long_upload])
-def test_a_request_after_an_immediate_fault_is_executed(first: str, make_request: Ask) -> None:
+def test_a_request_after_an_immediate_fault_is_executed(verb: str, make_request: Ask) -> None:
     session, robot = open_session()
-    faulty = image(FAULTS)
-    begun = session.live(faulty.code) if first == "live" else session.upload(faulty)
+    faulty = image(FAULTING_PROGRAM)
+    begun = session.live(faulty.code) if verb == "live" else session.upload(faulty)
     request = make_request(session)
     assert robot.until(session, begun) == OK
     assert robot.until(session, request) == OK
@@ -97,7 +97,7 @@ def test_a_request_after_an_immediate_fault_is_executed(first: str, make_request
 
 def test_a_stop_after_an_immediate_fault_voids_the_request() -> None:
     session, robot = open_session()
-    assert robot.until(session, session.live(image(FAULTS_SOON).code)) == OK
+    assert robot.until(session, session.live(image(SOON_FAULTING_PROGRAM).code)) == OK
     session.fetch()
     assert session.poll(robot.now_ms)
     request = live(session)

@@ -16,14 +16,14 @@ class Port:
         self.waits: list[float] = []
         self.in_waiting = 0
         self.lines: list[tuple[str, bool]] = []
-        self._left = b""
+        self._unread = b""
 
     def read(self, count: int) -> bytes:
-        if not self._left:
+        if not self._unread:
             self.waits.append(self.timeout)
-            self._left = self.answers.pop(0) if self.answers else b""
-        data, self._left = self._left[:count], self._left[count:]
-        self.in_waiting = len(self._left)
+            self._unread = self.answers.pop(0) if self.answers else b""
+        data, self._unread = self._unread[:count], self._unread[count:]
+        self.in_waiting = len(self._unread)
         return data
 
     def __setattr__(self, name: str, value: object) -> None:

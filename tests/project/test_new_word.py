@@ -15,7 +15,7 @@ import tiniscript
 from tests.oracle.interpreter import run as run_by_reference
 from tests.oracle.words import FIXED_WORDS
 from tests.support.casefile import ROOT
-from tests.support.new_word import DANCE, HORN, SAID, SHAKE, WIGGLE, with_texts
+from tests.support.new_word import DANCE, HORN, SHAKE, WIGGLE, WORD_TEXTS, with_texts
 from tests.support.rows import each_row
 from tests.support.text_lines import check_line
 from tiniscript import compile_text, robots
@@ -220,7 +220,7 @@ def test_blocks_and_the_robots_reader_have_it_in_their_tables(tmp_path: Path) ->
     assert body == [["plain_1", WIGGLE.text, [value]]]
     assert printed == "SI|WIGGLE(X + 2)\n"
     own_text = "{CHIME} CHIME = BEEP(0.5, 440)"  # the catalogue has no text for it
-    assert labels == [*(f"{{{HORN.text}}} {says}" for says in SAID.values()), own_text]
+    assert labels == [*(f"{{{HORN.text}}} {says}" for says in WORD_TEXTS.values()), own_text]
     packed, rows, ranges = tables.split("tini_progmem = {")[1:]
     for word in (HORN.text, WIGGLE.text):
         assert f"// {word}" in packed and f"// {word}" not in rows
@@ -265,9 +265,9 @@ def test_a_word_with_its_own_role_needs_only_the_table(
     packed, rows, _ = output["tables"].split("tini_progmem = {")[1:]
     assert "// LAMP" in packed and "// LAMP" not in rows
     assert output["block"] == ["plain_1", "SI|LAMP(50)\n", "{LAMP} LAMP"]
-    assert output["says"] == SAID["es"]
+    assert output["says"] == WORD_TEXTS["es"]
     others = re.search(r"(?m)^- Otras instrucciones: .*$", output["reference"])
-    assert others and f"`LAMP(POWER)` {SAID['es']}" in others[0]
+    assert others and f"`LAMP(POWER)` {WORD_TEXTS['es']}" in others[0]
 
 
 @each_row(
@@ -289,7 +289,7 @@ def test_each_statement_of_the_ir_has_a_row_in_code_generation(stage: Any) -> No
     assert set(stage._STATEMENTS) == {*get_args(ir.Statement)}
 
 
-@pytest.mark.parametrize(("language", "says"), SAID.items())
+@pytest.mark.parametrize(("language", "says"), WORD_TEXTS.items())
 def test_the_new_word_is_on_the_poster(
     language: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -26,7 +26,7 @@ from tiniscript.link.sharing.shared_connection import DEAF_S, SharedConnection
 LONG_S = 20 * DEAF_S
 ANSWER_MESSAGE = {"id": 1, "status": OK, "detail": 0, "heard": 9, "came": "fe", "is_echoed": False,
                   "boot": 0, "values": {}}  # fmt: skip
-SHOWN = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5, 0))}
+SHOW_EVENT = {"event": "SHOW", "ms": 5, "values": protocol.event_fields(ShownEvent(5, 0))}
 
 
 class Holder:
@@ -41,16 +41,20 @@ class Holder:
         self._answer_s = answer_s
         self.is_gone = False  # the process has ended
         self._limit_s = 0.0
-        self._coming: list[tuple[float, bytes]] = []
+        self._arrivals: list[tuple[float, bytes]] = []
         self._reader = MessageReader(protocol.LINE_BYTES)
 
     def clock(self) -> float:
         return self.now_s
 
     def says(self, message: JsonMessage, after_s: float) -> None:
-        at_s = self.now_s + after_s
-        if at_s < self.dies_s:
-            insort(self._coming, (at_s, protocol.encode_message(message)), key=lambda one: one[0])
+        arrival_s = self.now_s + after_s
+        if arrival_s < self.dies_s:
+            insort(
+                self._arrivals,
+                (arrival_s, protocol.encode_message(message)),
+                key=lambda item: item[0],
+            )
 
     def settimeout(self, seconds: float) -> None:
         self._limit_s = seconds
@@ -65,11 +69,11 @@ class Holder:
 
     def recv(self, count: int) -> bytes:
         end_s = self.now_s + self._limit_s
-        if not self._coming or self._coming[0][0] > end_s:
+        if not self._arrivals or self._arrivals[0][0] > end_s:
             self.now_s = end_s
             raise TimeoutError
-        at_s, data = self._coming.pop(0)
-        self.now_s = max(self.now_s, at_s)
+        arrival_s, data = self._arrivals.pop(0)
+        self.now_s = max(self.now_s, arrival_s)
         return data
 
     def close(self) -> None:
@@ -78,21 +82,21 @@ class Holder:
 
 def open_shared_connection(monkeypatch: pytest.MonkeyPatch, holder: Holder) -> SharedConnection:
     monkeypatch.setattr(shared_connection, "monotonic", holder.clock)
-    at = Registration("P", 1, "token", "answer", "upload", 9600, 1)
+    registration = Registration("P", 1, "token", "answer", "upload", 9600, 1)
     peer = cast(socket.socket, holder)
-    return SharedConnection(peer, at, MessageReader(protocol.LINE_BYTES))
+    return SharedConnection(peer, registration, MessageReader(protocol.LINE_BYTES))
 
 
 def listen_until_lost(line: SharedConnection, holder: Holder, seconds: float) -> float:
     """Listen for events until the end; return the time."""
-    began_s = holder.now_s
-    while holder.now_s - began_s < seconds:
+    start_s = holder.now_s
+    while holder.now_s - start_s < seconds:
         try:
             line.event(POLL_INTERVAL_S)
-        except ConnectionLost as over:
-            assert over.is_server
+        except ConnectionLost as caught:
+            assert caught.is_server
             break
-    return holder.now_s - began_s
+    return holder.now_s - start_s
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -103,8 +107,8 @@ def test_a_holder_that_answers_is_waited_for(monkeypatch: pytest.MonkeyPatch, se
     holder = Holder(lambda: rng.choice((0.0, longest_s)))
     line = open_shared_connection(monkeypatch, holder)
     if seed % 2:
-        for second in range(int(LONG_S)):
-            holder.says(SHOWN, second + rng.random())
+        for second_s in range(int(LONG_S)):
+            holder.says(SHOW_EVENT, second_s + rng.random())
     assert listen_until_lost(line, holder, LONG_S) >= LONG_S and not line.has_ended
     assert holder.beats > LONG_S / (protocol.HEARTBEAT_S + POLL_INTERVAL_S) / 2
 
@@ -150,9 +154,9 @@ def test_a_client_knows_its_holders_events_and_end(
     rng = random.Random(seed)
     holder = Holder(lambda: 0.0)
     line = open_shared_connection(monkeypatch, holder)
-    asked: list[tuple[int, PendingRequest[Any], str]] = []
+    requests: list[tuple[int, PendingRequest[Any], str]] = []
     events: list[int] = []
-    told: list[int] = []
+    progress_values: list[int] = []
     number, name = 0, ""
 
     def listen(seconds: float) -> None:
@@ -162,8 +166,8 @@ def test_a_client_knows_its_holders_events_and_end(
                 events.append(timed_event[0])
 
     for k in range(60):
-        how = rng.choice(("ask", "ask", "answer", "answer", "progress", "event"))
-        if how == "ask":
+        action = rng.choice(("ask", "ask", "answer", "answer", "progress", "event"))
+        if action == "ask":
             number += 1
             new_name = rng.choice(("", f"Pia{k}"))
             message = (
@@ -172,22 +176,22 @@ def test_a_client_knows_its_holders_events_and_end(
                 else ClientRequest("hello", HelloReply)
             )
             request: PendingRequest[Any] = line.begin(lambda _: message)  # noqa: B023 - at once
-            asked.append((number, request, new_name))
-        elif how == "event":
-            holder.says({**SHOWN, "ms": k}, 0)
-            told.append(k)
-        elif asked and how == "progress":
-            answered, request, _ = rng.choice(asked)
-            holder.says({"id": answered, "done_bytes": k}, 0)
+            requests.append((number, request, new_name))
+        elif action == "event":
+            holder.says({**SHOW_EVENT, "ms": k}, 0)
+            progress_values.append(k)
+        elif requests and action == "progress":
+            answered_id, request, _ = rng.choice(requests)
+            holder.says({"id": answered_id, "done_bytes": k}, 0)
             listen(POLL_INTERVAL_S)
             assert request.done_bytes == k and request.outcome is None
-        elif asked:
-            answered, request, new_name = asked.pop(rng.randrange(len(asked)))
+        elif requests:
+            answered_id, request, new_name = requests.pop(rng.randrange(len(requests)))
             state = {"heard": k, "came": f"{k:02x}", "is_echoed": k % 2 == 0, "boot": k // 2}
             status = rng.choice((OK, OK, 72))
             values = {} if new_name or status != OK else HELLO_VALUES
             holder.says(
-                {"id": answered, "status": status, "detail": k, "values": values, **state}, 0
+                {"id": answered_id, "status": status, "detail": k, "values": values, **state}, 0
             )
             listen(POLL_INTERVAL_S)
             assert request.outcome and (request.outcome.status, request.outcome.detail) == (
@@ -200,18 +204,18 @@ def test_a_client_knows_its_holders_events_and_end(
                 name = new_name or "TINI"
             assert (line.robot.name if line.robot else "") == name
     listen(1.0)
-    assert events == told
-    holder.says({**SHOWN, "ms": 99}, 0)
+    assert events == progress_values
+    holder.says({**SHOW_EVENT, "ms": 99}, 0)
     is_port_lost = seed % 2 == 0
     holder.says({"over": "gone" if is_port_lost else "ended", "why": "the cable"}, 0)
     with suppress(ConnectionLost):
         listen(POLL_INTERVAL_S)
     holder.is_gone = True
-    assert events == [*told, 99]
-    for look in (
+    assert events == [*progress_values, 99]
+    for check in (
         lambda: line.event(0),
-        lambda: line.wait(line.begin(lambda one: one.status())),
+        lambda: line.wait(line.begin(lambda requests: requests.status())),
     ) * 2:
-        with pytest.raises(ConnectionLost) as lost:
-            look()
-        assert (lost.value.detail, lost.value.is_server) == ("the cable", not is_port_lost)
+        with pytest.raises(ConnectionLost) as caught:
+            check()
+        assert (caught.value.detail, caught.value.is_server) == ("the cable", not is_port_lost)

@@ -65,16 +65,16 @@ while sys.stdin.buffer.read(1):
 """
 
 
-class Had(NamedTuple):
+class Usage(NamedTuple):
     files: int
     memory_kb: int
 
 
-def measure_process(pid: int) -> Had:
+def measure_process(pid: int) -> Usage:
     """Return the open files and the memory of a process."""
     status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
     [memory] = [row.split()[1] for row in status.splitlines() if row.startswith("VmRSS")]
-    return Had(len(list(Path(f"/proc/{pid}/fd").iterdir())), int(memory))
+    return Usage(len(list(Path(f"/proc/{pid}/fd").iterdir())), int(memory))
 
 
 @contextmanager
@@ -95,7 +95,7 @@ def visitors(port: int, kind: str, count: int) -> Iterator[None]:
             visitor.communicate()
 
 
-def wait_until_settled(pid: int, files: int) -> Had:
+def wait_until_settled(pid: int, files: int) -> Usage:
     """Wait until a process has no more files than this; return the final numbers, larger if it
     hangs.
     """
@@ -105,7 +105,7 @@ def wait_until_settled(pid: int, files: int) -> Had:
     return child
 
 
-def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
+def attack(kind: str, count: int) -> list[tuple[str, Usage, Usage, Usage]]:
     """Come to a virtual robot and to the command that drives it. Return what each process had.
 
     Measure before they connect, while they are there, and after they have left.
@@ -120,13 +120,13 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
         for name, pid, number in places:
             usage_before = measure_process(pid)
             with visitors(number, kind, count):
-                meanwhile = measure_process(pid)
+                usage_during = measure_process(pid)
                 state = json.loads(process("doctor", "--port", port, "--json").out)["robot"][
                     "state"
                 ]
                 assert state == "RUNNING"
             children.append(
-                (name, usage_before, meanwhile, wait_until_settled(pid, usage_before.files + 3))
+                (name, usage_before, usage_during, wait_until_settled(pid, usage_before.files + 3))
             )
         with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
             assert process("stop", "--port", port).code == 0
@@ -146,8 +146,8 @@ def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
 @pytest.mark.sampled("kind")
 @pytest.mark.parametrize("kind", KINDS)
 def test_strangers_cause_no_growth_and_a_stop_gets_through(kind: str) -> None:
-    for name, usage_before, meanwhile, usage_after in attack(kind, CONNECTION_COUNT):
-        assert meanwhile.files <= usage_before.files + FILES, name
+    for name, usage_before, usage_during, usage_after in attack(kind, CONNECTION_COUNT):
+        assert usage_during.files <= usage_before.files + FILES, name
         assert usage_after.files <= usage_before.files + 3, name
         assert usage_after.memory_kb <= usage_before.memory_kb + ALLOWED_GROWTH_KB, name
 
@@ -179,7 +179,7 @@ def page(port: int) -> bytes:
     return data
 
 
-def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
+def attack_studio(count: int) -> list[tuple[str, Usage, Usage, Usage]]:
     """Come to one studio in each way. Return the kind, and what the studio had."""
     children = []
     with studio() as (pid, port):
@@ -188,17 +188,17 @@ def attack_studio(count: int) -> list[tuple[str, Had, Had, Had]]:
             usage_before = measure_process(pid)
             with visitors(port, kind, count):
                 assert page(port) == b"<!doctype html>"
-                meanwhile = wait_until_settled(pid, usage_before.files + MOST_CONNECTIONS + 3)
+                usage_during = wait_until_settled(pid, usage_before.files + MOST_CONNECTIONS + 3)
             children.append(
-                (kind, usage_before, meanwhile, wait_until_settled(pid, usage_before.files + 3))
+                (kind, usage_before, usage_during, wait_until_settled(pid, usage_before.files + 3))
             )
             assert page(port) == b"<!doctype html>"
     return children
 
 
 def test_the_studio_serves_its_page_among_many_strangers() -> None:
-    for kind, usage_before, meanwhile, usage_after in attack_studio(CONNECTION_COUNT):
-        assert meanwhile.files <= usage_before.files + MOST_CONNECTIONS + 3, kind
+    for kind, usage_before, usage_during, usage_after in attack_studio(CONNECTION_COUNT):
+        assert usage_during.files <= usage_before.files + MOST_CONNECTIONS + 3, kind
         assert usage_after.files <= usage_before.files + 3, kind
         assert usage_after.memory_kb <= usage_before.memory_kb + ALLOWED_GROWTH_KB, kind
 
@@ -208,10 +208,10 @@ def campaign(count: int) -> None:
     print("|---|---|---|---|")
     of_robots = ((kind, *row) for kind in KINDS for row in attack(kind, count))
     of_the_studio = ((row[0], "studio", *row[1:]) for row in attack_studio(count))
-    for kind, name, usage_before, meanwhile, usage_after in chain(of_robots, of_the_studio):
+    for kind, name, usage_before, usage_during, usage_after in chain(of_robots, of_the_studio):
         print(
             f"| {count:,} {kind} | {name} "
-            f"| {usage_before.files}, {meanwhile.files}, {usage_after.files} "
+            f"| {usage_before.files}, {usage_during.files}, {usage_after.files} "
             f"| {usage_before.memory_kb:,}, {usage_after.memory_kb:,} |", flush=True,
         )  # fmt: skip
 

@@ -57,7 +57,7 @@ class SteppedLine:
 
     def __init__(self) -> None:
         self.robot_itself, self.session = switched_on(), computer()
-        self.posted: list[tuple[str, str]] = []  # the events of this process alone
+        self.posted_events: list[tuple[str, str]] = []  # the events of this process alone
         self.session.tells_starts = True
 
     @property
@@ -70,10 +70,12 @@ class SteppedLine:
     def post_event(self, event: Event) -> None:
         """Post an event of this process alone: a command has come or left."""
         assert isinstance(event, (JoinedEvent, LeftEvent))
-        self.posted.append((event.name, event.verb.decode()))
+        self.posted_events.append((event.name, event.verb.decode()))
 
-    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
-        return make(self.session)
+    def begin(
+        self, make_request: Callable[[Requester], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
+        return make_request(self.session)
 
     def runs(self, run: int) -> bool:
         return self.session.is_running and self.session.run == run
@@ -103,7 +105,7 @@ class Client:
         self.socket = socket.create_connection((protocol.HOST, port))
         self.socket.setblocking(False)
         self.reader = protocol.MessageReader(protocol.LINE_BYTES)
-        self.heard: list[Json] = []
+        self.messages: list[Json] = []
         self.beats, self.has_detached = True, False
         self._number = 0
         self.says({"tsc": __version__, "token": server.registration.token, "verb": verb})
@@ -112,16 +114,16 @@ class Client:
         with suppress(OSError):
             self.socket.send(protocol.encode_message(message))
 
-    def asks(self, do: str, **more: object) -> None:
+    def asks(self, action: str, **fields: object) -> None:
         self._number += 1
-        self.says({"do": do, "id": self._number, "limit_ms": 6000, **more})
+        self.says({"do": action, "id": self._number, "limit_ms": 6000, **fields})
 
     def look(self) -> None:
         with suppress(OSError, BlockingIOError):
-            self.heard += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
+            self.messages += cast(list[Json], self.reader.read_messages(self.socket.recv(1 << 20)))
 
     def count_answers(self) -> int:
-        return sum("status" in message for message in self.heard)
+        return sum("status" in message for message in self.messages)
 
 
 class Desk:
@@ -155,13 +157,13 @@ class Desk:
 
 @contextmanager
 def desk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
-    with monkeypatch.context() as patched:
-        patched.setattr(Thread, "start", lambda self: None)
-        patched.setattr(server_of, "PAUSE_S", 0)
-        patched.setattr(server_of, "REST_S", 0)
+    with monkeypatch.context() as patch:
+        patch.setattr(Thread, "start", lambda self: None)
+        patch.setattr(server_of, "PAUSE_S", 0)
+        patch.setattr(server_of, "REST_S", 0)
         made_desk = Desk()
         robot = made_desk.line.robot_itself
-        patched.setattr(server_of, "monotonic", lambda: robot.now_ms / 1000)
+        patch.setattr(server_of, "monotonic", lambda: robot.now_ms / 1000)
         try:
             yield made_desk
         finally:
@@ -192,19 +194,19 @@ REQUEST_NAMES = ("upload", "upload", "live", "status", "trim", "identify")
 STORED_PROGRAM_REQUESTS = ("start", "undo")  # these report the previous client to the next one
 
 
-def send_request(rng: random.Random, client: Client, what: str) -> None:
+def send_request(rng: random.Random, client: Client, verb: str) -> None:
     text = draw_program(rng)
-    if what == "upload":
+    if verb == "upload":
         is_detached = rng.random() < 0.2
         client.has_detached |= is_detached
         client.asks("upload", **upload(text, is_detached))
-    elif what == "live":
+    elif verb == "live":
         seconds = rng.choice((0.4, 60))
         code = image_of(f"SI|{MARK}F({seconds}, 30)").code
         client.asks("live", code=code.hex(), kit=TINIBOT.fingerprint)
     else:
         given_fields: dict[str, Json] = {"start": {"is_detached": False}, "trim": {"trim": ""}}
-        client.asks(what, **given_fields.get(what, {}))
+        client.asks(verb, **given_fields.get(verb, {}))
 
 
 def stop_and_leave(client: Client) -> None:
@@ -225,60 +227,60 @@ END_ACTIONS: dict[str, Callable[[random.Random, Client], object]] = {
 }
 
 
-def play_first_client(rng: random.Random, at: Desk) -> str:
-    client = at.join(rng.choice(("upload", "run", "monitor", "python")))
-    at.steps(rng.choice((20, 200)))
+def play_first_client(rng: random.Random, desk: Desk) -> str:
+    client = desk.join(rng.choice(("upload", "run", "monitor", "python")))
+    desk.steps(rng.choice((20, 200)))
     for _ in range(rng.randint(1, 3)):
         send_request(rng, client, rng.choice((*REQUEST_NAMES, *STORED_PROGRAM_REQUESTS)))
-        at.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
+        desk.steps(rng.choice((0, 20, 40, 100, 400, 1500)))
     if rng.random() < 0.6:  # during its run, or while it is under way
         for _ in range(rng.choice((1, 1, 3))):
             send_request(rng, client, rng.choice(("upload", "live")))
-        at.steps(rng.choice((0, 20, 40, 60, 400)))
-    ends = rng.choice([*END_ACTIONS])
-    END_ACTIONS[ends](rng, client)
-    if ends == "breaks off":
-        at.steps(rng.choice((20, 300)))
+        desk.steps(rng.choice((0, 20, 40, 60, 400)))
+    end_name = rng.choice([*END_ACTIONS])
+    END_ACTIONS[end_name](rng, client)
+    if end_name == "breaks off":
+        desk.steps(rng.choice((20, 300)))
         client.socket.close()
-    robot = at.line.robot_itself
+    robot = desk.line.robot_itself
     robot.codes()
     if rng.random() < 0.5:
-        at.steps(rng.choice((60, 400, 900)))
-        return ends
-    if ends != "is silent":
-        at.steps(400)
-        assert client.has_detached or not at.line.session.is_running, f"{ends}: not at once"
-        assert len(robot.codes()) <= 1, f"{ends}: more begins than what was under way"
-    at.steps(2500)
-    if at.line.session.is_running:
-        assert client.has_detached, f"{ends}: the run of a client that has gone goes on"
-        other = at.join("stop")
-        other.says({"do": "stop"})
-        at.steps(400)
-        other.socket.close()
-        at.steps(400)
-    return ends
+        desk.steps(rng.choice((60, 400, 900)))
+        return end_name
+    if end_name != "is silent":
+        desk.steps(400)
+        assert client.has_detached or not desk.line.session.is_running, f"{end_name}: not at once"
+        assert len(robot.codes()) <= 1, f"{end_name}: more begins than what was under way"
+    desk.steps(2500)
+    if desk.line.session.is_running:
+        assert client.has_detached, f"{end_name}: the run of a client that has gone goes on"
+        other_client = desk.join("stop")
+        other_client.says({"do": "stop"})
+        desk.steps(400)
+        other_client.socket.close()
+        desk.steps(400)
+    return end_name
 
 
-def play_second_client(rng: random.Random, at: Desk) -> tuple[list[str], list[str]]:
+def play_second_client(rng: random.Random, desk: Desk) -> tuple[list[str], list[str]]:
     """Return the second client's messages from its first run on, and the robot's actions."""
-    robot = at.line.robot_itself
-    client = at.join("run")
-    at.steps(60)
+    robot = desk.line.robot_itself
+    client = desk.join("run")
+    desk.steps(60)
     robot.did.clear()
-    client.heard.clear()
+    client.messages.clear()
     send_request(rng, client, "upload")
-    at.steps(rng.choice((400, 1500, 3000)))
+    desk.steps(rng.choice((400, 1500, 3000)))
     for _ in range(2):
         send_request(rng, client, rng.choice(REQUEST_NAMES))
-        at.steps(rng.choice((400, 1500)))
+        desk.steps(rng.choice((400, 1500)))
     client.says({"do": "stop"})
-    at.steps(400)
-    heard = [message for message in client.heard if "beat" not in message]
-    begins = next((k for k, message in enumerate(heard) if "status" in message), 0)
+    desk.steps(400)
+    heard = [message for message in client.messages if "beat" not in message]
+    begin_index = next((k for k, message in enumerate(heard) if "status" in message), 0)
     messages = [
         ROBOT_FIELD.sub(r'"\1"', protocol.encode_message(message).decode())
-        for message in heard[begins:]
+        for message in heard[begin_index:]
     ]
     # The mark of its program.
     actions = [line.split(" ", 1)[1] for line in robot.did if not line.endswith(" 200")]
@@ -287,13 +289,15 @@ def play_second_client(rng: random.Random, at: Desk) -> tuple[list[str], list[st
 
 def check(seed: int, monkeypatch: pytest.MonkeyPatch) -> str:
     with desk(monkeypatch) as at:
-        ends = play_first_client(random.Random(seed), at)
+        end_name = play_first_client(random.Random(seed), at)
         heard_lines, actions = play_second_client(random.Random(-seed), at)
     with desk(monkeypatch) as at:
-        want, its = play_second_client(random.Random(-seed), at)
-    explanation = f"seed {seed} {ends}\n{heard_lines}\n{actions}\nnot\n{want}\n{its}"
-    assert actions == its and heard_lines == want, explanation
-    return ends if len(its) > 1 else "little"
+        wanted_lines, action_lines = play_second_client(random.Random(-seed), at)
+    explanation = (
+        f"seed {seed} {end_name}\n{heard_lines}\n{actions}\nnot\n{wanted_lines}\n{action_lines}"
+    )
+    assert actions == action_lines and heard_lines == wanted_lines, explanation
+    return end_name if len(action_lines) > 1 else "little"
 
 
 @pytest.mark.sampled("part")
@@ -312,65 +316,69 @@ def test_a_run_ends_with_the_client_that_started_it(
     """It does so by leaving or by its silence, and others do not. A stop ends it, and another run
     takes its place; a detached one ends with nobody. Each who comes and goes is told once."""
     rng = random.Random(seed)
-    with desk(monkeypatch) as at:
+    with desk(monkeypatch) as made_desk:
         owner: Client | str = ""
         verbs: dict[Client, str] = {}
-        told: list[tuple[str, str]] = []
+        posted: list[tuple[str, str]] = []
         for _ in range(40):
             client = rng.choice([*verbs]) if verbs else None
-            how = rng.choice(
+            end_kind = rng.choice(
                 (*["comes"] * 4, *["starts"] * 3, "asks", "stops", "leaves", "is silent")
             )
-            if client is None or how == "comes":
+            if client is None or end_kind == "comes":
                 verb = rng.choice(("upload", "live", "monitor", protocol.LOOKING_VERB))
-                client = at.join(verb)
+                client = made_desk.join(verb)
                 verbs[client] = verb
-                told += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
-            elif how == "starts":
+                posted += [("JOINED", verb)] * (verb != protocol.LOOKING_VERB)
+            elif end_kind == "starts":
                 is_detached = rng.random() < 0.2
                 client.asks("upload", **upload("SI|F(60, 50)", is_detached))
                 owner = "itself" if is_detached else client
-            elif how == "asks":
+            elif end_kind == "asks":
                 client.asks("status")
-            elif how == "stops":
+            elif end_kind == "stops":
                 client.says({"do": "stop"})
                 owner = ""
             else:
                 verb = verbs.pop(client)
-                END_ACTIONS[how](rng, client)
-                told += [("LEFT", verb)] * (how == "leaves" and verb != protocol.LOOKING_VERB)
+                END_ACTIONS[end_kind](rng, client)
+                posted += [("LEFT", verb)] * (
+                    end_kind == "leaves" and verb != protocol.LOOKING_VERB
+                )
                 owner = "" if owner is client else owner
-            at.steps(1600 if how == "is silent" else 300)
-            assert at.line.session.is_running == (owner != ""), how
-            assert at.line.posted == told, how
+            made_desk.steps(1600 if end_kind == "is silent" else 300)
+            assert made_desk.line.session.is_running == (owner != ""), end_kind
+            assert made_desk.line.posted_events == posted, end_kind
 
 
-DROPPED: dict[str, Event] = {
+DROPPED_EVENTS: dict[str, Event] = {
     "SHOW": ShownEvent(5, 0, 1, 7, 3),
     "PLACE": PlaceEvent(1, 7, 3),
     "TEXT": TextEvent(b"a line of text"),
 }
 
 
-@pytest.mark.parametrize("name", [*DROPPED, "others"])
+@pytest.mark.parametrize("name", [*DROPPED_EVENTS, "others"])
 def test_a_client_that_reads_nothing_has_a_bounded_queue_or_is_dropped(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    event = DROPPED.get(name, StoppedEvent(1))
-    most_bytes = 1000 + (server_of.FULL_BYTES if name in DROPPED else server_of.TOO_FULL_BYTES)
-    with desk(monkeypatch) as at:
-        client = at.join("monitor")
-        at.steps(60)
+    event = DROPPED_EVENTS.get(name, StoppedEvent(1))
+    most_bytes = 1000 + (
+        server_of.FULL_BYTES if name in DROPPED_EVENTS else server_of.TOO_FULL_BYTES
+    )
+    with desk(monkeypatch) as made_desk:
+        client = made_desk.join("monitor")
+        made_desk.steps(60)
         client.says({"do": "places"})
-        at.steps(60)
-        [served] = at.server._clients
+        made_desk.steps(60)
+        [served] = made_desk.server._clients
         served.peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
         client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         for _ in range(40):
-            at.server._on_events([(0, event)] * 1000)
-            at.server._attend()
+            made_desk.server._on_events([(0, event)] * 1000)
+            made_desk.server._attend()
             assert len(served.output) <= most_bytes
-        assert (served in at.server._clients) == (name in DROPPED)
+        assert (served in made_desk.server._clients) == (name in DROPPED_EVENTS)
 
 
 if __name__ == "__main__":

@@ -73,7 +73,7 @@ def test_the_kernel_reports_an_unowned_socket() -> None:
 
 
 @linux
-@pytest.mark.parametrize(("own", "user", "inode", "is_let_in"), [
+@pytest.mark.parametrize(("own_uid", "user", "inode", "is_let_in"), [
     (1234, 1234, 5, True),
     (1234, 1234, 0, False),
     (1234, 0, 5, True),  # root has every right
@@ -85,10 +85,12 @@ def test_the_kernel_reports_an_unowned_socket() -> None:
     (0, NOBODY_UID, 5, False),
 ])  # fmt: skip
 def test_only_sockets_of_the_same_user_are_admitted(
-    monkeypatch: pytest.MonkeyPatch, own: int, user: int, inode: int, is_let_in: bool
+    monkeypatch: pytest.MonkeyPatch, own_uid: int, user: int, inode: int, is_let_in: bool
 ) -> None:
-    monkeypatch.setattr(os, "geteuid", lambda: own)
-    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(user, inode))
+    monkeypatch.setattr(os, "geteuid", lambda: own_uid)
+    monkeypatch.setattr(
+        peers, "_socket_owner", lambda peer, own_address: peers.SocketOwner(user, inode)
+    )
     own_end, other_end = connected_pair()
     with own_end, other_end:
         assert peers.is_of_this_user(own_end) == is_let_in
@@ -96,7 +98,7 @@ def test_only_sockets_of_the_same_user_are_admitted(
 
 def test_a_system_without_socket_owners_admits_all(monkeypatch: pytest.MonkeyPatch) -> None:
     def failing_owner(number: int) -> object:
-        def other_end(other: object, own: object) -> peers.SocketOwner:
+        def other_end(peer: object, own_address: object) -> peers.SocketOwner:
             raise OSError(number, "no")
 
         return other_end
@@ -113,22 +115,22 @@ def test_a_system_without_socket_owners_admits_all(monkeypatch: pytest.MonkeyPat
 
 @linux
 @pytest.mark.root
-@pytest.mark.parametrize("how", ["stays", "leaves", "reset"])
-def test_another_user_cannot_drive(how: str) -> None:
+@pytest.mark.parametrize("attack", ["stays", "leaves", "reset"])
+def test_another_user_cannot_drive(attack: str) -> None:
     with robot("--listen", "0") as running_robot:
         number = running_robot.port.rpartition(":")[2]
-        words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, how, LINE.hex()]
+        words = [sys.executable, "-I", "-c", STRANGER_SCRIPT, number, attack, LINE.hex()]
         for _ in range(3):
             completed = subprocess.run(words, capture_output=True, text=True, timeout=HANG_LIMIT_S)
             assert completed.returncode == 0, completed.stderr
-            assert completed.stdout.strip() == ("0" if how == "stays" else "")
+            assert completed.stdout.strip() == ("0" if attack == "stays" else "")
         time.sleep(1)
-        with visitor(running_robot.port) as own:
-            own.settimeout(HANG_LIMIT_S)
-            own.sendall(LINE)
+        with visitor(running_robot.port) as client:
+            client.settimeout(HANG_LIMIT_S)
+            client.sendall(LINE)
             heard_bytes = b""
             while not heard_bytes.endswith(b"// DONE\r\n"):
-                heard_bytes += own.recv(1000)
+                heard_bytes += client.recv(1000)
         assert running_robot.until("DONE")[1:] == ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
 
 
@@ -206,9 +208,9 @@ def test_a_pseudo_terminal_is_private_to_its_user(monkeypatch: pytest.MonkeyPatc
 
     def open_group_pty() -> tuple[int, int]:
         """Open a listener with the usual settings."""
-        ours, theirs = open_pty()
-        os.fchmod(theirs, 0o620)
-        return ours, theirs
+        our_end, device_end = open_pty()
+        os.fchmod(device_end, 0o620)
+        return our_end, device_end
 
     monkeypatch.setattr(pty, "openpty", open_group_pty)
     transports = Transports(has_terminal=True)
@@ -228,15 +230,15 @@ def test_the_token_is_in_one_private_file() -> None:
         places = [receipt]
         for pid in (virtual.pid, command.pid):
             places += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
-        having = []
+        found_paths = []
         for path in files.cache_folder().rglob("*"):
             if path.is_file():
                 content = path.read_bytes()
-                having += [path] if any(secret in content for secret in secrets) else []
+                found_paths += [path] if any(secret in content for secret in secrets) else []
                 places.append(str(path).encode())
         assert process("stop", "--port", port).code == 0
         places += command.communicate(timeout=HANG_LIMIT_S)
-    assert len(having) == 1 and len(places) > 7
+    assert len(found_paths) == 1 and len(places) > 7
     assert not [data for data in places for secret in secrets if secret in data]
 
 
@@ -261,8 +263,8 @@ def test_a_port_whose_server_has_just_ended_is_free() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         number = server.getsockname()[1]
         client = socket.create_connection(server.getsockname())
-        accepted, _ = server.accept()
-        accepted.close()
+        accepted_socket, _ = server.accept()
+        accepted_socket.close()
         assert client.recv(1) == b""
         client.close()
     assert not registry.is_taken(number)
@@ -315,11 +317,11 @@ def test_a_registration_made_during_a_removal_is_kept(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The port was taken again between looking at the note and removing it."""
-    registration_before, now = (
+    registration_before, new_registration = (
         Registration("/dev/x", number, "a" * 32, "b" * 32, "link", 9600, os.getpid())
         for number in (1, 2)
     )
-    registry.write(now)
+    registry.write(new_registration)
     real_read = registry._read
     paths = []
 
@@ -331,4 +333,4 @@ def test_a_registration_made_during_a_removal_is_kept(
         patch.setattr(registry, "_read", read)
         registry.remove(registration_before)
     assert len(paths) == 2
-    assert registry.find_registration("/dev/x") == now
+    assert registry.find_registration("/dev/x") == new_registration

@@ -43,7 +43,9 @@ def dead() -> Registration:
         return registration(server.getsockname()[1], "upload")
 
 
-def call_at_line(wanted_line: int, does: Callable[[], object], runs: Callable[[], object]) -> bool:
+def call_at_line(
+    wanted_line: int, action: Callable[[], object], runs: Callable[[], object]
+) -> bool:
     """Call `runs`, and call `does` just before its line number `wanted` in the registry. Return
     whether it has so many lines."""
     lines = 0
@@ -56,7 +58,7 @@ def call_at_line(wanted_line: int, does: Callable[[], object], runs: Callable[[]
             lines += 1
             if lines == wanted_line:
                 sys.settrace(None)
-                does()
+                action()
         return trace
 
     gettrace_before = sys.gettrace()
@@ -76,28 +78,32 @@ def each_line(
     wanted_line, is_more = 0, True
     while is_more:
         wanted_line += 1
-        does, runs = prepare()
-        is_more = call_at_line(wanted_line, does, runs)
+        action, runs = prepare()
+        is_more = call_at_line(wanted_line, action, runs)
         yield is_more
     assert wanted_line > 5
 
 
-@pytest.mark.parametrize("other", ["tidies", "leaves"])
-def test_a_server_registered_during_a_removal_is_found(number: int, other: str) -> None:
-    live = registration(number, "live")
+@pytest.mark.parametrize("other_action", ["tidies", "leaves"])
+def test_a_server_registered_during_a_removal_is_found(number: int, other_action: str) -> None:
+    live_registration = registration(number, "live")
 
     def prepare() -> tuple[Callable[[], object], Callable[[], object]]:
         gone_registration = dead()
         registry.write(gone_registration)
-        runs = registry.tidy if other == "tidies" else lambda: registry.remove(gone_registration)
-        return (lambda: registry.write(live)), runs
+        runs = (
+            registry.tidy
+            if other_action == "tidies"
+            else lambda: registry.remove(gone_registration)
+        )
+        return (lambda: registry.write(live_registration)), runs
 
     for has_registered in each_line(prepare):
         if not has_registered:
             continue
-        assert registry.find_registration(PORT) == live
-        assert registry.find_all() == [live]
-        registry.remove(live)
+        assert registry.find_registration(PORT) == live_registration
+        assert registry.find_all() == [live_registration]
+        registry.remove(live_registration)
         assert registry.find_all() == []
 
 
@@ -114,9 +120,9 @@ def check_one_owner(owners: list[IO[bytes] | None]) -> None:
     for file in (*holders, next_one):
         if file is not None:
             file.close()
-    last = lock()
-    assert last is not None
-    last.close()
+    last_lock = lock()
+    assert last_lock is not None
+    last_lock.close()
     assert not registry.lock_path(PORT).exists()
 
 
@@ -126,27 +132,27 @@ def test_a_lock_has_one_owner_in_any_interleaving() -> None:
 
     registry._make_folder()
     for runs in ("claims", "tidies", "lets go"):
-        for happens in ("is claimed", "is let go", "is claimed and let go", "is tidied"):
-            if runs == "lets go" and happens == "is let go":
+        for event in ("is claimed", "is let go", "is claimed and let go", "is tidied"):
+            if runs == "lets go" and event == "is let go":
                 continue
             owners: list[IO[bytes] | None] = []
 
             def prepare(
-                runs: str = runs, happens: str = happens, owners: list[IO[bytes] | None] = owners
+                runs: str = runs, event: str = event, owners: list[IO[bytes] | None] = owners
             ) -> tuple[Callable[[], object], Callable[[], object]]:
                 owners.clear()
                 leftover()
-                owned_io = lock() if happens == "is let go" or runs == "lets go" else None
+                owned_io = lock() if event == "is let go" or runs == "lets go" else None
                 owners.append(owned_io)
 
                 def interfere() -> None:
-                    if happens == "is let go" and owned_io is not None:
+                    if event == "is let go" and owned_io is not None:
                         owned_io.close()
-                    elif happens == "is tidied":
+                    elif event == "is tidied":
                         registry.tidy()
-                    elif happens != "is let go":
+                    elif event != "is let go":
                         owners.append(lock())
-                        if happens.endswith("let go") and owners[-1] is not None:
+                        if event.endswith("let go") and owners[-1] is not None:
                             owners[-1].close()
 
                 if runs == "claims":
@@ -162,31 +168,31 @@ def test_a_lock_has_one_owner_in_any_interleaving() -> None:
 
 def test_releasing_a_lock_without_its_file_leaves_the_next_holders() -> None:
     """Somebody has emptied the cache."""
-    first = lock()
+    old_lock = lock()
     registry.lock_path(PORT).unlink()
-    second = lock()
-    assert first is not None and second is not None
-    first.close()
-    check_one_owner([second])
+    second_lock = lock()
+    assert old_lock is not None and second_lock is not None
+    old_lock.close()
+    check_one_owner([second_lock])
 
 
-@pytest.mark.parametrize("other", ["school2", "school-2", "s", "school.local"])
-@pytest.mark.parametrize("does", ["tidies", "finds", "registers", "leaves"])
+@pytest.mark.parametrize("other_host", ["school2", "school-2", "s", "school.local"])
+@pytest.mark.parametrize("action_name", ["tidies", "finds", "registers", "leaves"])
 def test_a_computer_leaves_another_ones_files_in_a_shared_home(
-    does: str, other: str, monkeypatch: pytest.MonkeyPatch
+    action_name: str, other_host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Only the other computer can check whether a server listens at that port number."""
     foreign = dead()
-    monkeypatch.setattr(registry, "gethostname", lambda: other)
+    monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     registry.write(foreign)
     monkeypatch.setattr(registry, "gethostname", lambda: "school")
-    own = registration(foreign.number, "live")
-    acts: dict[str, Callable[[], object]] = {
+    own_registration = registration(foreign.number, "live")
+    actions: dict[str, Callable[[], object]] = {
         "tidies": registry.tidy,
         "finds": registry.find_all,
-        "registers": lambda: registry.write(own),
-        "leaves": lambda: registry.remove(own),
+        "registers": lambda: registry.write(own_registration),
+        "leaves": lambda: registry.remove(own_registration),
     }
-    acts[does]()
-    monkeypatch.setattr(registry, "gethostname", lambda: other)
+    actions[action_name]()
+    monkeypatch.setattr(registry, "gethostname", lambda: other_host)
     assert registry.find_registration(PORT) == foreign

@@ -18,56 +18,58 @@ from tiniscript.link.sharing.protocol import BadMessage, message_of
 from tiniscript.link.sharing.requests import ClientRequest, ClientRequests, request_maker
 from tiniscript.link.wifi import BrokerSettings, Network, Tls
 
-HOME = Network(b"Home", b"a password", False)
+HOME_NETWORK = Network(b"Home", b"a password", False)
 BROKER = BrokerSettings(bytes((10, 0, 0, 7)), 1883, "class", b"robot", b"secret")
 NAMED_BROKER = BROKER._replace(name=b"broker.class", tls=Tls(bytes(range(256)) * 8, 20261121))
 IMAGE = Image("SI", 3, b"\x44\xf0\x50", 0xFFFFFFFF, (2, 0), b"\1")
 
 
-class Asked(NamedTuple):
+class MethodCall(NamedTuple):
     """A method of a client, with its arguments."""
 
     method: str
-    given: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()
 
     def message(self) -> dict[str, Any]:
-        request: ClientRequest[Any] = getattr(ClientRequests(), self.method)(*self.given)
+        request: ClientRequest[Any] = getattr(ClientRequests(), self.method)(*self.arguments)
         return message_of(json.dumps(request.message).encode())
 
 
 REQUESTS = (
-    *(Asked(name) for name in ("hello", "ping", "status", "clear", "fetch", "undo", "identify",
+    *(MethodCall(name) for name in ("hello", "ping", "status", "clear", "fetch", "undo", "identify",
                                "hold_back", "wifi", "forget_wifi", "broker")),
-    Asked("claim", (0,)), Asked("claim", (1,)), Asked("disown", (1,)),
-    Asked("allow_text", (True,)), Asked("name", (b"A",)), Asked("name", (b"A" * 16,)),
-    Asked("trim", (b"",)), Asked("trim", (b"\1\2\3",)), Asked("start", (True,)),
-    Asked("live", (b"\x44", 7, False)), Asked("live", (b"\x44", 7, True)), Asked("join", (HOME,)),
-    Asked("press", (0x3F, -100, 100, 0)), Asked("press", (0, 0, 0, 0)),
-    Asked("join", (Network(b"N" * 32, b"p" * 63, True),)),
-    Asked("join", (Network(b"N", b"p" * 8, False),)),
-    Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)),
-    Asked("use_broker", (NAMED_BROKER,)),
-    Asked("use_broker", (BROKER._replace(name=b"x"),)),
-    Asked("upload", (IMAGE, False, True, True, 7)),
-    Asked("upload", (IMAGE._replace(isa=(2, 1), needs=255), True, True, False, 7)),
+    MethodCall("claim", (0,)), MethodCall("claim", (1,)), MethodCall("disown", (1,)),
+    MethodCall("allow_text", (True,)), MethodCall("name", (b"A",)),
+    MethodCall("name", (b"A" * 16,)),
+    MethodCall("trim", (b"",)), MethodCall("trim", (b"\1\2\3",)), MethodCall("start", (True,)),
+    MethodCall("live", (b"\x44", 7, False)), MethodCall("live", (b"\x44", 7, True)),
+    MethodCall("join", (HOME_NETWORK,)),
+    MethodCall("press", (0x3F, -100, 100, 0)), MethodCall("press", (0, 0, 0, 0)),
+    MethodCall("join", (Network(b"N" * 32, b"p" * 63, True),)),
+    MethodCall("join", (Network(b"N", b"p" * 8, False),)),
+    MethodCall("use_broker", (BROKER,)), MethodCall("use_broker", (None,)),
+    MethodCall("use_broker", (NAMED_BROKER,)),
+    MethodCall("use_broker", (BROKER._replace(name=b"x"),)),
+    MethodCall("upload", (IMAGE, False, True, True, 7)),
+    MethodCall("upload", (IMAGE._replace(isa=(2, 1), needs=255), True, True, False, 7)),
 )  # fmt: skip
 
 
 @pytest.mark.parametrize("request_case", REQUESTS, ids=str)
-def test_a_request_reaches_the_session_like_the_client(request_case: Asked) -> None:
+def test_a_request_reaches_the_session_like_the_client(request_case: MethodCall) -> None:
     session = Mock()
     request = request_maker(request_case.message(), 700)(session)
     ((name, passed_arguments, keyword_arguments),) = session.method_calls
     assert (name, passed_arguments, keyword_arguments) == (
         request_case.method,
-        request_case.given,
+        request_case.arguments,
         {},
     )
     assert request.limit_ms == 700
 
 
 def of(method: str, *arguments: object, **changed_fields: object) -> dict[str, Any]:
-    return {**Asked(method, arguments).message(), **changed_fields}
+    return {**MethodCall(method, arguments).message(), **changed_fields}
 
 
 BAD_MESSAGES: tuple[dict[str, Any], ...] = (
@@ -80,7 +82,8 @@ BAD_MESSAGES: tuple[dict[str, Any], ...] = (
     of("join", Network(b"N" * 33, b"a password", False)),
     of("join", Network(b"N", b"p" * 7, False)), of("join", Network(b"N", b"p" * 64, False)),
     of("join", Network(b"N\0", b"a password", False)),
-    of("join", Network(b"N", b"a pass\0word", False)), of("join", HOME, is_access_point=None),
+    of("join", Network(b"N", b"a pass\0word", False)),
+    of("join", HOME_NETWORK, is_access_point=None),
     of("press", 0x40), of("press", -1), of("press", 1, 101), of("press", 0, 0, -101),
     of("press", 1, x="1"), of("press", 1, y=None),
     of("use_broker", BROKER, port=0), of("use_broker", BROKER, port=1 << 16),
@@ -148,20 +151,20 @@ def test_a_message_of_the_table_and_its_method_are_a_request(values: tuple[Any, 
     """This works from this process and from a client of a shared port; no other file has to know
     it."""
     session = Mock()
-    request_maker(Asked("nod", values).message(), 700)(session)
+    request_maker(MethodCall("nod", values).message(), 700)(session)
     ((name, passed_arguments, _),) = session.method_calls
     assert (name, passed_arguments) == ("nod", values)
-    given_fields = dict(zip((its.name for its in NOD_MESSAGE.request), values, strict=True))
+    given_fields = dict(zip((field.name for field in NOD_MESSAGE.request), values, strict=True))
     assert next(exchange_by_name("nod")(Mock(), **given_fields)) == Request("NOD", given_fields)
 
 
 @pytest.mark.usefixtures("_knows_nod")
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_fields",
     [{"times": -1}, {"times": 256}, {"times": True}, {"turn": -129}, {"turn": 128}, {"turn": "1"},
      {"which": 1 << 32}, {"which": 0.5}, {"said": ""}, {"said": "61626364"}, {"said": None},
      {"do": "NOD"}, {"do": "stop"}, {"do": "data"}, {"do": "_ask"}],
 )  # fmt: skip
-def test_a_field_of_such_a_message_keeps_to_its_range(wrong: dict[str, Any]) -> None:
+def test_a_field_of_such_a_message_keeps_to_its_range(wrong_fields: dict[str, Any]) -> None:
     with pytest.raises(BadMessage):
-        request_maker(of("nod", 1, 2, 3, b"a") | wrong, 700)
+        request_maker(of("nod", 1, 2, 3, b"a") | wrong_fields, 700)

@@ -38,8 +38,8 @@ class FakeLine:
         self.is_closed = False
         self.stops = 0
         self.halted: list[int] = []
-        self.withdrawn: list[PendingRequest[Any]] = []
-        self.asked: list[PendingRequest[Any]] = []
+        self.withdrawn_requests: list[PendingRequest[Any]] = []
+        self.requests: list[PendingRequest[Any]] = []
 
     def listen(self, on_events: Callable[[list[TimedEvent]], None]) -> None:
         self._on_events = on_events
@@ -47,14 +47,16 @@ class FakeLine:
     def post_event(self, event: Event) -> None:
         self._on_events([(0, event)])
 
-    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
-        self.asked.append(make(cast(Requester, ClientRequests())))
-        return self.asked[-1]
+    def begin(
+        self, make_request: Callable[[Requester], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
+        self.requests.append(make_request(cast(Requester, ClientRequests())))
+        return self.requests[-1]
 
     def begin_run(self) -> None:
         """Begin the run that was requested last."""
         self.is_running = True
-        self.asked[-1].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))
+        self.requests[-1].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))
 
     def runs(self, run: int) -> bool:
         return self.is_running and run == 7
@@ -67,7 +69,7 @@ class FakeLine:
         self.halted.append(run)
 
     def withdraw(self, request: PendingRequest[Any]) -> None:
-        self.withdrawn.append(request)
+        self.withdrawn_requests.append(request)
 
     def event(self) -> TimedEvent:
         return 0, event("STOPPED")
@@ -102,10 +104,10 @@ def wait_for_event(command: SharedConnection, name: str) -> None:
 
 def send_start(command: SharedConnection, line: FakeLine, is_detached: bool = False) -> None:
     command.begin(lambda requests: requests.start(is_detached))
-    until(lambda: bool(line.asked), "the request arrives")
+    until(lambda: bool(line.requests), "the request arrives")
 
 
-STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
+START_REQUESTS: list[Callable[[Requester], PendingRequest[Any]]] = [
     lambda requests: requests.start(),
     lambda requests: requests.start(is_detached=True),
     lambda requests: requests.live(image_of("S").code),
@@ -114,30 +116,34 @@ STARTS: list[Callable[[Requester], PendingRequest[Any]]] = [
 ]
 
 
-@pytest.mark.parametrize("start_index", range(len(STARTS)))
+@pytest.mark.parametrize("start_index", range(len(START_REQUESTS)))
 def test_no_start_reaches_a_robot_that_was_just_stopped(line: FakeLine, start_index: int) -> None:
     """Such requests end, and later ones without a start are sent."""
     with (
         closing(Server(cast(PortConnection, line), PORT, 9600, "studio", lambda: True)) as server,
         closing(cast(SharedConnection, join(PORT, "upload"))) as command,
     ):
-        request = command.begin(STARTS[start_index])
+        request = command.begin(START_REQUESTS[start_index])
         assert command.wait(request).status == CANCELLED
         command.begin(lambda requests: requests.status())
-        until(lambda: bool(line.asked), "the request arrives")
-        assert [cast(ClientRequest[Any], one).message["do"] for one in line.asked] == ["status"]
+        until(lambda: bool(line.requests), "the request arrives")
+        assert [cast(ClientRequest[Any], request).message["do"] for request in line.requests] == [
+            "status"
+        ]
         assert not server.may_have_run
 
 
 def test_a_port_with_two_names_is_listed_once(line: FakeLine) -> None:
     line.address = "socket://127.0.0.1:7007"
     with closing(Server(cast(PortConnection, line), PORT, 9600, "link")) as server:
-        own = server.registration
+        own_registration = server.registration
         assert [
-            registration for registration in registry.find_all() if registration.token == own.token
-        ] == [own]
-        other = registry.find_registration(line.address)
-        assert other is not None and other.token == own.token
+            registration
+            for registration in registry.find_all()
+            if registration.token == own_registration.token
+        ] == [own_registration]
+        registration = registry.find_registration(line.address)
+        assert registration is not None and registration.token == own_registration.token
 
 
 def test_requests_of_a_leaving_client_are_withdrawn(
@@ -145,22 +151,22 @@ def test_requests_of_a_leaving_client_are_withdrawn(
 ) -> None:
     send_start(command, line)
     send_start(command, line, is_detached=True)
-    until(lambda: len(line.asked) == 2, "both requests arrive")
+    until(lambda: len(line.requests) == 2, "both requests arrive")
     command.close()
-    until(lambda: line.withdrawn == line.asked, "they are withdrawn")
-    line.asked[0].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))  # the request was under way
+    until(lambda: line.withdrawn_requests == line.requests, "they are withdrawn")
+    line.requests[0].outcome = Reply(OK, 0, ReceiptReply(1, 7, 0, 0))  # the request was under way
     line.is_running = True
     line.post_event(event("SHOW"))
     until(lambda: line.halted == [7], "its run is ended")
     assert line.stops == 0
-    with closing(cast(SharedConnection, join(PORT, "upload"))) as other:
-        other.begin(lambda requests: requests.start())
-        until(lambda: len(line.asked) == 3, "its request arrives")
+    with closing(cast(SharedConnection, join(PORT, "upload"))) as other_client:
+        other_client.begin(lambda requests: requests.start())
+        until(lambda: len(line.requests) == 3, "its request arrives")
         line.begin_run()  # a reset robot restarts its run numbers
         line.post_event(event("SHOW"))
-        wait_for_event(other, "SHOW")
+        wait_for_event(other_client, "SHOW")
         line.post_event(event("SHOW"))
-        wait_for_event(other, "SHOW")
+        wait_for_event(other_client, "SHOW")
         assert line.halted == [7], "the next run is not its"
 
 
@@ -209,7 +215,7 @@ def test_a_run_that_begins_while_its_server_leaves_is_stopped(
     with closing(command):
         if asked_text == "ping":
             command.begin(lambda requests: requests.ping())
-            until(lambda: bool(line.asked), "the request arrives")
+            until(lambda: bool(line.requests), "the request arrives")
         else:
             send_start(command, line, asked_text == "detached")
         if asked_text in ("over", "begun"):
@@ -225,15 +231,15 @@ def test_each_client_has_its_own_keys_and_releases_them_when_it_leaves(
 ) -> None:
     def list_pressed_keys() -> list[tuple[object, object]]:
         messages = [
-            cast(ClientRequest[Any], pending_request).message for pending_request in line.asked
+            cast(ClientRequest[Any], pending_request).message for pending_request in line.requests
         ]
         return [(message["speaker"], message["keys"]) for message in messages]
 
     command.begin(lambda requests: requests.press(1))
-    until(lambda: len(line.asked) == 1, "the first word arrives")
-    with closing(cast(SharedConnection, join(PORT, "live"))) as other:
-        other.begin(lambda requests: requests.press(2))
-        until(lambda: len(line.asked) == 2, "the second word arrives")
-    until(lambda: len(line.asked) == 3, "the second client has left")
+    until(lambda: len(line.requests) == 1, "the first word arrives")
+    with closing(cast(SharedConnection, join(PORT, "live"))) as other_client:
+        other_client.begin(lambda requests: requests.press(2))
+        until(lambda: len(line.requests) == 2, "the second word arrives")
+    until(lambda: len(line.requests) == 3, "the second client has left")
     assert list_pressed_keys() == [(1, 1), (2, 2), (2, 0)]
     assert line.stops == 0 and line.halted == []

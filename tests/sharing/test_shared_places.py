@@ -5,7 +5,7 @@ from __future__ import annotations
 from time import monotonic
 
 from tests.support.images import image_of
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.link.connection import LinkConnection
 from tiniscript.link.outcomes import MOST_EVENTS, Backlog, Event, PlaceEvent, ShownEvent
@@ -28,10 +28,10 @@ def list_events_until_done(connection: LinkConnection) -> list[Event]:
 
 def test_only_subscribed_clients_get_places() -> None:
     image = image_of("SI|F(2, 80);R(2, 60)")  # each is asked for often, on a busy computer too
-    shared_port = Shared()
+    shared_port = SharedLine()
     with shared_port as (pty_robot, _):
-        client, other = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
-        assert client and other
+        client, other_client = join(pty_robot.port, "studio"), join(pty_robot.port, "monitor")
+        assert client and other_client
         client.enable_place_events()
         assert client.wait(client.begin(lambda session: session.hello())).status == OK
         request = client.begin(lambda session: session.upload(image, saves=False))
@@ -43,10 +43,10 @@ def test_only_subscribed_clients_get_places() -> None:
         ]
         assert len(places) == 2 and {place.program for place in places} == {image.checksum}
         assert places[0].offset < places[1].offset < len(image.code)
-        for connection in (other, shared_port.line):
+        for connection in (other_client, shared_port.line):
             assert "PLACE" not in {event.name for event in list_events_until_done(connection)}
         client.close()
-        other.close()
+        other_client.close()
 
 
 def test_an_unread_backlog_keeps_only_the_newest_place() -> None:

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, LONG, Command, process
+from tests.support.command import FOREVER, LONG_PROGRAM, Command, process
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tiniscript import __version__, compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.frames import decode_frame
@@ -23,7 +23,7 @@ from tiniscript.link.sharing import protocol, registry
 from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.shared_connection import SharedConnection, join
 
-TRIES = 8  # tries of a command whose predecessor has just left
+TRY_COUNT = 8  # tries of a command whose predecessor has just left
 # On a busy computer, sharing a newly opened port takes a while.
 PATIENT_COMMAND_CODE = (
     "import sys; from tiniscript.cli import main; from tiniscript.library import opening; "
@@ -33,7 +33,7 @@ PATIENT_COMMAND_CODE = (
 
 def hellos(pty_robot: PtyRobot) -> int:
     """Return the number of sessions begun, which is that of openings of the port."""
-    frames = map(decode_frame, pty_robot.heard.split(b"\0"))
+    frames = map(decode_frame, pty_robot.received.split(b"\0"))
     return sum(frame is not None and frame.number == 1 for frame in frames)
 
 
@@ -57,11 +57,11 @@ def test_commands_share_one_session(pty_robot: PtyRobot, link: Command, tmp_path
     assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
     assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out
-    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG, "-o", ours)
-    assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
-    assert on(pty_robot, "show", "-o", theirs).code == 0
-    assert theirs.read_bytes() == ours.read_bytes()
+    compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
+    assert on(pty_robot, "upload", compiled_file, "--no-run", "--no-save").code == 0
+    assert on(pty_robot, "show", "-o", robot_file).code == 0
+    assert robot_file.read_bytes() == compiled_file.read_bytes()
     assert (
         json.loads(on(pty_robot, "start", "--previous", "--json").out)["saved"] == "STORED"
     )  # the program was not saved
@@ -139,10 +139,10 @@ def test_monitor_shows_live_events_without_bookkeeping(pty_robot: PtyRobot, link
     monitor = Command("monitor", "--port", pty_robot.port, "--json")
     assert monitor.process.stderr
     monitor.process.stderr.readline()
-    live = Command("live", "--port", pty_robot.port)
-    assert live.process.stdin and live.process.stdout
-    live.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
-    result = live.wait_for_result()
+    live_command = Command("live", "--port", pty_robot.port)
+    assert live_command.process.stdin and live_command.process.stdout
+    live_command.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
+    result = live_command.wait_for_result()
     assert [line for line in result.out.splitlines() if line != "Done."] == ["X 3", "X 4"]
     assert monitor.process.stdout
     rows = [json.loads(monitor.process.stdout.readline()) for _ in range(5)]
@@ -181,7 +181,7 @@ def test_a_command_imports_no_more_than_it_needs(
     modules = imported_by(pty_robot.port)
     assert sorted((UNWANTED_MODULES | unwanted_modules) & modules) == []
     assert modules >= PORT_MODULES
-    with Shared() as (shared_robot, _):
+    with SharedLine() as (shared_robot, _):
         assert (
             sorted(
                 (UNWANTED_MODULES | PORT_MODULES | unwanted_modules)
@@ -219,9 +219,9 @@ def test_an_upload_of_a_killed_command_starts_and_blocks_nothing(
         request.addfinalizer(lambda: signal.signal(number, signal_before))
     pty_robot.bytes_per_ms = 1  # a long program takes a while
     for options in ((), ("--detach",)):
-        pty_robot.heard = b""
-        command = Command("upload", "-e", LONG, *options, "--port", pty_robot.port)
-        pty_robot.until(lambda: len(pty_robot.heard) > 60, "a part has come")
+        pty_robot.received = b""
+        command = Command("upload", "-e", LONG_PROGRAM, *options, "--port", pty_robot.port)
+        pty_robot.until(lambda: len(pty_robot.received) > 60, "a part has come")
         command.signal(number)
         command.process.wait()
         on(pty_robot, "live", "SHOW(7)").gives(0, "", out="SHOW 7")
@@ -247,10 +247,12 @@ def test_a_second_program_ends_the_first_whose_command_keeps_the_port(
     pty_robot: PtyRobot,
 ) -> None:
     """It runs through the first command, whose own work is over."""
-    first = start_endless_upload(pty_robot)
-    second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
-    second.wait_for_result().gives(0, out="Done.")
-    result = first.wait_for_result().gives(
+    first_command = start_endless_upload(pty_robot)
+    second_command = Command(
+        "upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port
+    )
+    second_command.wait_for_result().gives(0, out="Done.")
+    result = first_command.wait_for_result().gives(
         3, "another command started a program", "holds the port until the other command has ended."
     )
     assert result.err.index("holds the port") < result.err.index(
@@ -261,14 +263,16 @@ def test_a_second_program_ends_the_first_whose_command_keeps_the_port(
 
 
 def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRobot) -> None:
-    first = start_endless_upload(pty_robot)
-    second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-    second.until("running")
-    first.until("holds the port", is_aside=True)
-    first.signal(signal.SIGINT)
-    assert first.wait_for_result().code == 2
+    first_command = start_endless_upload(pty_robot)
+    second_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+    second_command.until("running")
+    first_command.until("holds the port", is_aside=True)
+    first_command.signal(signal.SIGINT)
+    assert first_command.wait_for_result().code == 2
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
-    result = second.wait_for_result()  # it hears of the stop, or that the port's holder has ended
+    result = (
+        second_command.wait_for_result()
+    )  # it hears of the stop, or that the port's holder has ended
     assert result.code == 3
     assert "was stopped from a computer" in result.out or "has ended" in result.err, result
 
@@ -276,14 +280,14 @@ def test_a_replaced_command_that_is_interrupted_stops_the_robot(pty_robot: PtyRo
 def test_a_stop_ends_a_program_that_a_replaced_command_holds_the_port_for(
     pty_robot: PtyRobot,
 ) -> None:
-    first = start_endless_upload(pty_robot)
-    second = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
-    second.until("running")
-    first.until("holds the port", is_aside=True)
+    first_command = start_endless_upload(pty_robot)
+    second_command = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+    second_command.until("running")
+    first_command.until("holds the port", is_aside=True)
     assert on(pty_robot, "stop").code == 0
     assert not pty_robot.moves
-    second.wait_for_result().gives(3, out="The robot was stopped from a computer.")
-    first.wait_for_result().gives(3, "another command started a program")
+    second_command.wait_for_result().gives(3, out="The robot was stopped from a computer.")
+    first_command.wait_for_result().gives(3, "another command started a program")
 
 
 # -- endings of a server --------------------------------------------------------------------------
@@ -343,8 +347,8 @@ def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
 def test_a_pulled_cable_is_reported_to_all_clients(pty_robot: PtyRobot, link: Command) -> None:
     command = start_endless_upload(pty_robot)
     pty_robot.pull()
-    for running in (command, link):
-        running.wait_for_result().gives(3, "is gone")
+    for held_command in (command, link):
+        held_command.wait_for_result().gives(3, "is gone")
 
 
 def test_a_lost_robot_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
@@ -384,17 +388,17 @@ def test_simultaneous_commands_are_all_served(pty_robot: PtyRobot) -> None:
     commands = [start_command(*words) for words in command_lines]
     for words, command in zip(command_lines, commands, strict=True):
         result = command.wait_for_result()
-        for _ in range(TRIES):
+        for _ in range(TRY_COUNT):
             if "has ended; without --detach" in result.err:
                 result = start_command(*words).wait_for_result()
         assert (result.code, result.err) == (0, "")
 
 
 def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
-    newer = "import sys, tiniscript.base.version as own; own.__version__ = '9.1'; " + (
+    newer_code = "import sys, tiniscript.base.version as own; own.__version__ = '9.1'; " + (
         "from tiniscript.cli import main; sys.exit(main(sys.argv[1:]))"
     )
-    command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
+    command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer_code)
     command.until("running")
     for language, words in (("en", "another version of tsc, 9.1"), ("es", "otra versión, 9.1")):
         on(pty_robot, "show", "--lang", language).gives(3, words)
@@ -410,17 +414,17 @@ def is_idle_once_released(client: SharedConnection) -> bool:
 
 def test_a_run_begun_after_its_client_left_ends_and_blocks_nobody() -> None:
     """The frame that starts it was under way."""
-    with Shared() as (robot, _), ExitStack() as stack:
-        other = join(robot.port, "show --port")
-        assert other is not None
-        stack.callback(other.close)
+    with SharedLine() as (robot, _), ExitStack() as stack:
+        other_client = join(robot.port, "show --port")
+        assert other_client is not None
+        stack.callback(other_client.close)
         kit = robots.load("tinibot").kit
         image = unpack(compile_text(FOREVER, kit).image)
         for _ in range(5):
             client = join(robot.port, "upload")
             assert client is not None
-            robot.heard = b""
+            robot.received = b""
             client.begin(lambda session: session.upload(image, True, kit=kit.fingerprint))
-            robot.until(lambda: len(robot.heard) > 10, "a part of it has come")
+            robot.until(lambda: len(robot.received) > 10, "a part of it has come")
             client.close()
-            robot.until(lambda: is_idle_once_released(other) and not robot.moves, "it ends")
+            robot.until(lambda: is_idle_once_released(other_client) and not robot.moves, "it ends")

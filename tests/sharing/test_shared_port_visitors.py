@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.command import Command, Tsc
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import __version__
 from tiniscript.link.outcomes import ShownEvent
@@ -23,9 +23,9 @@ from tiniscript.link.sharing.registry import Registration
 from tiniscript.link.sharing.server import FULL_BYTES, MOST_CLIENTS
 
 
-def greeting(registration: Registration, **other: object) -> bytes:
+def greeting(registration: Registration, **changes: object) -> bytes:
     message = {"tsc": __version__, "token": registration.token, "verb": "upload"}
-    return protocol.encode_message({**message, **other})
+    return protocol.encode_message({**message, **changes})
 
 
 def visitor(registration: Registration) -> socket.socket:
@@ -43,14 +43,14 @@ def is_let_go(peer: socket.socket) -> bool:
 def test_too_many_silent_visitors_drop_the_oldest(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.link.sharing.server.GREETING_S", 600.0)
-    with Shared() as (_, registration), ExitStack() as opened_exit_stack:
-        silent = [
+    with SharedLine() as (_, registration), ExitStack() as opened_exit_stack:
+        silent_peers = [
             opened_exit_stack.enter_context(visitor(registration)) for _ in range(MOST_CLIENTS + 10)
         ]
-        assert all(is_let_go(peer) for peer in silent[:10])
-        silent[10].settimeout(0.2)
+        assert all(is_let_go(peer) for peer in silent_peers[:10])
+        silent_peers[10].settimeout(0.2)
         with pytest.raises(TimeoutError):
-            silent[10].recv(1)
+            silent_peers[10].recv(1)
 
 
 def test_only_the_user_is_admitted(pty_robot: PtyRobot, link: Command) -> None:
@@ -61,31 +61,35 @@ def test_only_the_user_is_admitted(pty_robot: PtyRobot, link: Command) -> None:
     for path in folder.iterdir():
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
     command = start_endless_upload(pty_robot)
-    for wrong in ({"token": "0" * 32}, {"token": 5}, {"verb": "x" * 99}):
+    for wrong_fields in ({"token": "0" * 32}, {"token": 5}, {"verb": "x" * 99}):
         with visitor(registration) as peer:
-            peer.sendall(greeting(registration, **wrong))
+            peer.sendall(greeting(registration, **wrong_fields))
             assert is_let_go(peer)
     assert pty_robot.moves
-    silent = [visitor(registration) for _ in range(100)]
+    silent_peers = [visitor(registration) for _ in range(100)]
     assert on(pty_robot, "stop").code == 0
     assert command.wait_for_result().code == 3
-    for peer in silent:
+    for peer in silent_peers:
         assert is_let_go(peer)
         peer.close()
 
 
 def test_wrong_messages_of_a_client_end_only_its_connection() -> None:
     """`test_requests.py` lists the wrong messages."""
-    with Shared() as (pty_robot, registration):
-        for wrong in ({"do": "fly"}, {"do": "name", "name": "zz"}, {"do": "ping", "id": "1"}):
+    with SharedLine() as (pty_robot, registration):
+        for wrong_message in (
+            {"do": "fly"},
+            {"do": "name", "name": "zz"},
+            {"do": "ping", "id": "1"},
+        ):
             with visitor(registration) as peer:
-                request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong})
+                request = protocol.encode_message({"id": 1, "limit_ms": 100, **wrong_message})
                 peer.sendall(greeting(registration) + request)
                 reply = b""
                 while part := _receive_rest(peer):
                     reply += part
             answer = {"tsc": __version__, "answer": registration.answer}
-            assert reply == protocol.encode_message(answer), wrong
+            assert reply == protocol.encode_message(answer), wrong_message
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
 
 
@@ -97,7 +101,7 @@ def _receive_rest(peer: socket.socket) -> bytes:
 
 
 def test_a_slow_reader_misses_values_and_delays_nobody() -> None:
-    shared_port = Shared()
+    shared_port = SharedLine()
     with shared_port as (pty_robot, registration), visitor(registration) as peer:
         peer.sendall(greeting(registration))
         reader = protocol.MessageReader(protocol.LINE_BYTES)
@@ -132,14 +136,14 @@ def test_nothing_is_shared_without_a_writable_folder(
 
 
 def test_an_invalid_file_is_not_a_server(pty_robot: PtyRobot) -> None:
-    with Shared() as (other, registration):
-        path = registry._path(other.port)
+    with SharedLine() as (shared_robot, registration):
+        path = registry._path(shared_robot.port)
         for text in ("", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"):
             path.write_text(text)
-            assert registry.find_registration(other.port) is None, text[:20]
+            assert registry.find_registration(shared_robot.port) is None, text[:20]
             assert registry.find_all() == []
     path.write_text(json.dumps(registration._replace(port=pty_robot.port)._asdict()))
-    assert registry.find_registration(other.port) is None
+    assert registry.find_registration(shared_robot.port) is None
 
 
 def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(
@@ -160,7 +164,7 @@ def test_somebody_else_at_the_number_of_a_crashed_server_is_not_a_server(
 
 def test_an_internal_error_in_a_thread_is_raised_in_its_waiter() -> None:
     for part in ("session", "server"):
-        shared_port = Shared()
+        shared_port = SharedLine()
         with shared_port as (_, registration), visitor(registration) as peer:
             if part == "session":
                 shared_port.line.session._queue.append(cast("Any", None))

@@ -37,7 +37,7 @@ export function blocklyInNode() {
   const rowsOf = (block) => 1 + block.inputList.reduce((sum, { connection, type }) => sum + (type === Blockly.inputs.inputTypes.STATEMENT ? heightOf(connection?.targetBlock()) : 0), 0);
   const heightOf = (block) => { let rows = 0; for (; block; block = block.getNextBlock()) rows += rowsOf(block); return rows; };
   /** Where it is below the block at the top. */
-  const rowOf = (block) => { let row = 0; for (const each of block.getRootBlock().getDescendants(true)) { if (each === block) break; if (!each.outputConnection) row += 1; } return row; };
+  const rowOf = (block) => { let row = 0; for (const item of block.getRootBlock().getDescendants(true)) { if (item === block) break; if (!item.outputConnection) row += 1; } return row; };
   Object.assign(Block.prototype, {
     initSvg() {}, queueRender() {}, renderEfficiently() {},
     addClass(name) { (this.classes ??= new Set()).add(name); },

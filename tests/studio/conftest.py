@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture
-def own(server: serving.Server) -> str:
+def server_host(server: serving.Server) -> str:
     """The name in a request of the `server` that a file has."""
     return f"{serving.HOST}:{server.server_port}"
 
@@ -57,7 +57,7 @@ def hosted_pages(browser: Browser, server: serving.Server) -> Iterator[studio.Pa
     opened_pages = studio.Pages(browser, server.address, entrance=server.entrance)
     yield opened_pages
     opened_pages.close()
-    assert not opened_pages.wrong
+    assert not opened_pages.errors
 
 
 @pytest.fixture(scope="package")
@@ -71,7 +71,7 @@ def pages(browser: Browser, address: str) -> Iterator[studio.Pages]:
     opened_pages = studio.Pages(browser, address)
     yield opened_pages
     opened_pages.close()
-    assert not opened_pages.wrong
+    assert not opened_pages.errors
 
 
 @pytest.fixture(scope="module")
@@ -88,5 +88,5 @@ def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
     pages, current_page = only_page
     studio.begin_anew(current_page)
     yield current_page
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.errors[:] = pages.errors[:], []
+    assert not errors

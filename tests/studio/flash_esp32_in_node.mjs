@@ -33,8 +33,8 @@ try {
     seen = part;
     if (part >= cancelAt) cancelling.abort();
   }, cancelling.signal);
-} catch (why) {
-  ended = why.reason ?? String(why.stack);
+} catch (error) {
+  ended = error.reason ?? String(error.stack);
 }
 console.log(JSON.stringify({
   ended, seen, refused: port.refused, starts: port.starts, is_open: port.isOpen,

@@ -22,11 +22,11 @@ class Cable {
     this.baud = baud;
   }
 
-  async open(heard, gone) {
+  async open(onData, gone) {
     this.#file = fs.openSync(path, fs.constants.O_RDWR | fs.constants.O_NOCTTY);
     execFileSync('stty', ['raw', '-echo', String(this.baud)], { stdio: [this.#file, 'ignore', 'inherit'] });
     this.#stream = new tty.ReadStream(this.#file);
-    this.#stream.on('data', heard);
+    this.#stream.on('data', onData);
     for (const name of ['end', 'error', 'close']) this.#stream.on(name, gone);
   }
 
@@ -37,7 +37,7 @@ class Cable {
 
   write(data) {
     return new Promise((resolve, reject) => {
-      fs.write(this.#file, data, (why) => (why ? reject(why) : resolve()));
+      fs.write(this.#file, data, (error) => (error ? reject(error) : resolve()));
     });
   }
 
@@ -52,7 +52,7 @@ try {
   const firmware = readHex(fs.readFileSync(file, 'utf8'), 0x8000);
   await flash((baud) => new Cable(baud), BOARDS[board], firmware, (done) => { if (done >= part) cancelling.abort(); }, cancelling.signal);
   console.log('done');
-} catch (why) {
-  console.log(why instanceof BadHex ? 'bad_file' : (why.reason ?? String(why)));
+} catch (error) {
+  console.log(error instanceof BadHex ? 'bad_file' : (error.reason ?? String(error)));
 }
 process.exit(0);

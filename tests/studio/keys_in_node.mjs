@@ -4,7 +4,7 @@
 import { freshPage, later, learns, now, passes, playsFetch, playsNavigator, words } from './page_in_node.mjs';
 
 const sent = [];
-const keep = (asked) => sent.push(...asked.filter((each) => each.do === 'keys').map(({ y }) => [now(), y]));
+const keep = (asked) => sent.push(...asked.filter((item) => item.do === 'keys').map(({ y }) => [now(), y]));
 const answers = (value) => ({ ok: true, status: 200, json: async () => value });
 const heard = { onEvent() {}, onEnd() {} };
 playsNavigator({});
@@ -30,8 +30,8 @@ const ways = {
   async direct() {
     let count = 0;
     const python = {
-      async ask({ do: what, asked = [] }) {
-        if (what === 'link') count += 1;
+      async ask({ do: action, asked = [] }) {
+        if (action === 'link') count += 1;
         await later(count % 20 ? 2 : 150);
         keep(asked);
         const news = asked.map(({ id }) => ({ id, ok: true, robot: {} }));

@@ -8,15 +8,15 @@ const [sources, seeds] = process.argv.slice(2);
 let now_ms = 0;
 let timers = [];
 let server = null;
-const setLater = (does, ms = 0) => {
-  const timer = { at_ms: now_ms + ms, does };
+const setLater = (callback, ms = 0) => {
+  const timer = { at_ms: now_ms + ms, does: callback };
   timers.push(timer);
   return timer;
 };
 const stands = (name, value) => Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
 globalThis.setTimeout = setLater;
 globalThis.clearTimeout = (timer) => {
-  timers = timers.filter((each) => each !== timer);
+  timers = timers.filter((item) => item !== timer);
 };
 const store = { getItem: () => 'a token', setItem() {}, removeItem() {} };
 stands('window', { setTimeout: setLater, sessionStorage: store, localStorage: store });
@@ -27,7 +27,7 @@ AbortSignal.timeout = (ms) => ({ limit_ms: ms });
 stands('fetch', (where, options) => server.asked(JSON.parse(options.body), options.signal?.limit_ms ?? 1e9));
 const { HostRobot } = await import(pathToFileURL(`${sources}/robot/host.js`).href);
 
-function chance(seed) {
+function randomFrom(seed) {
   let state = seed * 2654435761 + 1;
   return () => {
     state = (Math.imul(state ^ (state >>> 15), 0x2c1b3c6d) + 0x9e3779b9) | 0;
@@ -66,7 +66,7 @@ class Server {
   }
 
   asked(request, limit_ms) {
-    this.said.push(...(request.asked ?? []).filter((each) => each.do === 'keys').map(({ keys }) => keys));
+    this.said.push(...(request.asked ?? []).filter((item) => item.do === 'keys').map(({ keys }) => keys));
     if (request.do === 'beat') this.counts();
     const answered = new Promise((resolve, reject) => {
       setLater(() => reject(new Error('timeout')), limit_ms);
@@ -105,12 +105,12 @@ class Server {
       this.tell({ event: 'STOPPED', cause: 'sequence' });
     }
     if (request.do === 'leave') this.tell({ over: 'left' });
-    for (const each of request.asked ?? []) {
-      if (each.id <= this.last) continue;
-      this.last = each.id;
-      if (each.do === 'keys') this.held.push(each.keys);
-      else this.done.push(each.what);
-      setLater(() => this.tell({ id: each.id, ok: true, what: each.what }), this.takes_ms());
+    for (const item of request.asked ?? []) {
+      if (item.id <= this.last) continue;
+      this.last = item.id;
+      if (item.do === 'keys') this.held.push(item.keys);
+      else this.done.push(item.what);
+      setLater(() => this.tell({ id: item.id, ok: true, what: item.what }), this.takes_ms());
     }
     this.news = this.news.filter(({ number }) => number > request.seen);
     return { news: this.news };
@@ -179,20 +179,20 @@ async function story(random, bad, isWild = false, dies = false) {
 
 for (let seed = 0; seed < seeds; seed += 1) {
   const [bad, isWild] = [[0.2, false], [0.5, false], [0.5, true], [1, true]][seed % 4];
-  server = new Server(chance(seed + 1));
+  server = new Server(randomFrom(seed + 1));
   server.name = 'first';
-  const first = await story(chance(seed + 7), bad, isWild, seed % 8 === 7);
+  const first = await story(randomFrom(seed + 7), bad, isWild, seed % 8 === 7);
   const made = server.done;
   const [held, said] = [[...server.held], [...server.said]];
   server.keys = 0;
   server.done = [];
   server.stops = [];
   server.name = 'second';
-  const second = await story(chance(seed + 99), 0);
+  const second = await story(randomFrom(seed + 99), 0);
   const secondDone = server.done;
-  server = new Server(chance(seed + 1));
+  server = new Server(randomFrom(seed + 1));
   server.name = 'second';
-  const fresh = await story(chance(seed + 99), 0);
+  const fresh = await story(randomFrom(seed + 99), 0);
   console.log(JSON.stringify({ isWild, first, made, held, said, second, secondDone, fresh, freshDone: server.done }));
 }
 process.exit(0);

@@ -11,29 +11,29 @@ function chanceOf(seed) {
   };
 }
 
-const rounded = (value) => JSON.parse(JSON.stringify(value, (_, each) => (typeof each === 'number' ? Math.round(each * 1000) / 1000 : each)));
+const rounded = (value) => JSON.parse(JSON.stringify(value, (_, item) => (typeof item === 'number' ? Math.round(item * 1000) / 1000 : item)));
 
-const hasDone = ({ events }) => events.some(([, what]) => !what.startsWith('READ '));
+const hasDone = ({ events }) => events.some(([, event]) => !event.startsWith('READ '));
 
-function played(moments, chance, most) {
-  const count = Math.floor(chance() * 2000), quiet = chance();
-  const below = (limit) => Math.floor(chance() * limit);
+function played(moments, random, most) {
+  const count = Math.floor(random() * 2000), quiet = random();
+  const below = (limit) => Math.floor(random() * limit);
   const told = new Map(); // by its time: the state, and all that had been shown
-  let now_ms = below(100), bumps = 0, at = 0, pose = [0, 0, 0];
+  let now_ms = below(100), bumps = 0, place = 0, pose = [0, 0, 0];
   const shows = [];
   const wrong = [];
-  const check = (is, what) => is || wrong.push(what);
+  const check = (isRight, message) => isRight || wrong.push(message);
   moments.at(0); // there is none yet
   for (let k = 0; k < count; k += 1) {
     now_ms += 1 + below(30);
-    const isQuiet = chance() < quiet;
-    if (!isQuiet) at = below(4);
-    if (!isQuiet && chance() < 0.1) bumps += 1;
-    if (chance() < 0.7) pose = [chance() * 100, chance() * 100, chance() * 360];
-    const events = isQuiet || chance() < 0.5 ? [] : [[now_ms, chance() < 0.5 ? `SHOW ${below(9)}` : 'MOTORS 1 2', at]];
-    if (chance() < 0.5) events.unshift([now_ms, 'READ DISTANCE 5', at]);
-    shows.push(...events.filter(([, what]) => what.startsWith('SHOW')));
-    const state = { now_ms, pose, bumps, at, places: [at], is_running: true, variables: [below(3)], events, nothing: chance() < 0.5 ? null : 'é"' };
+    const isQuiet = random() < quiet;
+    if (!isQuiet) place = below(4);
+    if (!isQuiet && random() < 0.1) bumps += 1;
+    if (random() < 0.7) pose = [random() * 100, random() * 100, random() * 360];
+    const events = isQuiet || random() < 0.5 ? [] : [[now_ms, random() < 0.5 ? `SHOW ${below(9)}` : 'MOTORS 1 2', place]];
+    if (random() < 0.5) events.unshift([now_ms, 'READ DISTANCE 5', place]);
+    shows.push(...events.filter(([, event]) => event.startsWith('SHOW')));
+    const state = { now_ms, pose, bumps, at: place, places: [place], is_running: true, variables: [below(3)], events, nothing: random() < 0.5 ? null : 'é"' };
     told.set(now_ms, [rounded(state), shows.length]);
     moments.add(state);
     check(moments.size <= most + 1000, `too large: ${moments.size}`);
@@ -72,10 +72,10 @@ function played(moments, chance, most) {
 }
 
 for (let seed = 1; seed <= Number(process.argv[3]); seed += 1) {
-  const chance = chanceOf(seed * 7919);
+  const random = chanceOf(seed * 7919);
   const most = [3000, 20_000, 2_000_000][seed % 3];
   const moments = new Moments(most);
-  played(moments, chance, most);
+  played(moments, random, most);
   moments.begin(); // the second run knows nothing of the first one
-  console.log(JSON.stringify(played(moments, chance, most)));
+  console.log(JSON.stringify(played(moments, random, most)));
 }

@@ -27,9 +27,9 @@ class Held {
   #holders = [];
 
   holds(name, controls) {
-    const before = this.#holders.find((each) => each.name === name);
+    const before = this.#holders.find((item) => item.name === name);
     if (sameAs(controls)(before?.controls ?? NOTHING)) return;
-    this.#holders = [...this.#holders.filter((each) => each !== before), { name, controls }];
+    this.#holders = [...this.#holders.filter((item) => item !== before), { name, controls }];
   }
 
   lets(test) {
@@ -43,7 +43,7 @@ class Held {
 }
 
 async function history(seed) {
-  const chance = chanceOf(seed);
+  const random = chanceOf(seed);
   let gamepads = [], looks = 0;
   playsNavigator({ getGamepads: () => { looks += 1; return gamepads; } });
   const page = freshPage();
@@ -73,13 +73,13 @@ async function history(seed) {
     owner.addEventListener('keydown', (event) => event.key === 'Escape' && event.stopPropagation()); // as Blockly does
     const inner = document.createElement('span');
     owner.append(inner);
-    return chance() < 0.5 ? owner : inner;
+    return random() < 0.5 ? owner : inner;
   });
   const free = document.createElement('p');
 
   // The model.
   const acted = [], ends = new Set();
-  const fails = (why) => { throw new Error(`seed ${seed}, after ${acted.slice(-12).join(', ')}: ${why}`); };
+  const fails = (error) => { throw new Error(`seed ${seed}, after ${acted.slice(-12).join(', ')}: ${error}`); };
   const held = new Held();
   const offered = {};
   const fingers = new Map(); // those that press, each with its part, and whether it is heeded
@@ -88,7 +88,7 @@ async function history(seed) {
     if (!driven || driven.isDeaf) return false;
     return part.dataset.key ? driven.reads.includes(part.dataset.key) : driven.reads.some((word) => sticks.includes(word));
   };
-  const there = () => gamepads.filter((each) => each?.connected);
+  const there = () => gamepads.filter((item) => item?.connected);
   const heldByGamepad = ({ axes: [right, down], buttons }) => ({
     ...Math.hypot(right, down) > 0.15 ? stickAt(right, -down) : { x: 0, y: 0 },
     keys: GAMEPAD_KEYS.reduce((keys, button, index) => keys | (buttons[button].pressed ? 1 << index : 0), 0),
@@ -124,7 +124,7 @@ async function history(seed) {
     held.holds('keyboard', { keys, ...stickAt(right, up) });
   };
   const point = (kind, part, pointerId, [clientX, clientY] = [SIZE / 2, SIZE / 2], button = 0) => part.dispatchEvent(Object.assign(new Event(kind), { pointerId, clientX, clientY, button }));
-  const somewhere = () => [chance.below(SIZE), chance.below(SIZE)];
+  const somewhere = () => [random.below(SIZE), random.below(SIZE)];
   const goes = (pointerId, at) => {
     const { part } = fingers.get(pointerId);
     const keyIndex = keyButtons.indexOf(part);
@@ -136,12 +136,12 @@ async function history(seed) {
     return event.defaultPrevented;
   };
   /** Each does something and tells the model of it. */
-  const acts = {
+  const actions = {
     offers() {
-      const side = chance.of(['driving', 'link']);
-      const reads = chance() < 0.3 ? [] : REMOTE.map((device) => device.text).filter(() => chance() < 0.6);
-      const isDeaf = chance() < 0.2;
-      if (chance() < 0.2 && offered[side]) reads.splice(0, Infinity, ...offered[side].reads); // as before, or as it
+      const side = random.of(['driving', 'link']);
+      const reads = random() < 0.3 ? [] : REMOTE.map((device) => device.text).filter(() => random() < 0.6);
+      const isDeaf = random() < 0.2;
+      if (random() < 0.2 && offered[side]) reads.splice(0, Infinity, ...offered[side].reads); // as before, or as it
       const number = (count += 1);
       const robot = { number, reads, isDeaf, tell: (controls) => log.push({ ms: now(), number, ...controls }) };
       const before = offered[side];
@@ -150,24 +150,24 @@ async function history(seed) {
       chooses();
     },
     offersAgain() {
-      const [side, robot] = chance.of(Object.entries(offered)) ?? [];
+      const [side, robot] = random.of(Object.entries(offered)) ?? [];
       if (robot) pad.offerRobot(side, { ...robot, tell: () => fails('the one that is as before is told') });
     },
     takesAway() {
-      const side = chance.of(['driving', 'link']);
+      const side = random.of(['driving', 'link']);
       pad.offerRobot(side, null);
       delete offered[side];
       chooses();
     },
     sees() {
-      const side = chance.of(Object.keys(SIDES));
+      const side = random.of(Object.keys(SIDES));
       pageState.sideId.set(side);
       chooses();
     },
     presses() {
-      const pointerId = 1 + chance.below(3), part = chance.of(parts);
+      const pointerId = 1 + random.below(3), part = random.of(parts);
       if (fingers.has(pointerId) || !isShown(part)) return;
-      const at = somewhere(), button = chance() < 0.1 ? 2 : 0;
+      const at = somewhere(), button = random() < 0.1 ? 2 : 0;
       point('pointerdown', part, pointerId, at, button);
       if (button) return;
       const isTaken = !part.dataset.key && [...fingers.values()].some((other) => other.part === part && other.isHeeded);
@@ -175,40 +175,40 @@ async function history(seed) {
       if (!isTaken) goes(pointerId, at);
     },
     moves() {
-      const [pointerId, finger] = chance.of([...fingers]) ?? [];
+      const [pointerId, finger] = random.of([...fingers]) ?? [];
       if (!finger) return;
       const at = somewhere();
       point('pointermove', finger.part, pointerId, at);
       if (finger.isHeeded) goes(pointerId, at);
     },
     hovers() { // what presses nothing
-      const pointerId = 1 + chance.below(3), part = chance.of(parts);
+      const pointerId = 1 + random.below(3), part = random.of(parts);
       if (!fingers.has(pointerId)) point('pointermove', part, pointerId, somewhere());
     },
     releases() {
-      const [pointerId, finger] = chance.of([...fingers]) ?? [];
+      const [pointerId, finger] = random.of([...fingers]) ?? [];
       if (!finger) return;
-      point(chance.of(['pointerup', 'pointercancel', 'lostpointercapture']), finger.part, pointerId);
+      point(random.of(['pointerup', 'pointercancel', 'lostpointercapture']), finger.part, pointerId);
       fingers.delete(pointerId);
       held.lets((name) => name === pointerId);
     },
     keys() {
-      const place = chance();
-      const button = place < 0.2 ? chance.of(keyButtons) : null;
-      const target = button ?? (place < 0.4 ? chance.of(owners) : free);
-      const name = button && chance() < 0.7 ? chance.of([' ', 'Enter']) : chance.of([...KEYBOARD, 'A', 'B', 'x', ' ']);
-      const more = chance() < 0.15 ? { [chance.of(['ctrlKey', 'metaKey', 'altKey'])]: true } : { repeat: chance() < 0.2 };
+      const place = random();
+      const button = place < 0.2 ? random.of(keyButtons) : null;
+      const target = button ?? (place < 0.4 ? random.of(owners) : free);
+      const name = button && random() < 0.7 ? random.of([' ', 'Enter']) : random.of([...KEYBOARD, 'A', 'B', 'x', ' ']);
+      const more = random() < 0.15 ? { [random.of(['ctrlKey', 'metaKey', 'altKey'])]: true } : { repeat: random() < 0.2 };
       const code = name === ' ' || name === 'Enter' ? name : name.toLowerCase();
       if (!more.repeat && pressed.has(code)) return;
       const index = button && [' ', 'Enter'].includes(name) ? keyButtons.indexOf(button) : KEYBOARD.indexOf(name.length > 1 ? name : name.toLowerCase());
-      const isOurs = driven && !driven.isDeaf && index >= 0 && !owners.includes(target) && !Object.keys(more).some((each) => each !== 'repeat');
+      const isOurs = driven && !driven.isDeaf && index >= 0 && !owners.includes(target) && !Object.keys(more).some((item) => item !== 'repeat');
       if (keyEvent('keydown', target, name, code, more) !== Boolean(isOurs)) fails(`the browser ${isOurs ? 'does what' : 'cannot do what'} ${name} does`);
       if (!isOurs || more.repeat) return;
       pressed.set(code, index);
       types();
     },
     keysUp() {
-      const code = chance.of([...pressed.keys(), 'x']);
+      const code = random.of([...pressed.keys(), 'x']);
       keyEvent('keyup', free, code, code);
       if (pressed.delete(code)) types();
     },
@@ -217,28 +217,28 @@ async function history(seed) {
       const tells = [];
       gamepads = [0, 1].map((index) => {
         const was = before[index];
-        if (chance() < 0.5) return was;
-        if (chance() < 0.25) {
+        if (random() < 0.5) return was;
+        if (random() < 0.25) {
           if (was?.connected) tells.push('gamepaddisconnected');
-          return chance() < 0.5 && was ? { ...was, connected: false } : null;
+          return random() < 0.5 && was ? { ...was, connected: false } : null;
         }
         if (!was?.connected) tells.push('gamepadconnected');
-        const isRest = chance() < 0.4;
+        const isRest = random() < 0.4;
         return {
-          index, connected: true, axes: isRest ? [chance.of([0, 0.1]), -0.05] : [chance.of([0, 0.1, 0.5, -1]), chance.of([0, -0.1, 1, -0.7])],
-          buttons: Array.from({ length: 16 }, () => ({ pressed: !isRest && chance() < 0.1 })),
+          index, connected: true, axes: isRest ? [random.of([0, 0.1]), -0.05] : [random.of([0, 0.1, 0.5, -1]), random.of([0, -0.1, 1, -0.7])],
+          buttons: Array.from({ length: 16 }, () => ({ pressed: !isRest && random() < 0.1 })),
         };
       });
-      for (const each of tells) if (each === 'gamepadconnected' || chance() < 0.5) {
-        dispatchEvent(new Event(each));
+      for (const item of tells) if (item === 'gamepadconnected' || random() < 0.5) {
+        dispatchEvent(new Event(item));
         sees();
       }
     },
     lets() {
-      const way = chance.of(['stop', 'Escape', 'blur', 'pagehide', 'freeze', 'hidden']);
+      const way = random.of(['stop', 'Escape', 'blur', 'pagehide', 'freeze', 'hidden']);
       ends.add(way);
       if (way === 'stop') page.byId('stop').click();
-      else if (way === 'Escape') keyEvent('keydown', chance.of([...owners, free]), 'Escape', 'Escape');
+      else if (way === 'Escape') keyEvent('keydown', random.of([...owners, free]), 'Escape', 'Escape');
       else if (way === 'hidden') {
         document.visibilityState = 'hidden';
         document.dispatchEvent(new Event('visibilitychange'));
@@ -250,7 +250,7 @@ async function history(seed) {
       document.dispatchEvent(new Event('visibilitychange'));
     },
     speaks() {
-      pageState.language.set(chance.of(['en', 'es', 'pt']));
+      pageState.language.set(random.of(['en', 'es', 'pt']));
     },
   };
   const told = () => {
@@ -277,34 +277,34 @@ async function history(seed) {
     if (name >= 0) fails(`a key is called ${keyButtons[name].attributes['aria-label']}`);
   };
   for (let k = 0; k < ACTS; k += 1) {
-    const act = chance.of([...Object.keys(acts), 'presses', 'presses', 'presses', 'presses', 'moves', 'keys', 'keys', 'releases', 'gamepads', 'gamepads', ...driven ? [] : Array(12).fill('offers')]);
+    const act = random.of([...Object.keys(actions), 'presses', 'presses', 'presses', 'presses', 'moves', 'keys', 'keys', 'releases', 'gamepads', 'gamepads', ...driven ? [] : Array(12).fill('offers')]);
     acted.push(act);
     ends.add(act);
     const [drivenBefore, length] = [driven, log.length];
-    acts[act]();
-    log.slice(length).forEach((each, index) => {
-      if (each.number !== driven?.number && (index || each.number !== drivenBefore?.number || !isNothing(each))) fails(`another robot is told ${JSON.stringify(each)}`);
+    actions[act]();
+    log.slice(length).forEach((item, index) => {
+      if (item.number !== driven?.number && (index || item.number !== drivenBefore?.number || !isNothing(item))) fails(`another robot is told ${JSON.stringify(item)}`);
     });
     told();
     shown();
     const [looksBefore, logged] = [looks, log.length];
-    const waits_ms = chance.of([FRAME_MS + 1, FRAME_MS + 1, 60, 250, 700]);
+    const waits_ms = random.of([FRAME_MS + 1, FRAME_MS + 1, 60, 250, 700]);
     const begins_ms = now();
     await passes(waits_ms);
     sees();
     told();
     const frames = Math.ceil(waits_ms / FRAME_MS);
     if (looks - looksBefore > (driven && there().length ? frames + 1 : 1)) fails(`in ${frames} pictures gamepads are looked at ${looks - looksBefore} times`);
-    if (log.slice(logged).some((each) => each.number !== driven?.number)) fails('one that is not driven is told');
+    if (log.slice(logged).some((item) => item.number !== driven?.number)) fails('one that is not driven is told');
     if (now() - begins_ms !== waits_ms) fails('time');
     const isHeld = driven && !driven.isDeaf && !isNothing(held.all);
     if (isHeld && now() - log.at(-1).ms >= REPEAT_MS + 1) fails('what is held is not said again');
   }
-  log.forEach((each, index) => {
-    const before = log.slice(0, index).findLast((other) => other.number === each.number);
-    const since_ms = before && each.ms - before.ms;
-    if (!before && isNothing(each)) fails('a robot is told first that nothing is held');
-    if (before && sameAs(before)(each) && (isNothing(each) || since_ms !== REPEAT_MS)) fails(`it is said again after ${since_ms} ms`);
+  log.forEach((item, index) => {
+    const before = log.slice(0, index).findLast((other) => other.number === item.number);
+    const since_ms = before && item.ms - before.ms;
+    if (!before && isNothing(item)) fails('a robot is told first that nothing is held');
+    if (before && sameAs(before)(item) && (isNothing(item) || since_ms !== REPEAT_MS)) fails(`it is said again after ${since_ms} ms`);
     if (before && !isNothing(before) && since_ms > REPEAT_MS) fails(`it was held, and not said for ${since_ms} ms`);
   });
   return [...ends];

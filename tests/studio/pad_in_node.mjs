@@ -22,7 +22,7 @@ const { Pad } = await page.load('remote/pad.js');
 const pad = new Pad();
 const box = Object.assign(page.byId('pad'), { hidden: true });
 const parts = [...page.byId('pad_arrows').children, ...page.byId('pad_letters').children];
-const part = (name) => (name === 'stick' ? page.byId('pad_stick') : parts.find((each) => each.dataset.key === name));
+const part = (name) => (name === 'stick' ? page.byId('pad_stick') : parts.find((item) => item.dataset.key === name));
 const taken = Object.assign(new Part(), { isTaken: true });
 
 const told = [];
@@ -32,15 +32,15 @@ const key = (kind, name, more = {}) => {
   Object.defineProperty(event, 'target', { value: more.on === 'field' ? taken : part(more.on) ?? new Part() });
   dispatchEvent(event);
 };
-const does = {
+const steps = {
   offer: (side, driven) => pad.offerRobot(side, driven && { ...driven, tell: ({ keys, x, y }) => told.push([now(), side, keys, x, y]) }),
-  down: (...given) => point('pointerdown', ...given),
-  move: (...given) => point('pointermove', ...given),
-  up: (...given) => point('pointerup', ...given),
-  cancel: (...given) => point('pointercancel', ...given),
-  keydown: (...given) => key('keydown', ...given),
-  keyup: (...given) => key('keyup', ...given),
-  gamepads: (...found) => { gamepads = found.map(([axes, pressed], index) => ({ index, connected: true, axes, buttons: Array.from({ length: 16 }, (_, k) => ({ pressed: pressed.includes(k) })) })); },
+  down: (...args) => point('pointerdown', ...args),
+  move: (...args) => point('pointermove', ...args),
+  up: (...args) => point('pointerup', ...args),
+  cancel: (...args) => point('pointercancel', ...args),
+  keydown: (...args) => key('keydown', ...args),
+  keyup: (...args) => key('keyup', ...args),
+  gamepads: (...gamepadStates) => { gamepads = gamepadStates.map(([axes, pressed], index) => ({ index, connected: true, axes, buttons: Array.from({ length: 16 }, (_, k) => ({ pressed: pressed.includes(k) })) })); },
   event: (name) => dispatchEvent(new Event(name)),
   hide: () => { document.visibilityState = 'hidden'; heard.dispatchEvent(new Event('visibilitychange')); },
   see: () => { document.visibilityState = 'visible'; heard.dispatchEvent(new Event('visibilitychange')); },
@@ -48,7 +48,7 @@ const does = {
   stop: () => page.byId('stop').click(),
   passes,
 };
-for (const [what, ...given] of story) await does[what](...given);
-const shown = [...parts, page.byId('pad_stick')].filter((each) => !each.hidden).map((each) => each.dataset.key ?? 'stick');
+for (const [what, ...args] of story) await steps[what](...args);
+const shown = [...parts, page.byId('pad_stick')].filter((item) => !item.hidden).map((item) => item.dataset.key ?? 'stick');
 console.log(JSON.stringify({ told, shown: box.hidden ? [] : shown, said: page.byId('pad_said').textContent }));
 process.exit(0);

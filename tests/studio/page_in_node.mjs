@@ -34,7 +34,7 @@ registerHooks({
   resolve(specifier, context, next) {
     const query = /\?page=\d+$/.exec(context.parentURL ?? '')?.[0];
     if (!query) return next(specifier, context);
-    const name = Object.keys(PLAYED).find((each) => specifier === each || (!each.startsWith('@') && specifier.endsWith(`/${each.split('/')[1]}`)));
+    const name = Object.keys(PLAYED).find((item) => specifier === item || (!item.startsWith('@') && specifier.endsWith(`/${item.split('/')[1]}`)));
     if (name && PLAYED[name][0] in played) return { url: `played:${name}${query}`, shortCircuit: true };
     if (specifier.endsWith('/pyodide.asm.mjs')) return { url: 'data:text/javascript,', shortCircuit: true };
     if (specifier.endsWith('.json')) return { url: `made:${specifier.split('/').at(-1)}${query}`, shortCircuit: true };
@@ -45,7 +45,7 @@ registerHooks({
     const [kind, name] = url.replace(/\?page=\d+$/, '').split(/:(.*)/s);
     if (kind === 'played') {
       const [first] = PLAYED[name], whole = first === 'blockly';
-      const source = (whole ? Object.keys(played.blockly) : PLAYED[name]).map((each) => `export const ${each} = globalThis.played.${whole ? 'blockly.' : ''}${each};`).join('\n');
+      const source = (whole ? Object.keys(played.blockly) : PLAYED[name]).map((item) => `export const ${item} = globalThis.played.${whole ? 'blockly.' : ''}${item};`).join('\n');
       return { format: 'module', source, shortCircuit: true };
     }
     if (kind === 'made') return { format: 'module', source: `export default ${readFileSync(`${made}/${name}`, 'utf-8')}`, shortCircuit: true };
@@ -58,16 +58,16 @@ registerHooks({
 let now_ms = 0;
 let timers = [];
 let count = 0;
-const setLater = (does, ms = 0, ...given) => {
-  timers.push({ at_ms: now_ms + Math.max(0, ms || 0), does: () => does(...given), number: (count += 1) });
+const setLater = (callback, ms = 0, ...args) => {
+  timers.push({ at_ms: now_ms + Math.max(0, ms || 0), does: () => callback(...args), number: (count += 1) });
   return count;
 };
 const clearLater = (number) => {
-  timers = timers.filter((each) => each.number !== number);
+  timers = timers.filter((item) => item.number !== number);
 };
-const every = (does, ms) => {
+const every = (callback, ms) => {
   const number = (count += 1);
-  const plans = () => timers.push({ at_ms: now_ms + ms, does: () => { plans(); does(); }, number });
+  const plans = () => timers.push({ at_ms: now_ms + ms, does: () => { plans(); callback(); }, number });
   plans();
   return number;
 };
@@ -100,9 +100,9 @@ export async function passes(ms) {
 class Heard extends EventTarget {
   #capturing = {};
 
-  addEventListener(kind, does, options) {
-    if (options?.capture) (this.#capturing[kind] ??= []).push(does);
-    else super.addEventListener(kind, does, options);
+  addEventListener(kind, callback, options) {
+    if (options?.capture) (this.#capturing[kind] ??= []).push(callback);
+    else super.addEventListener(kind, callback, options);
   }
 
   dispatchEvent(event) {
@@ -121,8 +121,8 @@ class Heard extends EventTarget {
       Object.defineProperty(event, 'target', { value: this, configurable: true });
       event.composedPath = () => path;
     }
-    for (const each of path.toReversed()) for (const does of each.#capturing[event.type] ?? []) if (!isStopped) does(event);
-    for (const each of path) if (!isStopped) EventTarget.prototype.dispatchEvent.call(each, event);
+    for (const item of path.toReversed()) for (const callback of item.#capturing[event.type] ?? []) if (!isStopped) callback(event);
+    for (const item of path) if (!isStopped) EventTarget.prototype.dispatchEvent.call(item, event);
     return !event.defaultPrevented;
   }
 }
@@ -142,7 +142,7 @@ class Part extends Heard {
   attributes = {};
   classList = {
     add: (...names) => { this.className = [...new Set([...this.className.split(' ').filter(Boolean), ...names])].join(' '); },
-    remove: (...names) => { this.className = this.className.split(' ').filter((each) => !names.includes(each)).join(' '); },
+    remove: (...names) => { this.className = this.className.split(' ').filter((item) => !names.includes(item)).join(' '); },
     toggle: (name, isOn = !this.className.split(' ').includes(name)) => (isOn ? this.classList.add(name) : this.classList.remove(name)),
   };
   style = { setProperty() {}, removeProperty() {} };
@@ -155,10 +155,10 @@ class Part extends Heard {
   prepend(...parts) { this.#put(0, parts); }
   after(...parts) { this.parent?.#put(this.parent.children.indexOf(this) + 1, parts); }
   #put(index, parts) {
-    const next = this.children.slice(index).find((each) => !parts.includes(each));
-    for (const each of parts) if (each instanceof Part) {
-      each.parent?.children.splice(0, Infinity, ...each.parent.children.filter((other) => other !== each));
-      each.parent = this;
+    const next = this.children.slice(index).find((item) => !parts.includes(item));
+    for (const item of parts) if (item instanceof Part) {
+      item.parent?.children.splice(0, Infinity, ...item.parent.children.filter((other) => other !== item));
+      item.parent = this;
     }
     this.children.splice(next === undefined ? this.children.length : this.children.indexOf(next), 0, ...parts);
   }
@@ -174,7 +174,7 @@ class Part extends Heard {
     [this.placedBefore] = parts;
     this.parent?.#put(this.parent.children.indexOf(this), parts);
   }
-  remove() { this.parent.children = this.parent.children.filter((each) => each !== this); }
+  remove() { this.parent.children = this.parent.children.filter((item) => item !== this); }
   setAttribute(name, value) {
     this.attributes[name] = value;
     if (name.startsWith('data-')) this.dataset[keyOf(name)] = value;
@@ -201,24 +201,24 @@ class Part extends Heard {
     this.open = false;
     this.dispatchEvent(new Event('close'));
   }
-  contains(part) { return part === this || this.children.some((each) => each instanceof Part && each.contains(part)); }
+  contains(part) { return part === this || this.children.some((item) => item instanceof Part && item.contains(part)); }
   /** Of a selector each of tag, #id, .class and [name=value], one of several that commas part. */
   matches(selector) {
-    return selector.split(',').some((each) => {
-      const found = /^([\w-]+)?(?:#([\w-]+))?(?:\.([\w-]+))?(?:\[([\w-]+)(?:="?([^\]"]*)"?)?\])?$/.exec(each.trim());
-      if (!found) return false;
-      const [, tag, id, className, name, value] = found;
+    return selector.split(',').some((item) => {
+      const match = /^([\w-]+)?(?:#([\w-]+))?(?:\.([\w-]+))?(?:\[([\w-]+)(?:="?([^\]"]*)"?)?\])?$/.exec(item.trim());
+      if (!match) return false;
+      const [, tag, id, className, name, value] = match;
       const had = name && (typeof this[name] === 'boolean' ? (this[name] ? '' : null) : this.getAttribute(name));
       return (!tag || tag === this.localName) && (!id || id === this.id) && (!className || this.className.split(' ').includes(className))
         && (!name || (value === undefined ? had !== null : had === value));
     });
   }
   closest(selector) { return this.matches(selector) ? this : this.parent?.closest(selector) ?? null; }
-  querySelectorAll(selector) { return this.children.filter((each) => each instanceof Part).flatMap((each) => [...each.matches(selector) ? [each] : [], ...each.querySelectorAll(selector)]); }
+  querySelectorAll(selector) { return this.children.filter((item) => item instanceof Part).flatMap((item) => [...item.matches(selector) ? [item] : [], ...item.querySelectorAll(selector)]); }
   querySelector(selector) { return this.querySelectorAll(selector)[0] ?? null; }
   checkVisibility() { return !this.hidden && (this.parent?.checkVisibility() ?? true); }
   insertBefore(part, next) {
-    this.children = this.children.filter((each) => each !== part);
+    this.children = this.children.filter((item) => item !== part);
     part.parent = this;
     this.children.splice(next ? this.children.indexOf(next) : this.children.length, 0, part);
   }
@@ -238,7 +238,7 @@ class Store {
   }
   getItem(key) { return this.#kept.get(key) ?? null; }
   /** How many characters there is room for at a place. */
-  roomFor(key) { return this.room - [...this.#kept].reduce((sum, [each, whole]) => sum + (each === key ? 0 : whole.length), 0); }
+  roomFor(key) { return this.room - [...this.#kept].reduce((sum, [item, whole]) => sum + (item === key ? 0 : whole.length), 0); }
   setItem(key, value) {
     if (value.length > this.roomFor(key)) throw new Error('QuotaExceededError');
     this.#kept.set(key, value);
@@ -278,7 +278,7 @@ stands('setTimeout', setLater);
 stands('clearTimeout', clearLater);
 stands('clearInterval', clearLater);
 stands('performance', { now });
-stands('requestAnimationFrame', (does) => setLater(() => does(now_ms), 16));
+stands('requestAnimationFrame', (callback) => setLater(() => callback(now_ms), 16));
 stands('cancelAnimationFrame', clearLater);
 for (const name of ['ResizeObserver', 'MutationObserver']) stands(name, class { observe() {} });
 stands('matchMedia', () => ({ matches: false }));
@@ -314,12 +314,12 @@ function partsOf(html) {
 
 let pages = 0;
 /** Loads the page anew; what is played is as given. @param {string} html of which it is made; else it has whatever is asked for @returns how its modules are imported, and its elements by their ids */
-export function freshPage(given = {}, html = '') {
+export function freshPage(replacements = {}, html = '') {
   const query = `?page=${(pages += 1)}`;
   const whole = partsOf(html);
   const parts = new Map(whole.querySelectorAll('[id]').map((part) => [part.id, part]));
   const byId = (id) => parts.get(id) ?? parts.set(id, new Part()).get(id);
-  played = given;
+  played = replacements;
   timers = [];
   stands('window', Object.assign(new EventTarget(), { setTimeout: setLater, setInterval: every, sessionStorage: new Store(), localStorage: new Store() }));
   const heard = new Heard();
@@ -342,42 +342,42 @@ export async function learns(page) {
   stands('fetch', before);
 }
 
-export const playsFetch = (does) => stands('fetch', does);
+export const playsFetch = (callback) => stands('fetch', callback);
 export const playsNavigator = (value) => stands('navigator', value);
 
 /** What calls it, with what; of each name its answer. */
 export function noting(notes, name, answers = {}) {
   return new Proxy(answers, {
-    get: (_, what) => (what in answers ? answers[what] : (...given) => { notes.push([name, what, ...given]); }),
-    set: (_, what, value) => { answers[what] = value; return true; },
+    get: (_, property) => (property in answers ? answers[property] : (...args) => { notes.push([name, property, ...args]); }),
+    set: (_, property, value) => { answers[property] = value; return true; },
   });
 }
 
 export function chanceOf(seed) {
   let state = seed * 2654435761 + 1;
-  const chance = () => {
+  const random = () => {
     state = (Math.imul(state ^ (state >>> 15), 0x2c1b3c6d) + 0x9e3779b9) | 0;
     return ((state ^ (state >>> 13)) >>> 0) / 2 ** 32;
   };
-  chance.below = (most) => Math.floor(chance() * most);
-  chance.of = (list) => list[chance.below(list.length)];
-  return chance;
+  random.below = (most) => Math.floor(random() * most);
+  random.of = (list) => list[random.below(list.length)];
+  return random;
 }
 
 export const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
 
 /** As the worker's: each picture of it goes on, bumps, says and ends. */
-export function virtualRobot(chance, isGood) {
+export function virtualRobot(random, isGood) {
   let now_ms = 0;
   let fault = '';
   let bumps = 0;
-  const ends_ms = 300 + chance.below(3000);
+  const ends_ms = 300 + random.below(3000);
   let isStopped = false;
   let isHeld = false;
-  const does = isGood ? chance.of(['runs', 'runs', 'refused', 'fault']) : chance.of(['runs', 'refused', 'breaks', 'fault']);
+  const does = isGood ? random.of(['runs', 'runs', 'refused', 'fault']) : random.of(['runs', 'refused', 'breaks', 'fault']);
   return {
     does,
-    breaks: () => does === 'breaks' && chance() < 0.3,
+    breaks: () => does === 'breaks' && random() < 0.3,
     answer(request) {
       const events = [];
       if (request.do === 'power_on') {
@@ -393,9 +393,9 @@ export function virtualRobot(chance, isGood) {
       }
       const duration_ms = isHeld || isStopped ? 0 : request.duration_ms ?? (request.do === 'step' ? 20 : 0);
       now_ms += duration_ms;
-      if (duration_ms && chance() < 0.3) events.push([now_ms, `SHOW ${chance.below(9)}`, 0]);
-      if (duration_ms && chance() < 0.2) events.push([now_ms, `BEEP 440 ${chance.below(900)}`]);
-      if (duration_ms && chance() < 0.2) bumps += 1;
+      if (duration_ms && random() < 0.3) events.push([now_ms, `SHOW ${random.below(9)}`, 0]);
+      if (duration_ms && random() < 0.2) events.push([now_ms, `BEEP 440 ${random.below(900)}`]);
+      if (duration_ms && random() < 0.2) bumps += 1;
       if (now_ms > ends_ms && does === 'fault') fault = 'STUCK';
       return {
         now_ms, began_ms: 0, pose: [0, 0, 0], motors: [0, 0], is_running: !isStopped && now_ms < ends_ms, is_waiting: false,
@@ -411,8 +411,8 @@ const AROUND = 150; // characters
 /** What is seen of both, from where they differ. */
 export function compared(after, alone) {
   const [a, b] = [JSON.stringify(after), JSON.stringify(alone)];
-  let at = 0;
-  while (at < a.length && a[at] === b[at]) at += 1;
-  const from = Math.max(0, at - AROUND);
-  return { after: a.slice(from, at + AROUND), alone: b.slice(from, at + AROUND), isSame: a === b, length: b.length };
+  let offset = 0;
+  while (offset < a.length && a[offset] === b[offset]) offset += 1;
+  const from = Math.max(0, offset - AROUND);
+  return { after: a.slice(from, offset + AROUND), alone: b.slice(from, offset + AROUND), isSame: a === b, length: b.length };
 }

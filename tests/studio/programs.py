@@ -24,8 +24,10 @@ def programs() -> list[Program]:
     for case in all_cases():
         if "tiniscript" in case.parts:
             named_match = _ROBOT.search(case.parts.get("senses", ""))
-            own = shipped_name_in(case.parts["tiniscript"].encode()) or "tinibot"
-            robot = named_match[1] if named_match and named_match[1] in robots.names() else own
+            case_robot = shipped_name_in(case.parts["tiniscript"].encode()) or "tinibot"
+            robot = (
+                named_match[1] if named_match and named_match[1] in robots.names() else case_robot
+            )
             program_list.append(Program(case.id, case.parts["tiniscript"], robot))
     for path in sorted((ROOT / "examples").glob("*.ts")):
         program_list.append(
@@ -43,12 +45,12 @@ def image(program: Program) -> str:
 
 
 # Reported at the upload of a correct program that the robot cannot run.
-LACKING = ("TS313", "TS315")
+MISSING_PART_CODES = ("TS313", "TS315")
 
 
 def messages_of(text: str, language: str) -> list[Message]:
     """Return the messages of `tsc compile` about a program."""
     try:
         return list(compile(text, language=language).diagnostics)
-    except ProgramError as wrong:
-        return list(wrong.diagnostics)
+    except ProgramError as error:
+        return list(error.diagnostics)

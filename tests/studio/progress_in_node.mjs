@@ -15,12 +15,12 @@ async function passes(milliseconds) {
 
 const told = [];
 let waits = 0;
-const never = watchPromise(new Promise(() => {}), { onWait: () => { waits += 1; } }).catch((why) => why.name);
+const never = watchPromise(new Promise(() => {}), { onWait: () => { waits += 1; } }).catch((error) => error.name);
 await passes(3001);
 await passes(17_000);
 told.push(`${await never} ${waits}`);
 const cancelSignal = AbortSignal.abort();
-told.push(await watchPromise(new Promise(() => {}), { cancelSignal }).catch((why) => why.name));
+told.push(await watchPromise(new Promise(() => {}), { cancelSignal }).catch((error) => error.name));
 told.push(await watchPromise(Promise.resolve('there'), {}));
 const over = new Progress({ onWait: () => { waits += 1; } });
 waits = 0;

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 # The blocks of the page, made of forms and read again, without the page around them.
-ROUND = """async ({name, forms}) => {
+ROUND_TRIP_SCRIPT = """async ({name, forms}) => {
   const {Blocks} = await import(new URL(name, location.href).href);
   const place = document.createElement('div');
   place.hidden = true;  // nothing is measured
@@ -59,7 +59,7 @@ def without_places(form: Any) -> Any:
 def round_trip(page: Page, forms: list[Any]) -> list[Any]:
     """Return forms as the page's blocks have them, made of these."""
     (name,) = [name for name in files() if name.startswith("blocks-")]
-    forms_back: list[Any] = page.evaluate(ROUND, {"name": name, "forms": forms})
+    forms_back: list[Any] = page.evaluate(ROUND_TRIP_SCRIPT, {"name": name, "forms": forms})
     return forms_back
 
 
@@ -79,13 +79,13 @@ def compare(page: Page, count: int, seed: int) -> int:
     texts = [
         oracle_programs.program(random.Random(seed + k), oracle.PAPER_KIT) for k in range(count)
     ]
-    want = [compile_to_hex(text) for text in texts]
+    wanted_images = [compile_to_hex(text) for text in texts]
     from_blocks = images(page, texts_through_blocks(page, texts))
-    rows = zip(texts, want, images(page, texts), from_blocks, strict=True)
+    rows = zip(texts, wanted_images, images(page, texts), from_blocks, strict=True)
     for k, (text, image, from_text, from_block) in enumerate(rows):
         assert from_text == image, f"seed {seed + k}, from its text:\n{text}"
         assert from_block == image, f"seed {seed + k}, from its blocks:\n{text}"
-    return sum(bool(image) for image in want)
+    return sum(bool(image) for image in wanted_images)
 
 
 def main() -> int:
@@ -101,15 +101,15 @@ def main() -> int:
     ):
         pages = Pages(browser, server.address, patience_s=300)
         page = pages.open()
-        right = sum(
-            compare(page, min(100, options.count - at), options.seed + at)
-            for at in range(0, options.count, 100)
+        right_count = sum(
+            compare(page, min(100, options.count - start), options.seed + start)
+            for start in range(0, options.count, 100)
         )
-        assert not pages.wrong, pages.wrong[:3]
+        assert not pages.errors, pages.errors[:3]
         pages.close()
     seconds = time.monotonic() - start_s
     print(
-        f"{options.count} programs, {right} right: from text and from blocks"
+        f"{options.count} programs, {right_count} right: from text and from blocks"
         f" the image of tsc compile: {seconds:.0f} s"
     )
     return 0

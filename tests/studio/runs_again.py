@@ -54,10 +54,10 @@ def record_run(number: int, is_held: bool = False) -> tuple[bytes, list[Row]]:
             run.advance(rng.randint(0, 30))
     rows, end_ms = run.rows(), run.robot.now_ms
     run.close()
-    first = header_line(VIRTUAL, text, profile, checksum(compilation.image), world=world,
+    header = header_line(VIRTUAL, text, profile, checksum(compilation.image), world=world,
                         seed=number + 1, given_readings=given_readings)  # fmt: skip
-    happened = [row for row in rows if not row.is_input]
-    return encode(first, rows, end_ms).encode(), happened
+    output_rows = [row for row in rows if not row.is_input]
+    return encode(header, rows, end_ms).encode(), output_rows
 
 
 def _act(rng: random.Random, run: Simulation) -> None:

@@ -9,7 +9,7 @@ import { chanceOf, compared, freshPage, later, learns, noting, now, passes, play
 
 const [part, seeds] = words;
 const unhandled = [];
-process.on('unhandledRejection', (why) => unhandled.push(String(why)));
+process.on('unhandledRejection', (error) => unhandled.push(String(error)));
 
 class Broken extends Error {
   constructor(name = 'NetworkError') {
@@ -51,20 +51,20 @@ const PARTS = {
         device.dispatchEvent(new Event('gattserverdisconnected'));
       },
     };
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       sent = [];
       const notes = [];
-      fails = () => !isGood && chance() < 0.15;
+      fails = () => !isGood && random() < 0.15;
       const port = new BluetoothPort(device, 9600);
-      const opened = port.open(() => {}, () => notes.push('gone')).then(() => 'open', (why) => why.reason);
+      const opened = port.open(() => {}, () => notes.push('gone')).then(() => 'open', (error) => error.reason);
       await passes(100);
       const how = await opened;
       const ends = [how];
       if (how === 'open') {
-        const count = 1 + chance.below(5);
+        const count = 1 + random.below(5);
         for (let k = 0; k < count; k += 1) {
-          port.write(new Uint8Array(1 + chance.below(50)).fill(k + 1)).then(() => notes.push('done'), () => { notes.push('failed'); ends.push('failed'); });
-          if (chance() < 0.5) await passes(chance.below(60));
+          port.write(new Uint8Array(1 + random.below(50)).fill(k + 1)).then(() => notes.push('done'), () => { notes.push('failed'); ends.push('failed'); });
+          if (random() < 0.5) await passes(random.below(60));
         }
         await passes(500);
         fails = () => false;
@@ -99,14 +99,14 @@ const PARTS = {
       const { phase, failure, isStopping, state, trace } = simulator;
       notes.push([phase, failure, isStopping, state?.now_ms, state?.fault, trace.length]);
     });
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       notes = [];
-      robot = virtualRobot(chance, isGood);
-      simulator.speed = chance.of([0.1, 0.5, 1, 4]);
-      simulator.begin(PROGRAM, 'tinibot', 'w', [], chance() < 0.3, isGood ? 0 : chance.of([0, 20])); // also of a run of a lesson
+      robot = virtualRobot(random, isGood);
+      simulator.speed = random.of([0.1, 0.5, 1, 4]);
+      simulator.begin(PROGRAM, 'tinibot', 'w', [], random() < 0.3, isGood ? 0 : random.of([0, 20])); // also of a run of a lesson
       await passes(50);
       const setPoints = () => {
-        const breakpoints = [chance.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
+        const breakpoints = [random.below(9)], isUnderWay = ['running', 'paused'].includes(simulator.phase);
         const before = notes.length;
         simulator.setBreakpoints(breakpoints);
         if (isUnderWay) told = async () => {
@@ -115,13 +115,13 @@ const PARTS = {
         };
       };
       let told = async () => {};
-      for (let k = chance.below(8); k > 0; k -= 1) {
-        chance.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
-        await passes(chance.below(400));
+      for (let k = random.below(8); k > 0; k -= 1) {
+        random.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
+        await passes(random.below(400));
         await told();
         told = async () => {};
       }
-      const end = chance.of(['stop', 'leave', 'wait']);
+      const end = random.of(['stop', 'leave', 'wait']);
       await passes(end === 'wait' ? 4000 : 0);
       simulator.stop();
       if (end === 'leave') simulator.leaveRun();
@@ -168,7 +168,7 @@ const PARTS = {
       ...(dataset['state'] === 'checked' && { is_right: Boolean(dataset['image']) }),
     });
     let entries = 0;
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       notes.length = 0;
       const began_ms = now();
       const token = `token ${(entries += 1)}`;
@@ -181,7 +181,7 @@ const PARTS = {
       let turns = 0;
       let joins = 0;
       let over = '';
-      let late = 0; // asked after the class was over
+      let lateCount = 0; // asked after the class was over
       let isCalm = false; // nothing is lost
       let ends = 'goes on';
       const end = isGood ? 'goes on' : 'removed';
@@ -200,8 +200,8 @@ const PARTS = {
           }
           if (request.do === 'stop') {
             stops.push(request.group_stops);
-            await later(chance.below(300));
-            if (!isCalm && chance() < 0.5) throw new Broken();
+            await later(random.below(300));
+            if (!isCalm && random() < 0.5) throw new Broken();
             return answers({ stops: stops.length });
           }
           if (request.do === 'run') {
@@ -209,11 +209,11 @@ const PARTS = {
             return answers({});
           }
           notes.push([now() - began_ms, { ...request }]);
-          if (over) late += 1;
+          if (over) lateCount += 1;
           const isOut = ends === 'removed';
-          const travels = () => later(isCalm ? 5 : 5 + chance.below(900));
+          const travels = () => later(isCalm ? 5 : 5 + random.below(900));
           await travels();
-          const lost = !isCalm && chance() < (isGood ? 0.4 : 0.2) ? chance.of(['look', 'answer']) : '';
+          const lost = !isCalm && random() < (isGood ? 0.4 : 0.2) ? random.of(['look', 'answer']) : '';
           if (lost === 'look') throw new Broken();
           if (isOut) return { ok: false, status: 403 };
           const { do: _, took, wants, hand: isUp = has.isUp, ...fields } = request;
@@ -240,68 +240,68 @@ const PARTS = {
         if (stops.length + strays - before !== Number(isDriven)) throw new Error(`${stops.length + strays - before} stops are sent, and ${driver || 'nobody'} drives`);
       };
       const changes = {
-        writes: () => { work.text = `F(${chance.below(2)})`; },
-        robot: () => { work.robot = chance.of(['tinibot', 'liner']); },
-        lesson: () => storeDone(`lesson${chance.below(9)}`),
-        ownRobot: () => pageState.ownRobot.set({ name: '', colour: chance.below(2) }),
-        checks: () => { [dataset['state'], dataset['image']] = [chance.of(['stale', 'checked']), chance.of(['', '00'])]; },
+        writes: () => { work.text = `F(${random.below(2)})`; },
+        robot: () => { work.robot = random.of(['tinibot', 'liner']); },
+        lesson: () => storeDone(`lesson${random.below(9)}`),
+        ownRobot: () => pageState.ownRobot.set({ name: '', colour: random.below(2) }),
+        checks: () => { [dataset['state'], dataset['image']] = [random.of(['stale', 'checked']), random.of(['', '00'])]; },
       };
       const presses = {
         ...changes,
         ask: () => { wanted.place = 0; ask.click(); },
         quit: () => { wanted.place = -1; quit.click(); },
         hand: () => { wanted.isUp = hand.attributes['aria-pressed'] !== 'true'; hand.click(); },
-        groups: () => { group.groups = ['red', 'tan'].slice(chance.below(3)).map((name) => ({ name, members: ['Luz', 'Teo'].slice(chance.below(3)) })); },
-        drives: () => { group.driver = chance.of(['', 'Luz']); },
+        groups: () => { group.groups = ['red', 'tan'].slice(random.below(3)).map((name) => ({ name, members: ['Luz', 'Teo'].slice(random.below(3)) })); },
+        drives: () => { group.driver = random.of(['', 'Luz']); },
         run: () => { group.run = `run ${(entries += 1)}`; },
         stops: pressesStop,
         nothing: () => {},
       };
-      for (let k = chance.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
+      for (let k = random.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
       await passes(30);
       if (joins > 1) throw new Error(`who presses twice is ${joins} pupils`);
       if (hand.hidden) throw new Error('in a class nobody can ask for help');
-      if (isGood && chance() < 0.5) presses.hand(); // before the class has said how it is
+      if (isGood && random() < 0.5) presses.hand(); // before the class has said how it is
       await passes(500);
-      for (let k = 1 + chance.below(12); k > 0; k -= 1) {
-        await presses[chance.of(Object.keys(presses))]();
-        await passes(chance.of([2, chance.below(1500)]));
+      for (let k = 1 + random.below(12); k > 0; k -= 1) {
+        await presses[random.of(Object.keys(presses))]();
+        await passes(random.of([2, random.below(1500)]));
       }
-      if (!isGood && chance() < 0.7) chance.of([ask, quit, hand]).click(); // whose answer may come after the end
+      if (!isGood && random() < 0.7) random.of([ask, quit, hand]).click(); // whose answer may come after the end
       ends = end;
-      for (let k = chance.below(isGood ? 1 : 4); k > 0; k -= 1) chance.of([ask, quit, hand]).click();
-      while (!isGood && join.hidden) await passes(50 + chance.below(50));
+      for (let k = random.below(isGood ? 1 : 4); k > 0; k -= 1) random.of([ask, quit, hand]).click();
+      while (!isGood && join.hidden) await passes(50 + random.below(50));
       if (!isGood) {
         if (![hand, ask, quit, connect, page.byId('side_class')].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
         await pressesStop();
       }
       if (!isGood) return { ends: [ends], seen: [] };
-      for (let k = chance.below(3); k > 0; k -= 1) { // while the one before is on its way
-        changes[chance.of(Object.keys(changes))]();
+      for (let k = random.below(3); k > 0; k -= 1) { // while the one before is on its way
+        changes[random.of(Object.keys(changes))]();
         await passes(2);
       }
       isCalm = true;
-      panel.isFree = chance() < 0.5;
+      panel.isFree = random() < 0.5;
       await passes(6000);
-      const seen = notes.map((each) => structuredClone(each));
-      const does = (what) => notes.filter((each) => each === what || each[0] === what).length;
+      const seen = notes.map((item) => structuredClone(item));
+      const countNotes = (note) => notes.filter((item) => item === note || item[0] === note).length;
       for (const [name, value] of Object.entries(shown())) {
         if (JSON.stringify(has.fields[name]) !== JSON.stringify(value)) throw new Error(`the teacher sees ${name} ${JSON.stringify(has.fields[name])}, and it is ${JSON.stringify(value)}`);
       }
       if (has.place !== wanted.place || has.isUp !== wanted.isUp) throw new Error(`not what was pressed last: ${JSON.stringify([has, wanted])}`);
-      if (does('to the robot') > turns || does('given') > 1) throw new Error(`${does('to the robot')} times to the robot in ${turns} turns, given ${does('given')} times`);
+      if (countNotes('to the robot') > turns || countNotes('given') > 1) throw new Error(`${countNotes('to the robot')} times to the robot in ${turns} turns, given ${countNotes('given')} times`);
       await pressesStop();
       const listed = page.byId('class').children[0].children[2].children.map(({ children: [name] }) => name);
       const wantedGroups = group.groups.map(({ name, members }) => (members.length ? `${name} (${members.join(', ')})` : name));
       if (page.byId('side_class').hidden || `${listed}` !== `${wantedGroups}`) throw new Error(`the groups ${listed} are seen in place of ${wantedGroups}`);
-      if (runAsked && given.filter((each) => each === runAsked).length !== 1) throw new Error(`${runAsked} is given ${given.filter((each) => each === runAsked).length} times`);
+      if (runAsked && given.filter((item) => item === runAsked).length !== 1) throw new Error(`${runAsked} is given ${given.filter((item) => item === runAsked).length} times`);
       if (stops.some((number, k) => number < stops[k - 1])) throw new Error(`stops are counted ${stops}`);
       if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
-      over = chance.of(['', 'kept', 'erased']);
+      over = random.of(['', 'kept', 'erased']);
       await passes(5000);
-      if (over && (!join.hidden || late > 1 || loadText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${late}`);
-      if (does('empty') !== Number(over === 'erased') || Boolean(loadText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${does('empty')} ${loadText('tiniscript.pupil_before')}`);
+      if (over && (!join.hidden || lateCount > 1 || loadText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${lateCount}`);
+      if (countNotes('empty') !== Number(over === 'erased') || Boolean(loadText('tiniscript.pupil_before')) !== (over !== 'erased')) throw new Error(`${over}: ${countNotes('empty')} ${loadText('tiniscript.pupil_before')}`);
       return { ends: [ends], seen: [seen, document.documentElement.dataset['pupil']] };
     };
   },
@@ -314,7 +314,7 @@ const PARTS = {
     playsNavigator({});
     const { EditorState } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
     let entries = 0;
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       const ends = new Set();
       const kept = new Set(); // the teacher's list
       const given = []; // all that was ever given, each its text
@@ -354,9 +354,9 @@ const PARTS = {
         work = { get text() { return screen; }, robot: 'tinibot', name: '' };
         const view = { state: EditorState.create(), dispatch() {} };
         const python = {
-          async ask({ do: what }) {
-            await later(chance.below(400));
-            if (what === 'group_begin') screen = groupText; // in place of whatever is there
+          async ask({ do: action }) {
+            await later(random.below(400));
+            if (action === 'group_begin') screen = groupText; // in place of whatever is there
             return { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
           },
         };
@@ -364,7 +364,7 @@ const PARTS = {
         globalThis.confirm = () => {
           isLaw('while it asks');
           asked.push([...kept][0]);
-          const isYes = chance() < 0.5;
+          const isYes = random() < 0.5;
           if (!isYes && window.localStorage.room) told = 'class_given_kept';
           ends.add(isYes ? 'yes' : 'no');
           return isYes;
@@ -379,17 +379,17 @@ const PARTS = {
         const [join] = page.byId('class_pupil').children;
         for (let k = 0; !join.hidden && k < 50; k += 1) { // one may be lost
           join.dispatchEvent(new Event('submit', { cancelable: true }));
-          await passes(chance.below(2500));
+          await passes(random.below(2500));
         }
       };
-      const travels = () => later(isCalm ? 5 : 5 + chance.below(900));
+      const travels = () => later(isCalm ? 5 : 5 + random.below(900));
       const answersTo = async (request) => {
         if (request.do === 'group') {
           await later(400);
           return answers({ saw: 1, ran: ['class', 1], runs: [], others: [], changes: [] });
         }
         await travels();
-        const lost = !isCalm && chance() < 0.25 ? chance.of(['look', 'answer']) : '';
+        const lost = !isCalm && random() < 0.25 ? random.of(['look', 'answer']) : '';
         if (lost) ends.add('lost');
         if (lost === 'look') throw new Broken();
         let answer = { token: 'token' };
@@ -410,7 +410,7 @@ const PARTS = {
         return answers(answer);
       };
       const box = () => page.byId('class').children[0];
-      const acts = {
+      const actions = {
         gives: () => {
           const text = `W(${(entries += 1)})`;
           given.push(text);
@@ -423,17 +423,17 @@ const PARTS = {
         leaves: () => box().children[5].click(),
         mate: () => { if (document.documentElement.dataset['group']) puts(`M(${(entries += 1)})`); },
         writes: () => puts(`F(${(entries += 1)})`),
-        full: () => { window.localStorage.room = chance.of([0, Infinity]); },
+        full: () => { window.localStorage.room = random.of([0, Infinity]); },
         reload: () => loads({ sessionStorage: [...window.sessionStorage], localStorage: [...window.localStorage] }),
       };
       await loads({ sessionStorage: [], localStorage: [] });
-      for (let k = isGood ? 4 : 4 + chance.below(16); k > 0; k -= 1) {
-        const act = chance.of(['gives', ...Object.keys(acts)]);
+      for (let k = isGood ? 4 : 4 + random.below(16); k > 0; k -= 1) {
+        const act = random.of(['gives', ...Object.keys(actions)]);
         ends.add(act);
-        await acts[act]();
+        await actions[act]();
         isLaw(act);
-        for (let step = chance.of([0, 1, 1, 3, 12]); step > 0; step -= 1) {
-          await passes(chance.below(300));
+        for (let step = random.of([0, 1, 1, 3, 12]); step > 0; step -= 1) {
+          await passes(random.below(300));
           isLaw(act);
         }
       }
@@ -476,22 +476,22 @@ const PARTS = {
     };
     const pictures = new Pictures(python, 'class_blocks');
     let stories = 0;
-    return async (chance, isGood) => {
-      story = { breaks: () => !isGood && chance() < 0.3 };
+    return async (random, isGood) => {
+      story = { breaks: () => !isGood && random() < 0.3 };
       stories += 1;
       const came = {};
       const began_ms = now();
       const ends = [];
-      const count = 1 + chance.below(6);
+      const count = 1 + random.below(6);
       for (let k = 0; k < count; k += 1) {
-        const owner = chance.below(4);
-        const text = isGood || chance() < 0.9 ? `program ${k}` : '';
+        const owner = random.below(4);
+        const text = isGood || random() < 0.9 ? `program ${k}` : '';
         pictures.request(`${stories} ${owner}`, { text, robot: 'tinibot' }, (address) => {
           came[owner] = [address, now() - began_ms];
           ends.push(address ? 'made' : 'none');
         });
-        if (!isGood && chance() < 0.1) pictures.forget(`${stories} ${owner}`);
-        await passes(chance.below(300));
+        if (!isGood && random() < 0.1) pictures.forget(`${stories} ${owner}`);
+        await passes(random.below(300));
       }
       await passes(8000);
       if (most > 1) throw new Error(`${most} pictures are made at once, for which a STOP waits`);
@@ -509,9 +509,9 @@ const PARTS = {
     const notingClass = (name) => function made() { return noting(notes, name); };
     const beginning = (name) => function made() { // what is drawn is what came since it has begun
       let count = 0;
-      return new Proxy(this, { get: (_, what) => (...given) => {
-        count = what === 'begin' ? 0 : count + 1;
-        notes.push([name, what, count, ...given]);
+      return new Proxy(this, { get: (_, property) => (...args) => {
+        count = property === 'begin' ? 0 : count + 1;
+        notes.push([name, property, count, ...args]);
       } });
     };
     const page = freshPage({
@@ -537,7 +537,7 @@ const PARTS = {
     const types = (text) => { // breakpoints go with their lines
       pageState.programText.set(text);
       isSeen = false;
-      setsPoints(pageState.breakpoints.value.map((each) => ({ ...each, line: each.line + 1 })));
+      setsPoints(pageState.breakpoints.value.map((item) => ({ ...item, line: item.line + 1 })));
     };
     const checkPoints = () => {
       const wanted = [...new Set([...offsetsOf.values()].flat())];
@@ -564,44 +564,44 @@ const PARTS = {
     const line = page.byId('time_at');
     const marked = [];
     Object.assign(page.byId('time_marks'), { clientWidth: 200, clientHeight: 20, getContext: () => ({ fillRect: (x) => marked.push(x) }) });
-    const seen = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((each) => each.textContent)), structuredClone(pageState.fault.value)];
-    return async (chance, isGood) => {
+    const seen = () => [line.disabled || [line.min, line.max, line.value], page.byId('doing').textContent, page.byId('trace').textContent, page.byId('values').children.map((row) => row.children.map((item) => item.textContent)), structuredClone(pageState.fault.value)];
+    return async (random, isGood) => {
       notes.splice(0);
-      robot = virtualRobot(chance, isGood);
+      robot = virtualRobot(random, isGood);
       types('F(9)');
-      setsPoints(chance.of([[], [{ line: 1, column: 1, point: {} }]]));
+      setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }]]));
       page.byId('run').click();
-      if (!isGood && robot.does === 'runs' && chance() < 0.2) page.byId('run').click(); // twice
-      for (let k = chance.below(6); k > 0; k -= 1) {
-        await passes(100 + chance.below(300));
+      if (!isGood && robot.does === 'runs' && random() < 0.2) page.byId('run').click(); // twice
+      for (let k = random.below(6); k > 0; k -= 1) {
+        await passes(100 + random.below(300));
         marked.length = 0;
         notes.push(seen());
-        if (chance() < 0.3) {
-          setsPoints(chance.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
+        if (random() < 0.3) {
+          setsPoints(random.of([[], [{ line: 1, column: 1, point: {} }], [...pageState.breakpoints.value, { line: 1, column: 1, point: {} }]]));
           await passes(50);
           checkPoints();
         }
-        if (chance() < 0.2) {
-          types(`F(${chance.below(9)})`);
+        if (random() < 0.2) {
+          types(`F(${random.below(9)})`);
           await passes(200);
           checkPoints();
           if (pageState.virtualRun.value.ranges.length) throw new Error('it runs in another text');
         }
         notes.push([...marked]);
-        const pressed = page.byId(chance.of(['pause', 'step', 'push', 'time_at', 'nothing']));
+        const pressed = page.byId(random.of(['pause', 'step', 'push', 'time_at', 'nothing']));
         if (pressed === line && !line.disabled) {
-          line.value = String(chance.below(3000));
+          line.value = String(random.below(3000));
           line.dispatchEvent(new Event('input'));
           notes.push(seen());
         } else if (!pressed.hidden && !pressed.disabled) pressed.click();
       }
-      const end = chance.of(['stop', 'wait', 'again', 'again']); // again: while it runs
-      if (end === 'again') await passes(chance.below(40));
+      const end = random.of(['stop', 'wait', 'again', 'again']); // again: while it runs
+      if (end === 'again') await passes(random.below(40));
       if (end === 'wait' || isGood) await passes(4000);
       if (end === 'stop' || isGood) page.byId('stop').click();
       if (end !== 'again' || isGood) await passes(50);
       notes.push(seen());
-      return { ends: [end === 'again' ? document.documentElement.dataset['phase'] : end, robot.does], seen: notes.slice(notes.findLastIndex(([who, what]) => who === 'sounds' && what === 'begin')) };
+      return { ends: [end === 'again' ? document.documentElement.dataset['phase'] : end, robot.does], seen: notes.slice(notes.findLastIndex(([name, what]) => name === 'sounds' && what === 'begin')) };
     };
   },
 
@@ -647,7 +647,7 @@ const PARTS = {
     globalThis.AudioContext = Context;
     const { Sounds } = await page.load('virtual/sounds.js');
     const LATE_MS = 500, OPEN_MS = 3000, LEAST_MS = 10, CRASH_MS = 180;
-    return async (chance) => {
+    return async (random) => {
       const sounds = new Sounds();
       heard.length = 0;
       [context, hasDevice] = [null, true];
@@ -665,17 +665,17 @@ const PARTS = {
         wanted.push([begins_ms, begins_ms + Math.max(LEAST_MS, duration_ms), Math.max(20, Math.min(16_000, hertz))]);
       };
       const silences = () => {
-        for (const each of wanted) each[1] = Math.min(each[1], now());
+        for (const item of wanted) item[1] = Math.min(item[1], now());
         last_ms = 0;
       };
-      const acts = {
+      const actions = {
         begins() {
           silences();
           if (opens()) open_ms = now() + OPEN_MS;
           sounds.begin();
         },
         beeps() {
-          const hertz = chance.of([5, 440, 550, 20_000]), duration_ms = chance.of([1, 50, 300, 2000, 20_000]);
+          const hertz = random.of([5, 440, 550, 20_000]), duration_ms = random.of([1, 50, 300, 2000, 20_000]);
           beeps(hertz, duration_ms);
           sounds.beep(hertz, duration_ms / 1000);
         },
@@ -693,27 +693,27 @@ const PARTS = {
           sounds.silence();
         },
         mute() {
-          isMuted = chance() < 0.6;
+          isMuted = random() < 0.6;
           if (isMuted) silences();
           sounds.mute(isMuted);
         },
-        touches: () => { activation.hasBeenActive = chance() < 0.8; },
-        device: () => { hasDevice = chance() < 0.7; },
+        touches: () => { activation.hasBeenActive = random() < 0.8; },
+        device: () => { hasDevice = random() < 0.7; },
         waits: () => {},
       };
       const ends = new Set();
-      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
-        const act = chance.of(['beeps', 'beeps', ...Object.keys(acts)]);
+      for (let k = 4 + random.below(16); k > 0; k -= 1) {
+        const act = random.of(['beeps', 'beeps', ...Object.keys(actions)]);
         ends.add(act);
-        acts[act]();
+        actions[act]();
         const check = () => {
-          const found = heard.map((each) => [each.begins_ms, each.ends_ms, each.tone.frequency.value ?? 0]);
-          if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after it ${act} ${JSON.stringify(found)} is heard in place of ${JSON.stringify(wanted)}`);
+          const beeps = heard.map((item) => [item.begins_ms, item.ends_ms, item.tone.frequency.value ?? 0]);
+          if (JSON.stringify(beeps) !== JSON.stringify(wanted)) throw new Error(`after it ${act} ${JSON.stringify(beeps)} is heard in place of ${JSON.stringify(wanted)}`);
           const until_ms = Math.max(open_ms, ...wanted.map(([, end_ms]) => end_ms + OPEN_MS));
           if (context && context.state !== (until_ms > now() ? 'running' : 'suspended')) throw new Error(`after it ${act} the sound is ${context.state} until ${until_ms} at ${now()}`);
         };
         check();
-        await passes(chance.of([0, 20, 250, 2990, 3010, 9000]) + chance.below(9));
+        await passes(random.of([0, 20, 250, 2990, 3010, 9000]) + random.below(9));
         check();
       }
       activation.hasBeenActive = true;
@@ -731,21 +731,21 @@ const PARTS = {
     let began_ms = 0;
     const speech = { isHeldByStop: false, say: (key) => notes.push([now() - began_ms, key, speech.isHeldByStop]) };
     const stopping = new StopNotice(speech);
-    const acts = {
+    const actions = {
       stop: () => stopping.begin(),
       hide: () => stopping.begin('say_file'),
       confirm: () => stopping.confirm('BUTTON'),
       start: () => stopping.forget(),
       nothing: () => {},
     };
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       notes = [];
       began_ms = now();
-      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
-        acts[chance.of(Object.keys(acts))]();
-        await passes(chance.below(chance.of([LINK.confirm_ms / 2, 2 * LINK.confirm_ms])));
+      for (let k = 1 + random.below(4); k > 0; k -= 1) {
+        actions[random.of(Object.keys(actions))]();
+        await passes(random.below(random.of([LINK.confirm_ms / 2, 2 * LINK.confirm_ms])));
       }
-      const end = chance.of(isGood ? ['none', 'confirm'] : ['confirm', 'over']);
+      const end = random.of(isGood ? ['none', 'confirm'] : ['confirm', 'over']);
       if (end === 'confirm') stopping.confirm('SEQUENCE');
       if (end === 'over') notes.push(stopping.end()());
       if (isGood) await passes(2 * LINK.confirm_ms);
@@ -759,9 +759,9 @@ const PARTS = {
   async flashing() {
     let notes = [];
     let fails = () => '';
-    const failed = async (at, value) => {
+    const failed = async (stage, value) => {
       await later(10);
-      if (fails(at)) throw new Broken('Error');
+      if (fails(stage)) throw new Broken('Error');
       return value;
     };
     const page = freshPage({
@@ -786,10 +786,10 @@ const PARTS = {
     const speech = { say: (key) => notes.push(key), sayFailure: (failure) => notes.push(failure.reason) };
     let isFree = true;
     new Flashing({ speech, port: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, meet: () => failed('meet') });
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       notes = [];
-      const end = isGood ? 'good' : chance.of(['good', 'port', 'firmware', 'flash', 'meet', 'cancel']);
-      fails = (at) => at === end;
+      const end = isGood ? 'good' : random.of(['good', 'port', 'firmware', 'flash', 'meet', 'cancel']);
+      fails = (stage) => stage === end;
       pageState.robotName.set(isGood ? 'liner' : 'tinibot');
       page.byId('flash_board').value = 'uno';
       const chooser = page.byId('flash_file');
@@ -798,7 +798,7 @@ const PARTS = {
         chooser.dispatchEvent(new Event('change'));
       }
       page.byId('flash_write').click();
-      if (chance() < 0.3) page.byId('flash_write').click();
+      if (random() < 0.3) page.byId('flash_write').click();
       await passes(end === 'cancel' ? 40 : 300);
       if (end === 'cancel') page.byId('flash_cancel').click();
       await passes(200);
@@ -812,14 +812,14 @@ const PARTS = {
   async worker() {
     const SOURCE = 'en', NEEDS = { lesson_list: 'lessons.zip', group_join: 'together.zip' };
     let pages = 0;
-    return async (chance) => {
+    return async (random) => {
       const number = (pages += 1);
       const there = new Set(), learnt = new Set(); // what Python has
       const under = new Map(), lost = []; // what is fetched, how often; what was lost, and when
       const posted = new Map(), reached = new Map(), asked = new Map();
       let wrong = '', ready = '';
-      const fails = (what) => { wrong ||= what; };
-      const first = chance() < 0.8 ? '' : chance.of(['tiniscript.zip', 'messages.en.json', 'messages.es.json', 'pyodide']);
+      const fails = (message) => { wrong ||= message; };
+      const first = random() < 0.8 ? '' : random.of(['tiniscript.zip', 'messages.en.json', 'messages.es.json', 'pyodide']);
       let loses = (name) => name === first;
       const page = freshPage({
         loadPyodide: async () => {
@@ -854,35 +854,35 @@ const PARTS = {
         posted.set(id, error ? 'error' : 'answer');
         const { what, language, at, messages } = asked.get(id);
         const needs = what === 'learn' ? messages : NEEDS[what];
-        if (error && !lost.some((each) => each.name === needs && each.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
+        if (error && !lost.some((item) => item.name === needs && item.at >= at) && ready !== 'failed') fails(`${what} fails: ${error}`);
         if (!error && what !== 'learn' && (!reached.has(id) || JSON.parse(answer).id !== id)) fails(`${what} is answered, and was not done`);
         if (!error && what === 'learn' && !learnt.has(language)) fails(`${language} is learnt, and is not there`);
       };
-      globalThis.name = chance.of(['', 'en', 'es']);
+      globalThis.name = random.of(['', 'en', 'es']);
       playsFetch(async (address) => {
         const name = String(address).replace('./', '');
         if (name.endsWith('.zip') && (there.has(name) || under.get(name))) fails(`${name} is fetched again`);
         if (learnt.has(name.split('.')[1])) fails(`${name} is fetched again`);
         under.set(name, (under.get(name) ?? 0) + 1);
         const isLost = loses(name);
-        await later(ready ? 5 + chance.below(chance.of([20, 400])) : name.endsWith('.zip') ? 10 : 20);
+        await later(ready ? 5 + random.below(random.of([20, 400])) : name.endsWith('.zip') ? 10 : 20);
         under.set(name, under.get(name) - 1);
         if (isLost) lost.push({ name, at: now() });
-        if (isLost && chance() < 0.5) throw new Broken();
+        if (isLost && random() < 0.5) throw new Broken();
         return { ok: !isLost, status: isLost ? 503 : 200, body: null, arrayBuffer: async () => Object.assign(new ArrayBuffer(1), { name: isLost ? `not ${name}` : name }) };
       });
       await page.load('worker.js');
       await passes(30);
       const isBroken = first !== '' && first !== 'messages.es.json';
       if (ready !== (isBroken ? 'failed' : 'ready')) throw new Error(`without ${first} it is ${ready}`);
-      loses = () => chance() < 0.3;
+      loses = () => random() < 0.3;
       let count = 0;
-      for (let k = 2 + chance.below(8); k > 0; k -= 1) {
-        const what = chance.of(['check', 'learn', 'learn', 'lesson_list', ...Object.keys(NEEDS)]), language = chance.of(['es', 'pt', 'en']);
+      for (let k = 2 + random.below(8); k > 0; k -= 1) {
+        const what = random.of(['check', 'learn', 'learn', 'lesson_list', ...Object.keys(NEEDS)]), language = random.of(['es', 'pt', 'en']);
         const id = (count += 1), messages = `messages.${language}.json`;
         asked.set(id, { what, language, messages, at: now(), isUnder: under.get(messages) > 0 });
         dispatchEvent(Object.assign(new Event('message'), { data: { id, request: JSON.stringify({ do: what, language, id }) } }));
-        await passes(chance.of([0, 5, 50, 200]));
+        await passes(random.of([0, 5, 50, 200]));
       }
       await passes(500);
       if (wrong) throw new Error(`page ${number}: ${wrong}`);
@@ -897,14 +897,14 @@ const PARTS = {
     const page = freshPage();
     const { watchedFetch } = await page.load('page/progress.js');
     const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
-    return async (chance) => {
+    return async (random) => {
       const began_ms = now(), told = [];
       const tells = (what) => told.push([Math.round(now() - began_ms), what]);
       const cancelling = new AbortController();
-      const gap = () => 7 * (chance.of([1, 1, 70, 70, 410, 440, 1000, 2700, 3000]) + chance.below(12)); // neither limit at the same time
-      const how = chance.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
-      const answer_ms = gap(), gaps = Array.from({ length: chance.below(5) }, gap), end_ms = gap();
-      const cancel_ms = chance() < 0.4 ? 7 * chance.below(chance.of([400, 6000])) + 3 : Infinity;
+      const gap = () => 7 * (random.of([1, 1, 70, 70, 410, 440, 1000, 2700, 3000]) + random.below(12)); // neither limit at the same time
+      const how = random.of(['whole', 'whole', 'broken', 'broken', 'refused', 'lost']);
+      const answer_ms = gap(), gaps = Array.from({ length: random.below(5) }, gap), end_ms = gap();
+      const cancel_ms = random() < 0.4 ? 7 * random.below(random.of([400, 6000])) + 3 : Infinity;
       if (cancel_ms < Infinity) later(cancel_ms).then(() => cancelling.abort(new Broken('cancelled')));
       const fetcher = (_, { signal }) => new Promise((resolve, reject) => {
         signal.addEventListener('abort', () => reject(signal.reason));
@@ -970,30 +970,30 @@ const PARTS = {
         return { robot: request.robot, findings: [], image: `of ${new TextDecoder().decode(data)}`, names_robot: false };
       },
     };
-    const checking = new Checker(python, (why) => notes.push(String(why)));
+    const checking = new Checker(python, (error) => notes.push(String(error)));
     pageState.checkResult.subscribe((answer) => {
       if (answer && answer.image !== `of ${pageState.programText.value}`) throw new Error('it is said of another text');
       notes.push(answer?.image);
     });
     checking.markReady();
     let open = 0;
-    return async (chance, isGood) => {
-      breaks = () => !isGood && chance() < 0.3;
+    return async (random, isGood) => {
+      breaks = () => !isGood && random() < 0.3;
       const ends = [];
-      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
-        const text = isGood ? `${chance.of(['F', 'B'])}(${k})` : chance.of(['F(1)', 'B(2)', 'R(3)']);
+      for (let k = 1 + random.below(5); k > 0; k -= 1) {
+        const text = isGood ? `${random.of(['F', 'B'])}(${k})` : random.of(['F(1)', 'B(2)', 'R(3)']);
         if (isGood) pageState.programText.set('');
         notes = [];
         pageState.programText.set(text);
         if (pageState.checkResult.value) throw new Error('what is said is of the text before');
         notes.push(document.documentElement.dataset['state']);
-        if (!isGood && chance() < 0.3) {
+        if (!isGood && random() < 0.3) {
           open += 1;
           checking.whenChecked().then(() => { open -= 1; });
         }
-        await passes(isGood ? 1000 : chance.below(400));
+        await passes(isGood ? 1000 : random.below(400));
         ends.push(document.documentElement.dataset['state']);
-        if (!isGood && chance() < 0.1) {
+        if (!isGood && random() < 0.1) {
           checking.markFailed();
           await settles();
           if (open) throw new Error('they wait for a compiler that cannot be had');
@@ -1017,51 +1017,51 @@ const PARTS = {
     const places = [[0, 1, 1, 1, 5], [2, 2, 1, 4, 9], [4, 3, 1, 3, 5], [6, 5, 1, 7, 9], [8, 6, 1, 6, 5]];
     const inWhen = { 4: 'first', 8: 'other' }; // by the offset of what it does
     let run = null;
-    return async (chance, isGood) => {
-      const [of, file] = isGood ? ['virtual', 'a run'] : chance.of([['virtual', 'a run'], ['virtual', 'a run'], ['virtual', ''], ['real', ''], ['real', 'a run']]);
+    return async (random, isGood) => {
+      const [of, file] = isGood ? ['virtual', 'a run'] : random.of([['virtual', 'a run'], ['virtual', 'a run'], ['virtual', ''], ['real', ''], ['real', 'a run']]);
       if (isGood && run?.origin.of === of && run.file) run.restart(); // it is played again
       else run = new Run({ of, text, robot: 'tinibot', program: '1' }, { ...PROGRAM, places }, null);
       run.file = file;
       run.fileRows = file ? [[5, 'READ DISTANCE 1'], [500, 'READ DISTANCE 2']] : [];
       const isKept = run.origin.of === 'virtual' && !run.file; // what comes is what its file has
       const marks = [], rows = [];
-      let now_ms = chance.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
+      let now_ms = random.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
       const marked = (at_ms, kind) => {
         marks.push({ at_ms, kind });
         if (marks.length > MOST_MARKS) marks.splice(0, MOST_MARKS / 2);
       };
       const add = (count) => {
-        now_ms += 1 + chance.below(90);
-        const events = Array.from({ length: count }, () => [now_ms, chance.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]);
+        now_ms += 1 + random.below(90);
+        const events = Array.from({ length: count }, () => [now_ms, random.of(['SHOW 1', 'MOTORS 1 2', 'READ DISTANCE 5', 'FAULT 1', 'BEEP 97 100']), 0]);
         for (const [at_ms, event] of events) if (!event.startsWith('READ')) marked(at_ms, ['SHOW', 'FAULT', 'BEEP'].find((word) => event.startsWith(word)) ?? '');
-        if (chance() < 0.1) {
+        if (random() < 0.1) {
           bumps += 1;
           marked(now_ms, 'BUMP');
         }
-        const at = [0, ...chance() < 0.7 ? [chance.of([2, 4, 4, 6, 8, 8])] : []], begins = at.map((each) => inWhen[each]).filter(Boolean);
-        if (begins.some((each) => !begun.includes(each))) marked(now_ms, 'WHEN');
+        const at = [0, ...random() < 0.7 ? [random.of([2, 4, 4, 6, 8, 8])] : []], begins = at.map((item) => inWhen[item]).filter(Boolean);
+        if (begins.some((item) => !begun.includes(item))) marked(now_ms, 'WHEN');
         begun = begins;
-        const more = chance() < 0.3 ? [[now_ms, chance.of(['KEYS 0 0 0', 'KEYS 1 0 0', 'KEYS 0 50 -5', `READ DISTANCE ${chance.below(9)}`])]] : [];
+        const more = random() < 0.3 ? [[now_ms, random.of(['KEYS 0 0 0', 'KEYS 1 0 0', 'KEYS 0 50 -5', `READ DISTANCE ${random.below(9)}`])]] : [];
         if (isKept) {
           for (const [at_ms, row] of more) if (row.startsWith('KEYS') && row !== 'KEYS 0 0 0') marked(at_ms, 'KEYS');
           rows.push(...more);
         }
-        const parts = chance() < 0.05 ? { at_ms: chance() < 0.5 ? now_ms : null } : null;
+        const parts = random() < 0.05 ? { at_ms: random() < 0.5 ? now_ms : null } : null;
         if (parts && !parting) {
           parting = parts;
           if (parts.at_ms !== null) marked(parts.at_ms, 'PART');
         }
-        const is_full = chance() < 0.1;
+        const is_full = random() < 0.1;
         if (!is_full && run.origin.of === 'virtual') end_ms = now_ms;
         run.add({ now_ms, bumps, parting: parts, events, at: 0, places: at, is_running: true, is_full, rows: more });
       };
-      for (let k = chance.below(60); k > 0; k -= 1) add(chance.below(3));
-      if (!isGood && chance() < 0.05) for (let k = 0; k < 5; k += 1) add(5000);
-      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found).slice(0, 400)} in place of ${JSON.stringify(wanted).slice(0, 400)}`); };
-      is(run.marks, marks, 'marks');
-      is([run.rows, run.end_ms, run.parting], [rows, end_ms, parting], 'what its file has, its end, and where it parts');
+      for (let k = random.below(60); k > 0; k -= 1) add(random.below(3));
+      if (!isGood && random() < 0.05) for (let k = 0; k < 5; k += 1) add(5000);
+      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual).slice(0, 400)} in place of ${JSON.stringify(expected).slice(0, 400)}`); };
+      assertSame(run.marks, marks, 'marks');
+      assertSame([run.rows, run.end_ms, run.parting], [rows, end_ms, parting], 'what its file has, its end, and where it parts');
       const known = rows.length ? rows : run.fileRows;
-      for (const at_ms of [0, 50, 600, now_ms / 2]) is(run.readAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
+      for (const at_ms of [0, 50, 600, now_ms / 2]) assertSame(run.readAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
       const { moments, seconds } = run;
       return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds]) };
     };
@@ -1075,7 +1075,7 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
     const LESSONS = ['tinibot', 'liner', 'tinibot'].map((robot, k) => ({ name: `lesson${k}`, title: 'L', block_title: 'L', robot, worlds: 2, world: {} }));
-    let late = () => 5;
+    let delay = () => 5;
     let verdict = '';
     let parts = 0;
     const isRightOn = (robot, text) => ['', robot].includes(/tinibot|liner|$/.exec(text)[0]);
@@ -1084,7 +1084,7 @@ const PARTS = {
       async ask(request, bytes) {
         const isLast = request.do === 'lesson_go' && (parts -= 1) < 0;
         const own = verdict;
-        await later(late());
+        await later(delay());
         if (request.do === 'lesson_titles') return { lessons: LESSONS };
         if (request.do === 'lesson_steps') return { steps: [{ blocks: [{ kind: 'program', rows: [[`F(${request.number})`]] }], hint: '' }], block_steps: [], taught: [] };
         if (request.do === 'check') return { image: isRightOn(request.robot, new TextDecoder().decode(bytes)) ? '00' : '' };
@@ -1092,7 +1092,7 @@ const PARTS = {
       },
     };
     let stops = () => {};
-    const driving = { showLesson: () => later(late()), leaveLesson() {}, stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
+    const driving = { showLesson: () => later(delay()), leaveLesson() {}, stop: () => stops(), play: () => new Promise((resolve) => { stops = resolve; setTimeout(resolve, 200); }) };
     const work = { text: '', robot: '', name: '', lesson: '', own: null };
     pageState.view.set('text');
     pageState.robotName.subscribe((robot) => { work.robot = robot; });
@@ -1130,7 +1130,7 @@ const PARTS = {
     await passes(500);
     const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
       page.byId('lesson_findings').children.length, page.byId('lesson_next').hidden, page.byId('lesson_end').textContent, page.byId('lesson_check').hidden];
-    const acts = {
+    const actions = {
       check: () => page.byId('lesson_check').click(),
       end: () => page.byId('lesson_end').click(),
       edit: () => pageState.programText.set('F(1)'),
@@ -1151,42 +1151,42 @@ const PARTS = {
       await passes(3000);
       if (chosen && String(1 + LESSONS.indexOf(openLesson())) !== chosen) throw new Error(`${openLesson().name} is seen, and ${chosen} was chosen`);
     };
-    const written = (chance) => `F(${chance.below(1000)}) ${chance.of(['', '// tinibot', '// liner'])}`; // and where it is right
+    const written = (random) => `F(${random.below(1000)}) ${random.of(['', '// tinibot', '// liner'])}`; // and where it is right
     const goesTo = (side) => {
       page.byId('lessons').hidden = side !== 'side_lessons';
       pageState.sideId.set(side);
       page.byId(side).click();
     };
     const takes = { // lessons, in any order
-      chooses(chance) {
-        chosen = page.byId('lesson').value = String(1 + chance.below(LESSONS.length));
+      chooses(random) {
+        chosen = page.byId('lesson').value = String(1 + random.below(LESSONS.length));
         page.byId('lesson').dispatchEvent(new Event('change'));
       },
       uses: () => page.byId('lesson_step').children[0].children[1].click(),
-      writes(chance) { // a lesson's program, which is then that of the lesson that is seen
+      writes(random) { // a lesson's program, which is then that of the lesson that is seen
         const { lesson } = work, wanted = lesson && (pageState.groupName.value ? '' : pageState.sideId.value === 'side_lessons' ? openLesson().name : lesson);
-        pageState.programText.set(written(chance));
+        pageState.programText.set(written(random));
         if (work.lesson !== wanted) throw new Error(`what was written at ${wanted || 'no lesson'} is of ${work.lesson}`);
       },
       empties: () => pageState.programText.set(''),
-      robot: (chance) => pageState.robotName.set(chance.of(['tinibot', 'liner'])),
-      goes: (chance) => goesTo(chance.of(['side_lessons', 'side_virtual'])),
-      checks: () => acts.check(),
+      robot: (random) => pageState.robotName.set(random.of(['tinibot', 'liner'])),
+      goes: (random) => goesTo(random.of(['side_lessons', 'side_virtual'])),
+      checks: () => actions.check(),
       leaves: () => lessons.leave(),
-      joins(chance) { // its program is nobody's own, and no lesson's
+      joins(random) { // its program is nobody's own, and no lesson's
         if (pageState.groupName.value) return;
         keptBefore = kept();
         hasGroupText = false;
         pageState.groupName.set('red');
-        if (chance() < 0.5) pageState.programText.set(written(chance)); // else it is on its way
+        if (random() < 0.5) pageState.programText.set(written(random)); // else it is on its way
       },
-      async wavers(chance) { // before the lesson has said whether the program is for its robot
+      async wavers(random) { // before the lesson has said whether the program is for its robot
         goesTo('side_lessons');
         takes.erases();
-        takes[chance.of(['opens', 'writes'])](chance);
-        takes.chooses(chance);
-        await passes(chance.below(500));
-        takes[chance.of(['chooses', 'writes', 'robot', 'joins'])](chance);
+        takes[random.of(['opens', 'writes'])](random);
+        takes.chooses(random);
+        await passes(random.below(500));
+        takes[random.of(['chooses', 'writes', 'robot', 'joins'])](random);
       },
       erases() { // whoever else uses this device
         if (pageState.groupName.value) return;
@@ -1198,22 +1198,22 @@ const PARTS = {
         pageState.language.set('en');
       },
       quits: () => pageState.groupName.set(''),
-      opens(chance) {
+      opens(random) {
         mine = '';
-        opens({ text: written(chance), robot: chance.of(['tinibot', 'liner']), name: `${chance.below(9)}.ts` });
+        opens({ text: written(random), robot: random.of(['tinibot', 'liner']), name: `${random.below(9)}.ts` });
       },
     };
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : 5 + chance.below(300));
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : 5 + random.below(300));
       let end = '';
-      for (let k = 1 + chance.below(4); k > 0; k -= 1) {
-        verdict = chance.of(['passed', 'failed', 'mistakes']);
-        parts = chance.below(4);
-        end = chance.of(isGood ? ['edit', 'end'] : ['check', 'check', 'end', 'edit']);
-        if (end === 'end') await passes(chance.below(100));
-        if (isGood) acts.edit();
-        acts[end]();
-        if (!isGood) await passes(chance.below(400));
+      for (let k = 1 + random.below(4); k > 0; k -= 1) {
+        verdict = random.of(['passed', 'failed', 'mistakes']);
+        parts = random.below(4);
+        end = random.of(isGood ? ['edit', 'end'] : ['check', 'check', 'end', 'edit']);
+        if (end === 'end') await passes(random.below(100));
+        if (isGood) actions.edit();
+        actions[end]();
+        if (!isGood) await passes(random.below(400));
       }
       const seen = [said()];
       if (!isGood) return { ends: [end], seen };
@@ -1221,14 +1221,14 @@ const PARTS = {
         await passes(50);
         seen.push(said());
       }
-      acts.check();
+      actions.check();
       await passes(3000);
       seen.push(said());
-      late = () => 5 + chance.below(300);
-      for (let k = 10 + chance.below(40); k > 0; k -= 1) {
-        await takes[chance.of(['chooses', 'writes', ...Object.keys(takes)])](chance);
+      delay = () => 5 + random.below(300);
+      for (let k = 10 + random.below(40); k > 0; k -= 1) {
+        await takes[random.of(['chooses', 'writes', ...Object.keys(takes)])](random);
         checkKept();
-        await (chance() < 0.15 ? rests() : passes(chance.below(chance.of([50, 100, 1000]))));
+        await (random() < 0.15 ? rests() : passes(random.below(random.of([50, 100, 1000]))));
         checkKept();
       }
       await rests();
@@ -1243,22 +1243,22 @@ const PARTS = {
   async asking() {
     const page = freshPage();
     const { RequestQueue, ConnectionFailure } = await page.load('robot/transport.js');
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       const told = [];
       let open = 0;
       let isOver = false;
-      const end = chance.of(isGood ? ['stays'] : ['stays', 'goes', 'goes']);
-      const asking = new RequestQueue({ onEvent: ({ event }) => told.push(event), onEnd: (why) => told.push(why.reason) });
+      const end = random.of(isGood ? ['stays'] : ['stays', 'goes', 'goes']);
+      const asking = new RequestQueue({ onEvent: ({ event }) => told.push(event), onEnd: (error) => told.push(error.reason) });
       asking.send = async () => {
         const sent = asking.requests.splice(0);
-        await later(isGood ? 5 : chance.below(300));
+        await later(isGood ? 5 : random.below(300));
         for (const { id, what } of sent) if (!isOver) asking.takeNews({ id, ok: what });
       };
       for (let k = 0; k < 6; k += 1) {
         open += 1;
-        asking.ask({ what: k }).then(({ ok }) => told.push(ok), (why) => told.push(why.reason)).finally(() => { open -= 1; });
-        await passes(chance.below(100));
-        if (end === 'goes' && !isOver && chance() < 0.4) {
+        asking.ask({ what: k }).then(({ ok }) => told.push(ok), (error) => told.push(error.reason)).finally(() => { open -= 1; });
+        await passes(random.below(100));
+        if (end === 'goes' && !isOver && random() < 0.4) {
           isOver = true;
           asking.end(new ConnectionFailure('gone'));
         }
@@ -1291,7 +1291,7 @@ const PARTS = {
     };
     const { Python } = await page.load('python.js');
     const NOTICE_MS = 3000, TIMEOUT_MS = 20_000;
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       workers.length = 0;
       const told = [], wanted = [];
       const listens = () => ({ onWait: () => told.push('waits'), onFail: () => told.push('fails'), onBegin: () => told.push('begins') });
@@ -1314,7 +1314,7 @@ const PARTS = {
         [isThere, isLate] = [false, false];
         wanted.push('fails');
       };
-      const acts = {
+      const actions = {
         asks() {
           const number = (asks += 1);
           if (isThere) open.add(number);
@@ -1325,7 +1325,7 @@ const PARTS = {
           const [request] = newest().asked.splice(0, 1);
           if (!isThere || !request) return;
           open.delete(request.number);
-          const isError = chance() < 0.3;
+          const isError = random() < 0.3;
           wantedEnds.push([request.number, isError ? 'rejected' : request.number]);
           newest().says(isError ? { id: request.id, error: 'no' } : { id: request.id, answer: JSON.stringify(request.number) });
         },
@@ -1363,21 +1363,21 @@ const PARTS = {
         },
       };
       const goesOn = async (ms) => { // nobody waits for a worker that says nothing
-        for (const [limit_ms, does] of [[NOTICE_MS, () => { isLate = true; wanted.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
+        for (const [limit_ms, callback] of [[NOTICE_MS, () => { isLate = true; wanted.push('waits'); }], [TIMEOUT_MS, () => fails('silent')]]) {
           const worker = newest(), left_ms = worker.began_ms + limit_ms - now();
-          if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) does();
+          if (isThere && !worker.hasSpoken && left_ms > 0 && left_ms <= ms) callback();
         }
         await passes(ms);
       };
-      for (let k = 6 + chance.below(20); k > 0; k -= 1) {
-        const act = chance.of(['asks', 'asks', 'answers', 'waits', 'tries', 'tries', 'listens', chance.of(isGood ? ['begins', 'readies'] : Object.keys(acts))]);
-        acts[act]();
-        await goesOn(chance.of([0, 10, 2000, 19_000, 25_000]));
-        const is = (found, right, what) => { if (JSON.stringify(found) !== JSON.stringify(right)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(right)}`); };
-        is(told, wanted, 'it is told');
-        is(ended, wantedEnds, 'asks end');
-        is([python.isLate, isAnswering], [isLate, isReady], 'late and ready');
-        is(workers.map(({ isEnded }) => isEnded), workers.map((worker) => !isThere || worker !== newest()), 'those that have ended');
+      for (let k = 6 + random.below(20); k > 0; k -= 1) {
+        const act = random.of(['asks', 'asks', 'answers', 'waits', 'tries', 'tries', 'listens', random.of(isGood ? ['begins', 'readies'] : Object.keys(actions))]);
+        actions[act]();
+        await goesOn(random.of([0, 10, 2000, 19_000, 25_000]));
+        const assertSame = (actual, right, label) => { if (JSON.stringify(actual) !== JSON.stringify(right)) throw new Error(`after ${act} ${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(right)}`); };
+        assertSame(told, wanted, 'it is told');
+        assertSame(ended, wantedEnds, 'asks end');
+        assertSame([python.isLate, isAnswering], [isLate, isReady], 'late and ready');
+        assertSame(workers.map(({ isEnded }) => isEnded), workers.map((worker) => !isThere || worker !== newest()), 'those that have ended');
       }
       return { ends: [...ends], seen: [] };
     };
@@ -1398,10 +1398,10 @@ const PARTS = {
       takenCount += 1;
       return answers({});
     });
-    return async (chance) => {
-      chanceNow = chance;
+    return async (random) => {
+      chanceNow = random;
       takenCount = 0;
-      const pupils = Array.from({ length: chance.below(6) }, (_, k) => ({ name: `P${k}`, text: 'F(1)', robot: '', lessons: [] }));
+      const pupils = Array.from({ length: random.below(6) }, (_, k) => ({ name: `P${k}`, text: 'F(1)', robot: '', lessons: [] }));
       const opened = openWork({ size: 9, text: async () => JSON.stringify({ tiniscript_class: CLASS.form, pupils }) });
       await passes(50);
       const openedCount = await opened;
@@ -1446,10 +1446,10 @@ const PARTS = {
     await passes(10);
     const [bar, wall] = page.byId('class').children;
     const [status, chips, giveBack, anew] = bar.children;
-    const [large, giving, settings, code] = ['big_pupil', 'class_giving', 'class_window', 'big_code'].map((id) => document.body.children.find((each) => each.id === id));
+    const [large, giving, settings, code] = ['big_pupil', 'class_giving', 'class_window', 'big_code'].map((id) => document.body.children.find((item) => item.id === id));
     const [robotList, lines] = [settings.children[1].children[1], settings.children[1].children];
     const [port, lends] = [lines[2].children[0].children.at(-1), lines[2].children[1]], [minutes, places] = [3, 4].map((k) => lines[k].children[0].children.at(-1));
-    const within = (part, className) => part.children.find((each) => each.className?.split(' ').includes(className));
+    const within = (part, className) => part.children.find((item) => item.className?.split(' ').includes(className));
     const codeSeen = () => Number(code.querySelectorAll('strong').at(-1).textContent);
     let numbers = 0;
     let states = 0; // told; a class's code is the number of the newest
@@ -1458,17 +1458,17 @@ const PARTS = {
     let room_ = { turn_s: 60, places: 2, goes_on: false };
     const groupOf = (number) => [...groups].find(([, { pupils }]) => pupils.includes(number))?.[0];
     const seenLarge = () => large.open && [large.querySelectorAll('h2')[0].textContent, large.children[1].children[1].textContent, open.get(large.children[1].children[0].children[0].src)];
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       let lost = false;
       let isClosed = !large.open; // by somebody
       let newest = 0; // of the states that were seen
       let isLate = () => !isGood;
       let asked = []; // besides what is asked again and again
       let polls = 0;
-      const does = {
+      const handlers = {
         class_hand: ({ pupil }) => { const found = [...here.values()].find(({ number }) => number === pupil); if (found) found.hand = 0; },
         class_next: ({ pupil }) => { const found = [...here.values()].find(({ number }) => number === pupil); if (found) found.robot = ''; },
-        class_remove: ({ pupil }) => { for (const [who, { number }] of here) if (number === pupil) here.delete(who); },
+        class_remove: ({ pupil }) => { for (const [name, { number }] of here) if (number === pupil) here.delete(name); },
         class_forget: ({ key }) => kept.delete(key),
         class_robot: ({ port: id, gives }) => (gives ? robots.set(id, { name: '', pupil: '', left_s: 0 }) : robots.delete(id)),
         class_turn: ({ seconds }) => { room_.turn_s = seconds; },
@@ -1478,17 +1478,17 @@ const PARTS = {
       room = async (request) => {
         if (request.do === 'class') polls += 1;
         if (!REPEATED.includes(request.do)) asked.push(request);
-        const isLost = isLate() && chance() < 0.5;
-        if (!isLost) does[request.do]?.(request);
+        const isLost = isLate() && random() < 0.5;
+        if (!isLost) handlers[request.do]?.(request);
         const [pupils, works, shared, lent] = [here, kept, groups, robots].map((all) => structuredClone([...all]));
         const state = { ...room_, code: String((states += 1)) };
-        await later(isLate() ? chance.below(300) : 5);
+        await later(isLate() ? random.below(300) : 5);
         if (isLost) {
           lost ||= request.do === 'class_text';
           throw new Broken();
         }
         if (request.do === 'ports') return answers({ ports: [{ port: 'p1', name: '' }, { port: 'p2', name: 'Bo' }] });
-        if (request.do === 'class_run') return answers({ run: isLate() ? chance.of(['', null, null]) : 'its file' });
+        if (request.do === 'class_run') return answers({ run: isLate() ? random.of(['', null, null]) : 'its file' });
         if (request.do === 'class_text') {
           const [, found] = [...pupils, ...works, ...shared].find(([name, { number }]) => (request.pupil ? number === request.pupil : name === (request.key ?? request.group))) ?? [];
           return answers({ text: found?.text ?? '', robot: 'tinibot', version: found?.version ?? 0, history: found?.pupils ? [`made ${found.text}`] : [] });
@@ -1499,7 +1499,7 @@ const PARTS = {
           groups: shared.map(([key, { pupils: members, version }]) => ({ key, name: key, pupils: members, version })), robots: lent.map(([id, row]) => ({ port: id, ...row })),
         });
       };
-      const name = () => chance.of(['Ana', 'Luz', 'Teo', 'Eva']);
+      const name = () => random.of(['Ana', 'Luz', 'Teo', 'Eva']);
       const pupil = () => here.get(name());
       const changes = (fields) => () => { const found = pupil(); if (found) Object.assign(found, fields()); };
       const presses = (part, wanted) => {
@@ -1509,27 +1509,27 @@ const PARTS = {
         const [request, ...more] = asked.slice(before);
         if (more.length || !request || !wanted(request)) throw new Error(`${JSON.stringify([request, ...more])} is asked by ${part.className || part.dataset['text']}`);
       };
-      const tileOf = () => chance.of([...wall.children, null]);
+      const tileOf = () => random.of([...wall.children, null]);
       const numberOf = (tile) => here.get(tile?.children[0].textContent.split(' · ')[0])?.number;
       const tilePresses = (className, what) => () => {
         const tile = tileOf(), number = numberOf(tile);
         if (number) presses(within(tile, className), (request) => request.do === what && request.pupil === number);
       };
-      const acts = {
+      const actions = {
         comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
-        writes: changes(() => ({ text: chance() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
-        waves: changes(() => ({ hand: chance.below(3), place: chance.below(3), silent_s: chance.of([0, 9]), is_right: chance() < 0.5 })),
-        drives: changes(() => ({ robot: chance.of(['', 'Bo']), left_s: chance.below(99) })),
-        learns: changes(() => ({ lessons: ['1 one', '2 two'].slice(chance.below(3)), own_robot: { name: chance.of(['', 'Zip']), colour: 0 } })),
+        writes: changes(() => ({ text: random() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
+        waves: changes(() => ({ hand: random.below(3), place: random.below(3), silent_s: random.of([0, 9]), is_right: random() < 0.5 })),
+        drives: changes(() => ({ robot: random.of(['', 'Bo']), left_s: random.below(99) })),
+        learns: changes(() => ({ lessons: ['1 one', '2 two'].slice(random.below(3)), own_robot: { name: random.of(['', 'Zip']), colour: 0 } })),
         goes: () => { here.delete(name()); },
         kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${numbers})`, version: 0 }); },
         joins: () => {
           const found = pupil();
           for (const group of groups.values()) group.pupils = group.pupils.filter((number) => number !== found?.number);
-          if (found && chance() < 0.7) groups.set(chance.of(['red', 'tan']), { text: `G(${numbers})`, version: (numbers += 1), pupils: [found.number] });
+          if (found && random() < 0.7) groups.set(random.of(['red', 'tan']), { text: `G(${numbers})`, version: (numbers += 1), pupils: [found.number] });
         },
-        robots: () => robots.set(chance.of(['p1', 'p2']), { name: chance.of(['', 'Bo']), pupil: chance.of(['', 'Ana']), left_s: chance.below(99) }),
-        rules: () => { room_ = { turn_s: 60 * (1 + chance.below(9)), places: 1 + chance.below(9), goes_on: chance() < 0.5 }; },
+        robots: () => robots.set(random.of(['p1', 'p2']), { name: random.of(['', 'Bo']), pupil: random.of(['', 'Ana']), left_s: random.below(99) }),
+        rules: () => { room_ = { turn_s: 60 * (1 + random.below(9)), places: 1 + random.below(9), goes_on: random() < 0.5 }; },
         speaks: () => { languages += 1; pageState.language.set('en'); },
         looks() {
           const tile = tileOf();
@@ -1543,7 +1543,7 @@ const PARTS = {
           large.close();
           isClosed = true;
         },
-        steps: () => large.open && chance.of([large.children[0].children[0], large.children[0].children[2]]).click(),
+        steps: () => large.open && random.of([large.children[0].children[0], large.children[0].children[2]]).click(),
         gives: () => giving.showModal(),
         lowers: tilePresses('hand', 'class_hand'),
         removes: tilePresses('out', 'class_remove'),
@@ -1553,32 +1553,32 @@ const PARTS = {
         },
         ends() { // of who is seen large
           const number = here.get(seenLarge()[0])?.number;
-          const [what, button] = chance.of(Object.entries({ class_hand: 4, class_stop: 5, class_next: 6, class_remove: 7 }));
+          const [what, button] = random.of(Object.entries({ class_hand: 4, class_stop: 5, class_next: 6, class_remove: 7 }));
           if (!number) return;
           presses(large.children[0].children[button], (request) => request.do === what && request.pupil === number);
           if (what === 'class_remove' && large.open) throw new Error('who is removed is seen large');
           isClosed ||= what === 'class_remove';
         },
-        takes: () => presses(chance.of([...robotList.children, null])?.children[2], (request) => request.do === 'class_robot' && !request.gives),
+        takes: () => presses(random.of([...robotList.children, null])?.children[2], (request) => request.do === 'class_robot' && !request.gives),
         lends() {
-          port.value = chance.of(['', 'p1', 'p2']);
+          port.value = random.of(['', 'p1', 'p2']);
           const before = asked.length;
           lends.click();
           if (asked.length - before !== Number(port.value !== '')) throw new Error(`${JSON.stringify(asked.slice(before))} is asked for ${port.value}`);
         },
         sets() {
-          [minutes.value, places.value] = [String(1 + chance.below(9)), String(1 + chance.below(9))];
+          [minutes.value, places.value] = [String(1 + random.below(9)), String(1 + random.below(9))];
           const before = asked.length;
           for (const field of [minutes, places]) field.dispatchEvent(new Event('change'));
           if (`${asked.slice(before).map(({ seconds, places: count }) => seconds / 60 || count)}` !== `${[minutes, places].map(({ value }) => value)}`) throw new Error('what is set is not asked for');
         },
         waits: () => {},
       };
-      for (let k = 5 + chance.below(25); k > 0; k -= 1) {
-        const act = chance.of([...Object.keys(acts), 'comes', 'comes', 'comes', 'writes', 'writes', 'looks']);
-        acts[act]();
-        if (act === 'looks' && chance() < 0.5) acts.ends();
-        await passes(chance.of([20, 1050, chance.below(1500)]));
+      for (let k = 5 + random.below(25); k > 0; k -= 1) {
+        const act = random.of([...Object.keys(actions), 'comes', 'comes', 'comes', 'writes', 'writes', 'looks']);
+        actions[act]();
+        if (act === 'looks' && random() < 0.5) actions.ends();
+        await passes(random.of([20, 1050, random.below(1500)]));
         if (large.open && isClosed) throw new Error('what was closed is seen large again');
         if (codeSeen() < newest) throw new Error('the class of before is seen');
         newest = codeSeen();
@@ -1592,33 +1592,33 @@ const PARTS = {
       const clock = (seconds) => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
       const members = [...groups].map(([key, group]) => [key, { ...group, all: [...here].filter(([, { number }]) => group.pupils.includes(number)) }]).filter(([, { all }]) => all.length);
       const joined = members.map(([key, { text: program, all }]) => [key, {
-        text: program, isGroup: true, own_robot: { name: all.map(([who]) => who).join(', ') }, lessons: all.flatMap(([, { lessons }]) => lessons),
+        text: program, isGroup: true, own_robot: { name: all.map(([name]) => name).join(', ') }, lessons: all.flatMap(([, { lessons }]) => lessons),
         silent_s: Math.min(...all.map(([, row]) => row.silent_s)), is_right: all.every(([, row]) => row.is_right),
         hand: Math.max(...all.map(([, row]) => row.hand)), place: Math.max(...all.map(([, row]) => row.place)), ...(({ robot, left_s }) => ({ robot, left_s }))((all.find(([, { robot }]) => robot) ?? all[0])[1]),
       }]);
       const all = [...[...here].filter(([, { number }]) => !members.some(([, { pupils }]) => pupils.includes(number))), ...joined, ...kept].sort(([one], [other]) => one.localeCompare(other));
-      const isSame = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const isSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const wordsIn = (part) => (typeof part === 'string' ? part : part.textContent + part.children.map(wordsIn).join(''));
-      isSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((each) => !within(tile, each).hidden)]),
-        all.map(([who, { own_robot, silent_s, is_right, robot, left_s, place, lessons = [], hand, isGroup = false }]) => {
+      isSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((item) => !within(tile, item).hidden)]),
+        all.map(([name, { own_robot, silent_s, is_right, robot, left_s, place, lessons = [], hand, isGroup = false }]) => {
           const state = !own_robot ? 'gone' : silent_s ? 'away' : is_right ? 'right' : 'wrong';
-          return [[who, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
+          return [[name, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
         }), 'the tiles');
-      const hands = [...here].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([who]) => who).join(', ');
+      const hands = [...here].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([name]) => name).join(', ');
       const said = [text('class_count', { pupils: here.size, robots: robots.size, waiting: [...here.values()].filter(({ place }) => place).length }), hands && text('class_hands', { names: hands })].filter(Boolean).join(' ');
       if (!status.textContent.startsWith(said) || (room_.goes_on && said === status.textContent)) throw new Error(`${status.textContent} in place of ${said}`);
       isSame([giveBack.hidden, anew.hidden, wall.hidden, minutes.value, places.value], [!kept.size || !here.size, !room_.goes_on, !all.length, String(room_.turn_s / 60), String(room_.places)], 'the bar');
       isSame([chips.hidden, chips.children.map((chip) => [...chip.children.slice(1).map(wordsIn), chip.className])], [!robots.size, [...robots].map(([id, row]) => [row.name || id, row.pupil ? text('class_held', { name: row.pupil, time: clock(row.left_s) }) : text('class_free'), row.pupil ? 'held' : ''])], 'the robots');
       isSame(robotList.children.map((row) => wordsIn(row.children[0])), [...robots].map(([id, row]) => [row.name, id].filter(Boolean).join(' · ')), 'the list of robots');
       const tiles = wall.children.map(({ children }) => [children[0].textContent.split(' · ')[0], open.get(children[1].children[0].src), children[1].children[0].src]);
-      const wanted = all.map(([who, { text: program }]) => [who, program && (languages ? `${program} words ${languages}` : `${program} words`)]);
-      isSame(tiles.map(([who, picture = '']) => [who, picture]), wanted, 'the pictures');
+      const wanted = all.map(([name, { text: program }]) => [name, program && (languages ? `${program} words ${languages}` : `${program} words`)]);
+      isSame(tiles.map(([name, picture = '']) => [name, picture]), wanted, 'the pictures');
       if (tiles.some(([, picture, address]) => address && !picture)) throw new Error('a picture that is kept no more is in a tile');
       const shown = new Set(tiles.map(([, , address]) => address).filter(Boolean));
       if (shown.size !== open.size) throw new Error(`${open.size} pictures are kept, and ${shown.size} are seen`);
       if (large.open && isClosed) throw new Error('what was closed is seen large again');
       const big = seenLarge();
-      const own = big && all.find(([who]) => who === big[0]);
+      const own = big && all.find(([name]) => name === big[0]);
       if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
       if (own) {
         const { text: program, robot = '', hand = 0, isGroup, own_robot } = own[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
@@ -1626,11 +1626,11 @@ const PARTS = {
         isSame([said_.textContent.startsWith(text('class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${own[0]}, who is seen large ${Boolean(own_robot)}`);
       }
       if (giving.open && !kept.size) throw new Error('there is nothing to give');
-      const tile = wall.children.find((each) => numberOf(each) && !within(each, 'play').hidden), before = played;
+      const tile = wall.children.find((item) => numberOf(item) && !within(item, 'play').hidden), before = played;
       tile?.children.find(({ className }) => className === 'play').click();
       await passes(500);
       if (tile && played === before) throw new Error('a run is not played');
-      for (const each of [here, kept, groups, robots]) each.clear();
+      for (const item of [here, kept, groups, robots]) item.clear();
       large.close();
       giving.close();
       await passes(5000);
@@ -1642,7 +1642,7 @@ const PARTS = {
   // One connection to a robot after another; what is late of one before is not of the next.
   async link() {
     const notes = [];
-    let late = () => 5;
+    let delay = () => 5;
     let failure = '';
     let ways = [];
     const page = freshPage({
@@ -1653,23 +1653,23 @@ const PARTS = {
           ways.push(this);
         }
         async connect() {
-          await later(late());
+          await later(delay());
           if (failure || this.isOver) {
             this.isOver = true;
             throw new ConnectionFailure(failure || 'left');
           }
           return { name: `A${ways.length}`, id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true };
         }
-        async ask({ do: what }) {
-          await later(late());
+        async ask({ do: action }) {
+          await later(delay());
           if (this.isOver) throw new ConnectionFailure('left');
-          return { ok: true, program: 'ff', trim: what === 'trim' ? null : undefined };
+          return { ok: true, program: 'ff', trim: action === 'trim' ? null : undefined };
         }
         stop() { notes.push('stop'); }
         tell(event) { if (!this.isOver) this.heard.onEvent(event); }
-        end(why) {
+        end(error) {
           this.isOver = true;
-          this.heard.onEnd(new ConnectionFailure(why));
+          this.heard.onEnd(new ConnectionFailure(error));
         }
         leave() { this.end('left'); }
       },
@@ -1689,21 +1689,21 @@ const PARTS = {
     const EVENTS = [{ event: 'STARTED', program: 'ff', is_program: true }, { event: 'PLACE', program: 'ff', at: 0 }, { event: 'SHOW', value: '1' }, { event: 'DONE' }, { event: 'LOST' }, { event: 'STOPPED', cause: 'MESSAGE' }, { event: 'FAULT', fault: 'STUCK', program: 'ff', at: 0 }];
     const said = () => page.byId('link_said').textContent;
     const seen = () => [said(), page.byId('link_shown').textContent, page.byId('link_name').textContent, page.byId('link_rename_to').value, document.documentElement.dataset['robot'], structuredClone(pageState.robotRun.value)];
-    const noted = (...what) => notes.some((each) => `${each}` === `${what}`);
-    return async (chance, isGood) => {
+    const noted = (...what) => notes.some((item) => `${item}` === `${what}`);
+    return async (random, isGood) => {
       const before = ways;
       ways = [];
       notes.length = 0;
-      late = () => (isGood ? 5 : 5 + chance.below(300));
-      failure = isGood || chance() < 0.7 ? '' : 'link_silent';
+      delay = () => (isGood ? 5 : 5 + random.below(300));
+      failure = isGood || random() < 0.7 ? '' : 'link_silent';
       panel.connectByHost('p');
       const all = [structuredClone(pageState.robotRun.value), document.documentElement.dataset['robot']];
-      await passes(isGood ? 50 : chance.below(600));
+      await passes(isGood ? 50 : random.below(600));
       const isMet = () => document.documentElement.dataset['robot'] === 'connected';
       let stop = ''; // pressed, or done, since the newest start
-      const acts = {
+      const actions = {
         tells() {
-          const event = chance.of([...EVENTS, EVENTS[0], EVENTS[0], EVENTS[5], EVENTS[5]]); // a run that starts after a stop, and stops
+          const event = random.of([...EVENTS, EVENTS[0], EVENTS[0], EVENTS[5], EVENTS[5]]); // a run that starts after a stop, and stops
           notes.length = 0;
           if (event.event === 'STOPPED' && stop === '') page.byId('link_said').textContent = '';
           ways[0]?.tell(event);
@@ -1744,13 +1744,13 @@ const PARTS = {
           if (isMet() && page.byId('link_name').textContent !== 'Bo') throw new Error('it has its name of before');
         },
       };
-      for (let k = 1 + chance.below(8); k > 0; k -= 1) {
+      for (let k = 1 + random.below(8); k > 0; k -= 1) {
         if (isGood && before.length) before[0].end('unheard'); // once more, and late
-        await acts[chance.of(['tells', 'tells', 'tells', ...Object.keys(acts)])]();
+        await actions[random.of(['tells', 'tells', 'tells', ...Object.keys(actions)])]();
         all.push(seen());
-        await passes(chance.below(300));
+        await passes(random.below(300));
       }
-      const end = failure || (isGood ? 'stays' : chance.of(['left', 'unheard']));
+      const end = failure || (isGood ? 'stays' : random.of(['left', 'unheard']));
       const wasMet = isMet();
       const isUnsaid = stop === 'pressed' && !failure;
       notes.length = 0;
@@ -1772,13 +1772,13 @@ const PARTS = {
     const { SensorWatch } = await page.load('robot/watching.js');
     const { devicesOf } = await page.load('page/words.js');
     pageState.sideId.set('side_real');
-    let late = () => 5;
+    let delay = () => 5;
     let wasWanted = false; // which the page keeps
     let robot = null, line = '', told = new Map();
     const python = {
       async ask({ robot: name }, bytes) {
         const text = new TextDecoder().decode(bytes);
-        await later(late());
+        await later(delay());
         const shows = [...text.matchAll(/SHOW\((\w+)\)/g)].map(([, sensor], k) => [k, sensor, 1, 1, false, false]);
         return { image: text, program: `${name} ${text}`, places: shows.map(([offset]) => [offset]), shows };
       },
@@ -1786,7 +1786,7 @@ const PARTS = {
     const watch = new SensorWatch({
       python,
       async ask({ image, robot: name }) {
-        await later(late());
+        await later(delay());
         if (name !== robot) return null;
         line = `${name} ${image}`;
         return { ok: true };
@@ -1795,18 +1795,18 @@ const PARTS = {
       tell() {},
     });
     const seen = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : chance.below(200));
-      robot = chance.of(['tinibot', 'liner']);
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(200));
+      robot = random.of(['tinibot', 'liner']);
       told = new Map();
       line = '';
       watch.meet({ robot, owner: 'free', is_idle: true, is_running: false });
       if (!wasWanted) page.byId('link_watch').click();
       wasWanted = true;
       const all = [seen()];
-      for (let k = 1 + chance.below(6); k > 0; k -= 1) {
-        await passes(chance.below(400));
-        const sensors = devicesOf(robot, 'sensor').map(({ text }) => text), at = chance.below(sensors.length);
+      for (let k = 1 + random.below(6); k > 0; k -= 1) {
+        await passes(random.below(400));
+        const sensors = devicesOf(robot, 'sensor').map(({ text }) => text), at = random.below(sensors.length);
         if (line.includes('SHOW')) {
           watch.onEvent({ event: 'SHOW', program: line, at, value: String(k) }, false);
           told.set(sensors[at], String(k));
@@ -1844,19 +1844,19 @@ const PARTS = {
       state: EditorState.create(), hasFocus: false, composing: false,
       dispatch(change) { this.state = this.state.update(change).state; },
     };
-    let late = () => 5;
+    let delay = () => 5;
     let fails = () => false;
     const answer = { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
     const python = {
       async ask() {
-        await later(late());
+        await later(delay());
         if (fails()) throw new Broken();
         return answer;
       },
     };
     const member = new Membership({
       python, work: { text: '' }, keepProgram() {},
-      editor: { setUndoHandler: (does) => { undo = does; }, extend: () => view },
+      editor: { setUndoHandler: (callback) => { undo = callback; }, extend: () => view },
       views: { isBusy: false, showMates() {}, join: (shared) => { group = shared; } },
       panel: { onGroupEvent: () => { isWitness = true; }, endWitness: () => { isWitness = false; } },
     }, { say() {}, onBug() {}, onOthers: (all) => { others = all; } });
@@ -1865,7 +1865,7 @@ const PARTS = {
     playsFetch(async (_, { body }) => {
       const request = JSON.parse(body);
       asked.push(request.do);
-      await later(late());
+      await later(delay());
       if (fails()) throw new Broken();
       if (request.do === 'group_join') return answers(fails() ? { failure: 'group_full' } : { group: request.name });
       if (request.do === 'group_leave') return answers({});
@@ -1873,22 +1873,22 @@ const PARTS = {
       if (isGone()) return answers({ left: true });
       return answers({ saw: 1, ran: ['class', 1], runs: [{ number: 1, event: 'DONE' }], others: [{ name: 'Luz', mark: 0, at: '', writes: false }], changes: [] });
     });
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : chance.below(200));
-      fails = () => !isGood && chance() < 0.15;
-      isGone = () => !isGood && chance() < 0.2;
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(200));
+      fails = () => !isGood && random() < 0.15;
+      isGone = () => !isGood && random() < 0.2;
       let end = '';
-      const acts = {
-        joins: () => member.join({ do: 'group_join', name: chance.of(['one', 'other']) }),
+      const actions = {
+        joins: () => member.join({ do: 'group_join', name: random.of(['one', 'other']) }),
         leaves: () => member.isInGroup && member.leave(),
         ends: () => member.isInGroup && member.endMembership(),
         edits: () => member.finishEdit(),
       };
       const isOutside = () => !member.isInGroup && pageState.groupName.value === '' && !document.documentElement.dataset['group'] && !others.length && !isWitness && undo === null && group === null && !loadText('tiniscript.group', 'sessionStorage');
-      for (let k = isGood ? 0 : 2 + chance.below(8); k > 0; k -= 1) {
-        end = chance.of(['joins', ...Object.keys(acts)]);
-        acts[end]();
-        await passes(chance.below(900));
+      for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
+        end = random.of(['joins', ...Object.keys(actions)]);
+        actions[end]();
+        await passes(random.below(900));
       }
       [fails, isGone] = [() => false, () => false];
       await passes(4000);
@@ -1941,7 +1941,7 @@ const PARTS = {
     };
     let undo = null;
     const editor = {
-      setUndoHandler: (does) => { undo = does; },
+      setUndoHandler: (callback) => { undo = callback; },
       extend(extension) {
         view.state = view.state.update({ effects: StateEffect.appendConfig.of(extension) }).state;
         return view;
@@ -1949,15 +1949,15 @@ const PARTS = {
     };
     let count = 0; // of lines that somebody has written
     const linesIn = (text) => (text === '' ? [] : text.split('\n'));
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       const key = `class ${(count += 1)}`;
       const room = { lines: [], log: [], version: 0, others: [], caret: null, told: 0, refuses: 0, open: { waits: 0, changes: 0 }, isGone: false };
       const textOf = (lines) => lines.map(({ text }) => text).join('\n');
       const apply = (lines, { kind, id, after, text }) => {
-        const index = lines.findIndex((each) => each.id === id);
-        if (kind === 'delete') { if (index >= 0) lines.splice(index, 1); } else if (index < 0) lines.splice(lines.findIndex((each) => each.id === after) + 1, 0, { id, text });
+        const index = lines.findIndex((item) => item.id === id);
+        if (kind === 'delete') { if (index >= 0) lines.splice(index, 1); } else if (index < 0) lines.splice(lines.findIndex((item) => item.id === after) + 1, 0, { id, text });
       };
-      let late = () => chance.below(isGood ? 30 : 300), isLost = () => !isGood && chance() < 0.2;
+      let delay = () => random.below(isGood ? 30 : 300), isLost = () => !isGood && random() < 0.2;
       let afterwards = 0; // asked once it has left
       let isOver = false, isCalm = false, isBroken = false, asked = 0, wrong = '';
       playsFetch(async (_, { body }) => {
@@ -1967,11 +1967,11 @@ const PARTS = {
         const what = waits ? 'waits' : changes ? 'changes' : '';
         if (what && (room.open[what] += 1) > 1) wrong = `${room.open[what]} requests at once`;
         try {
-          await later(late());
-          const lost = isLost() ? chance.of(['look', 'answer']) : '';
+          await later(delay());
+          const lost = isLost() ? random.of(['look', 'answer']) : '';
           if (lost === 'look') throw new Broken();
           let slow = false;
-          if (changes && !lost && (slow = !isCalm && chance() < 0.1)) room.slow_ms = now();
+          if (changes && !lost && (slow = !isCalm && random() < 0.1)) room.slow_ms = now();
           else if (changes && now() - room.slow_ms < 1500) wrong = 'it does not wait until it may';
           else {
             for (const change of changes ?? []) {
@@ -1995,16 +1995,16 @@ const PARTS = {
       const versions = new Map([[0, { shown: [], has: structuredClone(known) }]]); // what each answer has shown, and what was known then
       let worker = Promise.resolve(); // it does one thing after the other
       const python = {
-        async ask({ do: what, from: version, news, caret, hot, back, kept: stored }, bytes) {
+        async ask({ do: action, from: version, news, caret, hot, back, kept: stored }, bytes) {
           if (isOver) afterwards += 1;
           const text = new TextDecoder().decode(bytes);
-          await (worker = worker.then(() => later(late())));
+          await (worker = worker.then(() => later(delay())));
           if (isBroken) throw new Broken();
-          if (what === 'group_begin') news = [];
+          if (action === 'group_begin') news = [];
           else {
             const { shown, has } = versions.get(version);
             Object.assign(known, structuredClone(has), { ids: known.ids }); // of an answer that was not used nothing stays
-            const written = linesIn(text), had = shown.map((each) => each.text); // what this page has made its text of
+            const written = linesIn(text), had = shown.map((item) => item.text); // what this page has made its text of
             let from = 0, to = 0;
             while (from < Math.min(written.length, had.length) && written[from] === had[from]) from += 1;
             while (to < Math.min(written.length, had.length) - from && written.at(-1 - to) === had.at(-1 - to)) to += 1;
@@ -2034,7 +2034,7 @@ const PARTS = {
           }
           known.lines = structuredClone(known.decided);
           for (const change of known.pending) apply(known.lines, change);
-          const isHeld = what !== 'group_begin' && textOf(known.lines) !== text && hot && news.length === 0;
+          const isHeld = action !== 'group_begin' && textOf(known.lines) !== text && hot && news.length === 0;
           const next = isHeld ? text : textOf(known.lines);
           let [from, end] = [0, 0];
           while (from < Math.min(next.length, text.length) && next[from] === text[from]) from += 1;
@@ -2050,25 +2050,25 @@ const PARTS = {
       const { doc: { length } } = view.state;
       view.dispatch({ changes: { from: 0, to: length }, annotations: Transaction.addToHistory.of(false) });
       const shared = new SharedEditor(python, editor, {
-        fails: (why) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${why?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
+        fails: (error) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${error?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
         answers: (is) => { heard.answers = is; }, places: (places) => { heard.places = places; }, runs: () => { heard.runs += 1; }, isBusy: () => false,
       });
       let hasBegun = false;
       shared.showProgram({}, null).then(() => { hasBegun = true; });
-      await passes(chance.below(60));
+      await passes(random.below(60));
       const mine = [], theirs = [];
       const marks = () => { // lines that somebody else is in
         const found = [];
-        for (const each of view.state.facet(EditorView.decorations)) if (typeof each !== 'function') each.between(0, view.state.doc.length, (from, _, { spec }) => { if (/cm-beside/.test(spec.class)) found.push(view.state.doc.lineAt(from).number); });
+        for (const item of view.state.facet(EditorView.decorations)) if (typeof item !== 'function') item.between(0, view.state.doc.length, (from, _, { spec }) => { if (/cm-beside/.test(spec.class)) found.push(view.state.doc.lineAt(from).number); });
         return found;
       };
       const writes = (text, at) => view.dispatch({ changes: { from: at, insert: text }, selection: { anchor: at + text.length }, userEvent: 'input.type' });
-      for (let k = chance.below(4); k > 0; k -= 1) { // which the group's program replaces
-        view.dispatch({ changes: { from: 0, insert: 'w' }, userEvent: chance.of(['input.type', 'input.blocks']) });
-        await passes(chance.below(60));
+      for (let k = random.below(4); k > 0; k -= 1) { // which the group's program replaces
+        view.dispatch({ changes: { from: 0, insert: 'w' }, userEvent: random.of(['input.type', 'input.blocks']) });
+        await passes(random.below(60));
       }
       for (let k = 0; !hasBegun && k < 100; k += 1) await passes(50);
-      const acts = {
+      const actions = {
         types() { // a line, sign by sign
           const name = `m${(count += 1)}`;
           mine.push(name);
@@ -2081,7 +2081,7 @@ const PARTS = {
           mine.push(name);
           view.dispatch({ changes: { from: 0, insert: view.state.doc.length ? `${name}\n` : name }, userEvent: 'input.blocks' });
         },
-        moves: () => view.dispatch({ selection: { anchor: chance.below(view.state.doc.length + 1) } }),
+        moves: () => view.dispatch({ selection: { anchor: random.below(view.state.doc.length + 1) } }),
         blurs: () => view.looks(!view.hasFocus),
         finishes() { shared.finishEdit(); },
         async undoes() {
@@ -2093,63 +2093,63 @@ const PARTS = {
         others() {
           const name = `t${(count += 1)}`;
           theirs.push(name);
-          room.log.push({ uid: name, kind: 'insert', id: name, after: chance.of(room.lines)?.id, text: name });
+          room.log.push({ uid: name, kind: 'insert', id: name, after: random.of(room.lines)?.id, text: name });
           apply(room.lines, room.log.at(-1));
         },
-        stand() { room.others = ['Luz', 'Teo'].slice(chance.below(3)).map((name, mark) => ({ name, mark, at: chance.of(room.lines)?.id ?? '', writes: chance() < 0.5 })); },
+        stand() { room.others = ['Luz', 'Teo'].slice(random.below(3)).map((name, mark) => ({ name, mark, at: random.of(room.lines)?.id ?? '', writes: random() < 0.5 })); },
         drives() { room.told += 1; },
         refuses() {
           room.refuses += 1;
-          acts.adds();
+          actions.adds();
         },
-        blocks: () => shared.chooseLine(place.line = chance.below(view.state.doc.lines + 1), place.writes = chance() < 0.5),
+        blocks: () => shared.chooseLine(place.line = random.below(view.state.doc.lines + 1), place.writes = random() < 0.5),
         waits: () => {},
       };
-      for (let k = 4 + chance.below(14); k > 0; k -= 1) {
-        await acts[chance.of(['types', 'types', 'others', ...Object.keys(acts)])]();
-        await passes(chance.of([0, chance.below(100), chance.below(1500)]));
+      for (let k = 4 + random.below(14); k > 0; k -= 1) {
+        await actions[random.of(['types', 'types', 'others', ...Object.keys(actions)])]();
+        await passes(random.of([0, random.below(100), random.below(1500)]));
         if (wrong) throw new Error(wrong);
       }
-      if (chance() < 0.3) { // the class is silent for a while
+      if (random() < 0.3) { // the class is silent for a while
         isLost = () => true;
         [asked, heard.answers] = [0, true];
         await passes(7000);
         if (asked > 50 || heard.answers) throw new Error(`a class that is silent is asked ${asked} times, and answers: ${heard.answers}`);
       }
       isLost = () => false;
-      late = () => 5;
-      chance.of([() => { shared.finishEdit(); }, () => view.looks(!view.hasFocus), () => view.dispatch({ selection: { anchor: 0 } })])();
+      delay = () => 5;
+      random.of([() => { shared.finishEdit(); }, () => view.looks(!view.hasFocus), () => view.dispatch({ selection: { anchor: 0 } })])();
       if (view.state.doc.lineAt(view.state.selection.main.head).number === view.state.doc.lines) view.looks(false);
       await passes(9000);
-      if (chance() < 0.5) shared.chooseLine(place.line = 1, place.writes = true);
+      if (random() < 0.5) shared.chooseLine(place.line = 1, place.writes = true);
       await passes(5000);
       if (wrong) throw new Error(wrong);
-      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const lines = linesIn(view.state.doc.toString());
-      is(lines, room.lines.map(({ text }) => text), 'the program');
+      assertSame(lines, room.lines.map(({ text }) => text), 'the program');
       for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
       const mates = room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line);
-      is(heard.places.map(({ line, said }) => [line, said]), [...mates, ...known.drafts.map((each) => [each, textFor('group_draft')])], 'where the others are, and what no other page has');
-      is(heard.others, room.others, 'who is here');
+      assertSame(heard.places.map(({ line, said }) => [line, said]), [...mates, ...known.drafts.map((item) => [item, textFor('group_draft')])], 'where the others are, and what no other page has');
+      assertSame(heard.others, room.others, 'who is here');
       const line = place.line || view.state.doc.lineAt(view.state.selection.main.head).number;
-      if (room.lines[line - 1]) is(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
-      is(marks(), [...heard.places.map(({ line: each }) => each)].sort((a, b) => a - b), 'what is marked in the text');
-      is([heard.answers, heard.runs, heard.left, heard.refused > 0 || !room.refuses], [true, room.told, 0, true], 'what was heard');
-      const before = view.state.doc.toString(), end = chance.of(['left', 'gone', 'fails']);
+      if (room.lines[line - 1]) assertSame(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
+      assertSame(marks(), [...heard.places.map(({ line: item }) => item)].sort((a, b) => a - b), 'what is marked in the text');
+      assertSame([heard.answers, heard.runs, heard.left, heard.refused > 0 || !room.refuses], [true, room.told, 0, true], 'what was heard');
+      const before = view.state.doc.toString(), end = random.of(['left', 'gone', 'fails']);
       if (end === 'left') shared.end();
       room.isGone = end === 'gone';
       isBroken = end === 'fails';
       if (isBroken) shared.finishEdit();
       isOver = end === 'left';
       await passes(1500);
-      is([heard.left, heard.fails, undo, heard.places.length, marks().length], [Number(end === 'gone'), Number(end === 'fails'), null, 0, 0], 'once it is over');
+      assertSame([heard.left, heard.fails, undo, heard.places.length, marks().length], [Number(end === 'gone'), Number(end === 'fails'), null, 0, 0], 'once it is over');
       isOver = true;
-      acts.others();
+      actions.others();
       view.dispatch({ changes: { from: 0, insert: 'x' }, userEvent: 'input.type' });
-      acts.moves();
+      actions.moves();
       await passes(5000);
       if (afterwards) throw new Error(`${afterwards} times something is asked outside of the group`);
-      is(view.state.doc.toString(), `x${before}`, 'the text of who has left');
+      assertSame(view.state.doc.toString(), `x${before}`, 'the text of who has left');
       return { ends: [end], seen: [] };
     };
   },
@@ -2162,34 +2162,34 @@ const PARTS = {
     const { HeardNews } = await page.load('class/heard.js');
     const heard = new HeardNews();
     let classes = 0;
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       const key = `class ${(classes += 1)}`;
       const told = [];
       const taken = [];
       let version = 0;
       let others = 0; // as of this version
-      let isLost = () => chance() < 0.3;
+      let isLost = () => random() < 0.3;
       const asks = async () => {
         const [known, number] = heard.position.ran;
-        const answer = { saw: version, ran: [key, told.length], runs: told.filter((each) => known !== key || each > number).map((each) => ({ number: each })) };
-        await later(chance.below(200));
+        const answer = { saw: version, ran: [key, told.length], runs: told.filter((item) => known !== key || item > number).map((item) => ({ number: item })) };
+        await later(random.below(200));
         if (isLost()) return;
         others = answer.saw;
-        taken.push(...heard.take(answer).map((each) => each.number));
+        taken.push(...heard.take(answer).map((item) => item.number));
       };
-      const acts = { asks, tells: () => told.push(told.length + 1), moves: () => { version += 1; } };
+      const actions = { asks, tells: () => told.push(told.length + 1), moves: () => { version += 1; } };
       let end = '';
-      for (let k = 2 + chance.below(30); k > 0; k -= 1) {
-        end = chance.of(['asks', ...Object.keys(acts)]);
-        acts[end]();
-        await passes(chance.below(100));
+      for (let k = 2 + random.below(30); k > 0; k -= 1) {
+        end = random.of(['asks', ...Object.keys(actions)]);
+        actions[end]();
+        await passes(random.below(100));
       }
       await passes(200); // a class that has ended answers no more
       if (!isGood) return { ends: [end], seen: false };
       isLost = () => false;
       const hasHeard = () => JSON.stringify(heard.position) === JSON.stringify({ saw: version, ran: [key, told.length] });
       for (let k = 0; k < 2 && !hasHeard(); k += 1) { // else its request is held
-        acts.asks();
+        actions.asks();
         await passes(200);
       }
       if (!hasHeard()) throw new Error(`it has heard ${JSON.stringify(heard.position)} of ${version}, ${told.length}`);
@@ -2201,7 +2201,7 @@ const PARTS = {
   // What is pressed for a real robot, with breakpoints and without: after STOP the page starts nothing before somebody presses
   // anew, however late its answers come, and what is pressed then starts.
   async orders() {
-    let late = () => 5;
+    let delay = () => 5;
     let wants = ''; // what was pressed since the newest STOP
     let stops = 0;
     let wrong = '';
@@ -2217,17 +2217,17 @@ const PARTS = {
         async connect() {
           return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, is_running: false, has_remote: true, has_breakpoints: true };
         }
-        async ask({ do: what, runs }) {
-          const starts = what === 'start' || what === 'live' || (what === 'upload' && runs);
-          if (starts && !wants) wrong = what;
+        async ask({ do: action, runs }) {
+          const starts = action === 'start' || action === 'live' || (action === 'upload' && runs);
+          if (starts && !wants) wrong = action;
           const before = stops;
-          await later(late()); // what is asked before a stop and comes after it is void
+          await later(delay()); // what is asked before a stop and comes after it is void
           if (before !== stops) return { failure: 'stopped_elsewhere' };
           if (starts) {
             started += 1;
-            this.heard.onEvent({ event: 'STARTED', program: 'ff', is_program: what !== 'live' });
+            this.heard.onEvent({ event: 'STARTED', program: 'ff', is_program: action !== 'live' });
           }
-          await later(late());
+          await later(delay());
           return { ok: true, program: 'ff' };
         }
         stop() { stops += 1; }
@@ -2243,7 +2243,7 @@ const PARTS = {
     pageState.robotName.set('tinibot');
     const whole = { ...PROGRAM, program: 'ff', bytes: 9, halts: [0], findings: [], start: 'SI' };
     pageState.checkResult.set(whole);
-    const python = { tryAgain() {}, ask: () => later(late(), { ...whole, program: 'ee', image: 'ee' }) };
+    const python = { tryAgain() {}, ask: () => later(delay(), { ...whole, program: 'ee', image: 'ee' }) };
     const panel = new RobotPanel({ python, goTo() {}, recorder: noting([], 'recorder'), place: new RunningPlace(), pad: noting([], 'pad') });
     await passes(10);
     panel.connectByHost('p');
@@ -2259,38 +2259,38 @@ const PARTS = {
     };
     const others = {
       send: () => page.byId('link_send').click(),
-      points: (chance) => pageState.breakpoints.set(chance() < 0.5 ? [] : [{ line: 1, column: 1, point: {} }]),
+      points: (random) => pageState.breakpoints.set(random() < 0.5 ? [] : [{ line: 1, column: 1, point: {} }]),
       halts: () => robot.heard.onEvent({ event: 'HALTED', at: 0, task: 0, program: 'ff', is_program: true }),
-      ends: (chance) => robot.heard.onEvent(chance.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
+      ends: (random) => robot.heard.onEvent(random.of([{ event: 'DONE' }, { event: 'STOPPED', cause: 'BUTTON' }])),
     };
-    const stop = (chance) => {
+    const stop = (random) => {
       wants = '';
-      if (chance() < 0.5) page.byId('stop').click();
+      if (random() < 0.5) page.byId('stop').click();
       else dispatchEvent(Object.assign(new Event('keydown'), { key: 'Escape' }));
     };
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : chance.below(150));
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(150));
       let end = '';
-      for (let k = 3 + chance.below(8); k > 0; k -= 1) {
-        end = chance.of(['stop', 'stop', ...Object.keys(presses), ...Object.keys(presses), ...Object.keys(others)]);
-        if (end === 'stop') stop(chance);
+      for (let k = 3 + random.below(8); k > 0; k -= 1) {
+        end = random.of(['stop', 'stop', ...Object.keys(presses), ...Object.keys(presses), ...Object.keys(others)]);
+        if (end === 'stop') stop(random);
         else if (presses[end]) {
           wants = end;
           presses[end]();
-        } else others[end](chance);
-        await passes(chance() < 0.7 ? chance.below(60) : chance.below(900));
+        } else others[end](random);
+        await passes(random() < 0.7 ? random.below(60) : random.below(900));
         if (wrong) throw new Error(`${wrong} after a STOP`);
       }
-      stop(chance);
+      stop(random);
       await passes(1500);
-      others.ends(chance);
+      others.ends(random);
       const before = started;
-      wants = chance.of(['run', 'start', 'line']);
+      wants = random.of(['run', 'start', 'line']);
       presses[wants]();
       await passes(1500);
       if (wrong) throw new Error(`${wrong} after a STOP`);
       if (started !== before + 1) throw new Error(`${wants} starts ${started - before} times`);
-      stop(chance);
+      stop(random);
       await passes(1500);
       return { ends: [end], seen: [] };
     };
@@ -2302,7 +2302,7 @@ const PARTS = {
   async robots() {
     let robot = null;
     let info = {};
-    let late = () => 5;
+    let delay = () => 5;
     let plotted = [];
     let wrong = '';
     const own = { program: 'ff', is_program: true };
@@ -2324,7 +2324,7 @@ const PARTS = {
           robot = this;
         }
         async connect() {
-          await Promise.race([later(late()), this.ended]);
+          await Promise.race([later(delay()), this.ended]);
           this.isMet = true;
           this.isBusy = info.is_running; // as far as the page has heard
           return { name: 'A', id: '1', robot: 'tinibot', owner: 'free', room: 300, has_remote: true, ...info };
@@ -2339,9 +2339,9 @@ const PARTS = {
           const before = this.way;
           this.way = (async () => {
             await Promise.race([before === this.ended ? null : before, this.ended]);
-            await Promise.race([later(late()), this.ended]);
+            await Promise.race([later(delay()), this.ended]);
             const answer = stops === this.stops ? this.does(request, wanted) : { failure: 'stopped_elsewhere' };
-            await Promise.race([later(late()), this.ended]);
+            await Promise.race([later(delay()), this.ended]);
             return answer;
           })();
           this.way.catch(() => {});
@@ -2351,20 +2351,20 @@ const PARTS = {
             this.open.delete(asked);
           }
         }
-        does({ do: what, image, places, runs }, wanted) {
-          if (what === 'upload' || what === 'live') this.points = '';
-          if (what === 'upload') this.isOurs = true;
-          if (['upload', 'live', 'start', 'resume'].includes(what)) this.isHalted = false;
-          if (['upload', 'live', 'start'].includes(what)) this.watches = /FOREVER/.test(image);
-          if (what === 'break') this.points = places.filter((offset) => offset).join();
-          if ((what === 'start' || runs) && this.isOurs && info.has_breakpoints && this.points !== wanted) wrong = `it is to halt at '${wanted}', and halts at '${this.points}'`;
-          if (what === 'start' || runs) this.tell(this.isOurs ? { event: 'STARTED', ...own } : { event: 'STARTED', program: 'dd', is_program: false });
-          if (what === 'live') {
+        does({ do: action, image, places, runs }, wanted) {
+          if (action === 'upload' || action === 'live') this.points = '';
+          if (action === 'upload') this.isOurs = true;
+          if (['upload', 'live', 'start', 'resume'].includes(action)) this.isHalted = false;
+          if (['upload', 'live', 'start'].includes(action)) this.watches = /FOREVER/.test(image);
+          if (action === 'break') this.points = places.filter((offset) => offset).join();
+          if ((action === 'start' || runs) && this.isOurs && info.has_breakpoints && this.points !== wanted) wrong = `it is to halt at '${wanted}', and halts at '${this.points}'`;
+          if (action === 'start' || runs) this.tell(this.isOurs ? { event: 'STARTED', ...own } : { event: 'STARTED', program: 'dd', is_program: false });
+          if (action === 'live') {
             this.line = image;
             this.tell({ event: 'STARTED', program: image, is_program: false });
           }
-          if (what === 'variables') return { ok: true, variables: [this.halts] };
-          if (what === 'tasks') return { ok: true, tasks: [['ENDED', 0], ['WAITING', 3]] };
+          if (action === 'variables') return { ok: true, variables: [this.halts] };
+          if (action === 'tasks') return { ok: true, tasks: [['ENDED', 0], ['WAITING', 3]] };
           return { ok: true, program: 'ff', saved: 'MEMORY' };
         }
         stop() {
@@ -2386,11 +2386,11 @@ const PARTS = {
           }
           this.heard.onEvent(event);
         }
-        end(why) {
+        end(error) {
           if (this.isOver) return;
           this.isOver = true;
-          this.rejects(new ConnectionFailure(why));
-          this.heard.onEnd(new ConnectionFailure(why));
+          this.rejects(new ConnectionFailure(error));
+          this.heard.onEnd(new ConnectionFailure(error));
         }
         leave() { this.end('left'); }
       },
@@ -2418,13 +2418,13 @@ const PARTS = {
       moved = lines;
       pageState.checkResult.set(null);
       pageState.programText.set(`${'\n'.repeat(moved)}X = DISTANCE;\nSHOW(X)`);
-      pageState.breakpoints.set(pageState.breakpoints.value.map((each) => ({ ...each, line: 2 + moved })));
+      pageState.breakpoints.set(pageState.breakpoints.value.map((item) => ({ ...item, line: 2 + moved })));
       pageState.checkResult.set({ ...PROGRAM, program: 'ff', bytes: 9, places: [[0, 1 + moved, 1, 1 + moved, 13], [3, 2 + moved, 1, 2 + moved, 8]], halts: [0, 3], findings: [], start: 'SI' });
     };
     types(0);
     const checks = async (_, bytes) => {
       const image = new TextDecoder().decode(bytes);
-      await later(late());
+      await later(delay());
       const shows = [...image.matchAll(/SHOW\((\w+)\)/g)].map(([, sensor], k) => [k, sensor, 1, 1, false, false]);
       return { image, program: image, places: shows.map(([offset]) => [offset]), shows, findings: [], variables: [], remote: [] };
     };
@@ -2433,14 +2433,14 @@ const PARTS = {
     await passes(10);
     page.byId('senses').hidden = page.byId('link_doing').hidden = true; // as in index.html
     const presses = (id) => page.byId(id).disabled || page.byId(id).hidden || page.byId(id).click();
-    const acts = {
+    const actions = {
       starts: () => { robot.isOwn ||= robot.isOurs; robot.tell({ event: 'STARTED', ...own }); },
       others: () => robot.tell({ event: 'STARTED', program: 'dd', is_program: false }),
-      place: (chance) => robot.tell({ event: 'PLACE', at: chance.of([0, 3]), program: 'ff' }),
-      halts: (chance) => robot.tell({ event: 'HALTED', at: chance.of([0, 3, 1]), task: 0, ...own }),
-      shows: (chance) => robot.tell({ event: 'SHOW', at: chance.below(3), value: String(chance.below(9)), program: chance() < 0.7 ? robot.line ?? 'ff' : 'ff' }),
-      reads: (chance) => robot.tell({ event: 'READING', rows: [[chance.below(99), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]] }),
-      ends: (chance) => robot.tell({ event: chance.of(['DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST']), cause: chance.of(['BUTTON', 'MESSAGE']), fault: 'STUCK', at: 3, program: 'ff' }),
+      place: (random) => robot.tell({ event: 'PLACE', at: random.of([0, 3]), program: 'ff' }),
+      halts: (random) => robot.tell({ event: 'HALTED', at: random.of([0, 3, 1]), task: 0, ...own }),
+      shows: (random) => robot.tell({ event: 'SHOW', at: random.below(3), value: String(random.below(9)), program: random() < 0.7 ? robot.line ?? 'ff' : 'ff' }),
+      reads: (random) => robot.tell({ event: 'READING', rows: [[random.below(99), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]] }),
+      ends: (random) => robot.tell({ event: random.of(['DONE', 'STOPPED', 'FAULT', 'RESTARTED', 'LOST']), cause: random.of(['BUTTON', 'MESSAGE']), fault: 'STUCK', at: 3, program: 'ff' }),
       upload: () => presses('link_upload'),
       start: () => presses('link_start'),
       step: () => presses('link_step'),
@@ -2448,52 +2448,52 @@ const PARTS = {
       identify: () => presses('link_identify'),
       watch: () => robot.open.size || presses('link_watch'),
       stop: () => page.byId('stop').click(),
-      points(chance) {
-        const breakpoints = chance() < 0.4 ? [] : [{ line: 2 + moved, column: 1, point: {} }];
+      points(random) {
+        const breakpoints = random() < 0.4 ? [] : [{ line: 2 + moved, column: 1, point: {} }];
         robot.wanted = breakpoints.length && robot.hasText ? '3' : '';
         pageState.breakpoints.set(breakpoints);
       },
-      types(chance) { // the robot has its breakpoints where they were
-        types(1 + chance.below(3));
+      types(random) { // the robot has its breakpoints where they were
+        types(1 + random.below(3));
         robot.hasText = false;
       },
       async line() {
         if (robot.open.size) return;
         page.byId('link_line').value = 'F(1, 80)';
         page.byId('link_live').dispatchEvent(Object.assign(new Event('submit'), { preventDefault() {} }));
-        await passes(late());
+        await passes(delay());
       },
-      async twice(chance) {
+      async twice(random) {
         if (robot.open.size) return;
         presses('link_watch');
-        await passes(chance.below(20));
+        await passes(random.below(20));
         presses('link_watch');
       },
-      async startAgain(chance) { // after a line, which takes the breakpoints away; perhaps before it is sent
+      async startAgain(random) { // after a line, which takes the breakpoints away; perhaps before it is sent
         const answered = async () => { for (let k = 0; robot.open.size && k < 90; k += 1) await passes(100); };
         await answered();
-        if (isWatched()) acts.watch();
+        if (isWatched()) actions.watch();
         await answered();
-        acts.upload();
+        actions.upload();
         await answered();
-        acts.points(chance);
+        actions.points(random);
         await answered();
-        await acts.line();
-        if (chance() < 0.5) await answered();
-        if (chance() < 0.5) acts.types(chance);
+        await actions.line();
+        if (random() < 0.5) await answered();
+        if (random() < 0.5) actions.types(random);
         robot.tell({ event: 'DONE' });
-        acts.start();
+        actions.start();
         await answered();
       },
-      again(chance) { // it halts, ends and halts, and nobody had time to look
-        acts.halts(chance);
+      again(random) { // it halts, ends and halts, and nobody had time to look
+        actions.halts(random);
         robot.tell({ event: 'DONE' });
-        acts.starts();
-        acts.halts(chance);
+        actions.starts();
+        actions.halts(random);
       },
       senses() {
         robot.tell({ event: 'SHOW', at: 0, value: '9', program: robot.line });
-        acts.starts();
+        actions.starts();
         robot.tell({ event: 'READING', rows: [[5, 'READ DISTANCE 5']] });
       },
       waits: () => passes(2500),
@@ -2511,14 +2511,14 @@ const PARTS = {
       const is = (isOn, when) => { if (isWatched() !== isOn) throw new Error(`${isOn ? 'nothing is' : 'something is still'} watched ${when}`); };
       robot.tell({ event: 'DONE' });
       await passes(100);
-      if (!isWatched()) acts.watch();
+      if (!isWatched()) actions.watch();
       await passes(1500);
       is(true, 'where somebody wants it');
-      acts.identify();
+      actions.identify();
       await passes(1500);
       is(true, 'after something else was asked');
-      acts.upload();
-      acts.starts();
+      actions.upload();
+      actions.starts();
       is(false, 'beside a program');
       await passes(1500);
       is(false, 'beside a program');
@@ -2528,39 +2528,39 @@ const PARTS = {
       robot.tell({ event: 'SHOW', at: 0, value: '4', program: robot.line });
       await passes(50);
       if (gauges()[0][0] !== '4') throw new Error(`the gauges say ${gauges()} and not what is watched`);
-      if (byHand) acts.stop();
+      if (byHand) actions.stop();
       robot.tell({ event: 'STOPPED', cause: byHand ? 'SEQUENCE' : 'BUTTON' });
       await passes(3000);
       is(false, 'after a STOP');
-      acts.upload();
-      acts.starts();
+      actions.upload();
+      actions.starts();
       await passes(100);
       robot.tell({ event: 'DONE' });
       await passes(3000);
       is(false, 'since a STOP');
     };
-    return async (chance, isGood) => {
-      const slow = () => (chance() < 0.1 ? 2500 : chance.below(300));
-      late = isGood ? () => 5 : slow;
+    return async (random, isGood) => {
+      const slow = () => (random() < 0.1 ? 2500 : random.below(300));
+      delay = isGood ? () => 5 : slow;
       robot = null;
       window.localStorage.removeItem('tiniscript.watches');
-      if (chance() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
+      if (random() < 0.4) window.localStorage.setItem('tiniscript.watches', 'on');
       pageState.breakpoints.set([]);
       types(0);
-      info = { has_breakpoints: chance() < 0.8, has_readings: chance() < 0.5, ...chance.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
+      info = { has_breakpoints: random() < 0.8, has_readings: random() < 0.5, ...random.of([{ is_running: true, is_idle: false }, { is_running: false, is_idle: true }, { is_running: false, is_idle: false }]) };
       panel.connectByHost('p');
       const all = [seen()];
       await settles();
       robot.points = robot.wanted = '';
       const ends = new Set();
-      await passes(isGood ? 50 : chance.below(400));
-      if (chance() < 0.6) acts.upload();
-      for (let k = 4 + chance.below(12); k > 0; k -= 1) {
-        const end = chance.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(acts)]);
+      await passes(isGood ? 50 : random.below(400));
+      if (random() < 0.6) actions.upload();
+      for (let k = 4 + random.below(12); k > 0; k -= 1) {
+        const end = random.of(['starts', 'halts', 'shows', 'shows', ...Object.keys(actions)]);
         ends.add(end);
-        await acts[end](chance);
+        await actions[end](random);
         all.push([seen(), page.byId('link_shown').textContent]);
-        await passes(chance.below(chance.of([50, 400])));
+        await passes(random.below(random.of([50, 400])));
         const { halt } = document.documentElement.dataset;
         if (wrong) throw new Error(wrong);
         if (halt === 'read' && values()[0] !== String(robot.halts)) throw new Error(`its values are ${values()} at halt ${robot.halts}`);
@@ -2570,15 +2570,15 @@ const PARTS = {
       if (wrong) throw new Error(wrong);
       if (robot.watches && !isWatched()) throw new Error('its sensors are read, and nobody watches them');
       all.push(seen());
-      if (isGood) await watchesAgain(chance() < 0.5);
+      if (isGood) await watchesAgain(random() < 0.5);
       else { // it is gone before the answer
         robot.tell({ event: 'DONE' });
-        if (!isWatched() && chance() < 0.7) acts.watch();
+        if (!isWatched() && random() < 0.7) actions.watch();
         await passes(6000);
-        await acts[chance.of(['watch', 'line', 'step', 'identify', 'identify', 'senses', 'senses'])](chance);
+        await actions[random.of(['watch', 'line', 'step', 'identify', 'identify', 'senses', 'senses'])](random);
       }
-      robot.end(chance.of(['left', 'unheard']));
-      await passes(isGood ? 50 : chance.below(200));
+      robot.end(random.of(['left', 'unheard']));
+      await passes(isGood ? 50 : random.below(200));
       return { ends: [...ends], seen: all };
     };
   },
@@ -2594,32 +2594,32 @@ const PARTS = {
     const { stopAll } = await page.load('robot/stops.js');
     const { text } = await page.load('page/texts.js');
     const place = page.byId('stops');
-    const shown = () => [place.hidden, place.dataset['confirmed'], place.children.map((each) => each.textContent ?? each)];
-    return async (chance, isGood) => {
-      const late_ms = isGood ? 5 : 5 + chance.below(700);
-      const robots = ['A', 'B'].map((name) => ({ name, late_ms: chance.of([100, 900, 1500, 1e9]) }));
+    const shown = () => [place.hidden, place.dataset['confirmed'], place.children.map((item) => item.textContent ?? item)];
+    return async (random, isGood) => {
+      const late_ms = isGood ? 5 : 5 + random.below(700);
+      const robots = ['A', 'B'].map((name) => ({ name, late_ms: random.of([100, 900, 1500, 1e9]) }));
       let began_ms = now();
       room = async (request) => {
         await later(late_ms);
-        if (!isGood && chance() < 0.2) throw new Broken();
+        if (!isGood && random() < 0.2) throw new Broken();
         if (request.do === 'stop_all') began_ms = now();
         isAnswered = true;
-        return answers({ robots: robots.map((each) => ({ name: each.name, stop: now() - began_ms < each.late_ms ? 'asked' : 'confirmed' })) });
+        return answers({ robots: robots.map((item) => ({ name: item.name, stop: now() - began_ms < item.late_ms ? 'asked' : 'confirmed' })) });
       };
       let isAnswered = false;
       stopAll();
       const seen = [];
-      for (let k = isGood ? 60 : chance.below(20); k > 0; k -= 1) {
+      for (let k = isGood ? 60 : random.below(20); k > 0; k -= 1) {
         await passes(100);
         if (k < 55) seen.push(shown()); // the answer is there
         if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
-      if (!isGood && isAnswered && chance() < 0.5) { // whatever gets lost, each that confirms is counted
+      if (!isGood && isAnswered && random() < 0.5) { // whatever gets lost, each that confirms is counted
         await passes(15_000);
-        const confirmedCount = robots.filter((each) => each.late_ms < 1e6).length;
+        const confirmedCount = robots.filter((item) => item.late_ms < 1e6).length;
         if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
       }
-      return { ends: [isGood ? 'over' : robots.some((each) => each.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
+      return { ends: [isGood ? 'over' : robots.some((item) => item.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
   },
 
@@ -2627,21 +2627,21 @@ const PARTS = {
   // when they were last kept, but those that no file can say, and those that nobody can read.
   async worlds() {
     const MOST_EARLIER = 5;
-    return async (chance) => {
+    return async (random) => {
       const page = freshPage();
       await learns(page);
       const { OwnWorlds } = await page.load('world/own.js');
       const { loadWorldTexts } = await page.load('programs/work.js');
       const unreadable = new Set();
-      let made = 0, late = () => 5, asks = 0, isReady = true, wrong = '';
+      let made = 0, delay = () => 5, asks = 0, isReady = true, wrong = '';
       const textOf = ({ id = 0 }) => (id % 7 ? `text of ${id}\n# no name` : '');
       const python = () => ({
         ready: later(isReady ? 0 : 200).then(() => { isReady = true; }),
-        async ask({ do: what, form, name }, data) {
+        async ask({ do: action, form, name }, data) {
           if (!isReady) wrong = 'it is asked before it is there';
           asks += 1;
-          await later(late());
-          if (what === 'write_world') return textOf(form) ? { text: textOf(form) } : { refused: ['no'] };
+          await later(delay());
+          if (action === 'write_world') return textOf(form) ? { text: textOf(form) } : { refused: ['no'] };
           const text = new TextDecoder().decode(data), id = Number(/^text of (\d+)\n# no name$/.exec(text)?.[1]);
           return id && !unreadable.has(id) ? { world: { name, id } } : {};
         },
@@ -2652,71 +2652,71 @@ const PARTS = {
       let newest = 0; // of the times that they were kept
       const has = () => [own.newestWorld, ...own.earlierWorlds].map((world) => world && [world.id, world.name]);
       const rowOf = (list) => list.map((world) => world && [world.id, world.name]);
-      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const hasRoomFor = (hasRoom) => { window.localStorage.room = window.sessionStorage.room = hasRoom ? Infinity : 0; };
       const sets = (world, isOther) => {
         const [before, ...earlier] = worlds;
         worlds = [world, ...isOther && before ? [before] : [], ...earlier].slice(0, 1 + MOST_EARLIER);
       };
-      const acts = {
+      const actions = {
         draws() {
-          const world = { id: (made += 1), name: chance.of(['', 'n', '# n']) }, isOther = chance() < 0.6;
+          const world = { id: (made += 1), name: random.of(['', 'n', '# n']) }, isOther = random() < 0.6;
           sets(world, isOther);
           own.setNewest(world, isOther);
         },
         earlier() {
-          const index = chance.below(MOST_EARLIER), [, ...earlier] = worlds, world = earlier[index];
+          const index = random.below(MOST_EARLIER), [, ...earlier] = worlds, world = earlier[index];
           own.restoreEarlier(index);
           if (!world) return;
-          worlds = [worlds[0], ...earlier.filter((each) => each !== world)];
+          worlds = [worlds[0], ...earlier.filter((item) => item !== world)];
           sets(world, true);
         },
         keeps() {
-          const number = (newest += 1), now_ = worlds, hasRoom = chance() < 0.8;
+          const number = (newest += 1), now_ = worlds, hasRoom = random() < 0.8;
           hasRoomFor(hasRoom);
           own.storeTexts('tinibot').then((isKept) => {
-            if (number !== newest) return is(isKept, true, 'what a newer one says');
-            is(isKept, window.localStorage.room > 0, 'whether it is kept');
+            if (number !== newest) return assertSame(isKept, true, 'what a newer one says');
+            assertSame(isKept, window.localStorage.room > 0, 'whether it is kept');
             if (isKept) kept = [textOf(now_[0] ?? {}) ? now_[0] : kept[0], ...now_.slice(1)]; // one that nobody can write takes no other's place
-          }).catch((why) => { wrong = String(why); });
+          }).catch((error) => { wrong = String(error); });
         },
         async reloads() {
           await passes(3000);
           hasRoomFor(true);
-          for (const world of kept) if (world && chance() < 0.15) unreadable.add(world.id);
-          isReady = chance() < 0.5;
+          for (const world of kept) if (world && random() < 0.15) unreadable.add(world.id);
+          isReady = random() < 0.5;
           own = new OwnWorlds(python());
           const isThere = ([world]) => Boolean(world && textOf(world) && !unreadable.has(world.id));
           const [before, ...earlier] = kept, hadText = before && textOf(before);
           let isWhole = null;
           own.restore().then((found) => { isWhole = found; });
           await passes(3000);
-          is(isWhole, !hadText || isThere([before]), 'whether it is whole');
+          assertSame(isWhole, !hadText || isThere([before]), 'whether it is whole');
           worlds = [isThere([before]) ? before : null, ...earlier.filter((world) => isThere([world]))];
         },
         async rests() { // then nobody has to write them once more
-          acts.keeps();
+          actions.keeps();
           await passes(3000);
           asks = 0;
-          acts.keeps();
+          actions.keeps();
           await passes(3000);
-          is(asks, 0, 'how often they are written');
+          assertSame(asks, 0, 'how often they are written');
         },
         waits: () => {},
       };
       const ends = new Set();
-      for (let k = 5 + chance.below(20); k > 0; k -= 1) {
-        const act = chance.of(['draws', 'draws', 'keeps', ...Object.keys(acts)]);
-        late = () => 5 + chance.below(chance.of([5, 600]));
+      for (let k = 5 + random.below(20); k > 0; k -= 1) {
+        const act = random.of(['draws', 'draws', 'keeps', ...Object.keys(actions)]);
+        delay = () => 5 + random.below(random.of([5, 600]));
         ends.add(act);
-        await acts[act]();
-        await passes(chance.of([0, 100, 2000]));
-        is(has(), rowOf(worlds), `after it ${act}`);
+        await actions[act]();
+        await passes(random.of([0, 100, 2000]));
+        assertSame(has(), rowOf(worlds), `after it ${act}`);
         if (wrong) throw new Error(wrong);
       }
       await passes(3000);
       const [newestText, ...texts] = kept.map((world) => (world && textOf(world) ? `${world.name && `# ${world.name}\n`}${textOf(world)}` : ''));
-      is(loadWorldTexts(), { newest: newestText, before: texts.filter(Boolean) }, 'what is kept');
+      assertSame(loadWorldTexts(), { newest: newestText, before: texts.filter(Boolean) }, 'what is kept');
       return { ends: [...ends], seen: [] };
     };
   },
@@ -2745,10 +2745,10 @@ const PARTS = {
     const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
     const KINDS = ['walls', 'boxes', 'lines', 'lamps', 'flags', 'rings', 'rivals'];
     let worlds = 0;
-    const acts = {
-      adds: (chance) => presses(`add_${chance.of(KINDS)}`, 0),
-      turns: (chance) => presses(chance.of(['turn_left', 'turn_right'])),
-      moves: (chance) => types(chance.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])),
+    const actions = {
+      adds: (random) => presses(`add_${random.of(KINDS)}`, 0),
+      turns: (random) => presses(random.of(['turn_left', 'turn_right'])),
+      moves: (random) => types(random.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])),
       deletes: () => presses('delete'),
       undoes: () => presses('undo'),
       redoes: () => presses('redo'),
@@ -2770,13 +2770,13 @@ const PARTS = {
     const drawn = () => JSON.stringify({ ...world, name: '', labels: {} });
     let past = [];
     let future = [];
-    return async (chance) => {
+    return async (random) => {
       let end = '';
-      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
-        end = chance.of(['adds', 'adds', 'moves', 'undoes', 'undoes', 'redoes', ...Object.keys(acts)]);
+      for (let k = 4 + random.below(16); k > 0; k -= 1) {
+        end = random.of(['adds', 'adds', 'moves', 'undoes', 'undoes', 'redoes', ...Object.keys(actions)]);
         const before = drawn();
-        await acts[end](chance);
-        await passes(chance.below(50));
+        await actions[end](random);
+        await passes(random.below(50));
         if (end === 'enters' || end === 'opens') past = future = [];
         else if (end === 'undoes' || end === 'redoes') {
           const [from, to] = end === 'undoes' ? [past, future] : [future, past];
@@ -2785,7 +2785,7 @@ const PARTS = {
           if (from.length) [past, future] = end === 'undoes' ? [past.slice(0, -1), [...to, before]] : [[...to, before], future.slice(0, -1)];
         } else if (drawn() !== before) [past, future] = [[...past, before], []];
         const can = ['undo', 'redo'].map((id) => !page.byId(`world_${id}`).disabled);
-        if (`${can}` !== `${[past, future].map((each) => each.length > 0)}`) throw new Error(`after it ${end} it can ${can}`);
+        if (`${can}` !== `${[past, future].map((item) => item.length > 0)}`) throw new Error(`after it ${end} it can ${can}`);
       }
       return { ends: [end], seen: [] };
     };
@@ -2806,9 +2806,9 @@ const PARTS = {
     const { FIRST_PROGRAM } = await page.load('start/beginnings.js');
     const work = { text: FIRST_PROGRAM, robot: 'tinibot', world: 'obstacles', language: 'en', name: '', view: 'text', level: 'few', words: false, sound: true };
     const lineOf = (text) => `line ${text.length} ${text.slice(0, 9)}`;
-    let late = () => 0;
+    let delay = () => 0;
     const ask = async (_, bytes) => {
-      await later(late());
+      await later(delay());
       return { text: lineOf(new TextDecoder().decode(bytes)) };
     };
     const programs = new Programs({ python: { ask }, work, put: (program) => Object.assign(work, program), makePicture() {} });
@@ -2846,12 +2846,12 @@ const PARTS = {
       told = '';
       return act();
     };
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       const ends = new Set();
-      late = () => chance.below(chance.of([1, 300]));
-      const acts = {
-        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + chance.below(chance.of([20, 30_000, 90_000])))}`; },
-        again: () => { work.text = chance.of(loadVersions())?.text ?? work.text; },
+      delay = () => random.below(random.of([1, 300]));
+      const actions = {
+        writes: () => { work.text = `// ${(count += 1)}\n${'F(1);'.repeat(1 + random.below(random.of([20, 30_000, 90_000])))}`; },
+        again: () => { work.text = random.of(loadVersions())?.text ?? work.text; },
         blank: () => { work.text = ' '; },
         run: () => page.byId('run').click(),
         opens,
@@ -2859,7 +2859,7 @@ const PARTS = {
         publishes() { // another tab does
           const { room } = store;
           store.room = Infinity;
-          store.setItem('tiniscript.public', chance.of([`http://there.example/${(count += 1)}/`, 'nowhere']));
+          store.setItem('tiniscript.public', random.of([`http://there.example/${(count += 1)}/`, 'nowhere']));
           store.room = room;
         },
         closes: () => page.byId('programs_close').click(),
@@ -2867,11 +2867,11 @@ const PARTS = {
           if (!page.byId('programs').open) opens();
           page.byId('share').open = true;
           page.byId('share').dispatchEvent(new Event('toggle'));
-          const form = chance.of(['link', 'line']);
-          for (const each of [chance.of(['link', 'line']), form]) {
-            page.byId(`share_${each}`).click();
+          const form = random.of(['link', 'line']);
+          for (const item of [random.of(['link', 'line']), form]) {
+            page.byId(`share_${item}`).click();
             if (page.byId('programs').dataset.shared !== 'asked' || !page.byId('shared').hidden) throw new Error('what was asked before is there still');
-            if (chance() < 0.3) await passes(chance.below(100));
+            if (random() < 0.3) await passes(random.below(100));
           }
           const address = store.getItem('tiniscript.public') ?? location.href;
           const wanted = form === 'line' ? lineOf(work.text) : address === 'nowhere' ? '' : await makeLink(work, address) ?? '';
@@ -2885,12 +2885,12 @@ const PARTS = {
         async asks() { // and what comes of it nobody waits for
           if (!page.byId('programs').open) return;
           page.byId('share_line').click();
-          await passes(chance.below(100));
+          await passes(random.below(100));
         },
-        lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: chance.of(['tinibot', 'liner']), name: '' }),
+        lesson: () => programs.replaceProgram({ text: `S; // ${(count += 1)}`, robot: random.of(['tinibot', 'liner']), name: '' }),
         older: () => {
           opens();
-          chance.of([...list.children, null])?.children[0]?.click();
+          random.of([...list.children, null])?.children[0]?.click();
         },
         names: () => {
           page.byId('program_name').value = `name ${(count += 1)}`;
@@ -2911,13 +2911,13 @@ const PARTS = {
         },
       };
       const keeping = ['run', 'opens', 'new', 'lesson', 'older', 'names', 'hides', 'leaves', 'link'];
-      for (let k = chance.of([0, 0, 0, 0, 0, 38]); k > 0; k -= 1) storeVersion({ text: `W(${(count += 1)});`, robot: 'tinibot', name: '' });
-      for (let k = 4 + chance.below(16); k > 0; k -= 1) {
-        if (chance() < 0.2) store.room = [...store].reduce((sum, [, whole]) => sum + whole.length, 0) + chance.of([Infinity, 300_000, 100_000, 1000, 100, 0]);
-        const act = chance.of(Object.keys(acts));
+      for (let k = random.of([0, 0, 0, 0, 0, 38]); k > 0; k -= 1) storeVersion({ text: `W(${(count += 1)});`, robot: 'tinibot', name: '' });
+      for (let k = 4 + random.below(16); k > 0; k -= 1) {
+        if (random() < 0.2) store.room = [...store].reduce((sum, [, whole]) => sum + whole.length, 0) + random.of([Infinity, 300_000, 100_000, 1000, 100, 0]);
+        const act = random.of(Object.keys(actions));
         const before = { ...work, ...(act === 'names' && { name: `name ${count + 1}.ts` }) };
         const kept = loadVersions();
-        await does(acts[act]);
+        await does(actions[act]);
         if (!keeping.includes(act) || !before.text.trim() || before.text === FIRST_PROGRAM) continue;
         if (act === 'names' && store.room === Infinity && loadWork()?.name !== before.name) throw new Error(`its name is ${loadWork()?.name}`);
         const version = { text: before.text, robot: before.robot, name: before.name, at_ms: now_ms };
@@ -2925,13 +2925,13 @@ const PARTS = {
         ends.add(keeps(act, kept, [version, ...others], version) ? 'kept' : 'full');
         if (act !== 'opens') continue;
         const stored = loadVersions();
-        const number = chance.below(stored.length);
+        const number = random.below(stored.length);
         const row = list.children[1 + number];
         if (!row?.children[1]) continue; // it is in the editor
         const deleted = stored[number];
         does(() => row.children[1].click());
-        keeps('deletes', stored, stored.filter((each) => each !== deleted));
-        if (chance() < 0.5) storeVersion(chance.of([{ text: `T(${(count += 1)});`.repeat(chance.of([1, 10_000])), robot: 'tinibot', name: '' }, deleted])); // another tab does
+        keeps('deletes', stored, stored.filter((item) => item !== deleted));
+        if (random() < 0.5) storeVersion(random.of([{ text: `T(${(count += 1)});`.repeat(random.of([1, 10_000])), robot: 'tinibot', name: '' }, deleted])); // another tab does
         const left = loadVersions(), again = left.find(({ text, robot }) => text === deleted.text && robot === deleted.robot);
         does(() => row.children[0].click());
         keeps('brings back', left, again ? left : [...left, deleted].sort((first, second) => second.at_ms - first.at_ms), again ?? deleted);
@@ -2954,20 +2954,20 @@ const PARTS = {
     const canvas = Object.assign(page.byId('canvas'), { clientWidth: 400, clientHeight: 300, getContext: () => robotPen });
     const arena = new Arena(canvas);
     arena.resize();
-    return async (chance, isGood) => {
-      const world = isGood ? { ...chance.of(WORLDS) } : chance.of(WORLDS);
-      const robot = chance.of(ROBOTS).name;
+    return async (random, isGood) => {
+      const world = isGood ? { ...random.of(WORLDS) } : random.of(WORLDS);
+      const robot = random.of(ROBOTS).name;
       const from = drawn.length;
       arena.begin(world, robot, []);
       arena.draw(null);
       let now_ms = 0;
-      for (let k = isGood ? 5 : 2 + chance.below(20); k > 0; k -= 1) {
-        now_ms += chance.below(900);
-        const state = { now_ms, began_ms: 0, pose: [chance.below(100), chance.below(100), chance.below(360)], motors: [chance.below(100), 50], is_running: chance() < 0.8, touches: null, rivals: world.rivals.map((each) => [each.x_cm, each.y_cm, each.heading]),
-          score: { taken: isGood ? 0 : chance.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
+      for (let k = isGood ? 5 : 2 + random.below(20); k > 0; k -= 1) {
+        now_ms += random.below(900);
+        const state = { now_ms, began_ms: 0, pose: [random.below(100), random.below(100), random.below(360)], motors: [random.below(100), 50], is_running: random() < 0.8, touches: null, rivals: world.rivals.map((item) => [item.x_cm, item.y_cm, item.heading]),
+          score: { taken: isGood ? 0 : random.below(3), of: 3, points: 0, stars: 0 }, actuators: [], readings: [], fault: '' };
         arena.followState(state);
-        if (!isGood && chance() < 0.3) arena.showBubble(`${chance.below(9)}`, now_ms);
-        if (!isGood && chance() < 0.3) arena.showBeep(now_ms, now_ms + 5000);
+        if (!isGood && random() < 0.3) arena.showBubble(`${random.below(9)}`, now_ms);
+        if (!isGood && random() < 0.3) arena.showBeep(now_ms, now_ms + 5000);
         arena.draw(state);
       }
       return { ends: [now_ms > 3000 ? 'long' : 'short'], seen: isGood && drawn.slice(from) };
@@ -2985,10 +2985,10 @@ const PARTS = {
     const pen = noting(drawn, 'pen', { measureText: () => ({ width: 9 }) });
     canvas.getContext = () => pen;
     const plot = new Plot(canvas);
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       plot.begin();
-      const count = chance.of([3, 100, 1999, 2001, 9000]);
-      for (let k = 0; k < count; k += 1) plot.add(20 * k, [{ name: chance.of(['X', 'Y']), value: chance.below(100) }]);
+      const count = random.of([3, 100, 1999, 2001, 9000]);
+      for (let k = 0; k < count; k += 1) plot.add(20 * k, [{ name: random.of(['X', 'Y']), value: random.below(100) }]);
       drawn.length = 0;
       plot.draw();
       return { ends: [count > 2000 ? 'long' : 'short'], seen: isGood && [...drawn] };
@@ -3002,22 +3002,22 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Lessons } = await page.load('lesson/lessons.js');
     const LESSONS = [1, 2, 3].map((k) => ({ name: `lesson${k}`, title: `L${k}`, block_title: `L${k}`, robot: 'tinibot', worlds: 1, world: {} }));
-    let late = () => 5;
+    let delay = () => 5;
     let fails = () => false;
     let world = 0;
     let newest = { name: '' }; // that was chosen, unless it could not be had
     const python = {
       tryAgain() {},
-      async ask({ do: what, number }) {
-        const own = what === 'lesson_steps' ? { name: `L${number}` } : newest;
+      async ask({ do: action, number }) {
+        const own = action === 'lesson_steps' ? { name: `L${number}` } : newest;
         newest = own;
-        await later(late());
+        await later(delay());
         if (fails()) {
           own.name = '';
           throw new Broken();
         }
-        if (what === 'lesson_titles') return { lessons: LESSONS };
-        if (what !== 'lesson_steps') return { verdict: 'passed', seed: 1, worlds: 1, said: [], block_said: [], spoken: {}, run: null };
+        if (action === 'lesson_titles') return { lessons: LESSONS };
+        if (action !== 'lesson_steps') return { verdict: 'passed', seed: 1, worlds: 1, said: [], block_said: [], spoken: {}, run: null };
         const steps = Array.from({ length: 4 - number }, () => ({ blocks: [], hint: `of ${number}` }));
         return { steps, block_steps: steps, taught: [`of ${number}`] };
       },
@@ -3026,7 +3026,7 @@ const PARTS = {
     const driving = {
       async showLesson(number) {
         may -= 1;
-        await later(late());
+        await later(delay());
         world = number;
       },
       stop() {},
@@ -3057,27 +3057,27 @@ const PARTS = {
       choice.value = String(number);
       choice.dispatchEvent(new Event('change'));
     };
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : 5 + chance.below(300));
-      fails = () => !isGood && chance() < 0.3;
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : 5 + random.below(300));
+      fails = () => !isGood && random() < 0.3;
       opens();
       let end = 'came';
-      for (let k = chance.below(isGood ? 1 : 10); k > 0; k -= 1) {
-        const choosesAny = () => chooses(1 + chance.below(3));
-        await chance.of([opens, goesOn, solves, choosesAny, choosesAny])();
-        for (let k = chance.below(4); k > 0; k -= 1) {
-          await passes(chance.below(150));
+      for (let k = random.below(isGood ? 1 : 10); k > 0; k -= 1) {
+        const choosesAny = () => chooses(1 + random.below(3));
+        await random.of([opens, goesOn, solves, choosesAny, choosesAny])();
+        for (let k = random.below(4); k > 0; k -= 1) {
+          await passes(random.below(150));
           const [name, hint] = [page.byId('lesson_name').textContent, page.byId('lesson_hint_said').children[0]?.children ?? ['']];
           if (may < 0) throw new Error('the world begins again');
           if (name && hint.join() !== name.replace('L', 'of ')) throw new Error(`beneath ${name} is a step ${hint}`);
         }
       }
       if (choice.disabled) end = 'failed';
-      if (!isGood && chance() < 0.5) await passes(500);
+      if (!isGood && random() < 0.5) await passes(500);
       await passes(isGood ? 1000 : 0);
       if (isGood && newest.name !== '' && newest.name !== page.byId('lesson_name').textContent) throw new Error(`${newest.name} is not seen`);
       if (isGood && `L${choice.value}` !== page.byId('lesson_name').textContent) throw new Error(`${choice.value} is chosen, and another one is seen`);
-      if (isGood) chooses(1 + chance.below(3));
+      if (isGood) chooses(1 + random.below(3));
       await passes(isGood ? 500 : 0);
       const hint = page.byId('lesson_hint_said').children[0]?.children;
       return { ends: [end], seen: isGood && [page.byId('lesson_name').textContent, hint, page.byId('lesson_steps').children.length, pageState.taughtBlocks.value, choice.value, choice.disabled, page.byId('lesson_said').textContent, world] };
@@ -3105,18 +3105,18 @@ const PARTS = {
     let known = '', told = null; // where it halts, and what has said so
     let isHalted = false, clock = 0; // whether its time stands
     let isPaused = false; // before its first instruction
-    const fails = (what) => { wrong ||= what; };
+    const fails = (message) => { wrong ||= message; };
     const all = () => `${(isPaused ? [0, ...wanted] : wanted).slice(0, LINK.most_breakpoints)}`;
     const debugging = new Debugging({
       async ask(request) {
-        const { do: what } = request;
-        if (what === 'start') {
+        const { do: action } = request;
+        if (action === 'start') {
           if (newest?.kind !== 'start') fails(`it is started after ${newest?.kind}`);
           else if (newest.hasPlaces && known !== all() && !(newest.isPaused && known.startsWith('0'))) fails(`it starts with ${known} in place of ${all()}`);
         }
         const isLost = loses();
-        if (what === 'break') [known, told] = [`${request.places}`, request]; // requests arrive in their order
-        if (what === 'resume') {
+        if (action === 'break') [known, told] = [`${request.places}`, request]; // requests arrive in their order
+        if (action === 'resume') {
           if (!isHalted) fails('what is not halted goes on');
           isHalted = false;
         }
@@ -3124,9 +3124,9 @@ const PARTS = {
         await later(answersLate());
         if (isLost && told === request && by === info) known = 'nobody knows';
         if (isLost || by !== info) return null; // also of a robot that is gone
-        return what === 'variables' ? { variables: [7] } : what === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
+        return action === 'variables' ? { variables: [7] } : action === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
       },
-      uploadPaused: () => acts.uploads(null, true), say() {}, canGetHalting: async () => false, getHalting() {},
+      uploadPaused: () => actions.uploads(null, true), say() {}, canGetHalting: async () => false, getHalting() {},
       place: { hold: () => {}, goOn: () => {} },
       recorder: { halt: () => { clock = 1; }, goOn: () => { clock = 0; } },
     });
@@ -3137,19 +3137,19 @@ const PARTS = {
       if (!starts) isPaused = false;
       clock = 0;
     };
-    const acts = {
-      meets(chance) {
-        info = chance() < 0.9 ? { has_breakpoints: chance() < 0.8, is_running: chance() < 0.2 } : null;
+    const actions = {
+      meets(random) {
+        info = random() < 0.9 ? { has_breakpoints: random() < 0.8, is_running: random() < 0.2 } : null;
         [program, known, newest] = [null, '', null];
         over(info?.is_running ?? false);
         debugging.meet(info);
       },
-      uploads(chance, paused = chance() < 0.3) {
+      uploads(random, paused = random() < 0.3) {
         if (!info || isRunning) return;
         program = programs[clock % 2];
         [known, isPaused] = ['', paused];
         newest = { kind: 'upload' };
-        const mine = newest, by = info, starts = !chance || chance() < 0.8;
+        const mine = newest, by = info, starts = !random || random() < 0.8;
         const does = debugging.onUpload(program, paused);
         if (Boolean(does) !== Boolean(info.has_breakpoints && (paused || wanted.length))) fails('its places are not sent');
         if (!does) isPaused = false;
@@ -3173,8 +3173,8 @@ const PARTS = {
         if (known) known = 'none'; // what it halts at is gone
         debugging.onLine();
       },
-      breaks(chance) {
-        const lines = places.filter(() => chance() < 0.3).map(([, line]) => line);
+      breaks(random) {
+        const lines = places.filter(() => random() < 0.3).map(([, line]) => line);
         wanted = lines.map((line) => halts[line - 1]);
         pageState.breakpoints.set(lines.map((line) => ({ line, column: 1, point: points[line - 1] })));
       },
@@ -3183,13 +3183,13 @@ const PARTS = {
         over(true);
         tells({ event: 'STARTED', is_program: true });
       },
-      ends(chance) {
+      ends(random) {
         over(false);
-        tells({ event: chance.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
+        tells({ event: random.of(['DONE', 'FAULT', 'STOPPED', 'LOST']) });
       },
-      halts(chance) {
+      halts(random) {
         if (!isRunning || isHalted || !program || !info?.has_breakpoints) return;
-        const offset = chance.of([halts[2], halts[4], 3]), isWithin = offset === 3;
+        const offset = random.of([halts[2], halts[4], 3]), isWithin = offset === 3;
         isHalted = true;
         const goesOn = isWithin && (isStepping || isPaused);
         if (!goesOn) isPaused = false;
@@ -3197,8 +3197,8 @@ const PARTS = {
         if (isHalted === goesOn) fails(`at ${offset} it ${isHalted ? 'stands' : 'goes on'}`);
         if (!clock) fails('the clock of the recording goes on in a halt');
       },
-      goesOn(chance) {
-        const isStep = chance() < 0.5, before = isHalted;
+      goesOn(random) {
+        const isStep = random() < 0.5, before = isHalted;
         if (!isStep || before) {
           if (before) [isStepping, clock] = [isStep, 1];
           page.byId(isStep ? 'link_step' : 'link_go_on').click();
@@ -3207,17 +3207,17 @@ const PARTS = {
       },
       waits: () => {},
     };
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       wrong = '';
-      acts.meets(chance);
+      actions.meets(random);
       const acted = new Set();
-      for (let k = 10 + chance.below(40); k > 0; k -= 1) {
-        answersLate = () => 1 + chance.below(chance.of([5, 300]));
-        loses = () => !isGood && chance() < 0.3;
-        const act = chance.of([...!info || !program ? ['meets', 'uploads'] : isRunning ? ['halts', 'goesOn', 'halts', 'ends'] : ['uploads', 'breaks', 'startAgain', 'stop'], ...Object.keys(acts)]);
-        acts[act](chance);
+      for (let k = 10 + random.below(40); k > 0; k -= 1) {
+        answersLate = () => 1 + random.below(random.of([5, 300]));
+        loses = () => !isGood && random() < 0.3;
+        const act = random.of([...!info || !program ? ['meets', 'uploads'] : isRunning ? ['halts', 'goesOn', 'halts', 'ends'] : ['uploads', 'breaks', 'startAgain', 'stop'], ...Object.keys(actions)]);
+        actions[act](random);
         acted.add(act);
-        await passes(chance.of([0, 20, 500]));
+        await passes(random.of([0, 20, 500]));
         if (wrong) throw new Error(`after ${[...acted]}: ${wrong}`);
         const isShown = dataset['halt'];
         if ((isShown === 'halted' || isShown === 'read') !== isHalted) throw new Error(`after it ${act} ${isShown} is seen`);
@@ -3245,7 +3245,7 @@ const PARTS = {
       const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
       pageState.robotName.set('tinibot');
       pageState.programText.set(text);
-      sent = [...sent.filter((each) => each.name !== name), { name, text }].slice(-MOST_PROGRAMS);
+      sent = [...sent.filter((item) => item.name !== name), { name, text }].slice(-MOST_PROGRAMS);
       recorder.addProgram({ program: name, places: [], shows: [], variables: [] });
     };
     let own = []; // what the newest run of ours has told, and when
@@ -3271,7 +3271,7 @@ const PARTS = {
     const begins = (name, at) => {
       ends('STOPPED');
       [own, unread, halted] = [[], false, null];
-      ran = sent.find((each) => each.name === name) ?? null;
+      ran = sent.find((item) => item.name === name) ?? null;
       isOpen = ran !== null;
       [began, byButton, end_ms] = [at, at === null, null];
     };
@@ -3285,20 +3285,20 @@ const PARTS = {
       }
       recorder.onEvent({ event: 'READING', rows });
     };
-    const acts = {
-      sends: (chance) => sends(`p${chance.below(30)}`, chance() < 0.5),
-      meets(chance) {
-        lacks = chance() < 0.5;
+    const actions = {
+      sends: (random) => sends(`p${random.below(30)}`, random() < 0.5),
+      meets(random) {
+        lacks = random() < 0.5;
         recorder.meet({ has_readings: !lacks });
       },
-      ours(chance) {
-        const { name } = chance.of(sent), ms = chance() < 0.2 ? chance.below(50) : undefined;
+      ours(random) {
+        const { name } = random.of(sent), ms = random() < 0.2 ? random.below(50) : undefined;
         if (ms !== undefined) lacks = true;
         begins(name, now());
         recorder.onEvent({ event: 'STARTED', program: name, is_program: true, ms });
       },
-      waits(chance) {
-        const { name } = chance.of(sent);
+      waits(random) {
+        const { name } = random.of(sent);
         begins(name, null);
         recorder.awaitButton(name);
       },
@@ -3306,14 +3306,14 @@ const PARTS = {
         ends('STOPPED');
         recorder.onEvent({ event: 'STARTED', program: 'bb', is_program: false });
       },
-      unknown(chance) { // of which this page has nothing, or nothing any more
-        const name = chance.of(['cc', `p${chance.below(30)}`]);
+      unknown(random) { // of which this page has nothing, or nothing any more
+        const name = random.of(['cc', `p${random.below(30)}`]);
         begins(name, now());
         recorder.onEvent({ event: 'STARTED', program: name, is_program: true });
       },
-      shows(chance) {
+      shows(random) {
         if (halted !== null) return; // it stands
-        const value = String(chance.below(1000)), ms = chance() < 0.2 ? Math.max(0, elapsed() + 20 - chance.below(60)) : undefined;
+        const value = String(random.below(1000)), ms = random() < 0.2 ? Math.max(0, elapsed() + 20 - random.below(60)) : undefined;
         if (isOpen) {
           began = Math.min(began ?? Infinity, now() - (ms ?? 0));
           if (isFull(elapsed())) ends('STOPPED');
@@ -3321,13 +3321,13 @@ const PARTS = {
         }
         recorder.onEvent({ event: 'SHOW', value, ms });
       },
-      reads(chance) { // in the robot's own time
+      reads(random) { // in the robot's own time
         if (halted !== null) return;
         const at_ms = now() - (began ?? now() - 5);
-        told([[Math.round(at_ms), chance.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
+        told([[Math.round(at_ms), random.of(['READ DISTANCE 5', 'READ DISTANCE 7', 'UNREAD DISTANCE'])]]);
       },
-      ends(chance) {
-        const event = chance.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
+      ends(random) {
+        const event = random.of(['DONE', 'STOPPED', 'MISSED', 'LOST', 'RESTARTED']);
         if (isOpen) began ??= now();
         ends(event === 'RESTARTED' ? 'LOST' : event);
         recorder.onEvent({ event });
@@ -3345,36 +3345,36 @@ const PARTS = {
         goesOn();
         recorder.goOn();
       },
-      lasts: (chance) => passes(chance.of([1000, 700_000])),
+      lasts: (random) => passes(random.of([1000, 700_000])),
     };
-    return async (chance) => {
+    return async (random) => {
       const acted = new Set();
       let end = '', isTold = true;
       sends('aa', false);
-      if (chance() < 0.3) for (let k = 29; k >= 0; k -= 1) sends(`p${k}`, false);
-      const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after it ${end} ${what}: ${JSON.stringify(found)?.slice(-300)} in place of ${JSON.stringify(wanted)?.slice(-300)}`); };
-      for (let k = 1 + chance.below(16); k > 0; k -= 1) {
-        end = chance.of(['shows', 'shows', 'shows', ...Object.keys(acts)]);
-        if (k === 2 && chance() < 0.08) {
+      if (random() < 0.3) for (let k = 29; k >= 0; k -= 1) sends(`p${k}`, false);
+      const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`after it ${end} ${label}: ${JSON.stringify(actual)?.slice(-300)} in place of ${JSON.stringify(expected)?.slice(-300)}`); };
+      for (let k = 1 + random.below(16); k > 0; k -= 1) {
+        end = random.of(['shows', 'shows', 'shows', ...Object.keys(actions)]);
+        if (k === 2 && random() < 0.08) {
           end = 'floods';
-          acts.ours(chance);
-          told(Array.from({ length: MOST_EVENTS + chance.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
-        } else await acts[end](chance);
+          actions.ours(random);
+          told(Array.from({ length: MOST_EVENTS + random.of([0, 9]) }, () => [elapsed(), 'READ DISTANCE 5']));
+        } else await actions[end](random);
         acted.add(end);
-        await passes(chance.below(300));
-        is(page.byId('record_play').hidden, !own.length, 'nothing can be played');
-        is(trims, over, 'those that have ended');
+        await passes(random.below(300));
+        assertSame(page.byId('record_play').hidden, !own.length, 'nothing can be played');
+        assertSame(trims, over, 'those that have ended');
         if (!ran) continue;
         const run = runs.newestFirst[0];
-        is(run.rows, own, 'its rows');
-        is([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
-        is(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
+        assertSame(run.rows, own, 'its rows');
+        assertSame([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
+        assertSame(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
-        if (older) is(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
+        if (older) assertSame(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
         const notice = unread ? textOf('record_untold', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
         const place = page.byId('record_lacks');
         if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
-        if (isTold) is([place.hidden, place.textContent], [!notice, notice], 'what was not read');
+        if (isTold) assertSame([place.hidden, place.textContent], [!notice, notice], 'what was not read');
       }
       return { ends: [...acted], seen: [] };
     };
@@ -3389,16 +3389,16 @@ const PARTS = {
     const giving = new GivingWindow((key, pupil) => given.push([key, pupil]));
     const list = giving.window.children[1].children[1];
     let works = 0;
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       given.length = 0;
       const kept = [1, 2].map((k) => ({ key: `${(works += 1)}`, name: `N${k}`, lessons: [], given: 0, alike: [] }));
       const all = [1, 2, 3, 4].map((number) => ({ number, name: `P${number}` }));
       const chosen = new Map();
       let here = [];
       const ends = new Set();
-      for (let k = 2 + chance.below(8); k > 0; k -= 1) {
-        here = all.filter(() => chance() < 0.7);
-        for (const each of kept) each.alike = chance.of([[], [1], [2], [1, 2]]).filter((number) => here.some((pupil) => pupil.number === number));
+      for (let k = 2 + random.below(8); k > 0; k -= 1) {
+        here = all.filter(() => random() < 0.7);
+        for (const item of kept) item.alike = random.of([[], [1], [2], [1, 2]]).filter((number) => here.some((pupil) => pupil.number === number));
         giving.show(kept, here);
         kept.forEach(({ key, alike }, row) => {
           const [, , choice, give] = list.children[row].children;
@@ -3410,8 +3410,8 @@ const PARTS = {
             if (given.at(-1).join() !== `${key},${wanted}`) throw new Error(`${given.at(-1)} in place of ${wanted}`);
           }
           ends.add(chosen.has(key) ? (isHere ? 'chosen' : 'gone') : isHere ? 'alike' : 'nobody');
-          if (chance() < 0.3 && here.length) {
-            const number = String(chance.of(here).number);
+          if (random() < 0.3 && here.length) {
+            const number = String(random.of(here).number);
             choice.value = number;
             choice.dispatchEvent(new Event('change'));
             chosen.set(key, number);
@@ -3435,7 +3435,7 @@ const PARTS = {
     let over = '';
     let isTold = false;
     const afterwards = []; // asked of a class that is known to be over
-    let late = () => 5;
+    let delay = () => 5;
     let loses = () => false;
     playsFetch(async (_, { body }) => {
       const request = JSON.parse(body);
@@ -3443,7 +3443,7 @@ const PARTS = {
       asked.push(request.do);
       if (request.do === 'class_over') over = 'kept';
       const state = { code: '1', turn_s: 60, places: 2, over, goes_on: true, lessons: 1, kept: [], pupils: [], robots: [] };
-      await later(late());
+      await later(delay());
       if (loses(request.do)) throw new Broken();
       isTold ||= state.over !== '';
       return answers(state);
@@ -3453,33 +3453,33 @@ const PARTS = {
     await passes(100);
     const within = (part) => (part ? [part, ...(part.children ?? []).flatMap(within)] : []);
     const parts = [page.byId('class'), ...document.body.children].flatMap(within);
-    const [anew, more, end] = ['class_anew', 'class_anew', 'class_end'].map((key, k) => parts.filter((each) => each.type === 'button' && each.dataset['text'] === key)[k % 2]);
+    const [anew, more, end] = ['class_anew', 'class_anew', 'class_end'].map((key, k) => parts.filter((item) => item.type === 'button' && item.dataset['text'] === key)[k % 2]);
     const SURE_MS = 5000;
     const armed = new Map();
     const presses = (button, what, detail = 1) => {
       const isSure = armed.has(button) && now() - armed.get(button) < SURE_MS;
-      const before = asked.filter((each) => each === what).length;
+      const before = asked.filter((item) => item === what).length;
       button.dispatchEvent(Object.assign(new Event('click'), { detail }));
-      const did = asked.filter((each) => each === what).length > before;
+      const did = asked.filter((item) => item === what).length > before;
       if (did !== (isSure && detail === 1)) throw new Error(`${what} ${did ? 'at a first press' : 'not at the second one'}`);
       if (detail === 1 && isSure) armed.delete(button);
       else if (detail === 1) armed.set(button, now());
       return did;
     };
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : 5 + chance.below(900));
-      loses = (what) => !isGood && chance() < 0.3 && what !== 'class_over';
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : 5 + random.below(900));
+      loses = (what) => !isGood && random() < 0.3 && what !== 'class_over';
       asked = [];
       const ends = new Set();
-      for (let k = isGood ? 0 : 2 + chance.below(8); k > 0; k -= 1) {
-        const did = presses(chance.of([anew, more]), 'class_anew', chance() < 0.2 ? 2 : 1);
+      for (let k = isGood ? 0 : 2 + random.below(8); k > 0; k -= 1) {
+        const did = presses(random.of([anew, more]), 'class_anew', random() < 0.2 ? 2 : 1);
         ends.add(did ? 'sure' : 'once');
-        await passes(chance.of([1, 300, 3000, 4990, 5010, 8000]) + chance.below(5));
+        await passes(random.of([1, 300, 3000, 4990, 5010, 8000]) + random.below(5));
       }
       if (!isGood) return { ends: [...ends], seen: false };
-      loses = (what) => over !== '' && what !== 'class_over' && chance() < 0.5; // `tsc studio` has ended
-      late = () => chance.below(1500); // older answers come when it is known, if they come
-      await passes(900 + chance.below(400));
+      loses = (what) => over !== '' && what !== 'class_over' && random() < 0.5; // `tsc studio` has ended
+      delay = () => random.below(1500); // older answers come when it is known, if they come
+      await passes(900 + random.below(400));
       while (!presses(end, 'class_over')) await passes(100);
       await passes(3000); // what was asked before is answered
       afterwards.length = 0;
@@ -3495,8 +3495,8 @@ const PARTS = {
   async cable() {
     const page = freshPage();
     let isHeld = false;
-    playsNavigator({ locks: { request(_, __, does) {
-      const own = does(isHeld ? null : {});
+    playsNavigator({ locks: { request(_, __, callback) {
+      const own = callback(isHeld ? null : {});
       if (own) {
         isHeld = true;
         own.then(() => { isHeld = false; });
@@ -3506,16 +3506,16 @@ const PARTS = {
     const { DirectRobot } = await page.load('robot/direct.js');
     const { ConnectionFailure } = await page.load('robot/transport.js');
     let state = 'closed';
-    let late = () => 5;
+    let delay = () => 5;
     let fails = () => false;
     let hangs = () => false;
     let hasHung = false;
     let isHeard = true;
     let goes = () => {};
     const python = {
-      async ask({ do: what, asked = [] }) {
-        await later(late());
-        if (what === 'connect') return {};
+      async ask({ do: action, asked = [] }) {
+        await later(delay());
+        if (action === 'connect') return {};
         const news = isHeard ? asked.map(({ id }) => ({ id, ok: true, robot: { name: 'TINI' } })) : [];
         return { send: '', news, wakes_ms: null };
       },
@@ -3528,7 +3528,7 @@ const PARTS = {
         wasLeft ||= own.robot.isOver;
         if (state !== 'closed') throw new ConnectionFailure('port_busy');
         state = 'opening';
-        await later(late());
+        await later(delay());
         if (fails()) {
           state = 'closed';
           throw new ConnectionFailure('port_broken');
@@ -3546,30 +3546,30 @@ const PARTS = {
         if (state !== 'open') throw new Broken();
       },
       async close() {
-        await later(late());
+        await later(delay());
         if (state === 'opening') throw new Broken('InvalidStateError');
         state = 'closed';
       },
     });
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : 5 + chance.below(300));
-      fails = () => !isGood && chance() < 0.2;
-      hangs = () => !isGood && chance() < 0.1;
-      isHeard = isGood || chance() < 0.8;
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : 5 + random.below(300));
+      fails = () => !isGood && random() < 0.2;
+      hangs = () => !isGood && random() < 0.1;
+      isHeard = isGood || random() < 0.8;
       const ends = [];
       const notes = [];
-      for (let k = isGood ? 1 : 1 + chance.below(3); k > 0; k -= 1) {
+      for (let k = isGood ? 1 : 1 + random.below(3); k > 0; k -= 1) {
         const own = { robot: null };
         const robot = own.robot = new DirectRobot(python, port(own), { onEvent() {}, onEnd: ({ reason }) => notes.push(reason) }, NO_KEYS);
         const met = robot.connect('tinibot', 'en').then(() => 'met', ({ reason }) => reason);
-        await passes(isGood ? 1000 : chance.below(chance.of([20, 300, 1200])));
-        if (!isGood && chance() < 0.3 && state === 'open') goes();
+        await passes(isGood ? 1000 : random.below(random.of([20, 300, 1200])));
+        if (!isGood && random() < 0.3 && state === 'open') goes();
         const wasOpening = state === 'opening';
         if (isGood) notes.push(isHeld, state);
         else ends.push(robot.isOver ? 'over' : state);
         robot.leave();
         await settles();
-        if (!isGood && !wasOpening && !hasHung && chance() < 0.5) continue; // to the next one at once
+        if (!isGood && !wasOpening && !hasHung && random() < 0.5) continue; // to the next one at once
         await passes(hasHung ? 12_000 : 1000);
         hasHung = false;
         notes.push(await met);
@@ -3586,23 +3586,23 @@ const PARTS = {
     const page = freshPage();
     playsNavigator({});
     const { DirectRobot } = await page.load('robot/direct.js');
-    let late = () => 5;
+    let delay = () => 5;
     let breaks = () => false;
     let given = []; // to the session
     let wrong = '';
     let bytes = [];
     const python = {
-      async ask({ do: what, asked = [] }, data) {
+      async ask({ do: action, asked = [] }, data) {
         given.push(...asked);
-        if (asked.filter((each) => each.do === 'keys').length > 1) wrong = 'what was held before is sent, too';
-        if (what === 'link') bytes.push(...data);
-        await later(late());
+        if (asked.filter((item) => item.do === 'keys').length > 1) wrong = 'what was held before is sent, too';
+        if (action === 'link') bytes.push(...data);
+        await later(delay());
         if (breaks()) throw new Broken();
-        return what === 'connect' ? {} : { send: '', keys: '', news: asked.map(({ id }) => ({ id, ok: true, robot: { name: 'TINI' } })), wakes_ms: null };
+        return action === 'connect' ? {} : { send: '', keys: '', news: asked.map(({ id }) => ({ id, ok: true, robot: { name: 'TINI' } })), wakes_ms: null };
       },
     };
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : chance.below(400));
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(400));
       breaks = () => false;
       [given, bytes] = [[], []];
       let hears = () => {};
@@ -3615,8 +3615,8 @@ const PARTS = {
       let asks = 0;
       let stopped = 0; // asks before the newest STOP
       let held = 0; // the newest of what was held
-      breaks = () => !isGood && chance() < 0.02;
-      const acts = {
+      breaks = () => !isGood && random() < 0.02;
+      const actions = {
         asks() {
           const number = (asks += 1);
           robot.ask({ do: 'start', number }).then(() => ended.push(number), () => ended.push(number));
@@ -3638,10 +3638,10 @@ const PARTS = {
         waits: () => {},
       };
       let end = '';
-      for (let k = 3 + chance.below(20); k > 0; k -= 1) {
-        end = chance.of(['asks', ...Object.keys(acts)]);
-        acts[end]();
-        await passes(chance.below(chance.of([3, 300])));
+      for (let k = 3 + random.below(20); k > 0; k -= 1) {
+        end = random.of(['asks', ...Object.keys(actions)]);
+        actions[end]();
+        await passes(random.below(random.of([3, 300])));
         const old = given.find(({ number }) => number <= stopped);
         if (old) throw new Error(`${old.number} of ${stopped} is done after a STOP`);
         if (new Set(given).size < given.length) throw new Error('something is done twice');
@@ -3649,7 +3649,7 @@ const PARTS = {
       }
       await passes(3000);
       if ([...ended].sort((one, other) => one - other).join() !== Array.from({ length: asks }, (_, k) => k + 1).join()) throw new Error(`${asks} were asked, and ${ended} have ended`);
-      const told = given.filter((each) => each.do === 'keys').map(({ number }) => number);
+      const told = given.filter((item) => item.do === 'keys').map(({ number }) => number);
       if (!robot.isOver && held > stopped && told.at(-1) !== held) throw new Error(`${held} is held, and the robot hears ${told}`);
       if (!robot.isOver && `${bytes}` !== `${came}`) throw new Error(`${bytes} of ${came}`);
       if (robot.isOver) end = 'broken';
@@ -3686,7 +3686,7 @@ const PARTS = {
         return [...all].find(([name]) => pathOf(name) === pathOf(nameOf(request)))?.[1];
       },
       async addAll(requests) {
-        const found = await Promise.all(requests.map(async (each) => [nameOf(each), await fetches(each)]));
+        const found = await Promise.all(requests.map(async (item) => [nameOf(item), await fetches(item)]));
         for (const [name, content] of found) all.set(name, content);
       },
     });
@@ -3703,7 +3703,7 @@ const PARTS = {
     /** The worker of a build. @returns {(kind: string, more?: object) => Promise<any>} */
     const worker = (version) => {
       const heard = new Map();
-      const self = { addEventListener: (kind, does) => heard.set(kind, does), clients: { claim: async () => { claimed = version; } } };
+      const self = { addEventListener: (kind, callback) => heard.set(kind, callback), clients: { claim: async () => { claimed = version; } } };
       new Function('self', 'caches', 'fetch', 'Request', 'VERSION', 'FILES', 'LANGUAGES', source)(self, caches, fetches, Request, `v${version}`, FILES, LANGUAGES);
       return async (kind, more = {}) => {
         let done = null;
@@ -3712,7 +3712,7 @@ const PARTS = {
         return done;
       };
     };
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       kept = new Map([['of others', new Map([['./', 'theirs']])]]);
       before = new Map();
       const ends = new Set();
@@ -3725,12 +3725,12 @@ const PARTS = {
         await passes(50);
         return isDone;
       };
-      for (let k = 3 + chance.below(8); k > 0; k -= 1) {
-        loses = () => !isGood && chance() < 0.15;
-        const act = chance.of(open ? ['builds', 'speaks', 'speaks', 'stranger'] : ['builds']);
+      for (let k = 3 + random.below(8); k > 0; k -= 1) {
+        loses = () => !isGood && random() < 0.15;
+        const act = random.of(open ? ['builds', 'speaks', 'speaks', 'stranger'] : ['builds']);
         if (act === 'stranger') kept.set(`tiniscript-studio-v${served + 1}`, new Map(['./?', ...FILES, 'es.json'].map((name) => [name, 'a stranger has put it there'])));
         if (act === 'speaks') {
-          const language = chance.of(Object.keys(LANGUAGES));
+          const language = random.of(Object.keys(LANGUAGES));
           if (await ended(open('message', { data: language }))) seen.add(language);
         }
         if (act === 'builds') {
@@ -3771,25 +3771,25 @@ const PARTS = {
     const page = freshPage();
     const { forgetAll, loadText, storeText } = await page.load('page/kept.js');
     const wanted = new Map();
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       const stores = ['localStorage', 'sessionStorage'];
       const places = ['tiniscript.a', 'tiniscript.b'];
       if (!isGood) for (const store of stores) window[store].setItem('theirs', store);
       const puts = (count) => {
         for (let k = count; k > 0; k -= 1) {
-          const [store, place, value] = [chance.of(stores), chance.of(places), chance.of(['', 'x', 'y'])];
+          const [store, place, value] = [random.of(stores), random.of(places), random.of(['', 'x', 'y'])];
           if (storeText(place, value, store)) wanted.set(store + place, value);
-          for (const each of stores) for (const other of places) if (loadText(other, each) !== (wanted.get(each + other) ?? '')) throw new Error(`${loadText(other, each)} is at ${each} ${other}`);
+          for (const item of stores) for (const other of places) if (loadText(other, item) !== (wanted.get(item + other) ?? '')) throw new Error(`${loadText(other, item)} is at ${item} ${other}`);
         }
       };
-      puts(chance.below(8));
+      puts(random.below(8));
       if (isGood) return { ends: ['goes on'], seen: [] };
       forgetAll();
       wanted.clear();
-      puts(chance.below(8));
+      puts(random.below(8));
       const left = stores.flatMap((store) => [...window[store]].map(([place]) => place));
       if (`${left}` !== 'theirs,theirs') throw new Error(`${left} is on the device`);
-      puts(chance.below(8));
+      puts(random.below(8));
       return { ends: ['forgets'], seen: [] };
     };
   },
@@ -3801,23 +3801,23 @@ const PARTS = {
     await learns(page);
     const { setLanguage, text } = await page.load('page/texts.js');
     const { pageState } = await page.load('page/page_state.js');
-    let late = () => 5;
+    let delay = () => 5;
     let fails = () => false;
     playsFetch(async (where) => {
-      await later(late());
+      await later(delay());
       if (fails()) throw new Broken();
       return { ok: true, json: async () => ({ stop: where }) };
     });
-    return async (chance, isGood) => {
-      late = () => 5 + chance.below(isGood ? 10 : 900);
-      fails = () => !isGood && chance() < 0.3;
+    return async (random, isGood) => {
+      delay = () => 5 + random.below(isGood ? 10 : 900);
+      fails = () => !isGood && random() < 0.3;
       let chosen = '';
       const kept = [];
-      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
-        chosen = chance.of(['en', 'es', 'pt']);
+      for (let k = 1 + random.below(5); k > 0; k -= 1) {
+        chosen = random.of(['en', 'es', 'pt']);
         const own = setLanguage(chosen);
         own.then((language) => kept.push(language));
-        await passes(chance.below(chance.of([50, 1200])));
+        await passes(random.below(random.of([50, 1200])));
       }
       await passes(1000);
       const seen = pageState.language.value;
@@ -3837,7 +3837,7 @@ const PARTS = {
     const fails = (sentence) => { wrong ||= sentence; };
     const linesOf = (text) => text.split('\n').map((line) => line.trim()).filter(Boolean);
     const formOf = (text) => ({ body: linesOf(text).map((line) => ({ text: line, kind: line.includes('?') ? 'grey' : 'word', bodies: [] })) });
-    const textOf = ({ body }) => body.map((each) => each.text).join('\n');
+    const textOf = ({ body }) => body.map((item) => item.text).join('\n');
     const page = freshPage({
       replaceOptions() {}, makePictureOption() {}, makeDialPicture() {}, makeBlocksPicture() {},
       Blocks: class {
@@ -3873,7 +3873,7 @@ const PARTS = {
         }
         levelOf() { return 'few'; }
         showFindings(findings) {
-          if (findings.some((each) => each.of !== editor.text)) fails('what is said at blocks is said of another text');
+          if (findings.some((item) => item.of !== editor.text)) fails('what is said at blocks is said of another text');
           this.sees('findings', findings);
         }
         showBreakpoints(points) { this.sees('points', points); }
@@ -3931,22 +3931,22 @@ const PARTS = {
         undone = before;
       },
       redo() {},
-      onLayoutChange: (does) => { layout = does; },
+      onLayoutChange: (callback) => { layout = callback; },
       toggleBreakpoint: () => { if (textOf(formOf(editor.text)) !== blocks.shown) fails('a breakpoint is set in another text'); },
       showRunning() {}, goTo() {},
     };
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { Views } = await page.load('writing/views.js');
-    let late = () => 5;
+    let delay = () => 5;
     let breaks = () => false;
     let hasFailed = false;
     let worker = Promise.resolve(); // it does one thing after the other
     const python = {
-      ask({ do: what, form }, bytes) {
+      ask({ do: action, form }, bytes) {
         const text = bytes && new TextDecoder().decode(bytes);
-        worker = worker.catch(() => {}).then(() => later(late())).then(() => {
-          if (!breaks()) return what === 'text' ? { text: textOf(form), places: [] } : formOf(text);
+        worker = worker.catch(() => {}).then(() => later(delay())).then(() => {
+          if (!breaks()) return action === 'text' ? { text: textOf(form), places: [] } : formOf(text);
           hasFailed = true;
           throw new Broken();
         });
@@ -3961,13 +3961,13 @@ const PARTS = {
       base: [],
       async reportBlocks() {
         this.base = linesOf(textOf(blocks.form));
-        await later(late());
+        await later(delay());
         return { is_known: true };
       },
       async writeBlocks(form) {
-        const given = form.body.map((each) => each.text);
+        const given = form.body.map((item) => item.text);
         stood = blocks.layoutText;
-        await later(late());
+        await later(delay());
         if (group !== this) return null;
         const { base } = this;
         this.base = given;
@@ -3979,7 +3979,7 @@ const PARTS = {
         editor.put([...linesOf(editor.text).filter((line) => given.includes(line) || !base.includes(line)), ...given.filter((line) => !base.includes(line))].join('\n'));
         return { is_shown: editor.text === textOf(form), text: textOf(form), places: [] };
       },
-      settle: () => later(late()),
+      settle: () => later(delay()),
       chooseLine() { if (group !== this) fails('a group that was left hears where somebody is'); },
     });
     const views = new Views({ python, editor, work, remember() {}, tryAlone() {}, playTone() {} });
@@ -3990,29 +3990,29 @@ const PARTS = {
     const presses = (id) => page.byId(id).click();
     let count = 0;
     let mine = []; // that have to stay in a group
-    const acts = {
-      types(chance) {
-        editor.hasFocus = chance() < 0.6;
-        const line = `t${(count += 1)}${chance() < 0.3 ? '?' : ''}`;
+    const actions = {
+      types(random) {
+        editor.hasFocus = random() < 0.6;
+        const line = `t${(count += 1)}${random() < 0.3 ? '?' : ''}`;
         isTyped = true;
         mine.push(line);
-        editor.put(group || chance() < 0.7 ? `${editor.text}\n${line}` : line);
+        editor.put(group || random() < 0.7 ? `${editor.text}\n${line}` : line);
         if (pane.dataset['state'] !== 'stale') fails('blocks pass for those of a text that was typed since');
       },
-      async builds(chance) {
+      async builds(random) {
         if (work.view !== 'blocks') return;
         const pressed = Object.assign(new Event('pointerdown'), { stopPropagation() { this.isStopped = true; } });
         editor.hasFocus = false;
         pane.dispatchEvent(pressed);
         if (pressed.isStopped) return; // it is a moment too early
-        for (let more = true; more; more = chance() < 0.3) { // and takes the next one at once
+        for (let more = true; more; more = random() < 0.3) { // and takes the next one at once
           blocks.isBusy = true;
-          if (!group && chance() < 0.2) presses('undo');
-          await passes(chance.below(chance.of([2, 120])));
+          if (!group && random() < 0.2) presses('undo');
+          await passes(random.below(random.of([2, 120])));
           blocks.isBusy = false;
-          const isNew = chance() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
+          const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
-          if (!isNew) mine = mine.filter((each) => each !== line);
+          if (!isNew) mine = mine.filter((item) => item !== line);
           else {
             mine.push(line);
             blocks.form.body.push({ text: line, kind: 'word', bodies: [] });
@@ -4032,7 +4032,7 @@ const PARTS = {
         hasFailed = false; // it is tried again
         presses('undo');
       },
-      views: (chance) => presses(chance.of(['view_blocks', 'view_text'])),
+      views: (random) => presses(random.of(['view_blocks', 'view_text'])),
       robot() { // blocks of its own are made
         [mine, hasTouched] = [[], false];
         pageState.robotName.set('tinibot');
@@ -4074,7 +4074,7 @@ const PARTS = {
       waits: () => {},
     };
     const rests = async () => {
-      acts.checks();
+      actions.checks();
       await passes(4000);
       if (wrong) throw new Error(wrong);
       const text = textOf(formOf(editor.text));
@@ -4083,7 +4083,7 @@ const PARTS = {
         if (textOf(blocks.form) !== text && !page.byId('blocks_note').textContent) throw new Error('nobody says that blocks and text differ');
         hasFailed = false;
         asked_ms = now();
-        acts.undoes();
+        actions.undoes();
         await rests();
         return;
       }
@@ -4099,12 +4099,12 @@ const PARTS = {
       if (blocks.has.running !== JSON.stringify(pageState.virtualRun.value.ranges)) throw new Error('what runs is not marked at blocks');
       if (group) for (const line of mine) if (!linesOf(editor.text).includes(line)) throw new Error(`${line} is lost`);
     };
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : chance.below(chance.of([10, 400])));
-      breaks = () => !isGood && !group && chance() < 0.2;
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(random.of([10, 400])));
+      breaks = () => !isGood && !group && random() < 0.2;
       const ends = new Set();
       if (isGood) {
-        acts.leaves();
+        actions.leaves();
         presses('view_blocks');
         editor.hasFocus = false;
         isTyped = true;
@@ -4122,15 +4122,15 @@ const PARTS = {
       }
       const all = [];
       asked_ms = now();
-      if (chance() < 0.4) acts.joins();
-      for (let k = 5 + chance.below(15); k > 0; k -= 1) {
-        const act = chance.of(['types', 'builds', 'builds', 'undoes', ...Object.keys(acts)]);
-        if (act === 'leaves' && chance() < 0.7) continue;
+      if (random() < 0.4) actions.joins();
+      for (let k = 5 + random.below(15); k > 0; k -= 1) {
+        const act = random.of(['types', 'builds', 'builds', 'undoes', ...Object.keys(actions)]);
+        if (act === 'leaves' && random() < 0.7) continue;
         if (!['types', 'checks', 'points', 'runs', 'mates', 'waits'].includes(act)) asked_ms = now();
-        await acts[act](chance);
+        await actions[act](random);
         ends.add(act);
-        if (!isGood && chance() < 0.15) await rests();
-        await passes(chance.of([0, chance.below(40), chance.below(600)]));
+        if (!isGood && random() < 0.15) await rests();
+        await passes(random.of([0, random.below(40), random.below(600)]));
         if (wrong) throw new Error(wrong);
         all.push([editor.text, textOf(blocks.form), pane.dataset['state']]);
       }
@@ -4159,11 +4159,11 @@ const PARTS = {
     const container = page.byId('blocks');
     Object.assign(container, { clientWidth: 600, clientHeight: 400 });
     let hearers = 0; // of what is done in the pane, and in the whole page
-    for (const each of [container, document, window, globalThis]) {
-      const { addEventListener: adds, removeEventListener: removes = () => {} } = each;
-      Object.assign(each, {
-        addEventListener(...given) { hearers += 1; return adds.apply(each, given); },
-        removeEventListener(...given) { hearers -= 1; return removes.apply(each, given); },
+    for (const item of [container, document, window, globalThis]) {
+      const { addEventListener: adds, removeEventListener: removes = () => {} } = item;
+      Object.assign(item, {
+        addEventListener(...args) { hearers += 1; return adds.apply(item, args); },
+        removeEventListener(...args) { hearers -= 1; return removes.apply(item, args); },
       });
     }
     let changes = 0;
@@ -4179,40 +4179,40 @@ const PARTS = {
     const firstHearers = hearers;
     await passes(100);
     const all = () => workspace().getAllBlocks(true).filter((block) => !block.isShadow());
-    return async (chance, isGood) => {
-      const number = () => [['NUMBER', String(1 + chance.below(9))]];
-      const plain = () => chance.of([
-        () => ({ kind: 'move', word: chance.of(['F', 'B']), values: [number(), number()] }),
+    return async (random, isGood) => {
+      const number = () => [['NUMBER', String(1 + random.below(9))]];
+      const plain = () => random.of([
+        () => ({ kind: 'move', word: random.of(['F', 'B']), values: [number(), number()] }),
         () => ({ kind: 'wait', word: 'W', values: [number()] }),
-        () => ({ kind: 'assign', word: chance.of(['X', 'Y']), values: [number()] }),
+        () => ({ kind: 'assign', word: random.of(['X', 'Y']), values: [number()] }),
         () => ({ kind: 'call', word: 'D', values: [number()] }),
       ])();
       const block = (depth = 0) => {
-        const made = depth < 2 && chance() < 0.3 ? { kind: 'loop', word: 'LOOP', values: [number()], bodies: [body(depth + 1)] } : plain();
+        const made = depth < 2 && random() < 0.3 ? { kind: 'loop', word: 'LOOP', values: [number()], bodies: [body(depth + 1)] } : plain();
         return { bodies: [], note: '', is_apart: false, ...made };
       };
-      const body = (depth = 0) => Array.from({ length: chance.below(4) }, () => block(depth));
+      const body = (depth = 0) => Array.from({ length: random.below(4) }, () => block(depth));
       /** A program, whose blocks each have a line. */
       const makeForm = () => {
-        const form = { start: 'SI', note: '', is_one_line: false, body: body(), loose: chance() < 0.3 ? [{ body: [block(2)], value: [] }] : [] };
-        if (chance() < 0.5) form.body.push({ kind: 'def', word: 'D', values: [[['NAME', 'A']]], bodies: [body(1)], note: '', is_apart: false });
+        const form = { start: 'SI', note: '', is_one_line: false, body: body(), loose: random() < 0.3 ? [{ body: [block(2)], value: [] }] : [] };
+        if (random() < 0.5) form.body.push({ kind: 'def', word: 'D', values: [[['NAME', 'A']]], bodies: [body(1)], note: '', is_apart: false });
         let line = 0;
-        const places = (each) => {
-          each.place = [(line += 1), 1, 0, 9];
-          each.bodies.forEach((inner) => inner.forEach(places));
-          each.place[2] = line;
+        const places = (item) => {
+          item.place = [(line += 1), 1, 0, 9];
+          item.bodies.forEach((inner) => inner.forEach(places));
+          item.place[2] = line;
         };
         form.body.forEach(places);
         return form;
       };
-      const flat = (list) => list.flatMap((each) => [each, ...each.bodies.flatMap(flat)]);
-      const essence = (form) => JSON.stringify([form.body, form.loose.map((each) => each.body)], ['kind', 'word', 'values', 'bodies', 'body', '0', '1', '2', '3', '4', '5']);
+      const flat = (list) => list.flatMap((item) => [item, ...item.bodies.flatMap(flat)]);
+      const essence = (form) => JSON.stringify([form.body, form.loose.map((item) => item.body)], ['kind', 'word', 'values', 'bodies', 'body', '0', '1', '2', '3', '4', '5']);
       let form = makeForm();
       const has = { robot: 'tinibot', level: 'few', findings: [], running: [], fault: null, points: [], mates: [] };
       let isAlone = ''; // which block is tried alone
       let closed = ''; // the message that somebody has put away
-      const line = () => 1 + chance.below(Math.max(1, flat(form.body).length));
-      const at = (count) => Array.from({ length: chance.below(count + 1) }, () => ({ line: line(), column: 1 }));
+      const line = () => 1 + random.below(Math.max(1, flat(form.body).length));
+      const at = (count) => Array.from({ length: random.below(count + 1) }, () => ({ line: line(), column: 1 }));
       const says = {
         findings: () => blocks.showFindings(has.findings),
         running: () => blocks.showRunning(has.running),
@@ -4220,23 +4220,23 @@ const PARTS = {
         points: () => blocks.showBreakpoints(has.points),
         mates: () => blocks.showMates(has.mates),
       };
-      const acts = {
+      const actions = {
         shows() {
-          if (chance() < 0.5) form = makeForm();
+          if (random() < 0.5) form = makeForm();
           blocks.show(form);
           isAlone = '';
           for (const name of Object.keys(says)) says[name](); // as views.js does
         },
         findings() {
-          has.findings = at(2).map((place) => ({ ...place, severity: chance.of(['mistake', 'warning']), message: 'm', on_blocks: { message: `at ${place.line}`, fix: '', spoken: {} } }));
+          has.findings = at(2).map((place) => ({ ...place, severity: random.of(['mistake', 'warning']), message: 'm', on_blocks: { message: `at ${place.line}`, fix: '', spoken: {} } }));
           says.findings();
         },
         running() { has.running = at(2); says.running(); },
         fault() { [has.fault = null] = at(1); says.fault(); },
         points() { has.points = at(2); says.points(); },
         mates() { has.mates = at(2).map((place) => ({ ...place, color: '#000', said: 'Luz' })); says.mates(); },
-        level() { blocks.setLevel(has.level = chance.of(['few', 'usual', 'all'])); },
-        robot() { blocks.setRobot(has.robot = chance.of(['tinibot', 'liner'])); },
+        level() { blocks.setLevel(has.level = random.of(['few', 'usual', 'all'])); },
+        robot() { blocks.setRobot(has.robot = random.of(['tinibot', 'liner'])); },
         speaks() {
           blocks.updateLanguage();
           isAlone = '';
@@ -4261,11 +4261,11 @@ const PARTS = {
           list.hide();
           seen.focused = null;
           let typed = '', shown = '';
-          for (let k = 4 + chance.below(20); k > 0; k -= 1) {
-            const did = chance.of(['types', 'types', 'comes back', 'blocks', 'group', 'list', 'Escape', 'Enter', 'x']);
+          for (let k = 4 + random.below(20); k > 0; k -= 1) {
+            const did = random.of(['types', 'types', 'comes back', 'blocks', 'group', 'list', 'Escape', 'Enter', 'x']);
             const goes = () => { [typed, shown] = ['', '']; };
             if (did === 'types') {
-              input.value = typed = chance.of(['', ' ', 'wait', 'qqqq']);
+              input.value = typed = random.of(['', ' ', 'wait', 'qqqq']);
               seen.group = 'a group';
               input.dispatchEvent(new Event('input'));
               shown = typed.trim();
@@ -4304,23 +4304,23 @@ const PARTS = {
         begins: () => blocks.beginProgram(),
         scrolls() {
           container.dispatchEvent(new Event('wheel'));
-          workspace().scroll(-chance.below(300), -chance.below(300));
+          workspace().scroll(-random.below(300), -random.below(300));
         },
         stays() { // what is seen, whatever is shown anew
-          acts.scrolls();
+          actions.scrolls();
           const before = viewOf();
           blocks.show(form);
           isAlone = '';
           for (const name of Object.keys(says)) if (name !== 'running') says[name]();
           has.running = [];
           if (`${viewOf()}` !== `${before}`) throw new Error(`the view is ${viewOf()}, and was ${before}`);
-          acts.speaks();
+          actions.speaks();
           if (`${viewOf()}` !== `${before}`) throw new Error(`in another language the view is ${viewOf()}, and was ${before}`);
         },
         focuses() { // which stays at its block
           const { lines } = blocks;
           if (!lines.length) return;
-          const number = chance.below(lines.length);
+          const number = random.below(lines.length);
           document.activeElement = container;
           seen.focused = workspace().getBlockById(lines[number][0]);
           blockly.ShortcutRegistry.registry.getRegistry()['breakpoint'].callback();
@@ -4334,11 +4334,11 @@ const PARTS = {
         puts() { // what hangs on nothing stays where it was put
           const loose = workspace().getTopBlocks(false).find(({ type }) => !['program', 'def'].includes(type));
           if (!loose) return;
-          const place = { x: chance.below(300), y: chance.below(200) };
+          const place = { x: random.below(300), y: random.below(200) };
           loose.moveTo(place);
           blocks.readForm();
           const before = blocks.layoutText;
-          if (chance() < 0.5) { // and undo brings it back
+          if (random() < 0.5) { // and undo brings it back
             loose.moveTo({ x: 400, y: 400 });
             blocks.readForm();
             blocks.layoutText = before;
@@ -4352,7 +4352,7 @@ const PARTS = {
           const def = workspace().getBlocksByType('def')[0];
           if (!def) return;
           const before = changes;
-          chance.of([() => def.addOne(), () => def.removeOne(), () => def.names().length && def.setFieldValue(`Z${chance.below(99)}`, 'P0')])();
+          random.of([() => def.addOne(), () => def.removeOne(), () => def.names().length && def.setFieldValue(`Z${random.below(99)}`, 'P0')])();
           await passes(100);
           const calls = workspace().getBlocksByType('call');
           for (const call of calls) {
@@ -4365,9 +4365,9 @@ const PARTS = {
           has.running = [];
           says.running();
           await passes(3000);
-          if (chance() < 0.5) acts.scrolls();
+          if (random() < 0.5) actions.scrolls();
           let before = viewOf(), isLeft = false;
-          for (let k = chance.below(6); k > 0; k -= 1) {
+          for (let k = random.below(6); k > 0; k -= 1) {
             has.running = [{ line: line(), column: 1 }];
             says.running();
             const box = workspace().getBlockById(blocks.lines[innermost(has.running[0])]?.[0])?.getBoundingRectangleWithoutChildren();
@@ -4376,15 +4376,15 @@ const PARTS = {
               if (box && !isLeft && (box.left < left || box.right > left + width || box.top < top || box.bottom > top + height)) throw new Error(`what runs is at ${box.left} ${box.top}, and ${[left, top, width, height]} is seen`);
             };
             isSeen();
-            if (box && chance() < 0.2) {
-              acts.scrolls();
+            if (box && random() < 0.2) {
+              actions.scrolls();
               [before, isLeft] = [viewOf(), true];
             }
-            await passes(chance.below(1500));
+            await passes(random.below(1500));
             isSeen();
-            if (chance() < 0.5) continue;
+            if (random() < 0.5) continue;
             blocks.showRunning([]); // for a moment
-            await passes(chance.below(500));
+            await passes(random.below(500));
           }
           has.running = [];
           says.running();
@@ -4395,7 +4395,7 @@ const PARTS = {
           has.running = [];
           says.running();
           await passes(3000);
-          acts.scrolls();
+          actions.scrolls();
           const before = viewOf(), { room } = workspace();
           const seenNow = (slack) => workspace().getTopBlocks(false).filter((top) => viewRect(slack).contains(...(({ left, top: y }) => [left, y])(top.getBoundingRectangle()))).length;
           const count = seenNow(0);
@@ -4409,8 +4409,8 @@ const PARTS = {
           if (`${viewOf()}` !== `${before}`) throw new Error(`beside a small robot the view is ${viewOf()}, and was ${before}`);
         },
         async closes() { // a message, which is said again only where the mistake is made again
-          const wrong = () => all().find((each) => each.classes?.has('wrong'));
-          const openOf = (each) => Boolean(each?.getIcon(blockly.icons.WarningIcon.TYPE)?.getBubble());
+          const wrong = () => all().find((item) => item.classes?.has('wrong'));
+          const openOf = (item) => Boolean(item?.getIcon(blockly.icons.WarningIcon.TYPE)?.getBubble());
           const tells = async (findings) => {
             has.findings = findings;
             says.findings();
@@ -4419,7 +4419,7 @@ const PARTS = {
           has.fault = null;
           says.fault();
           await tells([]);
-          const mistake = [{ line: 1, column: 1, severity: 'mistake', message: 'm', on_blocks: { message: `${chance()}`, fix: '', spoken: {} } }];
+          const mistake = [{ line: 1, column: 1, severity: 'mistake', message: 'm', on_blocks: { message: `${random()}`, fix: '', spoken: {} } }];
           workspace().scroll(0, 0);
           for (let k = 2; k > 0; k -= 1) {
             await tells(mistake);
@@ -4436,7 +4436,7 @@ const PARTS = {
           const moves = all().filter(({ type }) => type === 'move');
           if (!moves.length) return;
           const before = changes;
-          const move = chance.of(moves);
+          const move = random.of(moves);
           move.setFieldValue(move.getFieldValue('WORD') === 'L' ? 'R' : 'L', 'WORD');
           await passes(100);
           if (changes === before) throw new Error('nobody hears of a change of the blocks');
@@ -4457,19 +4457,19 @@ const PARTS = {
         goes: () => blocks.goTo({ line: line(), column: 1 }),
         waits: () => passes(1500),
       };
-      const viewOf = () => [workspace().scale, workspace().scrollX, workspace().scrollY].map((each) => Math.round(100 * each) / 100);
+      const viewOf = () => [workspace().scale, workspace().scrollX, workspace().scrollY].map((item) => Math.round(100 * item) / 100);
       const viewRect = (slack) => (({ left, top, width, height }) => new blockly.utils.Rect(top - slack, top + height + slack, left - slack, left + width + slack))(workspace().getMetricsManager().getViewMetrics(true));
       /** What somebody has done is the program now. */
       const takes = () => {
         const found = blocks.readForm();
         form = found.form;
-        blocks.setRanges(found.ids, flat(form.body).map((each, k) => (each.place = [k + 1, 1, k + 1, 9])));
+        blocks.setRanges(found.ids, flat(form.body).map((item, k) => (item.place = [k + 1, 1, k + 1, 9])));
         for (const name of ['running', 'fault', 'points', 'findings', 'mates']) {
           has[name] = name === 'fault' ? null : [];
           says[name]();
         }
       };
-      const wordsOf = (each) => [...each.classes ?? []].sort().join(' ');
+      const wordsOf = (item) => [...item.classes ?? []].sort().join(' ');
       const innermost = (place) => {
         const bodies = flat(form.body), found = bodies.findLastIndex(({ place: [first, , last] }) => place.line >= first && place.line <= last);
         return found;
@@ -4477,27 +4477,27 @@ const PARTS = {
       const checks = (act) => {
         const { ids } = blocks.readForm(), list = flat(form.body);
         const idAt = (place) => ids[innermost(place)];
-        const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`after ${act} ${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
-        is(essence(formOf(workspace()).form), essence(form), 'the blocks');
-        is(blocks.lines.length, list.length, 'their lines');
-        is(hearers, firstHearers, 'who hears of what is done there');
+        const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`after ${act} ${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
+        assertSame(essence(formOf(workspace()).form), essence(form), 'the blocks');
+        assertSame(blocks.lines.length, list.length, 'their lines');
+        assertSame(hearers, firstHearers, 'who hears of what is done there');
         const wanted = new Map();
         const looks = (id, look) => id && wanted.set(id, [...new Set([...wanted.get(id) ?? [], look])]);
         for (const place of has.running) looks(idAt(place), 'running');
         for (const place of has.points) looks(idAt(place), 'breakpoint');
         if (has.fault) looks(idAt(has.fault), 'fault');
-        for (const each of has.findings) if (each.severity === 'mistake') looks(idAt(each), 'wrong');
+        for (const item of has.findings) if (item.severity === 'mistake') looks(idAt(item), 'wrong');
         if (isAlone) looks(isAlone, 'alone');
         for (const top of workspace().getTopBlocks(false)) if (!['program', 'def'].includes(top.type)) looks(top.id, 'loose');
-        for (const each of all()) {
-          if (each.type === 'program') continue;
-          is(wordsOf(each), (wanted.get(each.id) ?? []).sort().join(' '), `the looks of ${each.type}`);
-          const said = [...has.fault && idAt(has.fault) === each.id ? [`why ${has.fault.line}`] : [], ...has.findings.filter((found) => idAt(found) === each.id).map((found) => found.on_blocks.message)].join('\n\n');
-          is(each.getIcon(blockly.icons.WarningIcon.TYPE)?.getText() ?? '', said, `what is said at ${each.type}`);
+        for (const item of all()) {
+          if (item.type === 'program') continue;
+          assertSame(wordsOf(item), (wanted.get(item.id) ?? []).sort().join(' '), `the looks of ${item.type}`);
+          const said = [...has.fault && idAt(has.fault) === item.id ? [`why ${has.fault.line}`] : [], ...has.findings.filter((found) => idAt(found) === item.id).map((found) => found.on_blocks.message)].join('\n\n');
+          assertSame(item.getIcon(blockly.icons.WarningIcon.TYPE)?.getText() ?? '', said, `what is said at ${item.type}`);
         }
-        is(all().flatMap((each) => each.getSvgRoot().children.filter(({ attributes }) => attributes?.class === 'mate_mark').map(() => each.id)).sort(), has.mates.flatMap(({ line: wantedLine }) => ids[list.findIndex(({ place }) => place[0] === wantedLine)] ?? []).sort(), 'whoever else is here');
+        assertSame(all().flatMap((item) => item.getSvgRoot().children.filter(({ attributes }) => attributes?.class === 'mate_mark').map(() => item.id)).sort(), has.mates.flatMap(({ line: wantedLine }) => ids[list.findIndex(({ place }) => place[0] === wantedLine)] ?? []).sort(), 'whoever else is here');
         const used = JSON.stringify(workspace().list).includes('"Y"');
-        if (has.level !== 'few' && used !== flat([...form.body, ...form.loose.flatMap((each) => each.body)]).some(({ kind, word }) => kind === 'assign' && word === 'Y')) throw new Error(`the list ${used ? 'has' : 'lacks'} a name of the program`);
+        if (has.level !== 'few' && used !== flat([...form.body, ...form.loose.flatMap((item) => item.body)]).some(({ kind, word }) => kind === 'assign' && word === 'Y')) throw new Error(`the list ${used ? 'has' : 'lacks'} a name of the program`);
         if (!container.querySelectorAll('.search').length || container.querySelectorAll('.search').length > 1) throw new Error('the search is not there once');
       };
       const ends = new Set();
@@ -4505,19 +4505,19 @@ const PARTS = {
         tried?.();
         await passes(3000);
         blocks.beginProgram();
-        acts.level();
-        acts.robot();
-        acts.shows();
-        for (const name of ['running', 'fault', 'points', 'findings', 'mates']) acts[name]();
+        actions.level();
+        actions.robot();
+        actions.shows();
+        for (const name of ['running', 'fault', 'points', 'findings', 'mates']) actions[name]();
         await passes(3000);
-      } else acts.shows();
+      } else actions.shows();
       const noted = [];
-      for (let k = 4 + chance.below(10); k > 0; k -= 1) {
-        const act = chance.of([...Object.keys(acts), 'shows', 'running', 'running']);
+      for (let k = 4 + random.below(10); k > 0; k -= 1) {
+        const act = random.of([...Object.keys(actions), 'shows', 'running', 'running']);
         ends.add(act);
         const before = changes;
-        await acts[act]();
-        await passes(chance.of([0, chance.below(900)]));
+        await actions[act]();
+        await passes(random.of([0, random.below(900)]));
         if (!['edits', 'names', 'puts'].includes(act) && changes !== before) throw new Error(`${act} is told as a change`);
         checks(act);
         noted.push([act, workspace().scale, workspace().scrollX, workspace().scrollY, JSON.parse(blocks.layoutText).length, structuredClone(workspace().list)]);
@@ -4537,10 +4537,10 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { Stage } = await page.load('virtual/stage.js');
     const root = document.documentElement;
-    let late = () => 5;
+    let delay = () => 5;
     document.fullscreenElement = null;
     const fills = async (part) => {
-      await later(late());
+      await later(delay());
       if (document.fullscreenElement === part) return;
       document.fullscreenElement = part;
       document.dispatchEvent(new Event('fullscreenchange'));
@@ -4553,23 +4553,23 @@ const PARTS = {
     const stage = new Stage({ look: (from) => { camera = from; }, stop: () => { stops += 1; } });
     const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
     const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
-    const is = { full: false, big: false, held: false, turns: 0 };
-    const shrinks = () => { is.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
+    const has = { full: false, big: false, held: false, turns: 0 };
+    const shrinks = () => { has.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
     const key = (name, isTyped = false) => dispatchEvent(Object.assign(new Event('keydown'), { key: name, composedPath: () => (isTyped ? [Object.assign(document.createElement('textarea'))] : []) }));
     const moves = () => dispatchEvent(Object.assign(new Event('pointermove'), { pointerType: 'mouse', buttons: 0 }));
     let sides = 0;
-    return async (chance) => {
-      late = () => chance.below(30);
-      const acts = {
-        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); is.big = true; },
+    return async (random) => {
+      delay = () => random.below(30);
+      const actions = {
+        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); has.big = true; },
         pauses() { if (root.dataset['phase'] === 'running') root.dataset['phase'] = 'paused'; },
         async ends() {
           root.dataset['phase'] = 'ended';
-          isOver = chance() < 0.5;
+          isOver = random() < 0.5;
           moves();
           stage.runEnded();
           await passes(250);
-          if (isOver) is.big = false;
+          if (isOver) has.big = false;
           isOver = false;
         },
         async rests() { // a mouse
@@ -4578,47 +4578,47 @@ const PARTS = {
             moves();
             writing.dispatchEvent(new Event('pointermove'));
             await passes(ms);
-            if (('big' in root.dataset) !== is.big) throw new Error('the room changes under a mouse that moves');
+            if (('big' in root.dataset) !== has.big) throw new Error('the room changes under a mouse that moves');
           }
           await passes(100);
           shrinks();
           isOver = false;
         },
-        screens: () => pageState.screen.set(chance.of(['studio', 'other'])),
-        types() { writing.dispatchEvent(new Event('focusin')); if (!is.held) shrinks(); },
-        holds() { writing.dispatchEvent(new Event('pointerdown')); is.held = true; },
+        screens: () => pageState.screen.set(random.of(['studio', 'other'])),
+        types() { writing.dispatchEvent(new Event('focusin')); if (!has.held) shrinks(); },
+        holds() { writing.dispatchEvent(new Event('pointerdown')); has.held = true; },
         async lets() {
-          dispatchEvent(new Event(chance.of(['pointerup', 'pointercancel'])));
-          if (is.held && root.dataset['big'] !== undefined && !is.big) throw new Error('it is small before a press is over');
+          dispatchEvent(new Event(random.of(['pointerup', 'pointercancel'])));
+          if (has.held && root.dataset['big'] !== undefined && !has.big) throw new Error('it is small before a press is over');
           await passes(1);
-          if (is.held) shrinks();
-          is.held = false;
+          if (has.held) shrinks();
+          has.held = false;
         },
-        reads() { lessons.dispatchEvent(new Event('click')); is.big = false; },
+        reads() { lessons.dispatchEvent(new Event('click')); has.big = false; },
         worlds() { stage.showWhole(); shrinks(); },
         home() {
           pageState.screen.set('start');
           pageState.screen.set('studio');
-          is.full = is.big = false;
+          has.full = has.big = false;
         },
         same: () => pageState.sideId.set(pageState.sideId.value),
-        other() { pageState.sideId.set(`side ${(sides += 1)}`); is.full = false; },
-        fills() { if (chance() < 0.5) fullButton.click(); else key('f'); is.full = !is.full; },
+        other() { pageState.sideId.set(`side ${(sides += 1)}`); has.full = false; },
+        fills() { if (random() < 0.5) fullButton.click(); else key('f'); has.full = !has.full; },
         letter: () => key('f', true),
-        escape() { key('Escape'); is.full = false; },
+        escape() { key('Escape'); has.full = false; },
         async leaves() { // the browser's Escape, of which the page hears nothing else
           await passes(100);
           const before = stops, wasFilled = document.fullscreenElement !== null;
           fills(null);
           await passes(100);
-          if (stops - before !== Number(wasFilled && is.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
-          if (wasFilled) is.full = false;
+          if (stops - before !== Number(wasFilled && has.full)) throw new Error(`${stops - before} stops are pressed by leaving`);
+          if (wasFilled) has.full = false;
         },
-        turns() { const before = camera; cameraButton.click(); is.turns += 1; if (camera === before) throw new Error('the camera stays'); },
+        turns() { const before = camera; cameraButton.click(); has.turns += 1; if (camera === before) throw new Error('the camera stays'); },
         async peeks() {
           const over = stage.peek();
-          if (chance() < 0.5) over();
-          await passes(chance.below(2000));
+          if (random() < 0.5) over();
+          await passes(random.below(2000));
           const isNewest = stage.peek();
           await passes(1600);
           if (!('peek' in root.dataset)) throw new Error('the robot is not in its corner');
@@ -4628,18 +4628,18 @@ const PARTS = {
         waits: () => passes(300),
       };
       const ends = new Set();
-      for (let k = 10 + chance.below(30); k > 0; k -= 1) {
-        const act = chance.of(Object.keys(acts));
+      for (let k = 10 + random.below(30); k > 0; k -= 1) {
+        const act = random.of(Object.keys(actions));
         ends.add(act);
-        await acts[act]();
-        if (stage.isFull !== is.full || ('big' in root.dataset) !== is.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(is)}`);
-        if (!is.turns && camera !== (is.full || is.big || 'peek' in root.dataset ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
-        await passes(chance.below(60));
-        if (chance() < 0.7) continue;
+        await actions[act]();
+        if (stage.isFull !== has.full || ('big' in root.dataset) !== has.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(has)}`);
+        if (!has.turns && camera !== (has.full || has.big || 'peek' in root.dataset ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
+        await passes(random.below(60));
+        if (random() < 0.7) continue;
         await passes(200);
-        if (Boolean(document.fullscreenElement) !== is.full) throw new Error(`after ${act} the screen is filled`);
+        if (Boolean(document.fullscreenElement) !== has.full) throw new Error(`after ${act} the screen is filled`);
       }
-      await acts.lets();
+      await actions.lets();
       await passes(9000);
       if ('peek' in root.dataset) throw new Error('the robot stays in its corner');
       return { ends: [...ends], seen: [] };
@@ -4660,31 +4660,31 @@ const PARTS = {
     new Phone(() => { real += 1; });
     page.byId('run').addEventListener('click', () => { virtual += 1; });
     const root = document.documentElement;
-    const is = { image: '00', count: 0, isAway: null };
+    const has = { image: '00', count: 0, isAway: null };
     const says = (image, count) => {
-      Object.assign(is, { image, count }, !count && { isAway: null });
+      Object.assign(has, { image, count }, !count && { isAway: null });
       pageState.checkResult.set({ image, findings: Array(count).fill({}) });
     };
-    const isAway = () => is.isAway ?? (pageState.view.value === 'blocks' && is.image !== '' && pageState.checkResult.value !== null);
+    const isAway = () => has.isAway ?? (pageState.view.value === 'blocks' && has.image !== '' && pageState.checkResult.value !== null);
     const turns = (isPhone) => {
       phone.matches = isPhone;
       phone.dispatchEvent(new Event('change'));
     };
     const seen = () => [page.byId('writing').dataset.sheet, page.byId('sheet').hidden, page.byId('sheet').attributes['aria-expanded'], root.dataset.half, page.byId('other_name').textContent, 'phone' in root.dataset, page.byId('bar').children.length, real, virtual];
-    const acts = {
+    const actions = {
       wrong: () => says('', 1),
       warned: () => says('00', 1),
       right: () => says('00', 0),
       checks: () => pageState.checkResult.set(null),
       sheet() {
         if (page.byId('sheet').hidden) return;
-        is.isAway = !isAway();
+        has.isAway = !isAway();
         page.byId('sheet').click();
       },
       run() {
         const { half, side } = root.dataset, isReal = phone.matches && side === 'side_real' && half === 'robot';
         const isWrong = pageState.checkResult.value?.image === '', before = [real, virtual];
-        if (phone.matches && !isReal && isWrong) is.isAway = false;
+        if (phone.matches && !isReal && isWrong) has.isAway = false;
         page.byId('run').click();
         if (`${[real, virtual]}` !== `${[before[0] + Number(isReal), before[1] + Number(!isReal)]}`) throw new Error('another robot runs');
         const wanted = !phone.matches || isReal ? [half, side] : isWrong ? ['program', side] : ['robot', side === 'side_lessons' ? side : 'side_virtual'];
@@ -4692,12 +4692,12 @@ const PARTS = {
       },
       other: () => page.byId('other').click(),
       speaks: () => pageState.language.set('en'),
-      view: (chance) => pageState.view.set(chance.of(['blocks', 'text'])),
-      side: (chance) => showSide(chance.of(['side_virtual', 'side_lessons', 'side_real'])),
-      turns: (chance) => turns(chance() < 0.7),
+      view: (random) => pageState.view.set(random.of(['blocks', 'text'])),
+      side: (random) => showSide(random.of(['side_virtual', 'side_lessons', 'side_real'])),
+      turns: (random) => turns(random() < 0.7),
     };
     says('00', 0);
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       if (isGood) {
         turns(true);
         for (const part of [page.byId('controls'), page.byId('bar')]) part.children = [];
@@ -4708,13 +4708,13 @@ const PARTS = {
         [real, virtual] = [0, 0];
       }
       const ends = new Set(), all = [];
-      for (let k = 4 + chance.below(12); k > 0; k -= 1) {
-        const act = chance.of(['wrong', 'sheet', ...Object.keys(acts)]);
+      for (let k = 4 + random.below(12); k > 0; k -= 1) {
+        const act = random.of(['wrong', 'sheet', ...Object.keys(actions)]);
         ends.add(act);
-        acts[act](chance);
+        actions[act](random);
         all.push([act, seen()]);
         if (act !== 'checks' && pageState.checkResult.value && (page.byId('writing').dataset.sheet === 'away') !== isAway()) throw new Error(`after ${act} the sheet is ${page.byId('writing').dataset.sheet}`);
-        if (page.byId('sheet').hidden !== !is.count) throw new Error('there is no way to what is said, or one to nothing');
+        if (page.byId('sheet').hidden !== !has.count) throw new Error('there is no way to what is said, or one to nothing');
         if ('phone' in root.dataset !== phone.matches || (phone.matches && page.byId('run').parent !== page.byId('bar'))) throw new Error('Run is out of reach');
       }
       return { ends: [...ends], seen: all };
@@ -4725,43 +4725,43 @@ const PARTS = {
   // asks, answers are lost and nothing can be kept: it asks with the token of its newest code, or says why it has none.
   async entering() {
     let kept = [], isFull = false;
-    return async (chance, isGood) => {
+    return async (random, isGood) => {
       let ends = '', again = ''; // the address of a page that loads itself again
       if (isGood) [kept, isFull] = [[], false];
-      for (let k = 1 + chance.below(5); k > 0; k -= 1) {
+      for (let k = 1 + random.below(5); k > 0; k -= 1) {
         const page = freshPage();
         const store = window.sessionStorage;
         for (const [key, value] of kept) store.setItem(key, value);
         if (isFull) store.room = 0;
-        const code = again || (chance() < 0.6 ? Array.from({ length: 32 }, () => chance.of([...'0123456789abcdef'])).join('') : '');
+        const code = again || (random() < 0.6 ? Array.from({ length: 32 }, () => random.of([...'0123456789abcdef'])).join('') : '');
         const isAgain = code !== '' && store.getItem('tiniscript.loaded') === code;
-        location.hash = code ? `#code=${code}` : chance.of(['', '#code=12', '#other']);
+        location.hash = code ? `#code=${code}` : random.of(['', '#code=12', '#other']);
         const { hash } = location, before = store.getItem('tiniscript.token') ?? '';
         let reloads = 0;
         location.reload = () => { reloads += 1; };
         const scriptURL = 'http://127.0.0.1/service_worker.js';
         /** What a browser has registered here: the page's own, or one of somebody else. */
-        let registrations = Array.from({ length: chance.below(3) }, () => {
-          const kind = chance.of(['own', 'own', 'first', 'address', 'kept', 'newer', 'lost', 'waits']);
+        let registrations = Array.from({ length: random.below(3) }, () => {
+          const kind = random.of(['own', 'own', 'first', 'address', 'kept', 'newer', 'lost', 'waits']);
           const isOwn = kind === 'own' || kind === 'first', worker = { scriptURL: kind === 'address' ? 'http://127.0.0.1/other.js' : scriptURL };
-          const each = {
+          const item = {
             isOwn,
             ...kind === 'first' ? { active: null, installing: worker } : { active: worker, waiting: kind === 'waits' ? { scriptURL } : null },
             updateViaCache: kind === 'kept' ? 'all' : 'imports',
             async update() {
               await later(3);
               if (kind === 'lost') throw new Broken();
-              if (kind === 'newer') each.installing = { scriptURL };
+              if (kind === 'newer') item.installing = { scriptURL };
             },
-            unregister: async () => { registrations = registrations.filter((other) => other !== each); },
+            unregister: async () => { registrations = registrations.filter((other) => other !== item); },
           };
-          return each;
+          return item;
         });
         const ownCount = registrations.filter(({ isOwn }) => isOwn).length, isForeign = registrations.length > ownCount;
         playsNavigator({ serviceWorker: { getRegistrations: async () => registrations } });
         const cached = new Set(['theirs', 'ours']);
         globalThis.caches = { keys: async () => [...cached], delete: async (name) => cached.delete(name) };
-        ends = chance.of(['given', 'given', 'used', 'lost']);
+        ends = random.of(['given', 'given', 'used', 'lost']);
         let asked = 0;
         const tokens = [];
         playsFetch(async (path, { headers, body }) => {
@@ -4780,21 +4780,21 @@ const PARTS = {
           await settles();
           await passes(1);
         }
-        const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
-        again = reloads && chance() < 0.8 ? code : '';
-        is([registrations.filter(({ isOwn }) => isOwn).length, registrations.length, cached.size], [ownCount, wasForeign || !isForeign ? ownCount : registrations.length, wasForeign ? 0 : 2], 'what is registered, and kept');
-        if (wasForeign && !isFull && !isAgain) is([reloads, asked, location.hash], [1, 0, hash], 'beside a worker of somebody else');
+        const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
+        again = reloads && random() < 0.8 ? code : '';
+        assertSame([registrations.filter(({ isOwn }) => isOwn).length, registrations.length, cached.size], [ownCount, wasForeign || !isForeign ? ownCount : registrations.length, wasForeign ? 0 : 2], 'what is registered, and kept');
+        if (wasForeign && !isFull && !isAgain) assertSame([reloads, asked, location.hash], [1, 0, hash], 'beside a worker of somebody else');
         else {
           const token = wasForeign ? before : !code ? before : ends === 'given' ? `token ${code}` : '';
-          is([host.entryFailure, host.hasHost, asked], [wasForeign ? 'host_worker' : !code || ends === 'given' ? '' : ends === 'used' ? 'host_used' : 'host_gone', token !== '', Number(code !== '' && !wasForeign)], `by ${hash}`);
-          if (code && !wasForeign) is(location.hash, '', 'the address');
+          assertSame([host.entryFailure, host.hasHost, asked], [wasForeign ? 'host_worker' : !code || ends === 'given' ? '' : ends === 'used' ? 'host_used' : 'host_gone', token !== '', Number(code !== '' && !wasForeign)], `by ${hash}`);
+          if (code && !wasForeign) assertSame(location.hash, '', 'the address');
           await Promise.all([host.fetchPorts(), settles()]);
-          is(tokens.at(-1), token, 'the token');
-          if (!isFull && code && !wasForeign && ends === 'given') is(store.getItem('tiniscript.token'), token, 'what is kept');
+          assertSame(tokens.at(-1), token, 'the token');
+          if (!isFull && code && !wasForeign && ends === 'given') assertSame(store.getItem('tiniscript.token'), token, 'what is kept');
         }
         store.room = Infinity;
         kept = [...store];
-        isFull = !isGood && chance() < 0.3;
+        isFull = !isGood && random() < 0.3;
       }
       return { ends: [ends], seen: [] };
     };
@@ -4814,7 +4814,7 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { SimulatorPanel } = await page.load('virtual/simulator_panel.js');
     pageState.robotName.set('tinibot');
-    let late = () => 5;
+    let delay = () => 5;
     let robot = null;
     let wants = false; // a run
     let startsAfterStop = false;
@@ -4830,12 +4830,12 @@ const PARTS = {
           begun += 1;
         }
         const asked = robot;
-        worker = worker.then(() => later(late())).then(() => (request.do === 'check' ? program : asked.answer(request)));
+        worker = worker.then(() => later(delay())).then(() => (request.do === 'check' ? program : asked.answer(request)));
         return worker;
       },
     };
     const whenCompiled = async () => {
-      await later(late());
+      await later(delay());
       pageState.checkResult.set(program);
       return program;
     };
@@ -4844,9 +4844,9 @@ const PARTS = {
     const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
-    return async (chance, isGood) => {
-      late = () => (isGood ? 5 : chance.below(150));
-      robot = runningRobot(chance);
+    return async (random, isGood) => {
+      delay = () => (isGood ? 5 : random.below(150));
+      robot = runningRobot(random);
       const ways = {
         run: () => page.byId('run').click(),
         step: () => page.byId('step').click(),
@@ -4857,14 +4857,14 @@ const PARTS = {
         points: () => pageState.breakpoints.set([1, 2].map((line) => ({ line, column: 1, point: {} }))),
       };
       let end = '';
-      for (let k = 3 + chance.below(8); k > 0; k -= 1) {
-        const way = chance.of(Object.keys(ways));
+      for (let k = 3 + random.below(8); k > 0; k -= 1) {
+        const way = random.of(Object.keys(ways));
         if (way === 'run' || (way === 'step' && !['running', 'paused'].includes(dataset['phase']))) wants = true;
         if (way === 'stop' || way === 'escape') wants = false;
         end = way;
         const before = begun;
         ways[way]();
-        await passes(chance() < 0.5 ? chance.below(30) : chance.below(600));
+        await passes(random() < 0.5 ? random.below(30) : random.below(600));
         if (way !== 'run' || k > 1) continue;
         await passes(1500);
         if (begun === before) throw new Error('it does not start');
@@ -4900,7 +4900,7 @@ const PARTS = {
       await passes(8000); // until its end
       await tries(true);
       await passes(8000);
-      robot = runningRobot(chance);
+      robot = runningRobot(random);
       ways.run();
       await passes(500);
       if (dataset['phase'] === 'running') await tries(false);
@@ -4924,9 +4924,9 @@ const REAL_SIDE = {
 const answers = (found) => ({ ok: true, status: 200, json: async () => found });
 
 /** @returns one that runs */
-function runningRobot(chance) {
+function runningRobot(random) {
   for (;;) {
-    const robot = virtualRobot(chance, false);
+    const robot = virtualRobot(random, false);
     if (robot.does === 'runs') return robot;
   }
 }

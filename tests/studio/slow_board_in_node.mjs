@@ -7,17 +7,17 @@ const [sources, seeds] = process.argv.slice(2);
 let now_ms = 0;
 let timers = [];
 Date.now = () => now_ms;
-globalThis.setTimeout = (does, ms = 0) => {
-  const timer = { at_ms: now_ms + ms, does };
+globalThis.setTimeout = (callback, ms = 0) => {
+  const timer = { at_ms: now_ms + ms, does: callback };
   timers.push(timer);
   return timer;
 };
 globalThis.clearTimeout = (timer) => {
-  timers = timers.filter((each) => each !== timer);
+  timers = timers.filter((item) => item !== timer);
 };
 const { BOARDS, flash } = await import(pathToFileURL(`${sources}/robot/stk500.js`).href);
 
-function chance(seed) {
+function randomFrom(seed) {
   let state = seed * 2654435761 + 1;
   return () => {
     state = (Math.imul(state ^ (state >>> 15), 0x2c1b3c6d) + 0x9e3779b9) | 0;
@@ -60,8 +60,8 @@ class Cable {
     this.board = board;
   }
 
-  async open(heard) {
-    this.heard = heard;
+  async open(onData) {
+    this.heard = onData;
   }
 
   async reset() {}
@@ -86,7 +86,7 @@ async function passes() {
 }
 
 for (let seed = 0; seed < seeds; seed += 1) {
-  const random = chance(seed);
+  const random = randomFrom(seed);
   now_ms = 0;
   timers = [];
   const plan = {
@@ -103,7 +103,7 @@ for (let seed = 0; seed < seeds; seed += 1) {
     last = part;
   }).then(
     () => (ended ||= 'done'),
-    (why) => (ended ||= why.reason ?? String(why)),
+    (error) => (ended ||= error.reason ?? String(error)),
   );
   await passes();
   while (!ended && timers.length) {

@@ -9,7 +9,7 @@ const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
 const [first, seeds] = words.map(Number);
 Date.now = () => 1_700_000_000_000 + now();
 const unhandled = [];
-for (const kind of ['unhandledRejection', 'uncaughtException']) process.on(kind, (why) => unhandled.push(String(why)));
+for (const kind of ['unhandledRejection', 'uncaughtException']) process.on(kind, (error) => unhandled.push(String(error)));
 
 let resizes = [];
 globalThis.ResizeObserver = class {
@@ -43,7 +43,7 @@ async function speaks(page, language) {
 /** Each begins a page and gives its acts, what the acts are followed by, and which there are. */
 const PARTS = {
   // Which screen is seen, and what the start shows: pictures that begin, earlier programs, stars.
-  async start(chance) {
+  async start(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
     await learns(page);
@@ -54,8 +54,8 @@ const PARTS = {
     const { BEGINNINGS } = await page.load('start/beginnings.js');
     const versions = await page.load('programs/versions.js');
     const progress = await page.load('lesson/progress.js');
-    const hasStart = chance() < 0.8, isProgram = chance() < 0.2;
-    location.hash = chance.of(['', '', '#editor', '#p=given']);
+    const hasStart = random() < 0.8, isProgram = random() < 0.2;
+    location.hash = random.of(['', '', '#editor', '#p=given']);
     let entries = 0;
     const pushes = history.pushState;
     history.pushState = (...given) => {
@@ -86,20 +86,20 @@ const PARTS = {
       if (screen !== to) pushed += 1;
       return goes(to);
     };
-    const acts = {
+    const actions = {
       home() {
         press(page.byId('home'));
         wanted = shows('start');
       },
       way() {
-        const [way, side, place] = chance.of([['write', 'side_virtual', 'writing'], ['lessons', 'side_lessons', 'lesson_page'], ['robot', 'side_real', 'side_real']]);
+        const [way, side, place] = random.of([['write', 'side_virtual', 'writing'], ['lessons', 'side_lessons', 'lesson_page'], ['robot', 'side_real', 'side_real']]);
         press(page.byId(`start_${way}`));
         wanted = [...shows('program'), ['side', side]];
         focus = place;
       },
       begins() {
         if (beginning) return;
-        const name = chance.of(Object.keys(BEGINNINGS)), { text: program, robot, world } = BEGINNINGS[name];
+        const name = random.of(Object.keys(BEGINNINGS)), { text: program, robot, world } = BEGINNINGS[name];
         let ends;
         beginning = { run: new Promise((good, bad) => { ends = { good, bad }; }), ends: () => ends };
         press(document.querySelectorAll(`[data-begin=${name}]`)[0]);
@@ -113,7 +113,7 @@ const PARTS = {
       async ends() {
         if (!beginning) return;
         const { good, bad } = beginning.ends();
-        isRefused = chance() < 0.3;
+        isRefused = random() < 0.3;
         if (isRefused) bad(new Error('refused'));
         else good();
         beginning = null;
@@ -127,30 +127,30 @@ const PARTS = {
         is(location.hash, '#editor', 'the address');
       },
       back() {
-        location.hash = chance.of(['', '#editor', '#p=given']);
+        location.hash = random.of(['', '#editor', '#p=given']);
         const isScreen = location.hash !== '#p=given';
         dispatchEvent(new Event('popstate'));
         wanted = hasStart && isScreen ? goes(location.hash ? 'program' : 'start') : [];
       },
       keeps() {
-        for (let k = chance.of([1, 8]); k > 0; k -= 1) versions.storeVersion({ text: `F(${chance.below(20)});\nB(1)`, robot: 'tinibot', name: chance.of(['', 'one.ts']) });
+        for (let k = random.of([1, 8]); k > 0; k -= 1) versions.storeVersion({ text: `F(${random.below(20)});\nB(1)`, robot: 'tinibot', name: random.of(['', 'one.ts']) });
         pageState.view.set(pageState.view.value);
       },
       stars() {
-        if (chance() < 0.5) progress.storeDone(chance.of(['one', 'two']));
-        else progress.storeStars(chance.of(['one', 'three']), 1 + chance.below(3));
+        if (random() < 0.5) progress.storeDone(random.of(['one', 'two']));
+        else progress.storeStars(random.of(['one', 'three']), 1 + random.below(3));
         pageState.language.set(pageState.language.value);
       },
       forgets() {
-        window.localStorage.removeItem(chance.of(['tiniscript.versions', 'tiniscript.stars', 'tiniscript.lessons']));
+        window.localStorage.removeItem(random.of(['tiniscript.versions', 'tiniscript.stars', 'tiniscript.lessons']));
         pageState.view.set(pageState.view.value);
       },
-      speaks: () => speaks(page, chance.of(LANGUAGES)),
-      views: () => pageState.view.set(chance.of(['blocks', 'text'])),
+      speaks: () => speaks(page, random.of(LANGUAGES)),
+      views: () => pageState.view.set(random.of(['blocks', 'text'])),
       opens() {
         const rows = page.byId('start_programs').children;
         if (screen !== 'start' || !rows.length) return;
-        const index = chance.below(rows.length), { text: program, robot, name } = versions.loadVersions()[index];
+        const index = random.below(rows.length), { text: program, robot, name } = versions.loadVersions()[index];
         press(rows[index].querySelector('button'));
         wanted = [['put', program, robot, name]];
       },
@@ -169,11 +169,11 @@ const PARTS = {
       const stars = progress.countAllStars(), badge = page.byId('start_badge'), done = progress.loadDoneLessons().size;
       is([badge.hidden, ...badge.children.map(saidOf)], [!stars, `${done ? `✓ ${done}  ` : ''}★ ${stars}`, text('lesson_progress', { done, stars })], 'the stars');
     };
-    return { acts, checks };
+    return { acts: actions, checks };
   },
 
   // The window with a robot's name and colour.
-  async own(chance) {
+  async own(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
     await learns(page);
@@ -194,7 +194,7 @@ const PARTS = {
       else kept = JSON.stringify(own);
       pageState.note.set('');
     };
-    const acts = {
+    const actions = {
       opens() {
         for (const radio of radios) radio.checked = false;
         press(page.byId('start_own'));
@@ -202,21 +202,21 @@ const PARTS = {
       },
       closes: () => dialog.querySelectorAll('button').find(({ dataset }) => dataset.text === 'close').click(),
       names() {
-        const name = chance.of(['', ' Robbi ', 'R2', 'a name that is too long for it']);
+        const name = random.of(['', ' Robbi ', 'R2', 'a name that is too long for it']);
         changes(nameInput, { value: name }, 'input');
         stores({ name });
       },
       paints() {
-        const colour = chance.below(COLOURS.length);
+        const colour = random.below(COLOURS.length);
         changes(radios[colour], { checked: true });
         stores({ colour });
       },
       others() { // another one comes, of a class
-        own = { name: chance.of(['', 'Pia']), colour: chance.below(COLOURS.length) };
+        own = { name: random.of(['', 'Pia']), colour: random.below(COLOURS.length) };
         pageState.ownRobot.set(own);
       },
-      speaks: () => speaks(page, chance.of(LANGUAGES)),
-      fills: () => { window.localStorage.room = chance.of([0, Infinity]); },
+      speaks: () => speaks(page, random.of(LANGUAGES)),
+      fills: () => { window.localStorage.room = random.of([0, Infinity]); },
     };
     const checks = () => {
       is(pageState.ownRobot.value, own, 'the robot');
@@ -224,11 +224,11 @@ const PARTS = {
       is(window.localStorage.getItem('tiniscript.own_robot') ?? true, kept, 'what is kept');
       is(radios.map(({ ariaLabel }) => ariaLabel), COLOURS.map(([, , key]) => text(key)), 'the colours');
     };
-    return { acts, checks };
+    return { acts: actions, checks };
   },
 
   // Children press everything twice: what they hear a second time is not for what has come to its place.
-  async twice(chance) {
+  async twice(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
     const { ignoreSecondPresses, isSecondPress } = await page.load('page/twice.js');
@@ -248,12 +248,12 @@ const PARTS = {
       target.dispatchEvent(event);
       return event.defaultPrevented;
     };
-    const acts = {
+    const actions = {
       presses() {
-        const visible = buttons.filter((each) => each.checkVisibility());
-        const target = chance() < 0.15 || !visible.length ? elsewhere : chance.of(visible);
-        const place = chance.of([{ clientX: last.x, clientY: last.y }, { clientX: last.x, clientY: last.y + 5 }, { clientX: last.x + 20, clientY: last.y }, { clientX: chance.below(300), clientY: 50 }]);
-        const pointerType = chance.of(['mouse', 'touch']);
+        const visible = buttons.filter((item) => item.checkVisibility());
+        const target = random() < 0.15 || !visible.length ? elsewhere : random.of(visible);
+        const place = random.of([{ clientX: last.x, clientY: last.y }, { clientX: last.x, clientY: last.y + 5 }, { clientX: last.x + 20, clientY: last.y }, { clientX: random.below(300), clientY: 50 }]);
+        const pointerType = random.of(['mouse', 'touch']);
         const near = (other) => Math.hypot(place.clientX - other.x, place.clientY - other.y) < 30;
         // A mouse's clicks are counted from the last one, a finger's are not.
         count = pointerType === 'mouse' && now() - last.ms < 500 && near(last) ? count + 1 : 1;
@@ -265,25 +265,25 @@ const PARTS = {
         const isHidden = first.button && !first.button.checkVisibility();
         const takes = (second) => Boolean(second && isHidden && target.id !== 'stop');
         heard = [];
-        const aim = target.id === 'one' && chance() < 0.5 ? inner : target;
+        const aim = target.id === 'one' && random() < 0.5 ? inner : target;
         const prevented = [at('pointerdown', aim, { ...place, pointerType, detail: 0 }), at('mousedown', aim, { ...place, detail: count }), at('click', aim, { ...place, detail: count })];
         is(prevented, [takes(isSecond), takes(isSecondClick), takes(isSecondClick)], 'what is taken');
         if (target !== elsewhere) is(heard, [...takes(isSecond) ? [] : [['pointerdown', false]], ...takes(isSecondClick) ? [] : [['mousedown', false], ['click', isSecondClick]]], 'heard');
-        if (chance() < 0.3) buttons[chance.below(3)].hidden = true; // by what was pressed
+        if (random() < 0.3) buttons[random.below(3)].hidden = true; // by what was pressed
       },
       keys() {
-        const target = chance.of(buttons.filter((each) => each.checkVisibility()).concat(elsewhere));
+        const target = random.of(buttons.filter((item) => item.checkVisibility()).concat(elsewhere));
         heard = [];
         is(at('click', target, { clientX: 0, clientY: 0, detail: 0 }), false, 'a key is taken');
         if (target !== elsewhere) is(heard, [['click', false]], 'heard of a key');
       },
-      hides: () => { chance.of(buttons).hidden = chance() < 0.6; },
+      hides: () => { random.of(buttons).hidden = random() < 0.6; },
     };
-    return { acts: { ...acts, pressesMore: acts.presses, pressesAgain: acts.presses, pressesThen: acts.presses }, checks() {}, waits: [0, 100, 200, 450, 600] };
+    return { acts: { ...actions, pressesMore: actions.presses, pressesAgain: actions.presses, pressesThen: actions.presses }, checks() {}, waits: [0, 100, 200, 450, 600] };
   },
 
   // The line under the world, of one run after another.
-  async timeLine(chance) {
+  async timeLine(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
     const { TimeLine } = await page.load('virtual/time_line.js');
@@ -305,29 +305,29 @@ const PARTS = {
     const seen = () => run ?? EMPTY;
     const momentOf = () => seen().moments.momentAt(at_ms ?? Infinity);
     const adds = (isQuiet) => {
-      now_ms += 1 + chance.below(300);
-      bumps += !isQuiet && chance() < 0.2 ? 1 : 0;
-      const events = isQuiet ? [] : [[now_ms, chance.of([`SHOW ${chance.below(9)}`, 'BEEP 440 100', 'MOTORS 1 2']), chance.below(3)]];
-      run.add({ now_ms, began_ms: run.beganAt, pose: [0, 0, 0], bumps, at: chance.below(3), places: [chance.below(3)], is_running: true, variables: [], events, rows: chance() < 0.2 ? [[now_ms, 'KEYS 1 0 0']] : [] });
+      now_ms += 1 + random.below(300);
+      bumps += !isQuiet && random() < 0.2 ? 1 : 0;
+      const events = isQuiet ? [] : [[now_ms, random.of([`SHOW ${random.below(9)}`, 'BEEP 440 100', 'MOTORS 1 2']), random.below(3)]];
+      run.add({ now_ms, began_ms: run.beganAt, pose: [0, 0, 0], bumps, at: random.below(3), places: [random.below(3)], is_running: true, variables: [], events, rows: random() < 0.2 ? [[now_ms, 'KEYS 1 0 0']] : [] });
     };
     const looksAt = (ms) => {
       if (!seen().moments.length) return;
       at_ms = ms;
       wantedLooks += 1;
     };
-    const acts = {
+    const actions = {
       begins() {
-        if (chance() < 0.2) run = null;
+        if (random() < 0.2) run = null;
         else {
           run = new Run({ of: 'virtual', text: '', robot: 'tinibot', program: '' }, { places: [], shows: [], variables: [] }, null);
-          Object.assign(run, { number: count += 1, beganAt: chance.of([0, null, 40]) });
+          Object.assign(run, { number: count += 1, beganAt: random.of([0, null, 40]) });
           bumps = 0;
-          now_ms = chance.below(500);
-          if (chance() < 0.3) { // as long as another one, with other marks
+          now_ms = random.below(500);
+          if (random() < 0.3) { // as long as another one, with other marks
             now_ms = 100;
-            for (const ms of [100, 1000, 2000]) run.add({ now_ms: ms, began_ms: 0, pose: [0, 0, 0], bumps, at: 0, places: [ms], is_running: true, variables: [], events: [[ms < 200 ? chance.below(90) + 10 : ms - chance.below(900), 'BEEP 440 100', 0]], rows: [] });
+            for (const ms of [100, 1000, 2000]) run.add({ now_ms: ms, began_ms: 0, pose: [0, 0, 0], bumps, at: 0, places: [ms], is_running: true, variables: [], events: [[ms < 200 ? random.below(90) + 10 : ms - random.below(900), 'BEEP 440 100', 0]], rows: [] });
             now_ms = 2000;
-          } else for (let k = chance.of([0, 1, 2, 30, 30, 30]); k > 0; k -= 1) adds(chance() < 0.5);
+          } else for (let k = random.of([0, 1, 2, 30, 30, 30]); k > 0; k -= 1) adds(random() < 0.5);
         }
         at_ms = null;
         if (run) line.begin(run);
@@ -337,7 +337,7 @@ const PARTS = {
       },
       goesOn() {
         if (!run) return;
-        for (let k = 1 + chance.below(4); k > 0; k -= 1) adds(chance() < 0.5);
+        for (let k = 1 + random.below(4); k > 0; k -= 1) adds(random() < 0.5);
         isShown = isDrawn = false;
       },
       shows() {
@@ -354,14 +354,14 @@ const PARTS = {
         isShown = false;
       },
       moves() {
-        const ms = chance.below(4000);
+        const ms = random.below(4000);
         changes(slider, { value: String(ms) }, 'input');
         looksAt(ms);
         isShown = false;
       },
       keys() {
-        const key = chance.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home']);
-        const more = { [chance.of(['shiftKey', 'shiftKey', 'altKey', 'none'])]: true };
+        const key = random.of(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home']);
+        const more = { [random.of(['shiftKey', 'shiftKey', 'altKey', 'none'])]: true };
         const event = Object.assign(new Event('keydown', { cancelable: true }), { key, ...more });
         const { moments } = seen();
         const isOurs = key !== 'Home' && !more.altKey;
@@ -376,19 +376,19 @@ const PARTS = {
         isDragged = true;
       },
       releases() {
-        window.dispatchEvent(new Event(chance.of(['pointerup', 'pointercancel'])));
+        window.dispatchEvent(new Event(random.of(['pointerup', 'pointercancel'])));
         if (isDragged && at_ms !== null) wantedLooks += 1;
         isDragged = false;
       },
       resizes() {
-        size = chance.of([[0, 0], [100, 20], [300, 20]]);
+        size = random.of([[0, 0], [100, 20], [300, 20]]);
         [canvas.clientWidth, canvas.clientHeight] = size;
         for (const does of resizes) does();
         isDrawn = size[0] > 0;
       },
       darkens() {
-        window.devicePixelRatio = ratio = chance.of([1, 2]);
-        document.documentElement.toggleAttribute('data-dark', chance() < 0.5);
+        window.devicePixelRatio = ratio = random.of([1, 2]);
+        document.documentElement.toggleAttribute('data-dark', random() < 0.5);
         isDrawn = false;
       },
     };
@@ -411,11 +411,11 @@ const PARTS = {
       is([...new Set(drawn.map(([, x]) => x))].sort((a, b) => a - b), [...places].sort((a, b) => a - b), 'what is drawn');
       is(drawn.every(([, , y, , height]) => y + height === size[1] * ratio), true, 'where it is drawn');
     };
-    return { acts: { ...acts, movesMore: acts.moves, grows: acts.goesOn, showsAgain: acts.shows }, checks };
+    return { acts: { ...actions, movesMore: actions.moves, grows: actions.goesOn, showsAgain: actions.shows }, checks };
   },
 
   // The window of the last runs.
-  async runs(chance) {
+  async runs(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
     await learns(page);
@@ -438,25 +438,25 @@ const PARTS = {
     const runsWindow = new RunsWindow({ python, runs, show: (run) => told.push(['show', run.number]), play: (opened, known) => told.push(['play', opened.file, opened.text, known?.number]) });
     let notice = '', note = '', kept = [];
     const REFUSALS = Object.keys(TEXTS).filter((key) => key.startsWith('record_'));
-    const refuses = (name, why) => {
-      if (dialog.open) notice = why;
-      else note = text('not_opened', { name, why });
+    const refuses = (name, error) => {
+      if (dialog.open) notice = error;
+      else note = text('not_opened', { name, why: error });
     };
     const titleOf = (run) => text(run.origin.of === 'real' ? 'run_real' : 'run_virtual', { number: run.number, seconds: run.seconds.toFixed(1) });
-    const fileOf = (content, isReadable = true) => ({ name: chance.of(['a.tsr', 'B.TSR']), slice: () => ({ arrayBuffer: async () => {
+    const fileOf = (content, isReadable = true) => ({ name: random.of(['a.tsr', 'B.TSR']), slice: () => ({ arrayBuffer: async () => {
       if (!isReadable) throw new Error('gone');
       return new TextEncoder().encode(content).buffer;
     } }) });
     const opens = async (gives) => {
-      const content = `file ${chance.below(100)}`, isReadable = chance() < 0.8, why = chance() < 0.4 ? chance.of(REFUSALS).slice('record_'.length) : '';
-      answers = () => (why ? { what: why, line: 7 } : { text: 'T', rows: [] });
+      const content = `file ${random.below(100)}`, isReadable = random() < 0.8, error = random() < 0.4 ? random.of(REFUSALS).slice('record_'.length) : '';
+      answers = () => (error ? { what: error, line: 7 } : { text: 'T', rows: [] });
       const wasOpen = dialog.open;
       const file = fileOf(content, isReadable);
       const given = gives(file);
       if (given === false) return;
       await passes(50);
       if (!isReadable) refuses(file.name, text('unreadable'));
-      else if (why) refuses(file.name, text(`record_${why}`, { line: 7 }));
+      else if (error) refuses(file.name, text(`record_${error}`, { line: 7 }));
       else {
         is(told.splice(0), [['play', content, 'T', null]], 'what is played');
         is(dialog.open, false, 'the window stays');
@@ -464,15 +464,15 @@ const PARTS = {
       }
     };
     let isOpen = false;
-    const acts = {
+    const actions = {
       ran() {
-        const run = new Run({ of: chance.of(['virtual', 'real']), text: chance.of(['F(1);\n B(1)', 'x'.repeat(90)]), robot: 'tinibot', program: 'p' }, { places: [], shows: [], variables: [] }, null);
+        const run = new Run({ of: random.of(['virtual', 'real']), text: random.of(['F(1);\n B(1)', 'x'.repeat(90)]), robot: 'tinibot', program: 'p' }, { places: [], shows: [], variables: [] }, null);
         runs.addRun(run);
-        for (let k = chance.below(4); k > 0; k -= 1) run.addRow([1000 * k, 'BUTTON 1']);
-        run.isJudged = chance() < 0.2;
-        if (chance() < 0.2) run.file = `opened ${run.number}`;
-        run.end_ms = chance.of([null, 3000]);
-        run.clock = chance.of([null, () => 4000]);
+        for (let k = random.below(4); k > 0; k -= 1) run.addRow([1000 * k, 'BUTTON 1']);
+        run.isJudged = random() < 0.2;
+        if (random() < 0.2) run.file = `opened ${run.number}`;
+        run.end_ms = random.of([null, 3000]);
+        run.clock = random.of([null, () => 4000]);
       },
       opens() {
         press(page.byId('runs_open'));
@@ -486,19 +486,19 @@ const PARTS = {
       },
       sees() {
         if (!isOpen || !kept.length) return;
-        const index = chance.below(kept.length);
+        const index = random.below(kept.length);
         press(list.children[index].querySelectorAll('button')[0]);
         is(told.splice(0), [['show', kept[index].number]], 'the run that is seen');
         isOpen = false;
       },
       async saves() {
         if (!isOpen || !kept.length) return;
-        const index = chance.below(kept.length), run = kept[index];
+        const index = random.below(kept.length), run = kept[index];
         const button = list.children[index].querySelectorAll('button')[1];
         if (button.disabled) return;
-        const isBroken = chance() < 0.3, why = new Error('broken');
+        const isBroken = random() < 0.3, error = new Error('broken');
         answers = () => {
-          if (isBroken) throw why;
+          if (isBroken) throw error;
           return { file: `file of ${run.number}` };
         };
         press(button);
@@ -507,13 +507,13 @@ const PARTS = {
         else {
           is(asked, [['write_run', run.end_ms ?? run.clock?.() ?? run.rows.at(-1)?.[0] ?? 0, run.origin.text, undefined]], 'what is asked for');
           is(saved, isBroken ? [] : [`file of ${run.number}`], 'what is saved');
-          if (isBroken) notice = bugSentence(why);
+          if (isBroken) notice = bugSentence(error);
         }
       },
       chooses: () => opens((file) => changes(page.byId('run_file'), { files: [file] })),
       async drops() {
         await opens((file) => {
-          if (chance() < 0.2) file.name = 'picture.png';
+          if (random() < 0.2) file.name = 'picture.png';
           const event = Object.assign(new Event('drop', { cancelable: true }), { dataTransfer: { files: [file], types: ['Files'] } });
           dispatchEvent(event);
           is(event.defaultPrevented, true, 'the page is left for the file');
@@ -528,7 +528,7 @@ const PARTS = {
         is(event.defaultPrevented, false, 'a dropped text is taken');
       },
       async plays() {
-        const known = chance.of([null, ...runs.newestFirst]);
+        const known = random.of([null, ...runs.newestFirst]);
         answers = () => ({ text: 'O', rows: [] });
         runsWindow.openData(new TextEncoder().encode('data'), 'n', known);
         await passes(50);
@@ -548,27 +548,27 @@ const PARTS = {
       note = '';
       [asked, saved] = [[], []];
     };
-    return { acts: { ...acts, savesMore: acts.saves, savesAgain: acts.saves, opensAgain: acts.opens, ranMore: acts.ran }, checks };
+    return { acts: { ...actions, savesMore: actions.saves, savesAgain: actions.saves, opensAgain: actions.opens, ranMore: actions.ran }, checks };
   },
 
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
-  async words(chance) {
+  async words(random) {
     playsNavigator({});
     const page = freshPage();
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { ROBOTS, KINDS, devicesOf, deviceName, blockLabel, wordsOnBlock, tipOf, wordsOf, isRobot } = await page.load('page/words.js');
     let language = 'en', isSourceText = true, areShown = false;
-    const acts = {
-      shows: () => pageState.areWordsShown.set(areShown = chance() < 0.5),
+    const actions = {
+      shows: () => pageState.areWordsShown.set(areShown = random() < 0.5),
       async speaks() {
         isSourceText = false;
-        await speaks(page, language = chance.of(LANGUAGES));
+        await speaks(page, language = random.of(LANGUAGES));
       },
     };
     const textOf = (key) => (key in TEXTS ? TEXTS[key] + (isSourceText ? '' : ` ${language}`) : '');
     const checks = () => {
-      const robot = chance.of(ROBOTS), role = chance.of(['sensor', 'actuator']);
+      const robot = random.of(ROBOTS), role = random.of(['sensor', 'actuator']);
       is(devicesOf(robot.name, role).map(({ text }) => text), robot.devices.filter((device) => device.role === role).map(({ text }) => text), `what ${robot.name} has of ${role}`);
       is([devicesOf('nobody', role), wordsOf('nobody').size, isRobot('nobody'), isRobot(robot.name)], [[], 0, false, true], 'what nobody has');
       is(robot.devices.every(({ text }) => wordsOf(robot.name).get(text)?.text === text), true, 'the words of its devices');
@@ -577,17 +577,17 @@ const PARTS = {
         is(areShown ? deviceName(device).startsWith(device.text) : deviceName(device), areShown || label, 'the name of a device');
         if (areShown && !label.toUpperCase().startsWith(device.text)) is(deviceName(device), `${device.text} ${label}`, 'the name of a device with its word');
       }
-      const kind = chance.of(Object.keys(KINDS).filter((name) => `block/${name}` in TEXTS)), sentence = textOf(`block/${kind}`);
+      const kind = random.of(Object.keys(KINDS).filter((name) => `block/${name}` in TEXTS)), sentence = textOf(`block/${kind}`);
       const [, word] = /\{(\S+)\}/.exec(sentence) ?? [];
       if (word) is(areShown ? blockLabel(kind).includes(word) : blockLabel(kind), areShown || sentence.replace(`{${word}} `, ''), 'the label of a block');
-      is(wordsOnBlock(kind), [...sentence.matchAll(/\{(\S+?)\}/g)].map(([, each]) => each), 'its words');
+      is(wordsOnBlock(kind), [...sentence.matchAll(/\{(\S+?)\}/g)].map(([, item]) => item), 'its words');
       is(tipOf(kind), textOf(`tip/${kind}`), 'what is said of it');
     };
-    return { acts, checks };
+    return { acts: actions, checks };
   },
 
   // The fields of blocks: numbers that fit their place, tones, names, units; what is typed, chosen and taken back.
-  async fields(chance) {
+  async fields(random) {
     playsNavigator({});
     const { blocklyInNode } = await import('./blockly_in_node.mjs');
     const { blockly } = blocklyInNode();
@@ -613,13 +613,13 @@ const PARTS = {
     const at = (type, index, word) => { // a number in a place of another block
       const block = { id: 'b', workspace: { id: 'w' } }, parent = { type, getFieldValue: () => word, getField: () => null };
       parent.inputList = [0, 1].map((k) => ({ name: `V${k}`, connection: { targetBlock: () => (k === index ? block : null) } }));
-      parent.getInput = (name) => parent.inputList.find((each) => each.name === name);
+      parent.getInput = (name) => parent.inputList.find((item) => item.name === name);
       block.getParent = () => parent;
       return block;
     };
     const in_ = (field, block) => Object.assign(field, { getSourceBlock: () => block, name: 'N', forceRerender() {} });
     const number = in_(new NumberField(1), at('move', 0, 'F')), pitch = in_(new NumberField(440), at('beep', 1, 'BEEP'));
-    for (const each of [number, pitch]) each.setEditorValue_ = (value) => each.setValue(value);
+    for (const item of [number, pitch]) item.setEditorValue_ = (value) => item.setValue(value);
     const fields = [number, pitch, in_(new NameField('A'), at('move', 0, 'F')), in_(new LineField('x'), at('move', 0, 'F'))];
     const units = { F: 'CM', R: 'DEGREES' };
     let word = 'F';
@@ -634,11 +634,11 @@ const PARTS = {
       played = [];
       hertz = value;
     };
-    const acts = {
+    const actions = {
       types() {
-        const value = chance.of([chance() * 10 ** chance.below(12) * chance.of([1, -1]), 0, 1e-7, 3.5]), place = chance.of([['move', 'F'], ['compare', '']]), { low, high } = rangeOf(...place, 0);
+        const value = random.of([random() * 10 ** random.below(12) * random.of([1, -1]), 0, 1e-7, 3.5]), place = random.of([['move', 'F'], ['compare', '']]), { low, high } = rangeOf(...place, 0);
         in_(number, at(place[0], 0, place[1]));
-        number.isBeingEdited_ = chance() < 0.5;
+        number.isBeingEdited_ = random() < 0.5;
         number.setValue(value);
         const rounded = Math.round(value * 1000) / 1000;
         const wanted = number.isBeingEdited_ ? Math.min(high, Math.max(low, rounded)) : rounded;
@@ -648,15 +648,15 @@ const PARTS = {
         is(number.widgetCreate_().inputMode, low < 0 ? '' : 'decimal', 'the keys of a phone');
       },
       takesBack() {
-        const field = chance.of(fields), before = field.getValue(), changesIt = chance() < 0.6;
-        takesBack = (each) => changesIt && each.setValue(field instanceof NumberField ? before + 1 : `${before}B`);
+        const field = random.of(fields), before = field.getValue(), changesIt = random() < 0.6;
+        takesBack = (item) => changesIt && item.setValue(field instanceof NumberField ? before + 1 : `${before}B`);
         field.onHtmlInputKeyDown_({ key: 'Escape' });
         is(fired.splice(0).map(({ given }) => given), field.getValue() === before ? [] : [['field', 'N', before, field.getValue()]], 'what others hear of it');
         if (field === pitch) hertz = field.getValue();
       },
       opens() {
-        isCoarse = chance() < 0.5;
-        const isQuiet = chance() < 0.3;
+        isCoarse = random() < 0.5;
+        const isQuiet = random() < 0.3;
         pitch.showEditor_(null, isQuiet);
         is([drop.content.length, drop.content[0] === pitch.piano.element, quiet], [1, true, isQuiet || isCoarse], 'the piano');
         is(pitch.piano.element.querySelectorAll('[aria-pressed=true]').length, hertzOfKey(keyOfHertz(hertz)) === hertz ? 1 : 0, 'the key that is pressed');
@@ -670,12 +670,12 @@ const PARTS = {
       playsKey() {
         const keys = pitch.piano?.element.querySelectorAll('button').filter(({ title }) => title) ?? [];
         if (!keys.length) return;
-        const key = chance.of(keys), wanted = Number(/(\d+) Hz/.exec(key.title)[1]);
+        const key = random.of(keys), wanted = Number(/(\d+) Hz/.exec(key.title)[1]);
         press(key);
         toneIs(wanted);
       },
       steps() {
-        const key = chance.of(['ArrowUp', 'ArrowDown']);
+        const key = random.of(['ArrowUp', 'ArrowDown']);
         const event = Object.assign(new Event('keydown', { cancelable: true }), { key, stopPropagation: () => { event.isStopped = true; } });
         pitch.onHtmlInputKeyDown_(event);
         is([event.defaultPrevented, event.isStopped], [true, true], 'what else the key does');
@@ -689,29 +689,29 @@ const PARTS = {
         Object.assign(pitch, { isBeingEdited_: true, htmlInput_: { value: '12' } });
         is(pitch.getText_(), '12', 'what is typed');
         Object.assign(pitch, { isBeingEdited_: false, htmlInput_: null });
-        Object.assign(pitch, { isDirty_: false, textContent_: { nodeValue: chance() < 0.5 ? pitch.getDisplayText_() : 'before' } });
+        Object.assign(pitch, { isDirty_: false, textContent_: { nodeValue: random() < 0.5 ? pitch.getDisplayText_() : 'before' } });
         pitch.getSize();
         is(pitch.isDirty_, pitch.textContent_.nodeValue === 'before', 'whether it is drawn anew');
         pitch.textContent_ = null;
       },
       tunes() {
-        hertz = chance.of([440, 441, 100, 262, 30000]);
+        hertz = random.of([440, 441, 100, 262, 30000]);
         pitch.setValue(hertz);
       },
       names() {
-        const name = fields[2], before = name.getValue(), given = chance.of(['año', 'Straße 2', '  zählen x', '1a', '', '¿?', 'a\u0301', 'x-y z', 'Ñ_ñ']);
+        const name = fields[2], before = name.getValue(), given = random.of(['año', 'Straße 2', '  zählen x', '1a', '', '¿?', 'a\u0301', 'x-y z', 'Ñ_ñ']);
         name.setValue(given);
         const plain = [...given.normalize('NFC')].map((letter) => (/ñ/i.test(letter) ? 'NI' : letter.normalize('NFD')[0] ?? '')).join('').toUpperCase().trim();
         const wanted = plain.replace(/[^A-Z0-9_]+/g, '_').replace(/^[^A-Z]+/, '');
         is(name.getValue(), wanted || before, `the name ${given}`);
       },
       lines() {
-        const given = chance.of(['a\nb', 'a\r\nb', 'a\0b', 'plain']);
+        const given = random.of(['a\nb', 'a\r\nb', 'a\0b', 'plain']);
         fields[3].setValue(given);
         is(fields[3].getValue(), given === 'plain' ? given : 'a b', 'a line');
       },
-      words: () => { word = chance.of(['F', 'R', 'S']); },
-      measures: () => unit.setValue(chance.of(['seconds', WAY_UNIT])),
+      words: () => { word = random.of(['F', 'R', 'S']); },
+      measures: () => unit.setValue(random.of(['seconds', WAY_UNIT])),
     };
     const checks = () => {
       const wanted = unit.getValue() === WAY_UNIT ? units[word] ?? '' : '';
@@ -723,11 +723,11 @@ const PARTS = {
       is(pitch.getText_() ?? String(pitch.getValue()), hertzOfKey(keyOfHertz(hertz)) === hertz ? `${keyName(keyOfHertz(hertz), text('notes').split(' '))} ${hertz}` : String(hertz), 'what is seen of a tone');
       is([number.isPitch, number.getText_(), fired, played], [false, null, [], []], 'what nobody asked for');
     };
-    return { acts, checks, waits: [0] };
+    return { acts: actions, checks, waits: [0] };
   },
 
   // Which world it is: shipped, own, one of before, or a lesson's; and those that are kept come back.
-  async world(chance) {
+  async world(random) {
     playsNavigator({});
     const given = () => freshPage({ makePictureOption: (label, value) => Object.assign(document.createElement('option'), { textContent: label, value }), makeWorldPicture() {}, makeBlocksPicture() {}, makeDialPicture() {}, makeSymbolPicture() {}, replaceOptions() {} });
     let page = given();
@@ -735,7 +735,7 @@ const PARTS = {
     const python = {
       ready: Promise.resolve(),
       async ask({ do: what, form, name }, data) {
-        await later(chance.below(30));
+        await later(random.below(30));
         if (what === 'write_world') return { text: JSON.stringify(form) };
         const text = new TextDecoder().decode(data);
         try {
@@ -746,7 +746,7 @@ const PARTS = {
       },
     };
     const OWN = ':own';
-    let work = { world: chance.of(['free', OWN, 'nobody knows it']) }, choice, pageState, words_, text, progress;
+    let work = { world: random.of(['free', OWN, 'nobody knows it']) }, choice, pageState, words_, text, progress;
     const opens = async (isWhole = true) => {
       await learns(page);
       ({ pageState } = await page.load('page/page_state.js'));
@@ -762,16 +762,16 @@ const PARTS = {
     await opening;
     let newest = null, before = [], brought = null, isKept = true, isDamaged = false, count = 0;
     const select = () => page.byId('world');
-    const makes = () => ({ ...structuredClone(words_.WORLDS[0]), name: chance.of(['', 'mine']), labels: {}, ambient_percent: count += 1 });
+    const makes = () => ({ ...structuredClone(words_.WORLDS[0]), name: random.of(['', 'mine']), labels: {}, ambient_percent: count += 1 });
     const isOwn = () => !brought && newest !== null && work.world === OWN;
     const chooses = (name) => {
       work.world = name;
       brought = null;
     };
-    const acts = {
+    const actions = {
       chooses() {
-        const options = select().children.filter((each) => each.localName === 'option' || each.value);
-        const { value } = chance.of(options);
+        const options = select().children.filter((item) => item.localName === 'option' || item.value);
+        const { value } = random.of(options);
         changed = 0;
         changes(select(), { value });
         is(changed, 1, 'who shows it hears of it');
@@ -786,12 +786,12 @@ const PARTS = {
         chooses(OWN);
       },
       brings() {
-        const request = chance.of([{ lesson: 'one' }, { form: 1 }, 'free', null]);
+        const request = random.of([{ lesson: 'one' }, { form: 1 }, 'free', null]);
         brought = { request, shapes: makes(), label: () => `of ${pageState.language.value}`, goals: [count] };
         choice.bringWorld(brought);
       },
       puts() {
-        const world = makes(), isOther = chance() < 0.5;
+        const world = makes(), isOther = random() < 0.5;
         if ((isOther || !isOwn()) && newest) before = [newest, ...before].slice(0, 5);
         newest = world;
         choice.putOwn(world, isOther);
@@ -817,7 +817,7 @@ const PARTS = {
         for (const [name, all] of stores) for (const [key, value] of all) window[name].setItem(key, value);
         work = { ...work };
         brought = null;
-        if (newest && chance() < 0.2) {
+        if (newest && random() < 0.2) {
           isDamaged = true;
           for (const name of ['localStorage', 'sessionStorage']) window[name].setItem('tiniscript.world', 'damaged');
           newest = null;
@@ -826,9 +826,9 @@ const PARTS = {
         await passes(500);
         await again;
       },
-      speaks: () => speaks(page, chance.of(LANGUAGES)),
+      speaks: () => speaks(page, random.of(LANGUAGES)),
       stars() {
-        progress.storeStars(progress.starsKeyOfWorld(chance.of(words_.WORLDS).name), 1 + chance.below(3));
+        progress.storeStars(progress.starsKeyOfWorld(random.of(words_.WORLDS).name), 1 + random.below(3));
         choice.showStars();
       },
     };
@@ -848,7 +848,7 @@ const PARTS = {
       is(select().children.length, words_.WORLDS.length + (newest ? 1 : 0) + before.length + (brought ? 1 : 0), 'how many there are');
       is(select().value, brought ? ':brought' : isOwn() ? OWN : shipped.name, 'the one that is chosen');
     };
-    return { acts, checks };
+    return { acts: actions, checks };
   },
 };
 
@@ -856,21 +856,21 @@ for (const [part, begins] of Object.entries(PARTS)) {
   if (words[2] && words[2] !== part) continue;
   const done = new Set();
   for (let seed = first; seed < first + seeds; seed += 1) {
-    const chance = chanceOf(seed + 1), acted = [];
+    const random = chanceOf(seed + 1), acted = [];
     try {
-      const { acts, checks, waits = [0, 0, 20, 300] } = await begins(chance);
+      const { acts: actions, checks, waits = [0, 0, 20, 300] } = await begins(random);
       for (let k = 0; k < 60; k += 1) {
-        const act = chance.of(Object.keys(acts));
+        const act = random.of(Object.keys(actions));
         acted.push(act);
         done.add(act);
-        await acts[act]();
+        await actions[act]();
         await settles();
         checks();
-        await passes(chance.of(waits));
+        await passes(random.of(waits));
       }
       if (unhandled.length) throw new Fails(`unhandled ${unhandled}`);
-    } catch (why) {
-      console.error(`Error: ${part}, seed ${seed}, after ${acted.slice(-10).join(', ')}:`, why);
+    } catch (error) {
+      console.error(`Error: ${part}, seed ${seed}, after ${acted.slice(-10).join(', ')}:`, error);
       process.exit(1);
     }
   }

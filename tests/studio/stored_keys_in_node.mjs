@@ -9,26 +9,26 @@ const page = freshPage();
 await learns(page);
 const { DirectRobot } = await page.load('robot/direct.js');
 for (let seed = 0; seed < Number(words[0]); seed += 1) {
-  const chance = chanceOf(seed + 1);
+  const random = chanceOf(seed + 1);
   const all = new Set();
   const early = [];
   let stored = [];
   let count = 10;
   const ring = new Set();
   const python = {
-    async ask({ do: what, kept }, data) {
-      const text = what === 'connect' ? new TextDecoder().decode(data) : kept;
+    async ask({ do: action, kept }, data) {
+      const text = action === 'connect' ? new TextDecoder().decode(data) : kept;
       const before = ring.size;
       for (const key of text?.split(',') ?? []) if (key) ring.add(key);
-      let isNew = ring.size > before && what === 'link';
+      let isNew = ring.size > before && action === 'link';
       let send = '';
-      if (what === 'link' && chance() < 0.1) {
+      if (action === 'link' && random() < 0.1) {
         isNew = true;
         send = String(count += 1);
         ring.add(send);
       }
       const keys = isNew ? [...ring].join() : undefined;
-      await later(chance.below(60));
+      await later(random.below(60));
       return { send, keys, news: [], wakes_ms: null };
     },
   };
@@ -41,15 +41,15 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
         if (!stored.includes(key)) early.push(key);
       }
       await later(1);
-      if (chance() < 0.02) throw new Error('it is gone');
+      if (random() < 0.02) throw new Error('it is gone');
     },
   };
   const keyStore = { load: () => stored.join(), keep(keys) { stored = keys.split(','); } };
   const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, keyStore);
   robot.connect('tinibot', 'en').catch(() => {});
   for (let k = 0; k < 40; k += 1) {
-    await passes(chance.below(300));
-    if (chance() < 0.3) {
+    await passes(random.below(300));
+    if (random() < 0.3) {
       const key = String(count += 1);
       all.add(key);
       stored = [...stored, key];

@@ -19,8 +19,8 @@ def test_no_start_picture_shows_a_collision(tmp_path: Path) -> None:
     for name, beginning in beginnings.items():
         program = tmp_path / "program.ts"
         program.write_text(beginning["text"], "utf-8")
-        where = ("--robot", beginning["robot"], "--world", beginning["world"])
+        robot_options = ("--robot", beginning["robot"], "--world", beginning["world"])
         result = run_in_process(
-            "upload", program, "--virtual", *where, "--for", str(SECONDS), "--hurry", "max"
+            "upload", program, "--virtual", *robot_options, "--for", str(SECONDS), "--hurry", "max"
         )
         assert "touched nothing" in result.out, (name, result.out)

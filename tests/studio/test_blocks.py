@@ -61,20 +61,20 @@ def test_every_program_survives_conversion_to_blocks(program: Program) -> None:
         format_blocks(read_blocks(program.text, kit))
 
 
-@pytest.mark.sampled("first")
-@pytest.mark.parametrize("first", range(0, 1000, 250))
-def test_random_programs_survive_conversion_to_blocks(first: int) -> None:
-    for seed in range(first, first + 250):
-        theirs, kit = KITS[seed % len(KITS)]
-        check_blocks(oracle_programs.program(random.Random(seed), theirs), kit)
+@pytest.mark.sampled("first_seed")
+@pytest.mark.parametrize("first_seed", range(0, 1000, 250))
+def test_random_programs_survive_conversion_to_blocks(first_seed: int) -> None:
+    for seed in range(first_seed, first_seed + 250):
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        check_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit)
 
 
-@pytest.mark.parametrize("first", range(0, 500, 250))
-def test_no_part_of_a_broken_text_is_lost(first: int) -> None:
-    for seed in range(first, first + 250):
+@pytest.mark.parametrize("first_seed", range(0, 500, 250))
+def test_no_part_of_a_broken_text_is_lost(first_seed: int) -> None:
+    for seed in range(first_seed, first_seed + 250):
         rng = random.Random(seed)
-        theirs, kit = KITS[seed % len(KITS)]
-        text = oracle_programs.break_text(rng, oracle_programs.program(rng, theirs))
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        text = oracle_programs.break_text(rng, oracle_programs.program(rng, oracle_kit))
         if re.search(r"[~.]|\b0\d", text):  # checksums are made anew, and numbers are shorter
             format_blocks(read_blocks(text, kit))
         else:
@@ -109,12 +109,12 @@ def test_moves_and_waits_can_have_an_until(word: str) -> None:
 
 @pytest.mark.parametrize(("word", "unit"), UNIT_OF.items())
 def test_a_way_is_a_move_with_another_unit(word: str, unit: str) -> None:
-    way = f"{word}(X * 2 {unit}, 60)"
-    for until, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
-        check_blocks(f"X = 20;{way}{until}", TINIBOT)
-        (block,) = read_blocks(way + until, TINIBOT).body
+    move = f"{word}(X * 2 {unit}, 60)"
+    for until_text, kind in (("", "move"), (" UNTIL(DISTANCE < 10)", "move_until")):
+        check_blocks(f"X = 20;{move}{until_text}", TINIBOT)
+        (block,) = read_blocks(move + until_text, TINIBOT).body
         assert (block.kind, block.word) == (kind, f"{word} {unit}")
-    assert kinds(way.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
+    assert kinds(move.replace(unit, {"CM": "DEG", "DEG": "CM"}[unit])) == ["grey"]
 
 
 def test_every_word_of_a_kit_is_in_blocks() -> None:
@@ -130,9 +130,9 @@ def test_every_word_of_a_kit_is_in_blocks() -> None:
 
 def test_the_shape_of_each_kind_matches_the_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(WORDS, HORN.text, HORN)
-    left_out = ("later", "setup", "alias")
+    omitted_roles = ("later", "setup", "alias")
     text = ";".join(
-        program_with_word(word) for word in WORDS if WORDS[word].role.name not in left_out
+        program_with_word(word) for word in WORDS if WORDS[word].role.name not in omitted_roles
     )
     text += ";F(1, 2) UNTIL(TRUE)"
     text += ";X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
@@ -269,31 +269,31 @@ def test_the_page_requests_blocks_and_text() -> None:
 
 def test_a_very_long_program_stays_text() -> None:
     asked_text = '{"do": "blocks", "robot": "tinibot"}'
-    few, many = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
-    assert len(json.loads(answer(asked_text, few))["body"]) == MOST_BLOCKS
-    assert json.loads(answer(asked_text, many)) == {"size": MOST_BLOCKS + 1}
-    deep = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
-    assert json.loads(answer(asked_text, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
+    short_program, long_program = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
+    assert len(json.loads(answer(asked_text, short_program))["body"]) == MOST_BLOCKS
+    assert json.loads(answer(asked_text, long_program)) == {"size": MOST_BLOCKS + 1}
+    deep_program = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
+    assert json.loads(answer(asked_text, deep_program.encode())) == {"size": 2 * MOST_BLOCKS + 2}
     assert size_of(read_blocks("/// F(1, 2)", TINIBOT)) == 3
 
 
 @each_row("program", programs())
 def test_the_beginning_of_a_program_shows_its_first_blocks(program: Program) -> None:
     form = read_blocks(program.text, robots.load(program.robot).kit)
-    whole = in_order(form.body)
-    for most in (1, 2, 7, 40, size_of(form)):
-        beginning = first_blocks(form, most)
-        assert size_of(beginning) <= most
+    all_blocks = in_order(form.body)
+    for max_blocks in (1, 2, 7, 40, size_of(form)):
+        beginning = first_blocks(form, max_blocks)
+        assert size_of(beginning) <= max_blocks
         first = in_order(beginning.body)
-        if size_of(form) <= most:
+        if size_of(form) <= max_blocks:
             assert beginning == form
             continue
         assert first.pop() == LEFT_OUT and beginning.loose == ()
         assert [(block.kind, block.word) for block in first] == [
-            (block.kind, block.word) for block in whole[: len(first)]
+            (block.kind, block.word) for block in all_blocks[: len(first)]
         ]
         assert [len(block.bodies) for block in first] == [
-            len(block.bodies) for block in whole[: len(first)]
+            len(block.bodies) for block in all_blocks[: len(first)]
         ]
 
 

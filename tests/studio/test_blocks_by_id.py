@@ -47,16 +47,16 @@ class Ana:
         self.program = program
         self.numbers = count(1)
         self.text = ""
-        self.takes(page_together.begin({"news": {"page": "a", **self.news(-1, "")}}, b""))
+        self.take_answer(page_together.begin({"news": {"page": "a", **self.news(-1, "")}}, b""))
         self.show()
 
-    def news(self, since: int, epoch: str) -> Json:
-        answer: Json = json.loads(json.dumps(self.program.news("a", since, epoch)))
+    def news(self, seen_number: int, epoch: str) -> Json:
+        answer: Json = json.loads(json.dumps(self.program.news("a", seen_number, epoch)))
         return answer
 
-    def takes(self, answer: Json) -> None:
-        for first, last, text in reversed(answer["changes"]):
-            self.text = self.text[:first] + text + self.text[last:]
+    def take_answer(self, answer: Json) -> None:
+        for start, end, text in reversed(answer["changes"]):
+            self.text = self.text[:start] + text + self.text[end:]
         self.answer = answer
 
     def show(self) -> None:
@@ -74,17 +74,23 @@ class Ana:
         nodes = []
         for data in body:
             nodes.append(data)
-            for own in data["bodies"]:
-                nodes += self.inside(own)
+            for inner_body in data["bodies"]:
+                nodes += self.inside(inner_body)
         return nodes
 
-    def step(self, is_heard: bool = True, **more: Any) -> Json:
+    def step(self, is_heard: bool = True, **extra_fields: Any) -> Json:
         """Ask for the next answer; one that is not heard comes too late."""
         news = [self.news(self.answer["since"], self.answer["epoch"])]
-        fields = {"from": self.answer["version"], "caret": 0, "hot": False, "news": news, **more}
+        fields = {
+            "from": self.answer["version"],
+            "caret": 0,
+            "hot": False,
+            "news": news,
+            **extra_fields,
+        }
         answer = page_together.step(fields, self.text.encode())
         if is_heard:
-            self.takes(json.loads(json.dumps(answer)))
+            self.take_answer(json.loads(json.dumps(answer)))
         return answer
 
     def writes(self) -> Json:
@@ -101,30 +107,30 @@ def program_of(text: str = TEXT) -> SharedProgram:
     return SharedProgram(parse_tree(text, lambda: f"i.{next(numbers)}"), "e")
 
 
-def changes(body: list[Json], rng: Random, new: Any) -> set[str]:
+def changes(body: list[Json], rng: Random, next_id: Any) -> set[str]:
     """Change blocks at random; return the ids of those that were touched."""
-    bodies = [body, *(own for data in body for own in data["bodies"])]
+    bodies = [body, *(inner_body for data in body for inner_body in data["bodies"])]
     filled_bodies = [body for body in bodies if body]
     if not filled_bodies:
         return set()
-    where = rng.choice(filled_bodies)
-    data = rng.choice(where)
+    chosen_body = rng.choice(filled_bodies)
+    data = rng.choice(chosen_body)
     kind = rng.randrange(4)
     if kind == 0 and data["values"] and data["kind"] != "if":
         data["values"][0] = [["NUMBER", str(rng.randrange(2, 9))]]
         data["said"] = []
         return {data["id"]}
     if kind == 1:
-        where.remove(data)
+        chosen_body.remove(data)
         return {data["id"]}
     if kind == 2 and not data["bodies"]:
-        where.remove(data)
+        chosen_body.remove(data)
         target = rng.choice(bodies)
         target.insert(rng.randrange(len(target) + 1), data)
         return {data["id"]}
     block = {"kind": "move", "word": "L", "values": [[["NUMBER", "1"]], [["NUMBER", "60"]]],
-             "bodies": [], "note": "", "is_apart": False, "id": new()}  # fmt: skip
-    where.insert(rng.randrange(len(where) + 1), block)
+             "bodies": [], "note": "", "is_apart": False, "id": next_id()}  # fmt: skip
+    chosen_body.insert(rng.randrange(len(chosen_body) + 1), block)
     return set()
 
 
@@ -138,22 +144,22 @@ def test_only_touched_blocks_change_and_keep_their_ids(seed: int) -> None:
         ana.show()
     nodes_before = {id: node.copy() for id, node in program.tree.node_by_id.items()}
     nodes = dict(page_together._newest.blocks.nodes)  # type: ignore[union-attr]
-    touched: set[str] = set()
+    touched_ids: set[str] = set()
     for _ in range(rng.randrange(1, 5)):
-        touched |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
-    want = format_blocks(from_data(ana.form)).text
+        touched_ids |= changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
+    wanted_text = format_blocks(from_data(ana.form)).text
     answer = ana.writes()
-    assert ana.text == want == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
+    assert ana.text == wanted_text == text_of(page_together._newest.page.view)  # type: ignore[union-attr]
     assert answer["is_shown"]
     ana.sends()
     assert text_of(program.tree) == ana.text
-    ids = {nodes[id] for id in touched if id in nodes}
-    below = {node for id in ids for node in
+    ids = {nodes[id] for id in touched_ids if id in nodes}
+    inner_ids = {node for id in ids for node in
              ([id, *nodes_before[id].children] if id in nodes_before else [id])}  # fmt: skip
     for id, node in nodes_before.items():
-        if id not in below and id not in (ROOT, START):
-            now = program.tree[id]
-            assert (now.text, now.mark("text")) == (node.text, node.mark("text")), id
+        if id not in inner_ids and id not in (ROOT, START):
+            new_node = program.tree[id]
+            assert (new_node.text, new_node.mark("text")) == (node.text, node.mark("text")), id
     present_ids = {node["id"] for node in ana.inside(ana.form["body"])}
     for block, id in nodes.items():
         assert block not in present_ids or id not in nodes_before or id in program.tree, (block, id)
@@ -166,13 +172,13 @@ def test_concurrent_changes_of_others_are_kept(seed: int) -> None:
     program = program_of()
     ana = Ana(program)
     loop = next(id for id in program.tree.subtree_ids() if program.tree[id].text == "LOOP(3)")
-    last = program.tree[ROOT].children[-1]
-    first = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
-    program.submit([first])
+    last_id = program.tree[ROOT].children[-1]
+    change = Made("z:1", (Insert(Place(loop, ""), (Subtree("z.1", "BEEP(0.25, 990)"),)),))
+    program.submit([change])
     ana.step()
     changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     ana.writes()
-    program.submit([Made("z:2", (Replace(last, (("text", "W(7.25)"),)),))])
+    program.submit([Made("z:2", (Replace(last_id, (("text", "W(7.25)"),)),))])
     ana.step()
     changes(ana.form["body"], rng, lambda: f"n{next(ana.numbers)}")
     ana.writes()
@@ -180,7 +186,7 @@ def test_concurrent_changes_of_others_are_kept(seed: int) -> None:
     assert ana.text == text_of(program.tree)
     is_loop_there = loop in program.tree
     assert ("BEEP(0.25, 990)" in ana.text) is is_loop_there
-    assert last not in program.tree or program.tree[last].text != "W(2)"
+    assert last_id not in program.tree or program.tree[last_id].text != "W(2)"
 
 
 def test_an_empty_place_belongs_to_its_own_block() -> None:
@@ -217,14 +223,14 @@ def test_a_deleted_block_with_new_contents_is_kept() -> None:
 
 def test_of_two_equal_blocks_the_touched_one_is_changed() -> None:
     program = program_of("W(1);\nB(1, 40);\nB(1, 40);\nW(2);\n")
-    [_, one, other, _] = (id for id in program.tree[ROOT].children if id != START)
+    [_, changed_id, other_id, _] = (id for id in program.tree[ROOT].children if id != START)
     ana = Ana(program)
     del ana.form["body"][1]
     ana.writes()
     ana.sends()
-    assert one not in program.tree
-    assert other in program.tree
+    assert changed_id not in program.tree
+    assert other_id in program.tree
     ana.form["body"].reverse()
     ana.writes()
     ana.sends()
-    assert program.tree[ROOT].children.index(other) == 2
+    assert program.tree[ROOT].children.index(other_id) == 2

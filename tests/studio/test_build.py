@@ -32,7 +32,7 @@ PAGE_SOURCES = {
     for path in sorted((SOURCES / "src").rglob("*"))
     if path.suffix in (".js", ".html")
 }
-OTHERS = ("block", "blockly", "editor", "tip")  # keys of other tables, which follow below
+SHARED_KEYS = ("block", "blockly", "editor", "tip")  # keys of other tables, which follow below
 
 
 @pytest.fixture(scope="module")
@@ -67,11 +67,11 @@ def test_no_unused_module_is_packed(page: Path) -> None:
 
 def test_node_trusts_the_system_certificates(monkeypatch: pytest.MonkeyPatch) -> None:
     """For example those of a school's proxy; the environment may override it."""
-    asks = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
+    node_command = [sys.executable, "-c", "import os; print(os.environ['NODE_USE_SYSTEM_CA'])"]
     monkeypatch.delenv("NODE_USE_SYSTEM_CA", raising=False)
-    assert studio.run(asks) == "1\n"
+    assert studio.run(node_command) == "1\n"
     monkeypatch.setenv("NODE_USE_SYSTEM_CA", "0")
-    assert studio.run(asks) == "0\n"
+    assert studio.run(node_command) == "0\n"
 
 
 @pytest.mark.parametrize("language", languages()[1:])
@@ -97,10 +97,10 @@ def test_every_text_is_used() -> None:
     keys = set(page_texts(SOURCE_LANGUAGE)) - {""}
     assert len(keys) > 600
     for key in keys:
-        if key.partition("/")[0] not in OTHERS:
+        if key.partition("/")[0] not in SHARED_KEYS:
             rest = [key[len(head) :] for head in heads if key.startswith(head)]
-            own = key.removesuffix("_sure")  # a button that is pressed twice
-            assert own in names or words & {own, *rest}, key
+            base_key = key.removesuffix("_sure")  # a button that is pressed twice
+            assert base_key in names or words & {base_key, *rest}, key
 
 
 def test_every_block_has_a_text_and_every_block_text_a_block() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import LACKING, messages_of
+from tests.studio.programs import MISSING_PART_CODES, messages_of
 from tests.support.texts import LANGUAGES
 from tiniscript import check, compile, compile_text, robots
 from tiniscript.diagnostics.fixing import MOST_OFFERS, repair_program
@@ -43,17 +43,19 @@ def test_the_sensors_that_a_program_reads_are_named_by_their_numbers(robot: str)
     assert all_read == tuple(range(len(names)))
 
 
-@pytest.mark.sampled("first", "part")
-@pytest.mark.parametrize("first", range(2))
+@pytest.mark.sampled("first_index", "part")
+@pytest.mark.parametrize("first_index", range(2))
 @pytest.mark.parametrize("part", range(12))
-def test_messages_match_the_command_and_repairs_help(first: int, part: int) -> None:
+def test_messages_match_the_command_and_repairs_help(first_index: int, part: int) -> None:
     """Languages alternate; no offered repair makes a program worse."""
     offered = 0
     for k, entry in enumerate(corpus.entries()[part::12]):
-        language = LANGUAGES[(first + k) % len(LANGUAGES)]
+        language = LANGUAGES[(first_index + k) % len(LANGUAGES)]
         result = checking.check(entry.program.encode(), "tinibot", language)
         messages = [
-            finding.message for finding in result.findings if finding.message.code not in LACKING
+            finding.message
+            for finding in result.findings
+            if finding.message.code not in MISSING_PART_CODES
         ]
         assert messages == messages_of(entry.program, language)
         for repair in buttons(entry.program):
@@ -68,13 +70,13 @@ def test_messages_match_the_command_and_repairs_help(first: int, part: int) -> N
 
 
 @pytest.mark.parametrize(
-    ("text", "loose"),
+    ("text", "loose_count"),
     [("SI|S\n/// W(1)\n", 1), ("SI|S\n/// LOOP(2)\n///   W(1)\n/// END_LOOP\n///\n/// = 5 < 6", 3),
      ("SI|S // /// W(1)\n/// not a program", 0), ("F(-2, 80)\n/// W(1)", 1)],
 )  # fmt: skip
-def test_loose_blocks_are_counted(text: str, loose: int) -> None:
+def test_loose_blocks_are_counted(text: str, loose_count: int) -> None:
     asked_text = '{"do": "check", "robot": "tinibot", "language": "en"}'
-    assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose
+    assert json.loads(worker.answer(asked_text, text.encode()))["loose"] == loose_count
 
 
 def test_a_program_too_large_for_the_robot_is_a_mistake() -> None:
@@ -123,8 +125,8 @@ def test_a_repair_button_does_what_the_message_says(program: str, wanted_text: s
         assert finding.message not in check(wanted_text)
         assert not [message for message in check(wanted_text) if message.severity == "mistake"]
     kit = robots.load("tinibot").kit
-    left = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
-    assert wanted_text.startswith("B(") or left.text == program  # -2 seconds forward are 2 back
+    repaired = repair_program(program, lambda text: compile_text(text, kit).diagnostics)
+    assert wanted_text.startswith("B(") or repaired.text == program  # -2 seconds forward are 2 back
 
 
 def test_each_of_many_mistakes_has_its_own_button() -> None:
@@ -168,43 +170,59 @@ def test_answers_are_json() -> None:
     asked_text = json.dumps({"do": "repair", "robot": "tinibot", "which": 0})
     changes = json.loads(worker.answer(asked_text, "SI|F(-1, 80) // ñ 🤖".encode()))["changes"]
     assert changes[0]["text"] == "B(1, 80)"
-    opened = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
-    assert opened["message"]
+    opened_program = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
+    assert opened_program["message"]
 
 
-LINER = "// robot: liner\nSI|SHOW(LINE_L)\n"
+LINER_PROGRAM = "// robot: liner\nSI|SHOW(LINE_L)\n"
 CHECK_REQUEST = {"do": "check", "robot": "tinibot", "language": "en"}
 
 
 def test_a_program_also_names_its_robot_in_the_page() -> None:
-    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER.encode()))
-    assert (checked["robot"], checked["names_robot"], checked["findings"]) == ("liner", True, [])
-    assert bytes.fromhex(checked["image"]) == compile(LINER).image
-    checked = json.loads(worker.answer(json.dumps(CHECK_REQUEST), b"// robot: linar\nS"))
-    assert (checked["robot"], checked["names_robot"], checked["image"]) == ("tinibot", False, "")
-    checked = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "robot": "grabber"}), b"S"))
-    assert (checked["robot"], checked["names_robot"]) == ("grabber", False)
-    answer = worker.answer(
-        json.dumps({**CHECK_REQUEST, "do": "rename", "robot": "grabber"}), LINER.encode()
+    check_answer = json.loads(worker.answer(json.dumps(CHECK_REQUEST), LINER_PROGRAM.encode()))
+    assert (check_answer["robot"], check_answer["names_robot"], check_answer["findings"]) == (
+        "liner",
+        True,
+        [],
     )
-    assert json.loads(answer)["text"] == LINER.replace("liner", "grabber")
-    line = json.loads(worker.answer(json.dumps({**CHECK_REQUEST, "do": "line"}), LINER.encode()))
+    assert bytes.fromhex(check_answer["image"]) == compile(LINER_PROGRAM).image
+    check_answer = json.loads(worker.answer(json.dumps(CHECK_REQUEST), b"// robot: linar\nS"))
+    assert (check_answer["robot"], check_answer["names_robot"], check_answer["image"]) == (
+        "tinibot",
+        False,
+        "",
+    )
+    check_answer = json.loads(
+        worker.answer(json.dumps({**CHECK_REQUEST, "robot": "grabber"}), b"S")
+    )
+    assert (check_answer["robot"], check_answer["names_robot"]) == ("grabber", False)
+    answer = worker.answer(
+        json.dumps({**CHECK_REQUEST, "do": "rename", "robot": "grabber"}), LINER_PROGRAM.encode()
+    )
+    assert json.loads(answer)["text"] == LINER_PROGRAM.replace("liner", "grabber")
+    line = json.loads(
+        worker.answer(json.dumps({**CHECK_REQUEST, "do": "line"}), LINER_PROGRAM.encode())
+    )
     assert line["text"].startswith("SI|SHOW(LINE_L)")
 
 
 @pytest.mark.parametrize(
     "text",
-    ["SI|SHOW(LINE_L)\n", LINER.replace("liner", "tinibot"), LINER.replace("liner", "linar")],
+    [
+        "SI|SHOW(LINE_L)\n",
+        LINER_PROGRAM.replace("liner", "tinibot"),
+        LINER_PROGRAM.replace("liner", "linar"),
+    ],
 )
 def test_a_suggested_robot_has_a_button(text: str) -> None:
     (repair,) = buttons(text)
-    assert changed_by(text, repair) == LINER
+    assert changed_by(text, repair) == LINER_PROGRAM
 
 
 def test_blocks_keep_the_named_robot() -> None:
-    form = worker.answer(json.dumps({**CHECK_REQUEST, "do": "blocks"}), LINER.encode())
+    form = worker.answer(json.dumps({**CHECK_REQUEST, "do": "blocks"}), LINER_PROGRAM.encode())
     request = {"do": "text", "form": json.loads(form)}
-    assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER
+    assert json.loads(worker.answer(json.dumps(request)))["text"] == LINER_PROGRAM
 
 
 def test_the_page_knows_every_robot_and_its_words() -> None:
@@ -226,13 +244,13 @@ def mistakes(messages: list[Message]) -> int:
 
 def changed_by(text: str, changes: tuple[checking.Change, ...]) -> str:
     """Return a text after changes, whose places are lines and columns."""
-    starts = [0]
+    line_starts = [0]
     for k, character in enumerate(text):
         if character == "\n":
-            starts.append(k + 1)
+            line_starts.append(k + 1)
 
     def offset(line: int, column: int) -> int:
-        return starts[line - 1] + column - 1 if line <= len(starts) else len(text)
+        return line_starts[line - 1] + column - 1 if line <= len(line_starts) else len(text)
 
     for change in sorted(changes, reverse=True):
         start, end = offset(change.line, change.column), offset(change.end_line, change.end_column)
@@ -258,9 +276,9 @@ def test_a_yes_no_variable_is_recognized_from_any_assignment(
     assert {variable.name for variable in variables if variable.is_yes_no} == set(yes_no)
 
 
-@pytest.mark.parametrize("wrong", ["", "F(1, 800)"])
+@pytest.mark.parametrize("wrong_end", ["", "F(1, 800)"])
 def test_a_typed_letter_costs_one_compilation_and_a_button_at_most_two(
-    monkeypatch: pytest.MonkeyPatch, wrong: str
+    monkeypatch: pytest.MonkeyPatch, wrong_end: str
 ) -> None:
     """For a program with a hundred warnings; the buttons' effects are tried during a pause."""
     texts: list[bytes] = []
@@ -270,16 +288,19 @@ def test_a_typed_letter_costs_one_compilation_and_a_button_at_most_two(
         return compile_source(data, *arguments, **keyword_arguments)
 
     monkeypatch.setattr(checking, "compile_source", count_compilation)
-    text = ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101)) + f";\n{wrong}"
+    text = (
+        ";\n".join(f"IF(DISTANCE < {k});R(90, 60);END_IF" for k in range(1, 101))
+        + f";\n{wrong_end}"
+    )
     findings = checking.check(text.encode(), "tinibot", "en").findings
     assert len(texts) == 1 and sum(finding.may_repair for finding in findings) == (
-        1 if wrong else MOST_OFFERS
+        1 if wrong_end else MOST_OFFERS
     )
-    which = next(k for k, finding in enumerate(findings) if finding.may_repair)
-    assert checking.repair(text.encode(), "tinibot", which)
+    finding_index = next(k for k, finding in enumerate(findings) if finding.may_repair)
+    assert checking.repair(text.encode(), "tinibot", finding_index)
     assert len(texts) == 2, "the text that is known is not compiled again"
     checking.check(b"S", "tinibot", "en")
-    assert checking.repair(text.encode(), "tinibot", which)
+    assert checking.repair(text.encode(), "tinibot", finding_index)
     assert len(texts) == 5
 
 

@@ -42,13 +42,13 @@ class Page:
 class History:
     """Acts by chance, and looks at everything that can be seen after each act."""
 
-    def __init__(self, chance: Random) -> None:
-        self.chance = chance
+    def __init__(self, rng: Random) -> None:
+        self.rng = rng
         self.room = Room(ROBOTS)
         self.room.teaches("class_places", places=MOST_PUPILS)
         self.pages: dict[str, Page] = {}
-        self.gone: dict[str, Page] = {}  # pages whose work is kept, by name
-        self.brought: set[str] = set()
+        self.gone_pages: dict[str, Page] = {}  # pages whose work is kept, by name
+        self.brought_texts: set[str] = set()
         self.texts = 0
         self.failed_s: dict[str, float] = {}  # time of each robot's last failed search, by port
         self.order: list[str] = []  # last seen order of waiting pupils
@@ -56,20 +56,20 @@ class History:
     def state(self) -> Json:
         return self.room.teaches("class")
 
-    def answer(self, who: Page, do: str, **more: Any) -> Json | None:
+    def answer(self, sender: Page, action: str, **fields: Any) -> Json | None:
         """Send a request as a page; None if it was removed."""
         try:
-            answer = self.room.made.answer(who.token, "192.0.2.9", {"do": do, **more})
+            answer = self.room.classroom.answer(sender.token, "192.0.2.9", {"do": action, **fields})
         except BadRequest:
-            self.leaves(who)
+            self.leaves(sender)
             return None
-        who.heard_s = self.room.now_s
+        sender.heard_s = self.room.now_s
         return answer
 
     def leaves(self, page: Page) -> None:
         self.pages.pop(page.name, None)
         if page.text:
-            self.gone[page.name] = page
+            self.gone_pages[page.name] = page
 
     # -- events
 
@@ -77,24 +77,24 @@ class History:
         ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
                 self.connects, self.connects, self.ends, self.passes, self.passes, self.removes,
                 self.gives, self.takes_robot, self.next_one, self.brings)  # fmt: skip
-        self.chance.choice(ways)()
+        self.rng.choice(ways)()
 
     def comes(self) -> None:
-        name = self.chance.choice(NAMES)
+        name = self.rng.choice(NAMES)
         if name in self.pages:
             return
-        page_before = self.gone.get(name)
-        request = {"do": "join", "code": self.room.made.code, "name": name}
+        page_before = self.gone_pages.get(name)
+        request = {"do": "join", "code": self.room.classroom.code, "name": name}
         if page_before is not None:
             request["before"] = page_before.token
-        answer = self.room.made.answer("", "192.0.2.9", request)
-        page = self.gone.pop(name) if page_before is not None else Page(name, answer["token"])
+        answer = self.room.classroom.answer("", "192.0.2.9", request)
+        page = self.gone_pages.pop(name) if page_before is not None else Page(name, answer["token"])
         assert answer == {"token": page.token, "name": name}
         page.heard_s = self.room.now_s
         self.pages[name] = page
 
     def somebody(self) -> Page | None:
-        return self.chance.choice(list(self.pages.values())) if self.pages else None
+        return self.rng.choice(list(self.pages.values())) if self.pages else None
 
     def tells(self) -> None:
         page = self.somebody()
@@ -102,26 +102,30 @@ class History:
             return
         self.texts += 1
         text = f"W({self.texts})"
-        lessons = sorted({*page.lessons, self.chance.choice(LESSONS)})
-        fields: Json = self.chance.choice(({"text": text}, {"lessons": lessons}, {}))
+        lessons = sorted({*page.lessons, self.rng.choice(LESSONS)})
+        fields: Json = self.rng.choice(({"text": text}, {"lessons": lessons}, {}))
         answer = self.answer(page, "here", **fields)
         if answer is None:
             return
         page.text = fields.get("text", page.text)
         page.lessons = fields.get("lessons", page.lessons)
         given_work = answer.get("given")
-        if given_work and self.chance.random() < 0.7:
-            took = {"key": given_work["key"], "text": given_work["text"]}
+        if given_work and self.rng.random() < 0.7:
+            receipt = {"key": given_work["key"], "text": given_work["text"]}
             version_before = self.version(page)
-            if self.answer(page, "here", took=took) is not None:
+            if self.answer(page, "here", took=receipt) is not None:
                 page.text = given_work["text"]
                 page.lessons = sorted({*given_work["lessons"], *page.lessons})
                 assert (
                     self.version(page) > version_before
                 )  # otherwise the teacher sees the previous program
-                self.brought.discard(page.text)
-                for name in [name for name, one in self.gone.items() if one.text == page.text]:
-                    del self.gone[name]
+                self.brought_texts.discard(page.text)
+                for name in [
+                    name
+                    for name, page_gone in self.gone_pages.items()
+                    if page_gone.text == page.text
+                ]:
+                    del self.gone_pages[name]
 
     def version(self, page: Page) -> int:
         rows = self.state()["pupils"]
@@ -130,8 +134,8 @@ class History:
     def wants(self) -> None:
         page = self.somebody()
         if page is not None:
-            self.answer(page, "here", wants=self.chance.random() < 0.8,
-                        hand=self.chance.choice((True, False)))  # fmt: skip
+            self.answer(page, "here", wants=self.rng.random() < 0.8,
+                        hand=self.rng.choice((True, False)))  # fmt: skip
 
     def connects(self) -> None:
         page = self.somebody()
@@ -139,39 +143,39 @@ class History:
             return
         answer = self.answer(page, "connect", page="x", port="y")
         if answer == {}:
-            page.robot = self.room.hosting.robots[self.room.hosting.asked[-1]["page"]]
+            page.robot = self.room.hosting.robots[self.room.hosting.requests[-1]["page"]]
 
     def ends(self) -> None:
         """A connection ends by itself: the robot has met its page, or none."""
         driving = [page for page in self.pages.values() if page.robot and not page.robot.has_ended]
         if not driving:
             return
-        page = self.chance.choice(driving)
+        page = self.rng.choice(driving)
         assert page.robot is not None
         page.robot.has_ended = True
-        page.robot.was_left = self.chance.random() < 0.5
-        page.robot.name = self.chance.choice(("", "TINI"))
+        page.robot.was_left = self.rng.random() < 0.5
+        page.robot.name = self.rng.choice(("", "TINI"))
         if not page.robot.name and not page.robot.was_left:
             ports = [robot["port"] for robot in self.raw_robots() if robot["pupil"] == page.name]
             self.failed_s |= dict.fromkeys(ports, self.room.now_s)
 
     def rows(self) -> list[Json]:
         """The pupils as they are, without a look at the turns."""
-        return self.room.made._state()["pupils"]  # type: ignore[no-any-return]
+        return self.room.classroom._state()["pupils"]  # type: ignore[no-any-return]
 
     def raw_robots(self) -> list[Json]:
-        return self.room.made._state()["robots"]  # type: ignore[no-any-return]
+        return self.room.classroom._state()["robots"]  # type: ignore[no-any-return]
 
     def passes(self) -> None:
-        for _ in range(self.chance.choice((1, 3, 8, 30))):
+        for _ in range(self.rng.choice((1, 3, 8, 30))):
             self.room.now_s += 1
             for page in list(self.pages.values()):
-                if self.chance.random() < 0.8:
+                if self.rng.random() < 0.8:
                     self.answer(page, "here")
 
     def removes(self) -> None:
         page = self.somebody()
-        if page is None or self.chance.random() < 0.5:
+        if page is None or self.rng.random() < 0.5:
             return
         driven_fake_robot = page.robot if self.has_turn(page) else None
         self.room.teaches("class_remove", pupil=self.room.number(page.name))
@@ -184,12 +188,12 @@ class History:
     def gives(self) -> None:
         kept_work, page = self.state()["kept"], self.somebody()
         if kept_work and page is not None:
-            key = self.chance.choice(kept_work)["key"]
+            key = self.rng.choice(kept_work)["key"]
             self.room.teaches("class_give_back", key=key, pupil=self.room.number(page.name))
 
     def takes_robot(self) -> None:
-        port = f"port{self.chance.randrange(ROBOTS)}"
-        gives = self.chance.random() < 0.6
+        port = f"port{self.rng.randrange(ROBOTS)}"
+        gives = self.rng.random() < 0.6
         holder = next((robot["pupil"] for robot in self.raw_robots() if robot["port"] == port), "")
         self.room.teaches("class_robot", port=port, gives=gives)
         if not gives:
@@ -207,7 +211,7 @@ class History:
         self.texts += 1
         text = f"S({self.texts})"
         self.room.teaches("class_bring", name="Old", text=text, robot="", lessons=[LESSONS[0]])
-        self.brought.add(text)
+        self.brought_texts.add(text)
 
     # -- invariants
 
@@ -220,10 +224,12 @@ class History:
     def all_is_there(self) -> None:
         """Return each page's newest program, and those of pupils who left, as many times as they
         were made."""
-        texts = {page.text for page in (*self.pages.values(), *self.gone.values()) if page.text}
+        texts = {
+            page.text for page in (*self.pages.values(), *self.gone_pages.values()) if page.text
+        }
         texts_there = {pupil["text"] for pupil in self.room.teaches("class_work")["pupils"]}
         present_names = {row["name"] for row in self.rows()}
-        assert texts | self.brought <= texts_there, (texts | self.brought) - texts_there
+        assert texts | self.brought_texts <= texts_there, (texts | self.brought_texts) - texts_there
         for page in self.pages.values():
             if page.name in present_names and page.text:
                 number = self.room.number(page.name)
@@ -233,13 +239,13 @@ class History:
     def turns_follow(self, state: Json) -> None:
         now_s = self.room.now_s
         heard_s = {page.name: page.heard_s for page in self.pages.values()}
-        waiting = sorted((row for row in state["pupils"] if row["place"]),
+        queued_pupils = sorted((row for row in state["pupils"] if row["place"]),
                          key=lambda row: row["place"])  # fmt: skip
-        assert [row["place"] for row in waiting] == list(range(1, len(waiting) + 1))
-        for row in waiting:
+        assert [row["place"] for row in queued_pupils] == list(range(1, len(queued_pupils) + 1))
+        for row in queued_pupils:
             assert not row["robot"], "who has a turn waits for another one"
             assert row["silent_s"] <= QUEUE_S + 1, "who is silent keeps others waiting"
-        names = [row["name"] for row in waiting]
+        names = [row["name"] for row in queued_pupils]
         stayed = [name for name in self.order if name in names]
         kept_order = [name for name in names if name in stayed]
         assert kept_order == stayed or self.had_turn, (kept_order, stayed)
@@ -257,17 +263,18 @@ class History:
         """Check that a class resumes after a crash with the same pupils, work, robots and
         settings.
         """
-        kept_state = json.loads(json.dumps(self.room.made.state_to_keep()))
+        kept_state = json.loads(json.dumps(self.room.classroom.state_to_keep()))
         room_after = Room(0)
-        assert room_after.made.resume(kept_state) == len(state["pupils"])
-        resumed = room_after.teaches("class")
+        assert room_after.classroom.resume(kept_state) == len(state["pupils"])
+        resumed_class = room_after.teaches("class")
         for name in ("code", "turn_s", "places"):
-            assert resumed[name] == state[name], name
-        both = [
-            [(row["name"], *row["lessons"]) for row in work["pupils"]] for work in (resumed, state)
+            assert resumed_class[name] == state[name], name
+        states = [
+            [(row["name"], *row["lessons"]) for row in work["pupils"]]
+            for work in (resumed_class, state)
         ]
-        assert both[0] == both[1]
-        assert [row["port"] for row in resumed["robots"]] == [
+        assert states[0] == states[1]
+        assert [row["port"] for row in resumed_class["robots"]] == [
             row["port"] for row in state["robots"]
         ]
         works = [
@@ -276,7 +283,7 @@ class History:
         ]
         assert works[0] == works[1]
         whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
-                for work in (resumed, state)]  # fmt: skip
+                for work in (resumed_class, state)]  # fmt: skip
         assert whom[0] == whom[1], "what was given is given to nobody"
 
 
@@ -296,34 +303,40 @@ def test_a_class_keeps_its_invariants_after_any_history(part: int) -> None:
 def test_a_restarted_class_equals_a_new_one() -> None:
     for seed in range(SEEDS):
         history = History(Random(1000 + seed))
-        for _ in range(history.chance.randrange(STEPS)):
+        for _ in range(history.rng.randrange(STEPS)):
             history.act()
-        old = list(history.pages.values())
-        driven_fake_robots = [page.robot for page in old if page.robot and history.has_turn(page)]
+        old_pages = list(history.pages.values())
+        driven_fake_robots = [
+            page.robot for page in old_pages if page.robot and history.has_turn(page)
+        ]
         room = history.room
-        code, settings = room.made.code, {}
-        before = room.teaches("class")
+        code, settings = room.classroom.code, {}
+        old_settings = room.teaches("class")
         anew = room.teaches("class_anew")
         assert anew["code"] != code and all(
             robot.has_ended for robot in driven_fake_robots if robot
         )
-        fresh = Room(0).teaches("class")
-        settings = {"code": anew["code"], "turn_s": before["turn_s"], "places": before["places"]}
-        ports = [{**robot, "pupil": "", "left_s": 0} for robot in before["robots"]]
+        new_class = Room(0).teaches("class")
+        settings = {
+            "code": anew["code"],
+            "turn_s": old_settings["turn_s"],
+            "places": old_settings["places"],
+        }
+        ports = [{**robot, "pupil": "", "left_s": 0} for robot in old_settings["robots"]]
         name_by_port = {robot["port"]: robot["name"] for robot in anew["robots"]}
-        assert anew == fresh | settings | {
+        assert anew == new_class | settings | {
             "robots": [{**port, "name": name_by_port[port["port"]]} for port in ports]
         }
         assert room.teaches("class_work")["pupils"] == []
-        for page in old:
+        for page in old_pages:
             with pytest.raises(BadRequest):
                 room.checks_in(page.token)
             with pytest.raises(BadRequest):
-                room.made.answer(page.token, "192.0.2.9", {"do": "connect"})
-        answer = room.made.answer("", "192.0.2.9", {
+                room.classroom.answer(page.token, "192.0.2.9", {"do": "connect"})
+        answer = room.classroom.answer("", "192.0.2.9", {
             "do": "join", "code": anew["code"], "name": "Ana",
-            "before": old[0].token if old else "",
+            "before": old_pages[0].token if old_pages else "",
         })  # fmt: skip
-        assert answer["name"] == "Ana" and answer["token"] not in {page.token for page in old}
+        assert answer["name"] == "Ana" and answer["token"] not in {page.token for page in old_pages}
         assert room.checks_in(answer["token"])["hand"] is False
         room.now_s += PLACE_S

@@ -37,7 +37,7 @@ def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     room.checks_in(luz, True)
     assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
-    assert room.made.answer(ana, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
+    assert room.classroom.answer(ana, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
 
 
 def test_a_turn_lasts_until_its_time() -> None:
@@ -87,18 +87,18 @@ def test_a_leaving_pupil_is_succeeded_within_three_seconds() -> None:
     robot that a page has left before it answered is as good as before."""
     asleep: list[FakeRobot] = []
 
-    def wait_until_place_is_free(leaves: Callable[[Room, str], None]) -> float:
+    def wait_until_place_is_free(leave_room: Callable[[Room, str], None]) -> float:
         room = Room()
         ana, luz = room.joins("Ana"), room.joins("Luz")
         room.checks_in(ana, True)
         room.checks_in(luz, True)
-        leaves(room, ana)
-        began_s = room.now_s
+        leave_room(room, ana)
+        start_s = room.now_s
         while room.checks_in(luz)["place"] != 0:
             room.now_s += 0.3  # about the interval of the next page's requests
             for robot in asleep:
                 robot.silent_s += 0.3
-        return room.now_s - began_s
+        return room.now_s - start_s
 
     def leaves_before(room: Room, ana: str) -> None:
         room.now_s += 1  # her last request
@@ -110,8 +110,8 @@ def test_a_leaving_pupil_is_succeeded_within_three_seconds() -> None:
     def sleeps(room: Room, ana: str) -> None:
         asleep.append(room.connects(ana))
 
-    for way in (leaves_before, leaves_while_it_connects, sleeps):
-        assert wait_until_place_is_free(way) < 2.5, way.__name__
+    for leave_step in (leaves_before, leaves_while_it_connects, sleeps):
+        assert wait_until_place_is_free(leave_step) < 2.5, leave_step.__name__
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -133,7 +133,7 @@ def test_a_closed_page_is_passed_over_and_no_longer_waits() -> None:
     assert room.checks_in(teo)["place"] == 0
     assert room.checks_in(luz)["place"] == 1  # she is back
     room.now_s += 21
-    room.made.tend()
+    room.classroom.tend()
     assert room.teaches("class")["pupils"][1]["place"] == 0
 
 
@@ -145,7 +145,7 @@ def test_a_silent_robot_is_not_assigned_while_another_is_free() -> None:
     robot.name, robot.has_ended = "", True
     room.checks_in(luz, True)
     room.connects(luz)
-    assert room.hosting.asked[-1]["port"] == "port1"
+    assert room.hosting.requests[-1]["port"] == "port1"
     assert room.checks_in(ana, True)["place"] == 1
     room.now_s += 11
     assert room.checks_in(ana)["place"] == 0
@@ -154,9 +154,9 @@ def test_a_silent_robot_is_not_assigned_while_another_is_free() -> None:
 def test_a_port_being_released_is_assigned_to_nobody() -> None:
     room = Room()
     ana = room.joins("Ana")
-    room.hosting.held.add("port0")
+    room.hosting.held_ports.add("port0")
     assert room.checks_in(ana, True)["place"] == 1
-    room.hosting.held.clear()
+    room.hosting.held_ports.clear()
     assert room.checks_in(ana)["place"] == 0
 
 
@@ -168,73 +168,75 @@ def test_no_name_reaches_another_pupils_turn() -> None:
     ana, eve = room.joins("Ana"), room.joins("Eve")
     room.checks_in(ana, True)
     room.connects(ana)
-    own = room.hosting.asked[-1]["page"]
-    assert room.made.answer(
-        eve, PUPIL_ADDRESS, {"do": "connect", "page": own, "port": "port0"}
+    last_page = room.hosting.requests[-1]["page"]
+    assert room.classroom.answer(
+        eve, PUPIL_ADDRESS, {"do": "connect", "page": last_page, "port": "port0"}
     ) == {"failure": "turn_none"}
-    for do in ("beat", "leave", "stop", "stop_all"):
-        room.made.answer(
-            eve, PUPIL_ADDRESS, {"do": do, "page": own, "asked": [{"do": "upload", "id": 1}]}
+    for action in ("beat", "leave", "stop", "stop_all"):
+        room.classroom.answer(
+            eve,
+            PUPIL_ADDRESS,
+            {"do": action, "page": last_page, "asked": [{"do": "upload", "id": 1}]},
         )
-    assert own not in [request["page"] for request in room.hosting.asked[1:]]
-    assert {request["do"] for request in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
-    assert room.hosting.asked[-1]["asked"] == []
+    assert last_page not in [request["page"] for request in room.hosting.requests[1:]]
+    assert {request["do"] for request in room.hosting.requests[1:]} == {"beat", "leave", "stop"}
+    assert room.hosting.requests[-1]["asked"] == []
 
 
 @pytest.mark.parametrize(
-    "do",
+    "action",
     ["ports", "class", "class_over", "class_text", "class_work", "class_bring", "class_give_back",
      "class_forget", "class_anew", "class_hand", "fly", None, ["stop"]],
 )  # fmt: skip
-def test_some_requests_are_reserved_for_the_teacher(do: object) -> None:
+def test_some_requests_are_reserved_for_the_teacher(action: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     with pytest.raises(BadRequest):
-        room.made.answer(eve, PUPIL_ADDRESS, {"do": do, "erases": True, "pupil": 1})
-    assert room.hosting.asked == [] and not room.made.has_ended
+        room.classroom.answer(eve, PUPIL_ADDRESS, {"do": action, "erases": True, "pupil": 1})
+    assert room.hosting.requests == [] and not room.classroom.has_ended
 
 
 @pytest.mark.parametrize(
-    "asked",
+    "message",
     [{"do": "claim"}, {"do": "disown"}, {"do": "name", "name": "X"}, {"do": "trim", "trim": {}},
      {"do": "undo"}, {}, 5, {"do": ["hello"]}],
     ids=str,
 )  # fmt: skip
-def test_a_robot_taken_by_the_teacher_stays_the_teachers(asked: object) -> None:
+def test_a_robot_taken_by_the_teacher_stays_the_teachers(message: object) -> None:
     room = Room()
     eve = room.joins("Eve")
     room.checks_in(eve, True)
     room.connects(eve)
     with pytest.raises(BadRequest):
-        room.made.answer(
-            eve, PUPIL_ADDRESS, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]}
+        room.classroom.answer(
+            eve, PUPIL_ADDRESS, {"do": "beat", "asked": [{"do": "hello", "id": 1}, message]}
         )
-    assert [request["do"] for request in room.hosting.asked] == ["connect"]
+    assert [request["do"] for request in room.hosting.requests] == ["connect"]
 
 
 def test_codes_cannot_be_guessed() -> None:
     room = Room()
-    code, right = room.made.code, 0
+    code, refused_count = room.classroom.code, 0
     for k in range(5000):
         guess = {"do": "join", "code": f"{k:06}", "name": "Eve"}
-        right += room.made.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
+        refused_count += room.classroom.answer("", PUPIL_ADDRESS, guess)["failure"] == "class_wrong"
         room.now_s += 0.01
-    assert right <= 20 + 50 / 3 + 1
+    assert refused_count <= 20 + 50 / 3 + 1
     # From that address, even the right code is refused; from others it is accepted.
     join_request = {"do": "join", "code": code, "name": "Eve"}
-    assert room.made.answer("", PUPIL_ADDRESS, join_request) == {"failure": "class_slow"}
-    assert "token" in room.made.answer("", "192.0.2.10", join_request)
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_request) == {"failure": "class_slow"}
+    assert "token" in room.classroom.answer("", "192.0.2.10", join_request)
     room.now_s += 4
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, join_request)
+    assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_request)
 
 
 def test_a_code_may_be_typed_in_lower_case_with_spaces() -> None:
     room = Room()
-    code = room.made.code.lower()
+    code = room.classroom.code.lower()
     given_fields = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
-    assert room.made.answer("", PUPIL_ADDRESS, given_fields)["name"] == "Ana"
-    assert room.made.most_bytes("") == 1000
-    assert room.made.most_bytes("0" * 32) == 0
+    assert room.classroom.answer("", PUPIL_ADDRESS, given_fields)["name"] == "Ana"
+    assert room.classroom.most_bytes("") == 1000
+    assert room.classroom.most_bytes("0" * 32) == 0
 
 
 @pytest.mark.parametrize(
@@ -254,7 +256,7 @@ def test_names_are_plain_text(name: str, shown_text: str) -> None:
 def test_a_returning_pupil_is_not_a_second_one() -> None:
     room = Room()
     room.joins("Ana")
-    second = room.joins("Ana", "198.51.100.1")
+    second_token = room.joins("Ana", "198.51.100.1")
 
     def names() -> list[str]:
         return [pupil["name"] for pupil in room.teaches("class")["pupils"]]
@@ -266,7 +268,7 @@ def test_a_returning_pupil_is_not_a_second_one() -> None:
     room.joins("Ana")
     assert names() == ["Ana (2)", "Ana (3)", "Ana"]
     room.now_s += 6
-    room.checks_in(second)
+    room.checks_in(second_token)
     room.joins("Ana", "198.51.100.1")  # another pupil of this name, who is present
     assert names() == ["Ana (2)", "Ana (3)", "Ana", "Ana (4)"]
 
@@ -278,8 +280,8 @@ def test_a_returning_pupil_is_not_a_second_one() -> None:
 def test_nobody_joins_without_a_name(name: object) -> None:
     room = Room()
     try:
-        answer = room.made.answer(
-            "", PUPIL_ADDRESS, {"do": "join", "code": room.made.code, "name": name}
+        answer = room.classroom.answer(
+            "", PUPIL_ADDRESS, {"do": "join", "code": room.classroom.code, "name": name}
         )
     except BadRequest:
         answer = {"failure": "class_nameless"}
@@ -289,19 +291,19 @@ def test_nobody_joins_without_a_name(name: object) -> None:
 
 def test_a_full_class_reassigns_places_of_absent_pupils() -> None:
     room = Room()
-    first = room.joins("p0")
-    room.checks_in(first, True)
-    room.connects(first)
+    token = room.joins("p0")
+    room.checks_in(token, True)
+    room.connects(token)
     room.now_s += 1
     for k in range(1, class_keeping.MOST_PUPILS):
         room.joins(f"p{k}", f"198.51.100.{k}")
-    more = {"do": "join", "code": room.made.code, "name": "more"}
+    join_message = {"do": "join", "code": room.classroom.code, "name": "more"}
     room.now_s += 30
-    assert room.made.answer("", PUPIL_ADDRESS, more) == {"failure": "class_full"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.now_s += 31
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
+    assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_message)
     assert len(room.teaches("class")["pupils"]) == class_keeping.MOST_PUPILS
-    assert room.made.most_bytes(first) > 0  # it is her turn
+    assert room.classroom.most_bytes(token) > 0  # it is her turn
 
 
 def test_a_flooding_pupil_is_refused_but_can_still_stop() -> None:
@@ -310,7 +312,7 @@ def test_a_flooding_pupil_is_refused_but_can_still_stop() -> None:
     with pytest.raises(BadRequest):
         for _ in range(200):
             room.checks_in(eve)
-    assert room.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"}) == {"news": []}
+    assert room.classroom.answer(eve, PUPIL_ADDRESS, {"do": "stop"}) == {"news": []}
     room.now_s += 1
     for _ in range(40):
         room.checks_in(eve)
@@ -333,14 +335,14 @@ def test_reported_work_is_limited_and_plain() -> None:
     pupil = room.teaches("class")["pupils"][0]
     assert len(pupil["lessons"]) == class_keeping.MOST_LESSONS
     assert (pupil["is_right"], pupil["hand"] > 0) == (False, True)
-    for wrong in (
+    for wrong_fields in (
         {"lessons": "01"}, {"lessons": ["<b>"]}, {"lessons": ["x" * 61]}, {"lessons": [5]},
         {"robot": "x"}, {"robot": ["liner"]}, {"text": 5},
     ):  # fmt: skip
         with pytest.raises(BadRequest):
-            room.checks_in(eve, **wrong)
-    own = {"name": "Pip\u202e" * 20, "colour": 3}
-    room.checks_in(eve, own_robot=own)
+            room.checks_in(eve, **wrong_fields)
+    named_robot = {"name": "Pip\u202e" * 20, "colour": 3}
+    room.checks_in(eve, own_robot=named_robot)
     own_robot = room.teaches("class")["pupils"][0]["own_robot"]
     assert (
         own_robot["colour"] == 3
@@ -406,22 +408,22 @@ def test_only_the_teacher_returns_work_to_a_name() -> None:
 def test_work_is_loaded_once_and_only_while_there_is_room() -> None:
     room = Room()
     work = {"name": "Ana", **SENT_WORK}
-    for wrong in (
+    for wrong_fields in (
         {"name": " "}, {"name": 5}, {"name": "\u3164"}, {"text": None}, {"robot": "x"},
         {"lessons": [1]},
     ):  # fmt: skip
         with pytest.raises(BadRequest):
-            room.teaches("class_bring", **{**work, **wrong})
+            room.teaches("class_bring", **{**work, **wrong_fields})
     for _ in range(2):  # a file is opened twice
         for k in range(class_keeping.MOST_WORKS):
             room.teaches("class_bring", **{**work, "name": f"p{k}"})
     assert len(room.teaches("class")["kept"]) == class_keeping.MOST_WORKS
     with pytest.raises(BadRequest):
         room.teaches("class_bring", **{**work, "name": "more"})
-    more = {"do": "join", "code": room.made.code, "name": "more"}
-    assert room.made.answer("", PUPIL_ADDRESS, more) == {"failure": "class_full"}
+    join_message = {"do": "join", "code": room.classroom.code, "name": "more"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_full"}
     room.teaches("class_forget", key=key_of(room))
-    assert "token" in room.made.answer("", PUPIL_ADDRESS, more)
+    assert "token" in room.classroom.answer("", PUPIL_ADDRESS, join_message)
 
 
 def test_a_copy_is_kept_until_the_page_confirms_that_text() -> None:
@@ -429,18 +431,18 @@ def test_a_copy_is_kept_until_the_page_confirms_that_text() -> None:
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana, eve = room.joins("Ana"), room.joins("Eve")
     key = key_of(room)
-    right = {"key": key, "text": SENT_WORK["text"]}
-    room.checks_in(ana, took=right)  # it was not offered
+    valid_receipt = {"key": key, "text": SENT_WORK["text"]}
+    room.checks_in(ana, took=valid_receipt)  # it was not offered
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    wrong: list[object] = [True, None, 5, [], {}, {"key": key}]
-    wrong += [{**right, "text": text} for text in ("F(1, 51)", None)]
-    wrong += [{**right, "key": other} for other in ("0" * 32, [key])]
-    for text in wrong:
+    wrong_receipts: list[object] = [True, None, 5, [], {}, {"key": key}]
+    wrong_receipts += [{**valid_receipt, "text": text} for text in ("F(1, 51)", None)]
+    wrong_receipts += [{**valid_receipt, "key": other_key} for other_key in ("0" * 32, [key])]
+    for text in wrong_receipts:
         assert room.checks_in(ana, took=text)["given"]["key"] == key
-    assert "given" not in room.checks_in(eve, took=right)  # another pupil cannot confirm it
+    assert "given" not in room.checks_in(eve, took=valid_receipt)  # another pupil cannot confirm it
     assert texts_of(room) == ["F(1, 50)"]
     # The page has it: so it is her work from then on, even before she reports it.
-    assert "given" not in room.checks_in(ana, took=right)
+    assert "given" not in room.checks_in(ana, took=valid_receipt)
     assert room.teaches("class")["kept"] == [] and texts_of(room) == ["F(1, 50)"]
     assert room.teaches("class")["pupils"][0]["lessons"] == ("01_first_line",)
 
@@ -449,43 +451,45 @@ def test_a_page_closed_before_receipt_loses_no_work() -> None:
     """It was returned to a closed page, and the pupil joins again from another device."""
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
-    first = room.joins("Ana")
+    token = room.joins("Ana")
     key = key_of(room)
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert room.checks_in(first)["given"]["key"] == key
+    assert room.checks_in(token)["given"]["key"] == key
     room.teaches("class_remove", pupil=room.number("Ana"))
-    second = room.joins("Ana", "198.51.100.1")
-    assert "given" not in room.checks_in(second)
+    second_token = room.joins("Ana", "198.51.100.1")
+    assert "given" not in room.checks_in(second_token)
     assert room.teaches("class")["kept"][0]["given"] == 0
     room.teaches("class_give_back", key=key, pupil=room.number("Ana"))
-    assert "given" not in room.checks_in(second, took=take_change(room.checks_in(second)["given"]))
+    assert "given" not in room.checks_in(
+        second_token, took=take_change(room.checks_in(second_token)["given"])
+    )
     assert texts_of(room) == ["F(1, 50)"]
 
 
-@pytest.mark.parametrize("given_s", [None, 120])
-def test_a_class_keeps_its_turn_length_unless_changed(given_s: int | None) -> None:
+@pytest.mark.parametrize("turn_s", [None, 120])
+def test_a_class_keeps_its_turn_length_unless_changed(turn_s: int | None) -> None:
     room = Room()
     room.teaches("class_turn", seconds=300)
-    state = json.loads(json.dumps(room.made.state_to_keep()))
-    resumed = classroom.Classroom(FakeHosting(), [], given_s)  # type: ignore[arg-type]
-    resumed.resume(state)
-    assert resumed.teach({"do": "class"})["turn_s"] == (given_s or 300)
+    state = json.loads(json.dumps(room.classroom.state_to_keep()))
+    resumed_room = classroom.Classroom(FakeHosting(), [], turn_s)  # type: ignore[arg-type]
+    resumed_room.resume(state)
+    assert resumed_room.teach({"do": "class"})["turn_s"] == (turn_s or 300)
 
 
-def test_a_crash_between_sending_and_receipt_loses_no_work(kept_at: Path) -> None:
+def test_a_crash_between_sending_and_receipt_loses_no_work(class_file: Path) -> None:
     """This holds whichever state of a class was the last one saved."""
     room = Room()
     room.teaches("class_bring", name="Ana", **SENT_WORK)
     ana = room.joins("Ana")
-    states = [room.made.state_to_keep()]
+    states = [room.classroom.state_to_keep()]
     room.teaches("class_give_back", key=key_of(room), pupil=room.number("Ana"))
-    states.append(room.made.state_to_keep())
+    states.append(room.classroom.state_to_keep())
     given_work = room.checks_in(ana)["given"]
     room.checks_in(ana, took=take_change(given_work))
-    states.append(room.made.state_to_keep())
+    states.append(room.classroom.state_to_keep())
     for k, state in enumerate(states):
         room_after = Room(0)
-        room_after.made.resume(json.loads(json.dumps(state)))
+        room_after.classroom.resume(json.loads(json.dumps(state)))
         assert "F(1, 50)" in texts_of(room_after)
         assert ("given" in room_after.checks_in(ana)) is (k == 1)
         if k == 1:  # under the same key: a page that has it does not take it again
@@ -542,8 +546,8 @@ def test_no_number_of_names_displaces_kept_work(places: int) -> None:
     for k in range(200):
         room.checks_in(last_pupil, text="SHOW(29)")
         room.now_s += classroom.PLACE_S + 1
-        request = {"do": "join", "code": room.made.code, "name": f"eve {k}"}
-        answer = room.made.answer("", "192.0.2.66", request)
+        request = {"do": "join", "code": room.classroom.code, "name": f"eve {k}"}
+        answer = room.classroom.answer("", "192.0.2.66", request)
         if "token" in answer:
             room.checks_in(answer["token"], text=f"S {k}")
         failures += [answer["failure"]] if "failure" in answer else []
@@ -564,26 +568,26 @@ def test_a_pupil_returning_with_a_token_has_the_same_work() -> None:
     room.checks_in(ana, text="F(1, 50)")
 
     def return_to_class(name: str = "ana", token: object = ana) -> Json:
-        request = {"do": "join", "code": room.made.code, "name": name, "before": token}
-        return room.made.answer("", PUPIL_ADDRESS, request)
+        request = {"do": "join", "code": room.classroom.code, "name": name, "before": token}
+        return room.classroom.answer("", PUPIL_ADDRESS, request)
 
-    second = return_to_class()  # a second tab of the same pupil
-    assert second["name"] == "ana (2)"
+    second_join = return_to_class()  # a second tab of the same pupil
+    assert second_join["name"] == "ana (2)"
     room.teaches("class_remove", pupil=room.number("ana (2)"))
     room.now_s += classroom.PLACE_S + 1
     assert return_to_class() == {"token": ana, "name": "Ana"}
     room.teaches("class_remove", pupil=room.number("Ana"))
     for token in ("", None, 5, "0" * 32, [ana]):
-        other = return_to_class(token=token)
-        assert other["name"] == "ana (2)"
+        other_pupil = return_to_class(token=token)
+        assert other_pupil["name"] == "ana (2)"
         room.teaches("class_remove", pupil=room.number("ana (2)"))
     luz = return_to_class("Luz")  # the next child at this device
     assert luz["name"] == "Luz" and luz["token"] != ana
     assert texts_of(room) == ["F(1, 50)"]
     assert return_to_class() == {"token": ana, "name": "Ana"}
     assert texts_of(room) == ["F(1, 50)"] and room.teaches("class")["kept"] == []
-    wrong = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
-    assert room.made.answer("", PUPIL_ADDRESS, wrong) == {"failure": "class_wrong"}
+    join_message = {"do": "join", "code": "000000", "name": "Ana", "before": ana}
+    assert room.classroom.answer("", PUPIL_ADDRESS, join_message) == {"failure": "class_wrong"}
 
 
 def test_a_removed_pupil_finds_the_work_again() -> None:
@@ -607,87 +611,103 @@ def test_a_removed_pupil_finds_the_work_again() -> None:
 
 
 @pytest.fixture
-def kept_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def class_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "class.json"
     monkeypatch.setattr(class_keeping, "path", lambda: file)
     return file
 
 
 @pytest.fixture
-def keeper(kept_at: Path) -> Iterator[Keeper]:
+def keeper(class_file: Path) -> Iterator[Keeper]:
     with closing(Keeper()) as started_keeper:
         yield started_keeper
 
 
 def resume_class(room: Room, keeper: Keeper) -> int:
-    return command._resume_class(command._Class(room.made, keeper))
+    return command._resume_class(command._Class(room.classroom, keeper))
 
 
-def test_a_crash_ends_no_class(kept_at: Path, keeper: Keeper) -> None:
+def test_a_crash_ends_no_class(class_file: Path, keeper: Keeper) -> None:
     """The next `tsc studio --class` has the same pupils, with their tokens, and their work."""
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, text="F(1, 50)", robot="tinibot", lessons=["01_first_line"])
     room.checks_in(luz, text="S")
     room.teaches("class_remove", pupil=room.number("Luz"))
-    keeper.keep(room.made.state_to_keep())
-    assert kept_at.stat().st_mode & 0o077 == 0  # the file contains tokens
-    when_s = kept_at.stat().st_mtime_ns
-    keeper.keep(room.made.state_to_keep())
-    assert kept_at.stat().st_mtime_ns == when_s
+    keeper.keep(room.classroom.state_to_keep())
+    assert class_file.stat().st_mode & 0o077 == 0  # the file contains tokens
+    when_s = class_file.stat().st_mtime_ns
+    keeper.keep(room.classroom.state_to_keep())
+    assert class_file.stat().st_mtime_ns == when_s
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
     state = room_after.teaches("class")
-    assert (state["code"], state["goes_on"]) == (room.made.code, True)
+    assert (state["code"], state["goes_on"]) == (room.classroom.code, True)
     assert [robot["port"] for robot in state["robots"]] == ["port0"]
     assert room_after.checks_in(ana)["name"] == "Ana"
     assert sorted(texts_of(room_after)) == sorted(texts_of(room)) == ["F(1, 50)", "S"]
     with pytest.raises(BadRequest):
         room_after.checks_in(luz)
-    request = {"do": "join", "code": room.made.code, "name": "Luz", "before": luz}
-    assert room_after.made.answer("", PUPIL_ADDRESS, request) == {"token": luz, "name": "Luz"}
+    request = {"do": "join", "code": room.classroom.code, "name": "Luz", "before": luz}
+    assert room_after.classroom.answer("", PUPIL_ADDRESS, request) == {"token": luz, "name": "Luz"}
     assert not room_after.teaches("class_anew")["goes_on"]
     room.teaches("class_over")
-    keeper.keep(room.made.state_to_keep())
-    assert not kept_at.exists() and resume_class(Room(), keeper) == 0
+    keeper.keep(room.classroom.state_to_keep())
+    assert not class_file.exists() and resume_class(Room(), keeper) == 0
 
 
-def test_a_damaged_class_continues_with_the_intact_parts(kept_at: Path, keeper: Keeper) -> None:
+def test_a_damaged_class_continues_with_the_intact_parts(class_file: Path, keeper: Keeper) -> None:
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)", robot="tinibot")
-    keeper.keep(room.made.state_to_keep())
-    whole = json.loads(kept_at.read_text())
-    row = whole["pupils"][0]
-    bad = [5, {**row, "token": "x"}, {**row, "name": " "}, {**row, "address": 5}, {"name": "Eve"}]
-    damaged = {**whole, "pupils": [*bad, row], "kept": [5, {"name": "Eve"}], "robots": [5, ""]}
-    odd = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
-    kept_at.write_text(json.dumps({**damaged, "kept": [{"name": "Eve"}, odd], "code": "<b>"}))
+    keeper.keep(room.classroom.state_to_keep())
+    class_data = json.loads(class_file.read_text())
+    row = class_data["pupils"][0]
+    bad_pupils = [
+        5,
+        {**row, "token": "x"},
+        {**row, "name": " "},
+        {**row, "address": 5},
+        {"name": "Eve"},
+    ]
+    damaged_class = {
+        **class_data,
+        "pupils": [*bad_pupils, row],
+        "kept": [5, {"name": "Eve"}],
+        "robots": [5, ""],
+    }
+    odd_row = {**row, "token": [], "key": 5, "written": "\u2800", "given_to": token}
+    class_file.write_text(
+        json.dumps({**damaged_class, "kept": [{"name": "Eve"}, odd_row], "code": "<b>"})
+    )
     room_after = Room(0)
     assert resume_class(room_after, keeper) == 1
-    assert room_after.checks_in(token)["name"] == "Ana" and room_after.made.code != room.made.code
+    assert (
+        room_after.checks_in(token)["name"] == "Ana"
+        and room_after.classroom.code != room.classroom.code
+    )
     assert room_after.checks_in(token)["given"]["text"] == "F(1, 50)"
-    many = [{**row, "token": f"{k:032x}"} for k in range(99)]
-    kept_at.write_text(json.dumps({**whole, "pupils": many, "kept": many}))
+    many_pupils = [{**row, "token": f"{k:032x}"} for k in range(99)]
+    class_file.write_text(json.dumps({**class_data, "pupils": many_pupils, "kept": many_pupils}))
     room_after = Room(0)
     assert resume_class(room_after, keeper) == class_keeping.MOST_PUPILS
     works = len(room_after.teaches("class_work")["pupils"])
     assert works == class_keeping.MOST_WORKS
 
 
-def test_an_invalid_class_file_is_set_aside(kept_at: Path, keeper: Keeper) -> None:
+def test_an_invalid_class_file_is_set_aside(class_file: Path, keeper: Keeper) -> None:
     """Another version, or a teacher, may be able to read it."""
-    aside = kept_at.with_name("class.unread.json")
+    aside = class_file.with_name("class.unread.json")
     for data in ("", "{", "[" * 100_000, "[]", '{"form": 2}'):
-        kept_at.write_text(data)
+        class_file.write_text(data)
         assert resume_class(Room(), keeper) == 0
-        assert aside.read_text() == data and not kept_at.exists()
+        assert aside.read_text() == data and not class_file.exists()
     keeper.keep(None)
     assert not aside.exists()  # the class is over
 
 
 def test_a_disk_with_room_again_is_written_to_at_once(
-    kept_at: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
+    class_file: Path, keeper: Keeper, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     room = Room()
     room.checks_in(room.joins("Ana"), text="F(1, 50)")
@@ -695,58 +715,65 @@ def test_a_disk_with_room_again_is_written_to_at_once(
     def fail_full_disk(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
-    with monkeypatch.context() as patched:
-        patched.setattr(class_keeping, "replace", fail_full_disk)
+    with monkeypatch.context() as patch:
+        patch.setattr(class_keeping, "replace", fail_full_disk)
         for _ in range(3):
-            keeper.keep(room.made.state_to_keep())
-    assert not kept_at.exists()
-    keeper.keep(room.made.state_to_keep())  # unchanged state
-    assert "F(1, 50)" in kept_at.read_text()
+            keeper.keep(room.classroom.state_to_keep())
+    assert not class_file.exists()
+    keeper.keep(room.classroom.state_to_keep())  # unchanged state
+    assert "F(1, 50)" in class_file.read_text()
 
 
-def test_a_wrong_or_jumping_clock_loses_no_work(kept_at: Path, keeper: Keeper) -> None:
+def test_a_wrong_or_jumping_clock_loses_no_work(class_file: Path, keeper: Keeper) -> None:
     """A board without a battery begins in the past, and hears the time later."""
     room = Room()
     token = room.joins("Ana")
     room.checks_in(token, text="F(1, 50)")
-    keeper.keep(room.made.state_to_keep())
-    whole = json.loads(kept_at.read_text())
-    for passed_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
-        kept_at.write_text(json.dumps({**whole, "kept_s": whole["kept_s"] - passed_s}))
+    keeper.keep(room.classroom.state_to_keep())
+    class_data = json.loads(class_file.read_text())
+    for age_s in (-50 * 365 * 86_400, -10, 0, 3500):  # age of the file
+        class_file.write_text(json.dumps({**class_data, "kept_s": class_data["kept_s"] - age_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 1
         assert (
-            room_after.checks_in(token)["name"] == "Ana" and room_after.made.code == room.made.code
+            room_after.checks_in(token)["name"] == "Ana"
+            and room_after.classroom.code == room.classroom.code
         )
-    for kept_s in (whole["kept_s"] - 3700, 5, -5, None, "x", 1e400):
-        kept_at.write_text(json.dumps({**whole, "kept_s": kept_s}))
+    for kept_s in (class_data["kept_s"] - 3700, 5, -5, None, "x", 1e400):
+        class_file.write_text(json.dumps({**class_data, "kept_s": kept_s}))
         room_after = Room(0)
         assert resume_class(room_after, keeper) == 0
         assert texts_of(room_after) == ["F(1, 50)"]
-        assert room_after.made.code != room.made.code and room_after.teaches("class")["goes_on"]
-        keeper.keep(room_after.made.state_to_keep())
-        assert "F(1, 50)" in kept_at.read_text()  # nor does the next crash lose it
+        assert (
+            room_after.classroom.code != room.classroom.code
+            and room_after.teaches("class")["goes_on"]
+        )
+        keeper.keep(room_after.classroom.state_to_keep())
+        assert "F(1, 50)" in class_file.read_text()  # nor does the next crash lose it
         with pytest.raises(BadRequest):
             room_after.checks_in(token)
-        request = {"do": "join", "code": room_after.made.code, "name": "Ana", "before": token}
-        assert room_after.made.answer("", PUPIL_ADDRESS, request) == {"token": token, "name": "Ana"}
+        request = {"do": "join", "code": room_after.classroom.code, "name": "Ana", "before": token}
+        assert room_after.classroom.answer("", PUPIL_ADDRESS, request) == {
+            "token": token,
+            "name": "Ana",
+        }
         assert texts_of(room_after) == ["F(1, 50)"]
 
 
-def test_only_one_class_of_a_user_has_the_file(kept_at: Path, keeper: Keeper) -> None:
-    keeper.keep(Room().made.state_to_keep())
+def test_only_one_class_of_a_user_has_the_file(class_file: Path, keeper: Keeper) -> None:
+    keeper.keep(Room().classroom.state_to_keep())
     with pytest.raises(class_keeping.ClassTaken):
         Keeper()
-    assert kept_at.exists()
+    assert class_file.exists()
     keeper.close()  # the command has ended
-    with closing(Keeper()) as other:
-        assert other.read() is not None
+    with closing(Keeper()) as other_keeper:
+        assert other_keeper.read() is not None
         keeper.keep(None)  # a closed keeper has no effect
-        assert kept_at.exists()
+        assert class_file.exists()
 
 
 def test_a_class_runs_without_a_writable_folder(
-    kept_at: Path, monkeypatch: pytest.MonkeyPatch
+    class_file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Once there is room, it gets its file, unless another class has it."""
     room = Room()
@@ -754,14 +781,14 @@ def test_a_class_runs_without_a_writable_folder(
     def fail_full_disk(*_: object) -> int:
         raise OSError(28, "No space left on device")
 
-    with monkeypatch.context() as patched:
-        patched.setattr(os, "open", fail_full_disk)
-        early, late = Keeper(), Keeper()
-    with closing(early), closing(late):
-        early.keep(room.made.state_to_keep())
-        assert kept_at.exists()
-        late.keep(None)
-        assert kept_at.exists()
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "open", fail_full_disk)
+        early_keeper, late_keeper = Keeper(), Keeper()
+    with closing(early_keeper), closing(late_keeper):
+        early_keeper.keep(room.classroom.state_to_keep())
+        assert class_file.exists()
+        late_keeper.keep(None)
+        assert class_file.exists()
 
 
 # -- the teacher
@@ -781,16 +808,16 @@ def test_the_teacher_watches_stops_and_reclaims_robots() -> None:
     number = room.number("Ana")
     assert room.teaches("class_text", pupil=number)["text"] == "F(1, 50)"
     room.teaches("class_stop", pupil=number)
-    assert robot.stopped == 1 and not robot.has_ended
+    assert robot.stop_count == 1 and not robot.has_ended
     room.teaches("class_next", pupil=number)
     assert robot.leave_reason == "turn_over"
     assert room.checks_in(luz)["place"] == 0
     room.teaches("class_remove", pupil=number)
-    assert room.made.most_bytes(ana) == 0
+    assert room.classroom.most_bytes(ana) == 0
     with pytest.raises(BadRequest):
         room.checks_in(ana)
     room.teaches("stop_all")
-    assert room.hosting.asked[-1] == {"do": "stop_all"}
+    assert room.hosting.requests[-1] == {"do": "stop_all"}
 
 
 def test_robots_can_be_added_and_removed() -> None:
@@ -810,19 +837,19 @@ def test_robots_can_be_added_and_removed() -> None:
 
 def test_the_teacher_changes_code_and_turn_length() -> None:
     room = Room()
-    old = room.made.code
-    assert room.teaches("class_code")["code"] == room.made.code != old
-    assert room.made.answer("", PUPIL_ADDRESS, {"do": "join", "code": old, "name": "Eve"}) == {
-        "failure": "class_wrong"
-    }
+    old_code = room.classroom.code
+    assert room.teaches("class_code")["code"] == room.classroom.code != old_code
+    assert room.classroom.answer(
+        "", PUPIL_ADDRESS, {"do": "join", "code": old_code, "name": "Eve"}
+    ) == {"failure": "class_wrong"}
     assert room.teaches("class_turn", seconds=300)["turn_s"] == 300
     for seconds in (9, 3601, "300", True, None):
         with pytest.raises(BadRequest):
             room.teaches("class_turn", seconds=seconds)
 
 
-@pytest.mark.parametrize(("erases", "over"), [(True, "erased"), (False, "kept")])
-def test_the_end_of_a_class_reaches_every_page(erases: bool, over: str) -> None:
+@pytest.mark.parametrize(("erases", "end_reason"), [(True, "erased"), (False, "kept")])
+def test_the_end_of_a_class_reaches_every_page(erases: bool, end_reason: str) -> None:
     room = Room()
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.checks_in(ana, True)
@@ -830,15 +857,15 @@ def test_the_end_of_a_class_reaches_every_page(erases: bool, over: str) -> None:
     room.checks_in(luz, True)
     room.teaches("class_over", erases=erases)
     assert robot.leave_reason == "turn_over"
-    room.made.tend()
-    assert not room.made.has_ended
-    assert room.checks_in(ana) == {"over": over}
-    assert not room.made.has_ended
-    assert room.checks_in(luz, True) == {"over": over}
-    assert room.made.has_ended
+    room.classroom.tend()
+    assert not room.classroom.has_ended
+    assert room.checks_in(ana) == {"over": end_reason}
+    assert not room.classroom.has_ended
+    assert room.checks_in(luz, True) == {"over": end_reason}
+    assert room.classroom.has_ended
     assert [robot["pupil"] for robot in room.teaches("class")["robots"]] == [""]
-    late = {"do": "join", "code": room.made.code, "name": "Teo"}
-    assert room.made.answer("", PUPIL_ADDRESS, late) == {"failure": "class_over"}
+    late_request = {"do": "join", "code": room.classroom.code, "name": "Teo"}
+    assert room.classroom.answer("", PUPIL_ADDRESS, late_request) == {"failure": "class_over"}
 
 
 def test_the_rate_limit_remembers_a_thousand_names() -> None:
@@ -855,23 +882,23 @@ def test_stops_and_heartbeats_do_not_wait_for_port_names(monkeypatch: pytest.Mon
     ana = room.joins("Ana")
     room.checks_in(ana, True)
     room.connects(ana)
-    answered: list[str] = []
+    answered_actions: list[str] = []
 
     def ask() -> None:
-        for do in ("stop", "beat", "here"):
-            room.made.answer(ana, PUPIL_ADDRESS, {"do": do})
-            answered.append(do)
+        for action in ("stop", "beat", "here"):
+            room.classroom.answer(ana, PUPIL_ADDRESS, {"do": action})
+            answered_actions.append(action)
 
     def list_slowly() -> list[Json]:
         asking = Thread(target=ask, daemon=True)
         asking.start()
         asking.join(HANG_LIMIT_S / 10)
-        answered.append("listed")
+        answered_actions.append("listed")
         return [{"port": "port9", "name": "NINE"}]
 
     monkeypatch.setattr(classroom, "list_ports", list_slowly)
     state = room.teaches("class_robot", port="port9", gives=True)
-    assert answered == ["stop", "beat", "here", "listed"]
+    assert answered_actions == ["stop", "beat", "here", "listed"]
     assert [robot["name"] for robot in state["robots"]] == ["", "NINE"]
 
 
@@ -880,8 +907,8 @@ def test_an_address_has_at_most_three_places_unless_allowed() -> None:
     room = Room()
 
     def enters(name: str, address: str = PUPIL_ADDRESS) -> Json:
-        request = {"do": "join", "code": room.made.code, "name": name}
-        return room.made.answer("", address, request)
+        request = {"do": "join", "code": room.classroom.code, "name": name}
+        return room.classroom.answer("", address, request)
 
     tokens = [room.joins(f"p{k}") for k in range(classroom.PLACES_PER_ADDRESS)]
     assert enters("more") == {"failure": "class_crowded"}
@@ -896,29 +923,29 @@ def test_an_address_has_at_most_three_places_unless_allowed() -> None:
     for places in (1, 60):
         assert room.teaches("class_places", places=places)["places"] == places
     assert "token" in enters("more")
-    for wrong in (0, 61, "4", None):
+    for wrong_count in (0, 61, "4", None):
         with pytest.raises(BadRequest):
-            room.teaches("class_places", places=wrong)
+            room.teaches("class_places", places=wrong_count)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_teacher_gets_each_change_and_a_raised_hand_keeps_its_place(seed: int) -> None:
     """Repeated reports of pages do not matter: only changed work gets a new version, and a raised
     hand keeps its place."""
-    chance, room = Random(seed), Room()
+    rng, room = Random(seed), Room()
     tokens = [room.joins(name) for name in ("Ana", "Ben", "Eve")]
     works, hands = dict.fromkeys(tokens, ""), list[str]()
-    seen = room.teaches("class")["pupils"]
+    views = room.teaches("class")["pupils"]
     for _ in range(60):
-        token, text = chance.choice(tokens), chance.choice(("", "F(1)", "F(2)"))
-        is_up = chance.random() < 0.7
-        room.made.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
+        token, text = rng.choice(tokens), rng.choice(("", "F(1)", "F(2)"))
+        is_up = rng.random() < 0.7
+        room.classroom.answer(token, PUPIL_ADDRESS, {"do": "here", "text": text, "hand": is_up})
         pupils = room.teaches("class")["pupils"]
-        for one, before, after in zip(tokens, seen, pupils, strict=True):
-            is_other = one == token and works[one] != text
-            assert (after["version"] != before["version"]) == is_other
-        seen, works[token] = pupils, text
-        hands = [one for one in hands if one != token or is_up]
+        for pupil_token, old_view, new_view in zip(tokens, views, pupils, strict=True):
+            is_other = pupil_token == token and works[pupil_token] != text
+            assert (new_view["version"] != old_view["version"]) == is_other
+        views, works[token] = pupils, text
+        hands = [pupil_token for pupil_token in hands if pupil_token != token or is_up]
         hands += [token] * (is_up and token not in hands)
         raised_hands = [pupil for pupil in pupils if pupil["hand"]]
         raised_hands.sort(key=lambda pupil: pupil["hand"])
@@ -928,15 +955,15 @@ def test_the_teacher_gets_each_change_and_a_raised_hand_keeps_its_place(seed: in
 # -- the newest run of a pupil ---------------------------------------------------------------------
 
 
-def ask_for_run(room: Room, pupil: int, asks: bool = False) -> Any:
-    return room.made.teach({"do": "class_run", "pupil": pupil, "asks": asks})["run"]
+def ask_for_run(room: Room, pupil: int, is_asked: bool = False) -> Any:
+    return room.classroom.teach({"do": "class_run", "pupil": pupil, "asks": is_asked})["run"]
 
 
 def give_run_part(
     room: Room, token: str, run_number: int, start: int, part: str, is_last: bool
 ) -> None:
     request = {"do": "run", "asked": run_number, "from": start, "part": part, "is_last": is_last}
-    room.made.answer(token, PUPIL_ADDRESS, request)
+    room.classroom.answer(token, PUPIL_ADDRESS, request)
 
 
 def test_the_teacher_gets_the_newest_run_of_the_requested_pupil() -> None:
@@ -961,27 +988,27 @@ def test_the_teacher_gets_the_newest_run_of_the_requested_pupil() -> None:
     give_run_part(room, ana, room.checks_in(ana)["run"], 0, "newer", True)
     assert ask_for_run(room, 1) == "newer", "what is asked anew begins anew"
     assert ask_for_run(room, 9, True) == "", "who has gone has none"
-    assert "class_run" not in json.dumps(room.made.state_to_keep())
+    assert "class_run" not in json.dumps(room.classroom.state_to_keep())
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_fields",
     [
         {"part": 1}, {"part": None}, {"from": 1}, {"from": -1}, {"from": "0"}, {"is_last": 1},
         {"part": "x" * (recordings.MOST_BYTES + 1)},
     ],
 )  # fmt: skip
-def test_mismatched_parts_of_a_run_are_refused(wrong: Json) -> None:
+def test_mismatched_parts_of_a_run_are_refused(wrong_fields: Json) -> None:
     room = Room()
     ana = room.joins("Ana")
     ask_for_run(room, 1, True)
     run_number = room.checks_in(ana)["run"]
-    right = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
+    valid_part = {"do": "run", "asked": run_number, "from": 0, "part": "x", "is_last": True}
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**right, **wrong})
-    room.made.answer(ana, PUPIL_ADDRESS, right)
+        room.classroom.answer(ana, PUPIL_ADDRESS, {**valid_part, **wrong_fields})
+    room.classroom.answer(ana, PUPIL_ADDRESS, valid_part)
     with pytest.raises(BadRequest):
-        room.made.answer(ana, PUPIL_ADDRESS, {**right, "from": 1})
+        room.classroom.answer(ana, PUPIL_ADDRESS, {**valid_part, "from": 1})
     assert ask_for_run(room, 1) == "x"
 
 

@@ -72,7 +72,9 @@ def peer() -> Iterator[socket.socket]:
 def of_another(monkeypatch: pytest.MonkeyPatch) -> None:
     """All connections within this computer are of another user."""
     monkeypatch.setattr(peers, "tells_users", lambda: True)
-    monkeypatch.setattr(peers, "_socket_owner", lambda other, own: peers.SocketOwner(NOBODY_UID, 1))
+    monkeypatch.setattr(
+        peers, "_socket_owner", lambda peer, own_address: peers.SocketOwner(NOBODY_UID, 1)
+    )
     monkeypatch.setattr(os, "geteuid", lambda: 1234, raising=False)
 
 
@@ -89,11 +91,15 @@ def test_a_code_gives_the_token_once(peer: socket.socket) -> None:
 def test_the_code_of_a_browser_is_valid_for_a_limited_time(peer: socket.socket) -> None:
     clock = Clock()
     doors = Entrances(clock)
-    early, late, printed_text = doors.new_code(True), doors.new_code(True), doors.new_code()
+    early_code, late_code, printed_text = (
+        doors.new_code(True),
+        doors.new_code(True),
+        doors.new_code(),
+    )
     clock.now_s = OPEN_TIMEOUT_S
-    assert doors.token_for(early, peer) == doors.token
+    assert doors.token_for(early_code, peer) == doors.token
     clock.now_s = OPEN_TIMEOUT_S + 1
-    assert doors.token_for(late, peer) == ""
+    assert doors.token_for(late_code, peer) == ""
     assert doors.token_for(printed_text, peer) == doors.token
 
 
@@ -156,19 +162,21 @@ def test_the_server_answers_no_other_user(tmp_path: Path) -> None:
 
     new_server = serving.Server(serving.files(tmp_path), 0, answer)
     with serves(new_server) as server:
-        own = f"{serving.HOST}:{server.server_port}"
+        server_host = f"{serving.HOST}:{server.server_port}"
         code = server.entrance(is_for_this_computer=True).rpartition("=")[2]
-        assert enter(own, code) == (200, {"failure": "host_used"})
-        assert post(own, server.entrances.token, {"do": "ports"})[0] == 403
+        assert enter(server_host, code) == (200, {"failure": "host_used"})
+        assert post(server_host, server.entrances.token, {"do": "ports"})[0] == 403
     assert requests == []
 
 
-def enter(own: str, code: str) -> tuple[int, Any]:
-    return post(own, "", {"code": code}, serving.ENTER_PATH)
+def enter(server_host: str, code: str) -> tuple[int, Any]:
+    return post(server_host, "", {"code": code}, serving.ENTER_PATH)
 
 
-def post(own: str, token: str, request: object, path: str = serving.ROBOTS_PATH) -> tuple[int, Any]:
-    status, data = page_server.post(own, token, json.dumps(request).encode(), path)
+def post(
+    server_host: str, token: str, request: object, path: str = serving.ROBOTS_PATH
+) -> tuple[int, Any]:
+    status, data = page_server.post(server_host, token, json.dumps(request).encode(), path)
     return status, json.loads(data) if status == 200 else data.decode()
 
 
@@ -186,8 +194,8 @@ def test_the_browsers_command_line_gives_another_user_no_access(
     start = ("import sys; from pathlib import Path; from tiniscript.studio import serving; "
              f"serving.PAGE = Path({str(tmp_path / 'page')!r}); from tiniscript.cli import main; "
              "sys.exit(main(sys.argv[1:]))")  # fmt: skip
-    more = ("--class", "--address", "127.0.0.2") if is_class else ()
-    words = [sys.executable, "-c", start, "studio", "--listen", "0", "--lang", "en", *more]
+    options = ("--class", "--address", "127.0.0.2") if is_class else ()
+    words = [sys.executable, "-c", start, "studio", "--listen", "0", "--lang", "en", *options]
     command = subprocess.Popen(
         words, env={**os.environ, "BROWSER": f"{browser} %s &"},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -198,17 +206,17 @@ def test_the_browsers_command_line_gives_another_user_no_access(
         until(lambda: (tmp_path / "opened").exists(), "the browser is opened")
         pid, opened_text = (tmp_path / "opened").read_text().split()
         address, _, code = opened_text.partition("#code=")
-        own = address.removeprefix("http://").rstrip("/")
+        server_host = address.removeprefix("http://").rstrip("/")
         assert printed_text.startswith(f"{address}#code=") and code not in printed_text
 
         # The token is not on any command line, so it is taken from another page.
-        token = enter(own, printed_text.rpartition("=")[2])[1]["token"]
+        token = enter(server_host, printed_text.rpartition("=")[2])[1]["token"]
         stranger = [
             sys.executable,
             "-I",
             "-c",
             STRANGER_SCRIPT,
-            own,
+            server_host,
             token,
             code,
             pid,
@@ -220,9 +228,9 @@ def test_the_browsers_command_line_gives_another_user_no_access(
         assert entering == [200, '{"failure": "host_used"}']
         assert asking[0] == 403 and not is_shown
 
-        assert enter(own, code) == (200, {"token": token})
-        assert enter(own, code) == (200, {"failure": "host_used"})
-        assert post(own, token, {"do": "ports"})[0] == 200
+        assert enter(server_host, code) == (200, {"token": token})
+        assert enter(server_host, code) == (200, {"failure": "host_used"})
+        assert post(server_host, token, {"do": "ports"})[0] == 200
         next_address = command.stdout.readline().strip()  # the printed address was opened
         assert next_address.startswith(f"{address}#code=") and next_address != printed_text
     finally:

@@ -43,10 +43,10 @@ def image(board: str, size: int = 70_001) -> bytes:
     return bytes(data)
 
 
-def flash(board: str, firmware: bytes, **how: Any) -> dict[str, Any]:
+def flash(board: str, firmware: bytes, **options: Any) -> dict[str, Any]:
     need("" if (MODULES / "esptool-js").is_dir() else "esptool-js is not fetched")
-    case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **how}
-    lines = in_node(TEST_FOLDER / "flash_esp32_in_node.mjs", str(ROM), given=json.dumps(case))
+    case = {"board": board, "firmware": base64.b64encode(firmware).decode(), **options}
+    lines = in_node(TEST_FOLDER / "flash_esp32_in_node.mjs", str(ROM), input_text=json.dumps(case))
     outcome: dict[str, Any] = json.loads(lines[-1])
     assert outcome["sums"]
     assert not outcome["is_open"]  # the next one can have the port
@@ -67,7 +67,7 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("how", "ended_text"),
+    ("options", "ended_text"),
     [
         ({"isDeaf": True}, "flash_nobody_esp"),
         ({"chip": "esp32c3"}, "flash_other_esp"),
@@ -77,14 +77,14 @@ def test_a_new_board_gets_the_whole_firmware_and_starts_it(board: str) -> None:
         ({"heldUntil": "cancel"}, "flash_not_begun"),
     ],
 )
-def test_a_different_board_is_not_changed(how: dict[str, Any], ended_text: str) -> None:
-    outcome = flash("esp32dev", image("esp32dev", 20_000), **how)
+def test_a_different_board_is_not_changed(options: dict[str, Any], ended_text: str) -> None:
+    outcome = flash("esp32dev", image("esp32dev", 20_000), **options)
     assert (outcome["ended"], outcome["is_untouched"]) == (ended_text, True)
 
 
-@pytest.mark.sampled("how", "ended_text")
+@pytest.mark.sampled("options", "ended_text")
 @pytest.mark.parametrize(
-    ("how", "ended_text"),
+    ("options", "ended_text"),
     [
         ({"breaksAt": 3}, "flash_broken_off"),
         ({"cancelAt": 0.3}, "flash_cancelled"),
@@ -92,18 +92,18 @@ def test_a_different_board_is_not_changed(how: dict[str, Any], ended_text: str) 
     ],
 )
 def test_a_partial_firmware_is_never_reported_as_complete(
-    how: dict[str, Any], ended_text: str
+    options: dict[str, Any], ended_text: str
 ) -> None:
-    assert flash("esp32dev", image("esp32dev", 20_000), **how)["ended"] == ended_text
+    assert flash("esp32dev", image("esp32dev", 20_000), **options)["ended"] == ended_text
 
 
 def test_firmware_of_another_board_is_not_written() -> None:
-    whole = image("esp32dev", 20_000)
+    firmware = image("esp32dev", 20_000)
     for board, data in (
-        ("esp32dev", whole[0x1000:]),  # the image alone, without the part before it
+        ("esp32dev", firmware[0x1000:]),  # the image alone, without the part before it
         ("esp32dev", b":00000001FF\n"),
-        ("esp32dev", whole + bytes(0x400000)),
-        ("esp32c3", whole),
+        ("esp32dev", firmware + bytes(0x400000)),
+        ("esp32c3", firmware),
         ("esp32c3", b"\xe9" + bytes(11) + b"\0" + bytes(99)),  # firmware for another chip
     ):
         outcome = flash(board, data)
@@ -156,8 +156,8 @@ def test_a_page_without_firmware_does_not_offer_it(browser: Browser, tmp_path: P
 
 
 def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Path) -> None:
-    whole = image("esp32dev", 12_000)
-    (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(whole)
+    firmware = image("esp32dev", 12_000)
+    (tmp_path / "tinibot32-esp32dev-digest.bin").write_bytes(firmware)
     with teacher_page(browser, tmp_path) as page:
         page.locator("#flash_write").wait_for()
         assert page.locator("#flash_board option").all_inner_texts() == ["ESP32"]
@@ -167,5 +167,7 @@ def test_a_teacher_puts_the_firmware_on_an_esp32(browser: Browser, tmp_path: Pat
         page.click("#flash_write")
         page.get_by_text("Connecting").first.wait_for()
         until(lambda: page.evaluate("window.rom.starts") == 1, "it starts")
-        assert page.evaluate(f"[...window.rom.flash.subarray(0, {len(whole)})]") == list(whole)
+        assert page.evaluate(f"[...window.rom.flash.subarray(0, {len(firmware)})]") == list(
+            firmware
+        )
         page.get_by_text("Nothing responds.").wait_for()  # the simulated chip is no robot

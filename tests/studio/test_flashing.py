@@ -20,7 +20,7 @@ from tests.support.node import in_node
 from tests.support.platformio import firmware, shared_folder
 
 SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
-PAGE = 128
+PAGE_BYTES = 128
 IN_SYNC, OK, END_OF_COMMAND = b"\x14", b"\x10", 0x20
 UNO = b"\x1e\x95\x0f"
 
@@ -33,9 +33,9 @@ def flash(port: str, board: str, file: Path, *cancelled: str) -> str:
 def hex_file(folder: Path, data: bytes) -> Path:
     # Rows as linkers write them, followed by data at 0.
     rows = [b"\2\0\0\4\0\0\xfa", b"\2\0\0\2\0\0\xfc"]
-    for at in range(0, len(data), 16):
-        part = data[at : at + 16]
-        row = bytes([len(part), at >> 8, at & 255, 0]) + part
+    for offset in range(0, len(data), 16):
+        part = data[offset : offset + 16]
+        row = bytes([len(part), offset >> 8, offset & 255, 0]) + part
         rows.append(row + bytes([-sum(row) & 255]))
     file = folder / "firmware.hex"
     lines = [f":{row.hex().upper()}" for row in rows]
@@ -53,8 +53,8 @@ def test_a_progressing_write_is_finished_and_a_stalled_one_is_ended() -> None:
     """A board is found that answers one of eight times; then each answer may take its second."""
     rows = [json.loads(line) for line in in_node(SLOW_SCRIPT, "120")]
     assert len(rows) == 120
-    ends = {row["ended"] for row in rows if row["slow_ms"] < SYNC_MS}
-    assert ends == {"done", "flash_broken_off", "flash_nobody"}
+    outcomes = {row["ended"] for row in rows if row["slow_ms"] < SYNC_MS}
+    assert outcomes == {"done", "flash_broken_off", "flash_nobody"}
     for row in rows:
         assert (row["ended"] == "done") == (row["last"] == 1 and row["isSame"]), row
         if row["losses"] < TRY_COUNT and row["slow_ms"] < SYNC_MS and not row["silent"]:
@@ -113,7 +113,7 @@ class FakeBoard:
         self.flash = bytearray(b"\xff" * 0x8000)
         self.commands: list[int] = []
         self._bends = bends or (lambda command, answer: answer)
-        self._at = 0
+        self._address = 0
 
     def run(self, file: int) -> None:
         heard_bytes = b""
@@ -133,45 +133,45 @@ class FakeBoard:
     def _length(heard_bytes: bytes) -> int:
         if not heard_bytes:
             return 0
-        return {0x55: 4, 0x64: 5 + PAGE, 0x74: 5}.get(heard_bytes[0], 2)
+        return {0x55: 4, 0x64: 5 + PAGE_BYTES, 0x74: 5}.get(heard_bytes[0], 2)
 
     def _answer(self, command: bytes) -> bytes:
         assert command[-1] == END_OF_COMMAND
         if command[0] == 0x75:
             return UNO
         if command[0] == 0x55:
-            self._at = 2 * int.from_bytes(command[1:3], "little")
+            self._address = 2 * int.from_bytes(command[1:3], "little")
         elif command[0] == 0x64 and 0x50 in self.commands:  # programming mode was entered
-            self.flash[self._at : self._at + PAGE] = command[4:-1]
+            self.flash[self._address : self._address + PAGE_BYTES] = command[4:-1]
         elif command[0] == 0x74:
-            return bytes(self.flash[self._at : self._at + PAGE])
+            return bytes(self.flash[self._address : self._address + PAGE_BYTES])
         return b""
 
 
 @contextmanager
 def plug_in(board: FakeBoard) -> Iterator[str]:
-    file, other = pty.openpty()
-    tty.setraw(other)
+    file, device = pty.openpty()
+    tty.setraw(device)
     thread = threading.Thread(target=board.run, args=(file,), daemon=True)
     thread.start()
     try:
-        yield os.ttyname(other)
+        yield os.ttyname(device)
     finally:
-        os.close(other)
+        os.close(device)
         with suppress(OSError):
             os.close(file)
 
 
 def changed_answer(
-    at: int, *, by: bytes | None, times: int = 10_000
+    changed_command: int, *, by: bytes | None, times: int = 10_000
 ) -> Callable[[int, bytes], bytes | None]:
     """Answer a command otherwise; None: the cable is pulled. `times`: from which time on."""
     count = 0
 
     def change_answer(command: int, answer: bytes) -> bytes | None:
         nonlocal count
-        count += command == at
-        return by if command == at and count >= times else answer
+        count += command == changed_command
+        return by if command == changed_command and count >= times else answer
 
     return change_answer
 
@@ -186,9 +186,9 @@ def test_all_bytes_are_written_and_verified(tmp_path: Path) -> None:
     assert board.commands[-1] == 0x51
 
 
-@pytest.mark.sampled("bends", "how", keep=5)
+@pytest.mark.sampled("bends", "ended_text", keep=5)
 @pytest.mark.parametrize(
-    ("bends", "how"),
+    ("bends", "ended_text"),
     [
         (changed_answer(0x30, by=b"", times=1), "flash_nobody"),
         (changed_answer(0x30, by=b"\x00\xff" * 40, times=1), "flash_nobody"),
@@ -199,19 +199,19 @@ def test_all_bytes_are_written_and_verified(tmp_path: Path) -> None:
         (changed_answer(0x64, by=b"", times=3), "flash_broken_off"),
         (changed_answer(0x64, by=b"\x15\x10", times=3), "flash_broken_off"),
         (changed_answer(0x74, by=None, times=2), "flash_broken_off"),
-        (changed_answer(0x74, by=IN_SYNC + b"\x00" * PAGE + OK, times=2), "flash_differs"),
+        (changed_answer(0x74, by=IN_SYNC + b"\x00" * PAGE_BYTES + OK, times=2), "flash_differs"),
         (changed_answer(0x51, by=b"", times=1), "done"),
     ],
     ids=["silent", "noise", "other chip", "half", "pulled early", "pulled", "hangs", "refuses",
          "pulled while reading", "differs", "begins at once"],
 )  # fmt: skip
 def test_each_failure_of_a_write_is_reported(
-    bends: Callable[[int, bytes], bytes | None], how: str, tmp_path: Path
+    bends: Callable[[int, bytes], bytes | None], ended_text: str, tmp_path: Path
 ) -> None:
     board = FakeBoard(bends)
     with plug_in(board) as port:
-        assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
-    if how in ("flash_nobody", "flash_other_chip", "port_gone"):
+        assert flash(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == ended_text
+    if ended_text in ("flash_nobody", "flash_other_chip", "port_gone"):
         assert set(board.flash) == {255}  # no byte was written
 
 
@@ -219,11 +219,11 @@ def test_a_write_can_be_cancelled(tmp_path: Path) -> None:
     """Before the first byte the board stays as it is; in the middle it is left without firmware;
     after the last byte it cannot be cancelled any more."""
     file = hex_file(tmp_path, b"\x01" * 1000)
-    for part, how in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
+    for part, ended_text in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
                       ("0.75", "flash_cancelled"), ("1", "done")):  # fmt: skip
         board = FakeBoard()
         with plug_in(board) as port:
-            assert flash(port, "uno", file, part) == how
+            assert flash(port, "uno", file, part) == ended_text
         page_count = board.commands.count(0x64)
         assert page_count == {"-1": 0, "0.25": 4}.get(part, 8)
 

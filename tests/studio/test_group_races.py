@@ -27,7 +27,7 @@ from tiniscript.studio.hosting import Hosting
 Json = dict[str, Any]
 BEAT_S = 0.1
 LATE_S = 1.5  # most delay of a request
-STANDS_S = 0.6  # time for which the robot is watched
+WATCH_S = 0.6  # time for which the robot is watched
 PROGRAM = compile(FOREVER).image.hex()
 PUPILS = ("Ana", "Luz", "Teo")
 
@@ -42,29 +42,29 @@ class Mate:
         text = FOREVER + "\n"
         assert "group" in self.ask("group_join", name="Red", text=text)
         self.presses = self.ids = self.connection = self.newest_number = self.saw_stops = 0
-        self.asked: list[Json] = []
-        self.is_there = False
+        self.requests: list[Json] = []
+        self.is_connected = False
         self.thread = Thread(target=self._beats, daemon=True)
         self.thread.start()
 
-    def ask(self, do: str, **more: Any) -> Json:
-        return self.group.room.answer(self.token, self.name, {"do": do, **more})
+    def ask(self, action: str, **fields: Any) -> Json:
+        return self.group.room.answer(self.token, self.name, {"do": action, **fields})
 
-    def drive(self, do: str, **more: Any) -> Json:
-        return self.ask(do, page=self.name, connection=self.connection, seen=self.newest_number,
-                        stops=self.presses, **more)  # fmt: skip
+    def drive(self, action: str, **fields: Any) -> Json:
+        return self.ask(action, page=self.name, connection=self.connection, seen=self.newest_number,
+                        stops=self.presses, **fields)  # fmt: skip
 
     def _beats(self) -> None:
         while not self.group.is_over:
             time.sleep(BEAT_S)
             self.saw_stops = self.ask("here").get("stops", 0)
-            if not self.is_there:
+            if not self.is_connected:
                 continue
-            requests, self.asked = self.asked, []
+            requests, self.requests = self.requests, []
             for news in self.drive("beat", asked=requests)["news"]:
                 self.newest_number = max(self.newest_number, news["number"])
                 if news.get("over"):
-                    self.is_there = False
+                    self.is_connected = False
 
     def connects(self, saw_stops: int) -> None:
         self.connection += 1
@@ -72,16 +72,16 @@ class Mate:
         port = self.group.robot.port
         answer = self.drive("connect", port=port, robot="tinibot", language="en",
                             saw_stops=saw_stops)  # fmt: skip
-        self.is_there = "failure" not in answer
+        self.is_connected = "failure" not in answer
 
     def runs(self, stops: int, number: int) -> None:
         """Ask for a run, which was pressed after this many presses of STOP and this much news."""
         self.ids += 1
-        self.asked.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
+        self.requests.append({"do": "upload", "id": self.ids, "image": PROGRAM, "robot": "tinibot",
                            "runs": True, "stops": stops, "seen": number})  # fmt: skip
 
     def stops(self) -> None:
-        if self.is_there:
+        if self.is_connected:
             self.drive("stop")
         self.ask("stop", page="group", group_stops=self.presses)
 
@@ -91,11 +91,11 @@ class Group:
 
     def __init__(self, robot: PtyRobot, seed: int) -> None:
         self.robot = robot
-        self.chance = Random(seed)
+        self.rng = Random(seed)
         self.hosting = Hosting()
         self.room = Classroom(self.hosting, [robot.port])
         self.is_over = False
-        self.late: list[Thread] = []
+        self.late_threads: list[Thread] = []
         self.mates = [Mate(self, name) for name in PUPILS]
 
     def begins(self) -> None:
@@ -103,21 +103,21 @@ class Group:
         until(lambda: self.mates[0].ask("here")["place"] == 0, "it is their turn")
 
     def later(self, act: Callable[[], None], most_s: float = LATE_S) -> None:
-        delay_s = self.chance.random() * most_s
+        delay_s = self.rng.random() * most_s
 
         def act_late() -> None:
             time.sleep(delay_s)
             act()
 
-        self.late.append(Thread(target=act_late, daemon=True))
-        self.late[-1].start()
+        self.late_threads.append(Thread(target=act_late, daemon=True))
+        self.late_threads[-1].start()
 
     def drives(self, mate: Mate) -> None:
         """Let a pupil drive, whoever is driving."""
         end_s = time.monotonic() + HANG_LIMIT_S
         while not self.robot.moves:
             assert time.monotonic() < end_s, "it never drives"
-            if not mate.is_there:
+            if not mate.is_connected:
                 mate.connects(mate.saw_stops)
             time.sleep(0.3)
             mate.runs(mate.presses, mate.newest_number)
@@ -125,21 +125,21 @@ class Group:
 
     def races(self) -> None:
         """Let one pupil drive; then some press Run, and one presses STOP after them."""
-        driver, *others = self.chance.sample(self.mates, 3)
+        driver, *other_mates = self.rng.sample(self.mates, 3)
         self.drives(driver)
-        for mate in self.chance.sample(others, self.chance.randrange(3)):
-            pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
-            self.later(pressed)
-        if self.chance.random() < 0.5:
+        for mate in self.rng.sample(other_mates, self.rng.randrange(3)):
+            act_pressed = partial(self._takes, mate, mate.presses, mate.saw_stops)
+            self.later(act_pressed)
+        if self.rng.random() < 0.5:
             self.later(partial(driver.runs, driver.presses, driver.newest_number))
-        time.sleep(self.chance.random() * LATE_S)
-        stopper = self.chance.choice(self.mates)
+        time.sleep(self.rng.random() * LATE_S)
+        stopper = self.rng.choice(self.mates)
         stopper.presses += 1
-        for _ in range(self.chance.randrange(1, 4)):
+        for _ in range(self.rng.randrange(1, 4)):
             self.later(stopper.stops, 0.2)
         self.meet()
         until(lambda: not self.robot.moves, "the robot stands", 3)
-        end_s = time.monotonic() + STANDS_S
+        end_s = time.monotonic() + WATCH_S
         while time.monotonic() < end_s:
             assert not self.robot.moves, "it drives on"
             time.sleep(0.01)
@@ -149,13 +149,13 @@ class Group:
         """Take the robot over, as a press of Run does, and then send the program."""
         mate.connects(saw_stops)
         number = mate.newest_number
-        time.sleep(self.chance.random() * 0.3)
+        time.sleep(self.rng.random() * 0.3)
         mate.runs(stops, number)
 
     def meet(self) -> None:
-        for thread in self.late:
+        for thread in self.late_threads:
             thread.join(HANG_LIMIT_S)
-        self.late.clear()
+        self.late_threads.clear()
 
     def ends(self) -> None:
         self.is_over = True

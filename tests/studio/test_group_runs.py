@@ -21,7 +21,7 @@ END_MESSAGES: tuple[Json, ...] = (
     {"over": "left", "said": ""},
 )
 # What comes late is of no run.
-AT_REST: tuple[Json, ...] = (
+END_EVENTS: tuple[Json, ...] = (
     {"connected": {"robot": {"name": "TINI"}}},
     {"event": "SHOW", "value": "late", "at": -1},
     {"event": "TEXT", "text": "late"},
@@ -31,50 +31,50 @@ AT_REST: tuple[Json, ...] = (
 class Robot:
     """A robot that reports random runs, and the part of the reports for other members."""
 
-    def __init__(self, chance: Random) -> None:
-        self.chance = chance
+    def __init__(self, rng: Random) -> None:
+        self.rng = rng
         self.program = self.line = ""
         self.driver = DRIVERS[0]
         self.place: int | None = None
-        self.values = self.runs = self.connections = 0
-        self.meant: list[str] = []  # the values of all runs of programs
-        self.nth: dict[str, int] = {}  # index of each value in its run
+        self.values = self.run_count = self.connections = 0
+        self.all_values: list[str] = []  # the values of all runs of programs
+        self.index_by_value: dict[str, int] = {}  # index of each value in its run
         self.count = 0  # number of values in a run
 
     def tells(self) -> Json:
-        does = self.chance.choice(("value", "value", "value", "place", "place", "text", "next"))
-        if not (self.program or self.line) or does == "next":
+        action = self.rng.choice(("value", "value", "value", "place", "place", "text", "next"))
+        if not (self.program or self.line) or action == "next":
             if self.program or self.line:
-                replaces = self.chance.random() < 0.3
+                replaces = self.rng.random() < 0.3
                 return self._begins("program", "line") if replaces else self._ends()
-            if self.chance.random() < 0.3:
-                event = self.chance.choice(AT_REST)
+            if self.rng.random() < 0.3:
+                event = self.rng.choice(END_EVENTS)
                 self.connections += "connected" in event
                 return event
             return self._begins("program", "line", "button")
         program = self.program or self.line
-        if does == "place":
-            at = self.chance.randrange(500)
-            self.place = at if self.program else self.place
-            return {"event": "PLACE", "at": at, "program": program}
+        if action == "place":
+            place = self.rng.randrange(500)
+            self.place = place if self.program else self.place
+            return {"event": "PLACE", "at": place, "program": program}
         self.values += 1
         value = str(self.values)
         if self.program:
-            self.meant.append(value)
+            self.all_values.append(value)
             self.count += 1
-            self.nth[value] = self.count
-        if does == "text":
+            self.index_by_value[value] = self.count
+        if action == "text":
             return {"event": "TEXT", "text": value}
         return {"event": "SHOW", "value": value, "at": 7, "program": program}
 
     def _begins(self, *kinds: str) -> Json:
         """Begin a run of one of these kinds, in the place of what runs."""
-        self.runs += 1
+        self.run_count += 1
         self.program = self.line = ""
         self.count, self.place = 0, None
-        self.driver = self.chance.choice(DRIVERS)
-        kind = self.chance.choice(kinds)
-        program = f"{self.runs:08x}"
+        self.driver = self.rng.choice(DRIVERS)
+        kind = self.rng.choice(kinds)
+        program = f"{self.run_count:08x}"
         if kind == "line":
             self.line = program
             return {"event": "STARTED", "program": program, "is_program": False}
@@ -87,7 +87,7 @@ class Robot:
     def _ends(self) -> Json:
         self.program = self.line = ""
         self.place = None
-        return self.chance.choice(END_MESSAGES)
+        return self.rng.choice(END_MESSAGES)
 
 
 class Page:
@@ -95,20 +95,20 @@ class Page:
 
     def __init__(self, runs: GroupRuns, name: str) -> None:
         self.runs, self.name = runs, name
-        self.ran: list[Any] = ["", 0]
-        self.heard: list[Json] = []
+        self.run_key_and_count: list[Any] = ["", 0]
+        self.items: list[Json] = []
 
     def looks(self) -> list[Json]:
-        known_count = self.ran[1] if self.ran[0] == self.runs.key else 0
-        number, items = self.runs.news_after(self.ran, self.name)
+        known_count = self.run_key_and_count[1] if self.run_key_and_count[0] == self.runs.key else 0
+        number, items = self.runs.news_after(self.run_key_and_count, self.name)
         items = [item for item in json.loads(json.dumps(items)) if item["number"] > known_count]
-        self.ran = [self.runs.key, max(known_count, number)]
-        self.heard += items
+        self.run_key_and_count = [self.runs.key, max(known_count, number)]
+        self.items += items
         return list(items)
 
     @property
     def values(self) -> list[str]:
-        return [str(item.get("value", item.get("text"))) for item in self.heard if "nth" in item]
+        return [str(item.get("value", item.get("text"))) for item in self.items if "nth" in item]
 
 
 @pytest.mark.parametrize("seed", range(50))
@@ -116,20 +116,20 @@ def test_each_member_gets_each_run_in_order(seed: int) -> None:
     """Whatever a robot reports, and however rarely a page polls, events arrive once, begins and
     ends alternate, the newest place is the robot's, and missing values can be counted.
     """
-    chance = Random(seed)
-    runs, robot = GroupRuns(lambda: 0.0), Robot(chance)
+    rng = Random(seed)
+    runs, robot = GroupRuns(lambda: 0.0), Robot(rng)
     page, drivers = Page(runs, "teo"), [Page(runs, name) for name in DRIVERS]
     page.looks()
-    most = chance.choice((1, 5, 60))
+    max_count = rng.choice((1, 5, 60))
     connections: list[Json] = []
     values_by_driver: dict[str, list[str]] = {name: [] for name in DRIVERS}
     for _ in range(200):
-        for _ in range(chance.randint(1, most)):
-            count_before = len(robot.meant)
+        for _ in range(rng.randint(1, max_count)):
+            count_before = len(robot.all_values)
             news = robot.tells()
-            values_by_driver[robot.driver] += robot.meant[count_before:]
+            values_by_driver[robot.driver] += robot.all_values[count_before:]
             runs.add_news(robot.driver, [news])
-            assert len(runs._rows) == 1 or waiting(runs) <= group_runs.MOST_BYTES
+            assert len(runs._rows) == 1 or waiting_bytes(runs) <= group_runs.MOST_BYTES
         items = page.looks()
         places = [item["at"] for item in items if item["event"] == "PLACE"]
         assert len(places) <= 1
@@ -139,42 +139,42 @@ def test_each_member_gets_each_run_in_order(seed: int) -> None:
         connections += [item["robot"] for item in items if item["event"] == "ROBOT"]
         for driver in drivers:
             driver.looks()
-    numbers = [item["number"] for item in page.heard]
+    numbers = [item["number"] for item in page.items]
     assert numbers == sorted(set(numbers))
     assert begin_and_end_by_turns(page)
-    assert is_part(page.values, robot.meant)
+    assert is_part(page.values, robot.all_values)
     assert count_missed_values(page) + len(page.values) == count_values(page)
     for driver in drivers:
         assert not set(driver.values) & set(values_by_driver[driver.name])
-    for row in page.heard:
+    for row in page.items:
         value = str(row.get("value", row.get("text")))
-        assert "nth" not in row or row["nth"] == robot.nth[value]
-    if most == 1:
-        assert page.values == robot.meant
+        assert "nth" not in row or row["nth"] == robot.index_by_value[value]
+    if max_count == 1:
+        assert page.values == robot.all_values
         assert len(connections) == robot.connections
 
 
-def waiting(runs: GroupRuns) -> int:
+def waiting_bytes(runs: GroupRuns) -> int:
     return sum(len(json.dumps(row.news)) for row in runs._rows)
 
 
 def is_running(page: Page) -> bool:
     """Return whether a program runs as far as the page knows."""
-    names = [item["event"] for item in page.heard]
-    ends = {"OVER", *(end.get("event", "OVER") for end in END_MESSAGES)}
+    names = [item["event"] for item in page.items]
+    end_names = {"OVER", *(end.get("event", "OVER") for end in END_MESSAGES)}
     return next(
-        (name == "STARTED" for name in reversed(names) if name in {"STARTED", *ends}), False
+        (name == "STARTED" for name in reversed(names) if name in {"STARTED", *end_names}), False
     )
 
 
 def last_place(page: Page) -> int:
-    return next(int(item["at"]) for item in reversed(page.heard) if item["event"] == "PLACE")
+    return next(int(item["at"]) for item in reversed(page.items) if item["event"] == "PLACE")
 
 
 def begin_and_end_by_turns(page: Page) -> bool:
     """No value and no place is outside a run."""
     is_running = False
-    for item in page.heard:
+    for item in page.items:
         if item["event"] == "STARTED":
             is_running = True
         elif item["event"] in ("SHOW", "TEXT", "PLACE"):
@@ -185,16 +185,16 @@ def begin_and_end_by_turns(page: Page) -> bool:
     return True
 
 
-def is_part(some: list[str], all_of_them: list[str]) -> bool:
+def is_part(texts: list[str], all_of_them: list[str]) -> bool:
     """Return whether they are a subsequence."""
-    rest = iter(all_of_them)
-    return all(text in rest for text in some)
+    texts_left = iter(all_of_them)
+    return all(text in texts_left for text in texts)
 
 
 def count_missed_values(page: Page) -> int:
     """Return the page's count of missed values, as in `panel.js`."""
     count = number = 0
-    for item in page.heard:
+    for item in page.items:
         if item["event"] == "STARTED":
             number = 0
         if "nth" in item:
@@ -206,7 +206,7 @@ def count_missed_values(page: Page) -> int:
 def count_values(page: Page) -> int:
     """Return the number of values in its runs up to the newest one heard."""
     numbers: list[int] = []
-    for item in page.heard:
+    for item in page.items:
         if item["event"] == "STARTED":
             numbers.append(0)
         if "nth" in item:
@@ -216,32 +216,32 @@ def count_values(page: Page) -> int:
 
 def test_a_new_member_gets_only_the_current_run() -> None:
     runs = GroupRuns(lambda: 0.0)
-    begin = {"event": "STARTED", "program": "a", "is_program": True}
+    started_event = {"event": "STARTED", "program": "a", "is_program": True}
     value = {"event": "SHOW", "value": "5"}
-    runs.add_news("ana", [begin, value, {"event": "DONE"}])
+    runs.add_news("ana", [started_event, value, {"event": "DONE"}])
     assert Page(runs, "teo").looks() == []
-    runs.add_news("ana", [begin, value, {"event": "PLACE", "at": 4, "program": "a"}])
+    runs.add_news("ana", [started_event, value, {"event": "PLACE", "at": 4, "program": "a"}])
     heard_events = [item["event"] for item in Page(runs, "eva").looks()]
     assert heard_events == ["STARTED", "SHOW", "PLACE"]
-    other = GroupRuns(lambda: 0.0)
-    other.add_news("ana", [begin])
+    new_runs = GroupRuns(lambda: 0.0)
+    new_runs.add_news("ana", [started_event])
     page = Page(runs, "luz")
     page.looks()
-    page.runs = other  # after a crash of the class
+    page.runs = new_runs  # after a crash of the class
     assert [item["event"] for item in page.looks()] == ["STARTED"]
 
 
-@pytest.mark.parametrize("known", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
-def test_false_claims_of_a_page_do_no_harm(known: object) -> None:
+@pytest.mark.parametrize("claimed_state", [None, 5, [], ["x", 1], ["x"], {"a": 1}, [[], {}]])
+def test_false_claims_of_a_page_do_no_harm(claimed_state: object) -> None:
     runs = GroupRuns(lambda: 0.0)
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
-    assert [item["event"] for item in runs.news_after(known, "teo")[1]] == ["STARTED"]
+    assert [item["event"] for item in runs.news_after(claimed_state, "teo")[1]] == ["STARTED"]
 
 
 def test_events_have_the_time_of_their_run() -> None:
-    now = [10.0]
-    runs = GroupRuns(lambda: now[0])
+    clock_s = [10.0]
+    runs = GroupRuns(lambda: clock_s[0])
     runs.add_news("ana", [{"event": "STARTED", "program": "a", "is_program": True}])
-    now[0] += 0.25
+    clock_s[0] += 0.25
     runs.add_news("ana", [{"event": "SHOW", "value": "5"}])
     assert [item["ms"] for item in Page(runs, "teo").looks()] == [0, 250]

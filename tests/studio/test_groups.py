@@ -34,7 +34,7 @@ class School(Room):
     def __init__(self, folder: Path, robots: int = 1) -> None:
         super().__init__(robots)
         self.folder = folder
-        self.made = self.anew(robots)
+        self.classroom = self.anew(robots)
         self.teaches("class_places", places=MOST_PUPILS)
 
     def anew(self, robots: int = 1) -> Classroom:
@@ -42,10 +42,10 @@ class School(Room):
         return Classroom(self.hosting, ports, 60, lambda: self.now_s, self.folder)  # type: ignore[arg-type]
 
     def crashes(self) -> None:
-        kept_state = json.loads(json.dumps(self.made.state_to_keep()))
-        self.made = self.anew()
-        self.made.resume(kept_state)
-        self.made.tidy()
+        kept_state = json.loads(json.dumps(self.classroom.state_to_keep()))
+        self.classroom = self.anew()
+        self.classroom.resume(kept_state)
+        self.classroom.tidy()
 
 
 class Member:
@@ -54,37 +54,43 @@ class Member:
     def __init__(self, school: School, name: str, group: str = "Red", text: str = TEXT) -> None:
         self.school, self.name = school, name
         self.token = school.joins(name)
-        self.saw = 0
+        self.seen_count = 0
         answer = self.joins(group, text)
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
 
-    def joins(self, group: str, text: str = TEXT, before: str = "") -> Json:
-        return self.asks("group_join", name=group, text=text, before=before)
+    def joins(self, group: str, text: str = TEXT, old_token: str = "") -> Json:
+        return self.asks("group_join", name=group, text=text, before=old_token)
 
-    def asks(self, do: str, **more: Any) -> Json:
-        return self.school.made.answer(self.token, PUPIL_ADDRESS, {"do": do, **more})
+    def asks(self, action: str, **fields: Any) -> Json:
+        return self.school.classroom.answer(self.token, PUPIL_ADDRESS, {"do": action, **fields})
 
-    def request(self, **more: Any) -> Json:
+    def request(self, **fields: Any) -> Json:
         page = self.page
-        since = -1 if page.is_astray else page.number
-        return {"page": page.name, "since": since, "epoch": page.epoch, "saw": self.saw, **more}
+        seen_number = -1 if page.is_astray else page.number
+        return {
+            "page": page.name,
+            "since": seen_number,
+            "epoch": page.epoch,
+            "saw": self.seen_count,
+            **fields,
+        }
 
-    def sends(self, **more: Any) -> Json:
+    def sends(self, **fields: Any) -> Json:
         """Send pending changes, and receive news."""
         changes = [
             data_of_change(change) for change in self.page.pending_changes[: groups.MOST_CHANGES]
         ]
         answer: Json = json.loads(
-            json.dumps(self.asks("group", **self.request(changes=changes, **more)))
+            json.dumps(self.asks("group", **self.request(changes=changes, **fields)))
         )
         assert "left" not in answer
         self.page.receive(answer)
-        self.saw = answer["saw"]
+        self.seen_count = answer["saw"]
         return answer
 
-    def types(self, old: str, new: str) -> None:
-        rows = [row.replace(old, new) for row in self.page.lines]
+    def types(self, old_text: str, new_text: str) -> None:
+        rows = [row.replace(old_text, new_text) for row in self.page.lines]
         assert rows != self.page.lines
         self.page.type(rows, 0)
         self.page.flush()
@@ -98,13 +104,13 @@ class Teacher(Member):
     """The teacher's page in a group."""
 
     def __init__(self, school: School, key: str, text_before: str = "") -> None:
-        self.school, self.name, self.saw = school, "Teacher", 0
+        self.school, self.name, self.seen_count = school, "Teacher", 0
         answer = self.asks("group_visit", group=key, name=self.name, before=text_before)
         assert "failure" not in answer, answer
         self.page = Page.of(answer["page"], answer)
 
-    def asks(self, do: str, **more: Any) -> Json:
-        return self.school.made.teach({"do": do, **more})
+    def asks(self, action: str, **fields: Any) -> Json:
+        return self.school.classroom.teach({"do": action, **fields})
 
 
 @pytest.fixture
@@ -133,21 +139,21 @@ def test_others_see_a_pupils_cursor_and_typing(school: School) -> None:
     [pupil] = luz.sends()["others"]
     assert pupil == {"name": "Ana", "mark": 0, "at": "i.3", "writes": True}
     assert luz.sends()["others"][0]["mark"] != luz.asks("group", **ana.request())
-    assert {other["mark"] for other in ana.sends()["others"]} == {1}
-    for at in ("x" * 30, "a b", 5, None):
+    assert {member["mark"] for member in ana.sends()["others"]} == {1}
+    for place in ("x" * 30, "a b", 5, None):
         with pytest.raises(BadRequest):
-            ana.sends(at=at)
+            ana.sends(at=place)
 
 
 def test_a_group_has_four_places_and_silent_pupils_lose_theirs(school: School) -> None:
     members = [Member(school, f"P{k}") for k in range(groups.MOST_MEMBERS)]
-    late = school.joins("Late")
+    late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late, PUPIL_ADDRESS, request) == {"failure": "group_full"}
+    assert school.classroom.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     school.now_s += groups.ABSENCE_S + 1
     for member in members[1:]:
         member.sends()
-    assert school.made.answer(late, PUPIL_ADDRESS, request)["group"] == "Red"
+    assert school.classroom.answer(late_token, PUPIL_ADDRESS, request)["group"] == "Red"
     assert members[0].asks("group", **members[0].request()) == {"left": True}
 
 
@@ -156,7 +162,7 @@ def test_only_a_program_can_start_a_group(school: School) -> None:
 
     def begin_group(name: str, text: str) -> Json:
         request = {"do": "group_join", "name": name, "text": text}
-        return school.made.answer(token, PUPIL_ADDRESS, request)
+        return school.classroom.answer(token, PUPIL_ADDRESS, request)
 
     assert begin_group("Red", "LOOP(3)\n") == {"failure": "group_mistakes"}
     assert begin_group("Red", "S\n" * 10_000) == {"failure": "group_long"}
@@ -166,7 +172,7 @@ def test_only_a_program_can_start_a_group(school: School) -> None:
     for k in range(groups.MOST_FOUNDED):
         assert begin_group(f"Group {k}", TEXT)["group"] == f"Group {k}"
         change = {"uid": "m1:1", "ops": [{"do": "delete", "ids": ["i.1"]}]}
-        school.made.answer(token, PUPIL_ADDRESS,
+        school.classroom.answer(token, PUPIL_ADDRESS,
                            {"do": "group", "page": "m1", "since": 0, "epoch": "",
                             "changes": [change]})  # fmt: skip
     assert begin_group("One more", TEXT) == {"failure": "group_many"}
@@ -193,12 +199,14 @@ def test_a_waiting_page_is_notified_at_once_and_delays_nobody(
     ana.sends()
     luz.sends()
     answers: list[Json] = []
-    waiting = start_thread(lambda: answers.append(ana.asks("group", **ana.request(waits=True))))
+    waiting_thread = start_thread(
+        lambda: answers.append(ana.asks("group", **ana.request(waits=True)))
+    )
     until(lambda: members_hold(school, ana) > 0, "the page waits")
     assert school.checks_in(luz.token)["group"] == "Red"  # the class is not held
     luz.types("80", "95")
     luz.sends()
-    waiting.join(HANG_LIMIT_S)
+    waiting_thread.join(HANG_LIMIT_S)
     assert "F(1, 95)" in json.dumps(answers)
 
 
@@ -235,20 +243,22 @@ def test_a_waiting_page_gets_robot_events_without_delaying_the_robot(
     ana.sends()
     luz.sends()
     answers: list[Json] = []
-    waiting = start_thread(lambda: answers.append(luz.asks("group", **luz.request(waits=True))))
+    waiting_thread = start_thread(
+        lambda: answers.append(luz.asks("group", **luz.request(waits=True)))
+    )
     until(lambda: members_hold(school, luz) > 0, "the page waits")
-    group = school.made._groups.group_of(luz.token)
+    group = school.classroom._groups.group_of(luz.token)
     assert group is not None and robot.witness is not None
-    begins = {"event": "STARTED", "program": "a", "is_program": True}
+    started_event = {"event": "STARTED", "program": "a", "is_program": True}
     with (
         group.condition,
-        school.made._lock,
-        school.made._groups._lock,
+        school.classroom._lock,
+        school.classroom._groups._lock,
     ):  # one of them is busy with these
-        telling = start_thread(lambda: robot.witness([begins]))  # type: ignore[misc]
+        telling = start_thread(lambda: robot.witness([started_event]))  # type: ignore[misc]
         telling.join(HANG_LIMIT_S)
         assert not telling.is_alive()
-    waiting.join(HANG_LIMIT_S)
+    waiting_thread.join(HANG_LIMIT_S)
     assert [run["event"] for run in answers[0]["runs"]] == ["STARTED"]
     assert "runs" not in ana.asks("group", **ana.request())  # her page has it from the robot
 
@@ -264,9 +274,9 @@ def test_only_the_drivers_group_gets_the_robots_events(school: School) -> None:
         return f'"{value}"' in text
 
     def show_value(value: str) -> None:
-        begins = {"event": "STARTED", "program": "a", "is_program": True}
+        started_event = {"event": "STARTED", "program": "a", "is_program": True}
         if robot.witness is not None:
-            robot.witness([begins, {"event": "SHOW", "value": value}])
+            robot.witness([started_event, {"event": "SHOW", "value": value}])
 
     show_value("one")
     assert has_value(luz, "one") and not has_value(eva, "one")
@@ -279,14 +289,14 @@ def test_only_the_drivers_group_gets_the_robots_events(school: School) -> None:
     assert not has_value(eva, "three") and not has_value(luz, "three")
     ana.joins("Red")
     show_value("four")
-    other = school.connects(luz.token)
+    other_robot = school.connects(luz.token)
     show_value("five")  # the stop at the end of her run
     assert has_value(luz, "five")
-    assert other.witness is not None
+    assert other_robot.witness is not None
 
 
-def start_thread(do: Callable[[], object]) -> Thread:
-    thread = Thread(target=do, daemon=True)
+def start_thread(function: Callable[[], object]) -> Thread:
+    thread = Thread(target=function, daemon=True)
     thread.start()
     return thread
 
@@ -296,15 +306,15 @@ def has_held(school: School, member: Member, count: int) -> bool:
 
 
 def members_hold(school: School, member: Member) -> int:
-    group = school.made._groups.group_of(member.token)
+    group = school.classroom._groups.group_of(member.token)
     assert group is not None
     return group.member_by_token[member.token].hold_count
 
 
 def test_the_amount_that_a_pupil_sends_is_limited(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
-    burst, per_s = groups.CHANGE_RATE
-    for k in range(round(burst) + 20):
+    burst_count, per_s = groups.CHANGE_RATE
+    for k in range(round(burst_count) + 20):
         ana.types("F(", "B(") if k % 2 == 0 else ana.types("B(1, 8", "F(1, 8")
     answers = [ana.sends() for _ in range(4)]
     assert answers[-1].get("slow") is True
@@ -319,34 +329,34 @@ def test_the_amount_that_a_pupil_sends_is_limited(school: School) -> None:
     ana.page.type((text + TEXT).split("\n"), 0)
     ana.page.flush()
     assert not ana.page.pending_changes  # the page itself makes no program that is too long
-    large = {
+    large_change = {
         "uid": f"{ana.page.name}:{ana.page.change_count + 1}",
         "ops": [
             {"do": "insert", "at": ["root", ""], "nodes": [{"id": "m1.9", "text": "S", "x": text}]}
         ],
     }
-    answer = ana.asks("group", **ana.request(changes=[large]))
-    assert answer["refused"][-1] == [large["uid"], "too_long"]
+    answer = ana.asks("group", **ana.request(changes=[large_change]))
+    assert answer["refused"][-1] == [large_change["uid"], "too_long"]
 
 
 def test_nobody_sends_as_another_page(school: School) -> None:
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     luz.types("80", "95")
     forged = [data_of_change(change) for change in luz.page.pending_changes]
-    wrong: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
-    for changes in wrong:
+    wrong_changes: list[Any] = [forged, [5], [{"uid": "x"}], "no", [{}] * 51]
+    for changes in wrong_changes:
         with pytest.raises(BadRequest):
             ana.asks("group", **ana.request(changes=changes))
-    for more in ({"since": "0"}, {"since": -2}, {"epoch": 5}, {"saw": None}):
+    for fields in ({"since": "0"}, {"since": -2}, {"epoch": 5}, {"saw": None}):
         with pytest.raises(BadRequest):
-            ana.asks("group", **{**ana.request(), **more})
+            ana.asks("group", **{**ana.request(), **fields})
     assert ana.asks("group", **{**ana.request(), "page": luz.page.name}) == {"left": True}
 
 
 def test_a_hostile_pupil_affects_only_the_own_group(school: School) -> None:
     """Each message is refused or makes a valid program; other groups, and the class, do not
     notice."""
-    chance = Random(3)
+    rng = Random(3)
     eve = Member(school, "Eve", "Bad")
     ana, luz = Member(school, "Ana"), Member(school, "Luz")
     values: list[Any] = [
@@ -368,17 +378,17 @@ def test_a_hostile_pupil_affects_only_the_own_group(school: School) -> None:
     ]
     fields = ("page", "since", "epoch", "saw", "changes", "at", "writes", "name", "text", "before")
     for k in range(400):
-        request = eve.request(do=chance.choice(("group", "group", "group_join", "group_leave")))
-        for field in chance.sample(fields, chance.randint(0, 3)):
-            request[field] = chance.choice(values)
+        request = eve.request(do=rng.choice(("group", "group", "group_join", "group_leave")))
+        for field in rng.sample(fields, rng.randint(0, 3)):
+            request[field] = rng.choice(values)
         with suppress(BadRequest):
-            school.made.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
+            school.classroom.answer(eve.token, PUPIL_ADDRESS, json.loads(json.dumps(request)))
         if k % 50 == 0:
-            old, new = ("80", "95") if "80" in ana.text else ("95", "80")
-            ana.types(old, new)
+            old_power, new_power = ("80", "95") if "80" in ana.text else ("95", "80")
+            ana.types(old_power, new_power)
             ana.sends()
             luz.sends()
-            assert ana.text == luz.text and new in luz.text
+            assert ana.text == luz.text and new_power in luz.text
         school.now_s += 0.1
     assert school.checks_in(luz.token)["group"] == "Red"
     assert {group["name"] for group in school.teaches("class")["groups"]} >= {"Red"}
@@ -389,28 +399,28 @@ def test_groups_continue_after_a_crash_without_loss(school: School) -> None:
     ana.types("80", "95")
     ana.sends()
     luz.types("B(1", "B(7")  # text not sent yet
-    [seen] = school.teaches("class")["groups"]
-    before = school.teaches("class_text", group=seen["key"])
+    [group] = school.teaches("class")["groups"]
+    text_before = school.teaches("class_text", group=group["key"])
     for _ in range(2):
         school.crashes()
-        assert school.teaches("class_text", group=seen["key"]) == before
+        assert school.teaches("class_text", group=group["key"]) == text_before
     luz.sends()
     ana.sends()
     assert ana.text == luz.text == "F(1, 95); LOOP(3); B(7, 40); END_LOOP; S;"
     teo = Member(school, "Teo", text="S\n")
     assert teo.page.name not in (ana.page.name, luz.page.name)
-    answer = ana.joins("Red", before=ana.page.name)  # her page is loaded again
+    answer = ana.joins("Red", old_token=ana.page.name)  # her page is loaded again
     assert answer["page"] == ana.page.name
-    assert luz.joins("Red", before=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
+    assert luz.joins("Red", old_token=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
 
 
 def test_a_group_survives_another_lesson_without_its_pupils(school: School) -> None:
     ana = Member(school, "Ana")
     ana.types("80", "95")
     ana.sends()
-    kept_state = json.loads(json.dumps(school.made.state_to_keep()))
-    school.made = school.anew()
-    school.made.resume(kept_state, is_same_lesson=False)
+    kept_state = json.loads(json.dumps(school.classroom.state_to_keep()))
+    school.classroom = school.anew()
+    school.classroom.resume(kept_state, is_same_lesson=False)
     assert [group["pupils"] for group in school.teaches("class")["groups"]] == [[]]
     assert "F(1, 95)" in Member(school, "Luz", text="S\n").text
 
@@ -421,9 +431,9 @@ def test_groups_end_with_their_class(school: School, end: str) -> None:
     ana.types("80", "95")
     ana.sends()
     (school.folder / "0.journal").write_text("of a class that has gone")
-    school.made.tidy()
+    school.classroom.tidy()
     assert len(list(school.folder.iterdir())) == 1
-    groups_there = school.made._groups
+    groups_there = school.classroom._groups
     school.teaches(end, erases=True)
     assert not list(school.folder.iterdir())
     assert groups_there.answer(ana.token, ana.request()) == {"left": True}
@@ -436,8 +446,8 @@ def test_the_teacher_sees_a_group_as_one_entry_and_its_program(school: School) -
     ana.types("80", "95")
     ana.sends()
     assert "F(1, 95);" in school.teaches("class_text", group=group_seen["key"])["text"]
-    [group] = school.made._groups.all()
-    assert school.made._groups.history(group)[-1]["who"] == "Ana"
+    [group] = school.classroom._groups.all()
+    assert school.classroom._groups.history(group)[-1]["who"] == "Ana"
     school.teaches("class_remove", pupil=school.number("Ana"))
     [group_seen] = school.teaches("class")["groups"]
     assert group_seen["pupils"] == [school.number("Luz")]
@@ -449,9 +459,11 @@ def test_the_teacher_joins_and_leaves_a_group(school: School) -> None:
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
     assert teacher.page.lines == members[0].page.lines
-    [other] = [other for other in members[0].sends()["others"] if other["name"] == "Teacher"]
-    marks = {other["mark"] for other in teacher.sends()["others"]}
-    assert marks == set(range(groups.MARK_COUNT)) and other["mark"] not in marks
+    [teacher_row] = [
+        member for member in members[0].sends()["others"] if member["name"] == "Teacher"
+    ]
+    marks = {member["mark"] for member in teacher.sends()["others"]}
+    assert marks == set(range(groups.MARK_COUNT)) and teacher_row["mark"] not in marks
     teacher.types("80", "95")
     teacher.sends(at="i.3", writes=True)
     members[1].sends()
@@ -471,45 +483,45 @@ def test_the_teacher_takes_no_pupils_place(school: School) -> None:
     teacher = Teacher(school, group["key"])
     for k in range(groups.MOST_MEMBERS - 1):
         Member(school, f"P{k}")
-    late = school.joins("Late")
+    late_token = school.joins("Late")
     request = {"do": "group_join", "name": "Red", "text": ""}
-    assert school.made.answer(late, PUPIL_ADDRESS, request) == {"failure": "group_full"}
+    assert school.classroom.answer(late_token, PUPIL_ADDRESS, request) == {"failure": "group_full"}
     assert teacher.sends()["others"][0]["name"] == ana.name
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_participating_teacher_has_no_share_in_the_robot(tmp_path: Path, seed: int) -> None:
     """Whatever the teacher's page does there, turns, places and robots are as without it."""
-    chance = Random(seed)
+    rng = Random(seed)
     schools = [School(tmp_path / str(k), robots=2) for k in range(2)]
-    both = [[Member(school, name, name) for name in NAMES] for school in schools]
+    members_by_school = [[Member(school, name, name) for name in NAMES] for school in schools]
     for _ in range(40):
-        does, k = chance.choice(("wish", "connect", "join", "leave", "stop")), chance.randrange(5)
-        name, wants = chance.choice(NAMES), chance.random() < 0.8
-        for school, members in zip(schools, both, strict=True):
+        action, k = rng.choice(("wish", "connect", "join", "leave", "stop")), rng.randrange(5)
+        name, wants_turn = rng.choice(NAMES), rng.random() < 0.8
+        for school, members in zip(schools, members_by_school, strict=True):
             member = members[k]
             school.now_s += 1
-            if does == "wish":
-                school.checks_in(member.token, wants)
-            elif does == "connect" and school.checks_in(member.token)["place"] == 0:
+            if action == "wish":
+                school.checks_in(member.token, wants_turn)
+            elif action == "connect" and school.checks_in(member.token)["place"] == 0:
                 school.connects(member.token)
-            elif does == "join":
+            elif action == "join":
                 member.joins(name)
-            elif does == "leave":
+            elif action == "leave":
                 member.asks("group_leave")
-            elif does == "stop":
+            elif action == "stop":
                 member.asks("stop", group_stops=school.now_s)
         shown_groups = schools[0].teaches("class")["groups"]
         if shown_groups:
-            teacher = Teacher(schools[0], chance.choice(shown_groups)["key"])
+            teacher = Teacher(schools[0], rng.choice(shown_groups)["key"])
             teacher.sends(at="i.1", writes=True)
-            if chance.random() < 0.3:
+            if rng.random() < 0.3:
                 teacher.asks("group_leave")
         checks = [[school.checks_in(member.token) for member in members]
-                for school, members in zip(schools, both, strict=True)]  # fmt: skip
+                for school, members in zip(schools, members_by_school, strict=True)]  # fmt: skip
         assert checks[0] == checks[1]
         requests_by_school = [
-            [request["do"] for request in school.hosting.asked] for school in schools
+            [request["do"] for request in school.hosting.requests] for school in schools
         ]
         assert requests_by_school[0] == requests_by_school[1]
         assert schools[0].teaches("class")["robots"] == schools[1].teaches("class")["robots"]
@@ -519,13 +531,13 @@ def test_a_teacher_with_a_silent_page_counts_as_absent(school: School) -> None:
     ana = Member(school, "Ana")
     [group] = school.teaches("class")["groups"]
     teacher = Teacher(school, group["key"])
-    assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
+    assert [member["name"] for member in ana.sends()["others"]] == ["Teacher"]
     school.now_s += groups.ABSENCE_S + 1
     assert ana.sends()["others"] == []
     assert teacher.asks("group", **teacher.request()) == {"left": True}
     second_teacher = Teacher(school, group["key"], teacher.page.name)
     assert second_teacher.page.name == teacher.page.name
-    assert [other["name"] for other in ana.sends()["others"]] == ["Teacher"]
+    assert [member["name"] for member in ana.sends()["others"]] == ["Teacher"]
 
 
 def test_a_watching_teacher_is_invisible_and_cannot_be_impersonated(school: School) -> None:
@@ -541,14 +553,14 @@ def test_a_watching_teacher_is_invisible_and_cannot_be_impersonated(school: Scho
     )
     with pytest.raises(BadRequest):
         ana.asks("group_visit", group=group["key"], name="Teacher")
-    for wrong in (None, 5, "", "x" * 32):
-        request = {"do": "group_visit", "group": wrong, "name": "Teacher"}
-        assert school.made.teach(request) == {"failure": "group_gone"}
+    for wrong_group in (None, 5, "", "x" * 32):
+        request = {"do": "group_visit", "group": wrong_group, "name": "Teacher"}
+        assert school.classroom.teach(request) == {"failure": "group_gone"}
     with pytest.raises(BadRequest):
-        school.made.teach({"do": "group_visit", "group": group["key"], "name": None})
+        school.classroom.teach({"do": "group_visit", "group": group["key"], "name": None})
     school.teaches("class_over")
     request = {"do": "group_visit", "group": group["key"], "name": "Teacher"}
-    assert school.made.teach(request) == {"failure": "class_over"}
+    assert school.classroom.teach(request) == {"failure": "class_over"}
 
 
 # -- one robot for the group ----------------------------------------------------------------------
@@ -583,7 +595,7 @@ def test_a_joining_pupil_brings_an_earlier_place_in_the_queue(school: School) ->
     for token in (luz, eva, ana.token):
         school.checks_in(token, True)
     assert school.checks_in(ana.token)["place"] == 3
-    school.made.answer(luz, PUPIL_ADDRESS, {"do": "group_join", "name": "Red", "text": ""})
+    school.classroom.answer(luz, PUPIL_ADDRESS, {"do": "group_join", "name": "Red", "text": ""})
     assert school.checks_in(ana.token)["place"] == school.checks_in(luz)["place"] == 1
     assert school.checks_in(teo)["waiting"] == 2
 
@@ -591,31 +603,31 @@ def test_a_joining_pupil_brings_an_earlier_place_in_the_queue(school: School) ->
 @pytest.mark.parametrize("seed", range(20))
 def test_a_group_waits_once_or_drives_one_robot(tmp_path: Path, seed: int) -> None:
     """This holds whoever joins, leaves, waits or drives, in any order."""
-    chance, school = Random(seed), School(tmp_path, robots=2)
+    rng, school = Random(seed), School(tmp_path, robots=2)
     members = [Member(school, name, name) for name in NAMES]
     for step in range(60):
-        member = chance.choice(members)
-        does = chance.choice(("wish", "wish", "connect", "join", "leave", "next"))
-        if does == "wish":
-            wants = chance.random() < 0.8
-            place = school.checks_in(member.token, wants)["place"]
-            assert wants or place < 1, "who wants none waits no more, and no one of the group"
-        elif does == "connect" and school.checks_in(member.token)["place"] == 0:
+        member = rng.choice(members)
+        action = rng.choice(("wish", "wish", "connect", "join", "leave", "next"))
+        if action == "wish":
+            wants_turn = rng.random() < 0.8
+            place = school.checks_in(member.token, wants_turn)["place"]
+            assert wants_turn or place < 1, "who wants none waits no more, and no one of the group"
+        elif action == "connect" and school.checks_in(member.token)["place"] == 0:
             with suppress(BadRequest):
                 school.connects(member.token)
-        elif does == "join":
-            member.joins(chance.choice(("Red", "Blue", "Green")))
-        elif does == "leave":
+        elif action == "join":
+            member.joins(rng.choice(("Red", "Blue", "Green")))
+        elif action == "leave":
             member.asks("group_leave")
-        elif does == "next":
-            school.now_s += chance.choice((1, 70))
+        elif action == "next":
+            school.now_s += rng.choice((1, 70))
             school.teaches("class_next", pupil=school.number(member.name))
-        classroom = school.made
+        classroom = school.classroom
         for pupil in classroom._pupil_by_token.values():
             mates = classroom._mates(pupil)
             turns = [turn for turn in map(classroom._turn, mates) if turn is not None]
-            waiting = [mate for mate in mates if mate.queue_number is not None]
-            assert len(turns) + len(waiting) <= 1, f"step {step}: {does} {member.name}"
+            waiting_mates = [mate for mate in mates if mate.queue_number is not None]
+            assert len(turns) + len(waiting_mates) <= 1, f"step {step}: {action} {member.name}"
 
 
 def test_each_member_of_a_group_may_drive_and_stop(school: School) -> None:
@@ -628,25 +640,27 @@ def test_each_member_of_a_group_may_drive_and_stop(school: School) -> None:
     assert school.checks_in(luz.token)["driver"] == "Ana"
     luz.asks("stop", group_stops=1)
     luz.asks("stop", group_stops=1)  # sent again, as the answer was lost
-    assert robot.stopped == 1
+    assert robot.stop_count == 1
     luz.asks("stop", group_stops=2)
     luz.asks("stop")  # whatever it counts
-    assert robot.stopped == 3
-    school.made.answer(eve, PUPIL_ADDRESS, {"do": "stop"})
-    assert robot.stopped == 3
-    assert school.made.answer(eve, PUPIL_ADDRESS, {"do": "connect"}) == {"failure": "turn_none"}
-    other = school.connects(luz.token)
-    assert (robot.leave_reason, other.has_ended) == ("group_other", False)
+    assert robot.stop_count == 3
+    school.classroom.answer(eve, PUPIL_ADDRESS, {"do": "stop"})
+    assert robot.stop_count == 3
+    assert school.classroom.answer(eve, PUPIL_ADDRESS, {"do": "connect"}) == {
+        "failure": "turn_none"
+    }
+    other_robot = school.connects(luz.token)
+    assert (robot.leave_reason, other_robot.has_ended) == ("group_other", False)
     assert school.checks_in(ana.token)["driver"] == "Luz"
     ana.asks("stop")
-    assert (other.stopped, robot.stopped) == (1, 3)
+    assert (other_robot.stop_count, robot.stop_count) == (1, 3)
 
 
 @pytest.mark.parametrize("seed", range(100))
 def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> None:
     """It may arrive at any point in connections and runs of others, and a page that was opened
     again counts from 1: no robot that was there keeps driving."""
-    chance = Random(seed)
+    rng = Random(seed)
     members = [Member(school, name) for name in ("Ana", "Luz", "Teo")]
     school.checks_in(members[0].token, True)
     for member in members:
@@ -654,65 +668,69 @@ def test_a_stop_wins_in_every_order_of_arrival(school: School, seed: int) -> Non
     school.connects(members[0].token)
     presses = dict.fromkeys(members, 0)
     for _ in range(20):
-        member = chance.choice(members)
-        turn = school.made._turn_of(school.made._mates(school.made._pupil_by_token[member.token]))
+        member = rng.choice(members)
+        turn = school.classroom._turn_of(
+            school.classroom._mates(school.classroom._pupil_by_token[member.token])
+        )
         assert turn is not None and turn.pupil is not None
         robot = school.hosting.robots[turn.pupil.hosting_page]
-        before = robot.stopped
-        deed = chance.choice(("stop", "stop", "connect", "beat", "reload"))
+        stops_before = robot.stop_count
+        deed = rng.choice(("stop", "stop", "connect", "beat", "reload"))
         if deed == "connect":
             if turn.pupil.token != member.token:
                 request = {"do": "connect", "page": "x", "port": "y"}
-                early = {
+                early_request = {
                     **request,
                     "saw_stops": turn.stop_number - 1,
                 }  # the button was pressed before a STOP
                 refusal = {"failure": "stopped_elsewhere"}
-                assert school.made.answer(member.token, PUPIL_ADDRESS, early) == refusal
+                assert (
+                    school.classroom.answer(member.token, PUPIL_ADDRESS, early_request) == refusal
+                )
                 assert turn.pupil.token != member.token
                 school.connects(member.token)
                 assert robot.leave_reason == "group_other"  # leaving stops its run
         elif deed == "beat":
             member.asks("beat", page="x", asked=[{"do": "start", "id": 1}])
         elif deed == "reload":
-            member.joins("Red", before=member.page.name)
+            member.joins("Red", old_token=member.page.name)
             presses[member] = 0
         else:
             presses[member] += 1
             member.asks("stop", group_stops=presses[member], stops=presses[member])
             is_own = turn.pupil.token == member.token
-            last_request = school.hosting.asked[-1]
+            last_request = school.hosting.requests[-1]
             assert (last_request["do"], last_request["page"]) == ("stop", page_of(school, member))
-            assert is_own or robot.stopped == before + 1
+            assert is_own or robot.stop_count == stops_before + 1
 
 
 def page_of(school: School, member: Member) -> str:
-    return school.made._pupil_by_token[member.token].hosting_page
+    return school.classroom._pupil_by_token[member.token].hosting_page
 
 
 def test_threads_of_pages_end_with_the_same_program(school: School) -> None:
     """As with HTTP, each page has a held request, and one for sending."""
     members = [Member(school, f"P{k}", f"G{k % 2}") for k in range(6)]
-    is_over, chance = Event(), Random(4)
+    is_over, rng = Event(), Random(4)
     failed_base_exceptions: list[BaseException] = []
 
     def listens(member: Member) -> None:
         try:
-            since = saw_count = 0
+            seen_number = saw_count = 0
             while not is_over.is_set():
-                request = {**member.request(waits=True), "since": since, "saw": saw_count}
+                request = {**member.request(waits=True), "since": seen_number, "saw": saw_count}
                 answer = member.asks("group", **request)
-                since, saw_count = answer.get("n", since), answer.get("saw", saw_count)
-        except BaseException as why:
-            failed_base_exceptions.append(why)
+                seen_number, saw_count = answer.get("n", seen_number), answer.get("saw", saw_count)
+        except BaseException as error:
+            failed_base_exceptions.append(error)
 
     threads = [start_thread(partial(listens, member)) for member in members]
     for k in range(300):
-        member = chance.choice(members)
+        member = rng.choice(members)
         rows = member.page.lines[:]
-        rows.insert(chance.randint(0, len(rows)), f"W({1000 + k})")
+        rows.insert(rng.randint(0, len(rows)), f"W({1000 + k})")
         if len(rows) > 12:
-            del rows[chance.randrange(len(rows))]
+            del rows[rng.randrange(len(rows))]
         member.page.type(rows, 0)
         member.page.leave()
         member.page.give_up()
@@ -747,4 +765,4 @@ def test_the_teacher_sees_all_changes_and_authors_even_of_absent_pupils(school: 
     [group] = school.teaches("class")["groups"]
     lines = school.teaches("class_text", group=group["key"])
     assert lines["history"] == ["Luz: − 5", "Luz: + BEEP(1, 440)", "Ana: → F(1, 95)"]
-    assert [school.made._pupil_number(ana.token)] == group["pupils"]
+    assert [school.classroom._pupil_number(ana.token)] == group["pupils"]

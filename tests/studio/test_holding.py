@@ -14,11 +14,11 @@ from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.virtual import worlds
 
-COUNT = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
+COUNTING_PROGRAM = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
 STEPS = ["X = 3", "LOOP(2);", "X = X + 1", "SHOW(X)", "LOOP(2);", "X = X + 1", "SHOW(X)",
          "LOOP(2);", "IS = X > 4", "F(0.5, 80)"]  # fmt: skip
-REPEATED = (
-    COUNT,
+REPEATING_PROGRAMS = (
+    COUNTING_PROGRAM,
     "LOOP(2);\n  W(0.3) UNTIL(DISTANCE < 3);\n  F(0.1, 80);\nEND_LOOP",
     "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nLOOP(3);\n  HOP;\n  X = 2;\n  SHOW(X);\nEND_LOOP",
     "WHEN(DISTANCE < 60);\n  BEEP(0.1, 440);\nEND_WHEN;\nLOOP(4);\n  F(0.2, 80);\nEND_LOOP",
@@ -44,8 +44,8 @@ def part(text: str, simulation: Simulation) -> str:
     return text.split("\n")[place.line - 1][place.column - 1 : end]
 
 
-def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
-    for _ in range(most):
+def steps(text: str, simulation: Simulation, max_count: int = 100) -> Iterable[str]:
+    for _ in range(max_count):
         if simulation.held_at is None:
             return
         yield part(text, simulation)
@@ -53,9 +53,9 @@ def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
 
 
 def test_steps_go_through_every_part_and_into_defined_words() -> None:
-    simulation = started_simulation(COUNT, is_held=True)
+    simulation = started_simulation(COUNTING_PROGRAM, is_held=True)
     assert simulation.state()["events"] == [[simulation.robot.now_ms, "START", -1]]
-    assert list(steps(COUNT, simulation)) == STEPS
+    assert list(steps(COUNTING_PROGRAM, simulation)) == STEPS
     assert not simulation.robot.is_running
     text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
     wanted_texts = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
@@ -63,7 +63,7 @@ def test_steps_go_through_every_part_and_into_defined_words() -> None:
 
 
 def test_variables_are_reported_at_a_halt() -> None:
-    simulation = started_simulation(COUNT, is_held=True)
+    simulation = started_simulation(COUNTING_PROGRAM, is_held=True)
     values = []
     while simulation.held_at is not None:
         values.append(simulation.state()["variables"])
@@ -73,36 +73,38 @@ def test_variables_are_reported_at_a_halt() -> None:
     assert simulation.state()["variables"] == [5, 0.001]  # values left by the program
 
 
-@pytest.mark.parametrize("how", ["steps", "breakpoints"])
+@pytest.mark.parametrize("mode", ["steps", "breakpoints"])
 @pytest.mark.parametrize(("name", "robot", "world"), EXAMPLES)
-def test_a_held_program_does_the_same(name: str, robot: str, world: str, how: str) -> None:
+def test_a_held_program_does_the_same(name: str, robot: str, world: str, mode: str) -> None:
     """The events and times are the same, with steps and at 1,000 breakpoints."""
     result = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
-    plain = Simulation(robot, worlds.load(world), result.image)
-    plain.advance(2500)
-    wanted_events = plain.robot.take_events()
+    plain_simulation = Simulation(robot, worlds.load(world), result.image)
+    plain_simulation.advance(2500)
+    wanted_events = plain_simulation.robot.take_events()
     parts = tuple(place.offset for place in result.places)
-    marks = Marks(parts, (*parts, *range(1000)) if how == "breakpoints" else (), 0, how == "steps")
+    marks = Marks(
+        parts, (*parts, *range(1000)) if mode == "breakpoints" else (), 0, mode == "steps"
+    )
     held_simulation = Simulation(robot, worlds.load(world), result.image, marks)
     pauses = 0
-    while held_simulation.robot.now_ms < plain.robot.now_ms:
-        if how == "steps":
-            held_simulation.step(plain.robot.now_ms - held_simulation.robot.now_ms)
+    while held_simulation.robot.now_ms < plain_simulation.robot.now_ms:
+        if mode == "steps":
+            held_simulation.step(plain_simulation.robot.now_ms - held_simulation.robot.now_ms)
         else:
             held_simulation.go_on()
-            held_simulation.advance(plain.robot.now_ms - held_simulation.robot.now_ms)
+            held_simulation.advance(plain_simulation.robot.now_ms - held_simulation.robot.now_ms)
         pauses += held_simulation.held_at is not None
     assert pauses > 5
     assert held_simulation.robot.take_events() == wanted_events
-    assert held_simulation.robot.pose == plain.robot.pose
+    assert held_simulation.robot.pose == plain_simulation.robot.pose
 
 
 def test_a_held_program_takes_its_calculation_time() -> None:
     """It resumes in the tick in which it paused, with the remaining instructions."""
     text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
     runs = []
-    for at in ((), (2,)):
-        simulation = started_simulation(text, at)
+    for held_parts in ((), (2,)):
+        simulation = started_simulation(text, held_parts)
         while simulation.robot.is_running:
             simulation.go_on()
             simulation.advance(50)
@@ -110,40 +112,40 @@ def test_a_held_program_takes_its_calculation_time() -> None:
     assert runs[0] == runs[1] == ["2 BEEP 440 100", "100 DONE"]
 
 
-@pytest.mark.parametrize("text", REPEATED)
+@pytest.mark.parametrize("text", REPEATING_PROGRAMS)
 def test_breakpoints_work_alike_whenever_they_are_set(text: str) -> None:
     """A run in which they change at random moments, and in which somebody steps, is held where and
     when one is that has had a breakpoint everywhere from the beginning.
     """
     parts = range(len(check(text.encode(), "tinibot", "en").places))
-    every = started_simulation(text, parts)
+    held_simulation = started_simulation(text, parts)
     arrivals = []
-    while every.held_at is not None:
-        arrivals.append((every.robot.now_ms, every.held_at))
-        every.go_on()
-        every.advance(LONGEST_PART_MS)
+    while held_simulation.held_at is not None:
+        arrivals.append((held_simulation.robot.now_ms, held_simulation.held_at))
+        held_simulation.go_on()
+        held_simulation.advance(LONGEST_PART_MS)
     pauses = [holds_of_a_run(text, arrivals, Random(seed)) for seed in range(HISTORIES)]
     assert sum(map(bool, pauses)) > HISTORIES / 2
 
 
-def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -> int:
+def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], rng: Random) -> int:
     """Return the number of pauses of a run, each at the right arrival."""
     offsets = sorted({offset for _, offset in arrivals})
-    simulation = started_simulation(text, is_held=chance.random() < 0.5)
+    simulation = started_simulation(text, is_held=rng.random() < 0.5)
     breakpoints: list[int] = []
     pauses = 0
     while arrivals:
-        at, now_ms = simulation.held_at, simulation.robot.now_ms
-        if at is None:
+        place, now_ms = simulation.held_at, simulation.robot.now_ms
+        if place is None:
             arrivals = [arrival for arrival in arrivals if arrival[0] > now_ms]
         else:
-            assert (now_ms, at) == arrivals[0]
+            assert (now_ms, place) == arrivals[0]
             arrivals = arrivals[1:]
             pauses += 1
-        if chance.random() < 0.5:
-            breakpoints = chance.sample(offsets, chance.choice((0, 1, len(offsets))))
+        if rng.random() < 0.5:
+            breakpoints = rng.sample(offsets, rng.choice((0, 1, len(offsets))))
             simulation.set_breakpoints(breakpoints)
-        duration_ms, is_step = chance.randint(1, 100), chance.random() < 0.2
+        duration_ms, is_step = rng.randint(1, 100), rng.random() < 0.2
         if is_step:
             simulation.step(duration_ms)
         else:
@@ -163,7 +165,7 @@ def holds_of_a_run(text: str, arrivals: list[tuple[int, int]], chance: Random) -
 def test_a_breakpoint_is_reached_once_however_long_the_halt_lasts() -> None:
     """The looks of an UNTIL, fifty in a second, are one stay."""
     text = "LOOP(2);\n  W(1) UNTIL(DISTANCE < 3);\nEND_LOOP"
-    simulation = started_simulation(text, at=(1,))
+    simulation = started_simulation(text, held_parts=(1,))
     times = []
     while simulation.robot.is_running:
         if simulation.held_at is not None:
@@ -174,7 +176,7 @@ def test_a_breakpoint_is_reached_once_however_long_the_halt_lasts() -> None:
 
 
 def test_time_does_not_pass_during_a_halt() -> None:
-    simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation = started_simulation("F(1, 80);\nR(1, 60)", held_parts=(1,))
     simulation.advance(5000)
     state = simulation.state()
     assert state["is_held"] and simulation.robot.now_ms - state["began_ms"] == 1000
@@ -184,7 +186,7 @@ def test_time_does_not_pass_during_a_halt() -> None:
 
 def test_a_stop_ends_a_held_program() -> None:
     """No more of it is executed."""
-    simulation = started_simulation("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation = started_simulation("F(1, 80);\nR(1, 60)", held_parts=(1,))
     simulation.advance(5000)
     simulation.state()
     simulation.set_breakpoints(())
@@ -196,7 +198,7 @@ def test_a_stop_ends_a_held_program() -> None:
 
 def test_a_program_that_never_waits_can_be_held() -> None:
     simulation = started_simulation(
-        "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), at=(1,)
+        "LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), held_parts=(1,)
     )
     for _ in range(5):
         simulation.advance(100)
@@ -209,13 +211,13 @@ def test_a_program_that_never_waits_can_be_held() -> None:
 
 
 def test_a_program_restarted_by_its_button_can_be_held_again() -> None:
-    simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", at=(1,))
-    for ends in (simulation.stop, simulation.go_on):
+    simulation = started_simulation("SB|F(0.2, 80);SHOW(5)", held_parts=(1,))
+    for end_action in (simulation.stop, simulation.go_on):
         simulation.advance(100)
         simulation.push()
         simulation.advance(1000)
         assert simulation.held_at is not None
-        ends()
+        end_action()
         simulation.advance(1000)
         assert not simulation.robot.is_running
 

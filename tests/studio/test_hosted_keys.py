@@ -43,12 +43,12 @@ class Hand(AskingPage):
     def answer_to(self, number: int) -> Json:
         items: list[Json] = []
 
-        def looks() -> bool:
+        def has_answer() -> bool:
             self.asks("beat")
             items[:] = [item for item in self.news if item.get("id") == number]
             return bool(items)
 
-        until(looks, f"an answer to {number}")
+        until(has_answer, f"an answer to {number}")
         return items[0]
 
     def uploads(self, text: str) -> Json:
@@ -58,11 +58,11 @@ class Hand(AskingPage):
     def drives(self, robot: PtyRobot, power: int) -> None:
         """Hold the stick until the robot does so."""
 
-        def is_so() -> bool:
+        def has_power() -> bool:
             self.holds(power)
             return power_of(robot) == power
 
-        until(is_so, f"it has {power} %")
+        until(has_power, f"it has {power} %")
 
 
 def power_of(robot: PtyRobot) -> int:
@@ -71,7 +71,7 @@ def power_of(robot: PtyRobot) -> int:
 
 
 @pytest.fixture
-def two() -> Iterator[list[PtyRobot]]:
+def pty_robots() -> Iterator[list[PtyRobot]]:
     with ExitStack() as stack:
         yield [stack.enter_context(PtyRobot(KIT)) for _ in range(2)]
 
@@ -92,74 +92,76 @@ class Class:
 
 
 @pytest.fixture
-def lesson(two: list[PtyRobot]) -> Iterator[Class]:
-    classroom = Class([robot.port for robot in two])
+def lesson(pty_robots: list[PtyRobot]) -> Iterator[Class]:
+    classroom = Class([robot.port for robot in pty_robots])
     yield classroom
     classroom.hosting.close()
 
 
-def test_a_pupil_drives_only_the_assigned_robot(lesson: Class, two: list[PtyRobot]) -> None:
+def test_a_pupil_drives_only_the_assigned_robot(lesson: Class, pty_robots: list[PtyRobot]) -> None:
     ana, beto = lesson.pupil("Ana"), lesson.pupil("Beto")
     for hand in (ana, beto):
         assert hand.asks("connect") == {}
         hand.beats_until(lambda item: "connected" in item, "it is met")
         assert hand.uploads(STICK_PROGRAM)["ok"]
-    ana.drives(two[0], 60)
-    assert power_of(two[1]) == 0
-    ana.drives(two[0], 0)
-    beto.drives(two[1], -40)
-    assert power_of(two[0]) == 0
+    ana.drives(pty_robots[0], 60)
+    assert power_of(pty_robots[1]) == 0
+    ana.drives(pty_robots[0], 0)
+    beto.drives(pty_robots[1], -40)
+    assert power_of(pty_robots[0]) == 0
     ana.asks("beat")
-    beto.drives(two[1], 0)
+    beto.drives(pty_robots[1], 0)
 
 
-def test_a_pupil_without_a_turn_cannot_drive(lesson: Class, two: list[PtyRobot]) -> None:
+def test_a_pupil_without_a_turn_cannot_drive(lesson: Class, pty_robots: list[PtyRobot]) -> None:
     """Waiting pupils and those whose turn is over get a message."""
     ana, beto, carla = (lesson.pupil(name) for name in ("Ana", "Beto", "Carla"))
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")
     assert ana.uploads(STICK_PROGRAM)["ok"]
-    ana.drives(two[0], 60)
+    ana.drives(pty_robots[0], 60)
     assert carla.asks("connect") == {"failure": "turn_none"}
     word = {"do": "keys", "id": 1, "seen": 0, "keys": 0, "x": 0, "y": -80}
     assert [item["over"] for item in carla.asks("beat", word)["news"]] == ["left"]
     pupils = lesson.room.teach({"do": "class"})["pupils"]
     number = next(pupil["number"] for pupil in pupils if pupil["name"] == "Ana")
     lesson.room.teach({"do": "class_next", "pupil": number})
-    until(lambda: power_of(two[0]) == 0, "it is stopped")
-    moves = len(two[0].actions)
+    until(lambda: power_of(pty_robots[0]) == 0, "it is stopped")
+    moves = len(pty_robots[0].actions)
     for _ in range(5):
         ana.holds(60)
     ana.beats_until(lambda item: item.get("over") == "turn_over", "it is told")
-    assert power_of(two[0]) == 0 and len(two[0].actions) == moves
+    assert power_of(pty_robots[0]) == 0 and len(pty_robots[0].actions) == moves
     assert beto.asks("connect") == {}
     beto.beats_until(lambda item: "connected" in item, "it is met")
     assert beto.uploads(STICK_PROGRAM)["ok"]
-    beto.drives(two[1], 40)
-    assert power_of(two[0]) == 0
+    beto.drives(pty_robots[1], 40)
+    assert power_of(pty_robots[0]) == 0
 
 
-def test_a_pupils_key_cannot_release_a_teachers_stop(lesson: Class, two: list[PtyRobot]) -> None:
+def test_a_pupils_key_cannot_release_a_teachers_stop(
+    lesson: Class, pty_robots: list[PtyRobot]
+) -> None:
     """Earlier keys are void, and held keys start no program."""
     ana = lesson.pupil("Ana")
     assert ana.asks("connect") == {}
     ana.beats_until(lambda item: "connected" in item, "it is met")
     assert ana.uploads(STICK_PROGRAM)["ok"]
-    ana.drives(two[0], 60)
+    ana.drives(pty_robots[0], 60)
     lesson.room.teach({"do": "stop_all"})
     number = ana.holds(60)
     assert ana.answer_to(number)["failure"] == "stopped_elsewhere"
-    until(lambda: power_of(two[0]) == 0, "it is stopped")
+    until(lambda: power_of(pty_robots[0]) == 0, "it is stopped")
     for _ in range(20):
         ana.answer_to(ana.holds(60))
-    assert power_of(two[0]) == 0
+    assert power_of(pty_robots[0]) == 0
 
 
 @pytest.fixture
-def hand(two: list[PtyRobot]) -> Iterator[Hand]:
+def hand(pty_robots: list[PtyRobot]) -> Iterator[Hand]:
     """A page that is connected to the first of the two."""
     hosting = Hosting()
-    new_hand = Hand(hosting.answer, two[0].port)
+    new_hand = Hand(hosting.answer, pty_robots[0].port)
     try:
         assert new_hand.asks("connect") == {}
         new_hand.beats_until(lambda event: "connected" in event, "it is met")
@@ -168,9 +170,9 @@ def hand(two: list[PtyRobot]) -> Iterator[Hand]:
         hosting.close()
 
 
-def test_a_silent_page_holds_no_keys(hand: Hand, two: list[PtyRobot]) -> None:
+def test_a_silent_page_holds_no_keys(hand: Hand, pty_robots: list[PtyRobot]) -> None:
     """This holds even if the run is not its own, so that it continues."""
-    robot = two[0]
+    robot = pty_robots[0]
     image = compile(STICK_PROGRAM.replace("SI|", "SB|")).image.hex()
     request_id = hand.says(do="upload", image=image, robot="tinibot", runs=False)
     assert hand.answer_to(request_id)["ok"]

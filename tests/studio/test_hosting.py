@@ -11,7 +11,7 @@ import pytest
 from tests.support.command import FOREVER, Command, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.rows import each_row
-from tests.support.shared_pty_robot import Shared
+from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import compile, robots
 from tiniscript.library import opening
@@ -32,37 +32,42 @@ class Page:
         self.hosting = hosting
         self.name = name
         self.news: list[dict[str, Any]] = []
-        self._seen = self.count = 0
+        self._seen_number = self.count = 0
 
     def connect(self, port: str, **fields: object) -> dict[str, Any]:
         request = {"do": "connect", "page": self.name, "port": port, "robot": "tinibot",
                    "language": "es", **fields}  # fmt: skip
         return self.hosting.answer(request)
 
-    def beat(self, *requests: dict[str, Any], do: str = "beat") -> None:
-        request = {"do": do, "page": self.name, "seen": self._seen, "asked": list(requests)}
+    def beat(self, *requests: dict[str, Any], action: str = "beat") -> None:
+        request = {
+            "do": action,
+            "page": self.name,
+            "seen": self._seen_number,
+            "asked": list(requests),
+        }
         for item in self.hosting.answer(request)["news"]:
-            self._seen = max(self._seen, item["number"])
+            self._seen_number = max(self._seen_number, item["number"])
             self.news.append(item)
 
     def until(
-        self, is_so: Callable[[dict[str, Any]], bool], timeout_s: float = HANG_LIMIT_S
+        self, is_reached: Callable[[dict[str, Any]], bool], timeout_s: float = HANG_LIMIT_S
     ) -> dict[str, Any]:
         """Wait for news, beating."""
         end_s = time.monotonic() + timeout_s
         while True:
             for item in self.news:
-                if is_so(item):
+                if is_reached(item):
                     self.news.remove(item)
                     return item
             assert time.monotonic() < end_s, self.news
             time.sleep(BEAT_S)
             self.beat()
 
-    def ask(self, do: object, **fields: object) -> dict[str, Any]:
+    def ask(self, action: object, **fields: object) -> dict[str, Any]:
         self.count += 1
         number = self.count
-        self.beat({"do": do, "id": number, **fields})
+        self.beat({"do": action, "id": number, **fields})
         return self.until(lambda item: item.get("id") == number)
 
     def upload(self, text: str, robot: str = "tinibot", **fields: object) -> dict[str, Any]:
@@ -122,12 +127,12 @@ def test_an_answer_precedes_its_consequences(page: Page) -> None:
 def test_a_start_event_tells_whether_the_program_is_the_pages(page: Page) -> None:
     """A page records programs, but not a line that is tried."""
     image = compile("SHOW(1)").image.hex()
-    for do, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
-        fields = {} if do == "start" else {"image": image, "robot": "tinibot"}
+    for action, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
+        fields = {} if action == "start" else {"image": image, "robot": "tinibot"}
         page.news.clear()
-        page.ask(do, **fields, **({"runs": True} if do == "upload" else {}))
-        started = page.until(lambda item: item.get("event") == "STARTED")
-        assert started["is_program"] is is_program, do
+        page.ask(action, **fields, **({"runs": True} if action == "upload" else {}))
+        started_event = page.until(lambda item: item.get("event") == "STARTED")
+        assert started_event["is_program"] is is_program, action
         page.until(lambda item: item.get("event") == "DONE")
 
 
@@ -145,17 +150,17 @@ def always_attended(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def check_stopped(robot: PtyRobot) -> None:
-    robot.until(lambda: bytes(STOP_BYTES) in robot.heard and not robot.moves, "it is stopped")
+    robot.until(lambda: bytes(STOP_BYTES) in robot.received and not robot.moves, "it is stopped")
     assert "MOTORS 80 80" in robot.actions
 
 
 @pytest.mark.usefixtures("always_attended")
 def test_a_silent_page_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     page.upload(FOREVER)
-    began_s = time.monotonic()
+    start_s = time.monotonic()
     page.beat()
     check_stopped(robot)
-    assert time.monotonic() - began_s >= attending.ATTENDED_S
+    assert time.monotonic() - start_s >= attending.ATTENDED_S
 
 
 @pytest.mark.usefixtures("always_attended")
@@ -192,7 +197,7 @@ def test_no_pings_are_sent_for_a_silent_page(
 def test_stop_stops_and_is_reported(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
     """Also one that counts wrongly, before it is refused."""
     start_drive(page, robot)
-    page.beat(do="stop")
+    page.beat(action="stop")
     assert page.until(lambda item: item.get("event") == "STOPPED")["cause"] == "SEQUENCE"
     assert not robot.moves
     for stops in (-1, 0.5, "1", 2**40):
@@ -214,13 +219,13 @@ def test_a_stop_by_another_command_is_reported(page: Page, robot: PtyRobot) -> N
     assert not robot.moves
 
 
-@pytest.mark.parametrize("leaves", [True, False], ids=["page", "server"])
+@pytest.mark.parametrize("page_leaves", [True, False], ids=["page", "server"])
 def test_the_end_of_a_page_and_of_the_server_stops_robots(
-    hosting: Hosting, page: Page, robot: PtyRobot, leaves: bool
+    hosting: Hosting, page: Page, robot: PtyRobot, page_leaves: bool
 ) -> None:
     start_drive(page, robot)
-    if leaves:
-        page.beat(do="leave")
+    if page_leaves:
+        page.beat(action="leave")
         robot.until(lambda: not robot.moves, "it stands")
     else:
         hosting.close()
@@ -234,23 +239,25 @@ def test_a_run_of_another_command_continues_when_the_page_leaves(
     studio stops it.
     """
     start_drive(page, robot)
-    other = Command("upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port)
-    other.until("running")
-    page.beat(do="leave")
-    began_ms = robot.robot_ms
-    robot.until(lambda: robot.robot_ms > began_ms + 2000, "it goes on")
-    assert robot.moves and other.process.poll() is None
+    other_command = Command(
+        "upload", "-e", "SI|LOOP(FOREVER);F(1, 30);END_LOOP", "--port", robot.port
+    )
+    other_command.until("running")
+    page.beat(action="leave")
+    start_ms = robot.robot_ms
+    robot.until(lambda: robot.robot_ms > start_ms + 2000, "it goes on")
+    assert robot.moves and other_command.process.poll() is None
     assert hosting.is_free(robot.port)
     second_page = Page(hosting, "another")
     assert second_page.connect(robot.port) == {}
     second_page.until(lambda item: "connected" in item)
-    second_page.beat(do="leave")
-    began_ms = robot.robot_ms
-    robot.until(lambda: robot.robot_ms > began_ms + 1000, "it goes on")
-    assert robot.moves and other.process.poll() is None
+    second_page.beat(action="leave")
+    start_ms = robot.robot_ms
+    robot.until(lambda: robot.robot_ms > start_ms + 1000, "it goes on")
+    assert robot.moves and other_command.process.poll() is None
     assert hosting.close() == []
     robot.until(lambda: not robot.moves, "it stands")
-    assert other.wait_for_result().code == 3
+    assert other_command.wait_for_result().code == 3
 
 
 def test_a_port_has_one_page(
@@ -260,8 +267,8 @@ def test_a_port_has_one_page(
     monkeypatch.setattr(attending, "LEFT_S", 3600.0)  # the page is silent while the command begins
     ports = hosting.answer({"do": "ports"})["ports"]
     assert all(set(port) == {"port", "name", "description", "virtual"} for port in ports)
-    other = Page(hosting, "other")
-    assert other.connect(robot.port) == {"failure": "other_tab"}
+    other_page = Page(hosting, "other")
+    assert other_page.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {}  # the page already has this robot
     start_drive(page, robot)
     # STOP of a page without a robot
@@ -276,9 +283,9 @@ def test_a_port_has_one_page(
     assert response["failure"] == "stopped_elsewhere" and not robot.moves
     result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
     assert result.code != 0 and not robot.moves, result.out
-    page.beat(do="leave")
-    until(lambda: other.connect(robot.port) == {}, "the port is free")
-    other.until(lambda item: "connected" in item)
+    page.beat(action="leave")
+    until(lambda: other_page.connect(robot.port) == {}, "the port is free")
+    other_page.until(lambda item: "connected" in item)
 
 
 def test_a_page_gets_the_reason_when_another_one_takes_its_robot(
@@ -288,8 +295,8 @@ def test_a_page_gets_the_reason_when_another_one_takes_its_robot(
     hosted_robot = hosting.robot_of(page.name)
     assert hosted_robot
     hosted_robot.leave("turn_over")
-    other = Page(hosting, "other")
-    until(lambda: other.connect(robot.port) == {}, "the port is free")
+    other_page = Page(hosting, "other")
+    until(lambda: other_page.connect(robot.port) == {}, "the port is free")
     assert page.until(lambda item: "over" in item)["over"] == "turn_over"
 
 
@@ -314,7 +321,7 @@ def test_the_stop_at_the_end_of_a_turn_is_settled_within_the_turn(
 
 
 def test_the_studio_shares_a_port_held_by_a_command(hosting: Hosting) -> None:
-    with Shared() as (robot, _):
+    with SharedLine() as (robot, _):
         page = Page(hosting)
         page.connect(robot.port)
         assert page.until(lambda item: "connected" in item)["held_by"] == "link"
@@ -340,18 +347,18 @@ def test_an_unopenable_or_unplugged_port_gives_a_message(
     hosting: Hosting, page: Page, robot: PtyRobot
 ) -> None:
     for port in ("/dev/nothing", "socket://127.0.0.1:1", "no such port"):
-        other = Page(hosting, port)
-        other.connect(port)
-        over = other.until(lambda item: "over" in item)
-        assert over["over"].startswith("port_") and port in over["said"]
+        other_page = Page(hosting, port)
+        other_page.connect(port)
+        over_item = other_page.until(lambda item: "over" in item)
+        assert over_item["over"].startswith("port_") and port in over_item["said"]
     page.upload(FOREVER)
     robot.pull()
-    over = page.until(lambda item: "over" in item)
-    assert over["over"] == "port_gone" and "cable" in over["said"]
+    over_item = page.until(lambda item: "over" in item)
+    assert over_item["over"] == "port_gone" and "cable" in over_item["said"]
 
 
 def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
-    wrong: list[dict[str, Any]] = [
+    wrong_requests: list[dict[str, Any]] = [
         {},
         {"do": "fly"},
         {"do": "connect"},
@@ -362,7 +369,7 @@ def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
         {"do": "beat", "page": ["p"]},
         {"do": "beat", "page": 0},
     ]
-    for request in wrong:
+    for request in wrong_requests:
         with pytest.raises(BadRequest):
             hosting.answer(request)
             pytest.fail(f"not refused: {request}")
@@ -385,10 +392,10 @@ def test_anything_but_a_request_is_refused(hosting: Hosting) -> None:
 )
 def test_a_wrong_request_does_no_harm(page: Page, request: dict[str, Any]) -> None:
     """It does not harm the request after it in the same beat either."""
-    wrong = page.count + 1
+    wrong_id = page.count + 1
     page.count += 2
-    page.beat({"id": wrong, **request}, {"id": page.count, "do": "identify"})
-    assert page.until(lambda item: item.get("id") == wrong)["failure"] == "bad_request"
+    page.beat({"id": wrong_id, **request}, {"id": page.count, "do": "identify"})
+    assert page.until(lambda item: item.get("id") == wrong_id)["failure"] == "bad_request"
     assert page.until(lambda item: item.get("id") == page.count)["ok"]
 
 
@@ -408,9 +415,9 @@ def test_a_request_sent_before_a_stop_but_received_after_it_is_void(
 
 def test_a_duplicate_request_is_executed_once(page: Page, robot: PtyRobot) -> None:
     image = compile("SHOW(1)").image.hex()
-    live = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
-    page.beat(live)
-    page.beat(live)
+    live_request = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
+    page.beat(live_request)
+    page.beat(live_request)
     page.until(lambda item: item.get("event") == "DONE")
     for _ in range(5):
         page.beat()

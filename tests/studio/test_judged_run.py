@@ -16,7 +16,7 @@ from tiniscript.studio.simulation import Marks
 from tools.studio.pack import text_on_page
 
 NUMBERS = range(1, len(catalogue.folders()) + 1)
-OF_A_TERMINAL = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
+TERMINAL_WORDS = re.compile(r"\btsc\b|\w\.ts\b|____|--virtual|Ctrl|\[(print|page|hint)\]")
 
 
 def judge(number: int, program: str) -> tuple[dict[str, object], page_lessons.JudgedRun]:
@@ -43,7 +43,7 @@ def test_the_steps_of_a_lesson_are_written_for_the_page(number: int, language: s
     steps = page_lessons.steps(number, language)
     assert len(steps) >= 4 and all(step["blocks"] for step in steps)
     assert steps[-1]["hint"]
-    assert not OF_A_TERMINAL.search(json.dumps(steps, ensure_ascii=False))
+    assert not TERMINAL_WORDS.search(json.dumps(steps, ensure_ascii=False))
     printed_text = catalogue.page(catalogue.folder_of(str(number)), catalogue.PUPIL, language)
     assert steps[-1]["hint"] not in printed_text
     assert re.search(r"`tsc lesson check \d+ \w+\.ts`", printed_text)
@@ -55,7 +55,7 @@ def test_the_steps_of_a_lesson_are_written_for_the_page(number: int, language: s
 def test_packed_lesson_pages_have_the_same_steps(
     number: int, language: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = page_lessons.steps(number, language)
+    whole_steps = page_lessons.steps(number, language)
     pages: list[tuple[str, str]] = []
 
     def pack_page(path: Path) -> str:
@@ -66,7 +66,7 @@ def test_packed_lesson_pages_have_the_same_steps(
         return pages[-1][1]
 
     monkeypatch.setattr(catalogue, "_text", pack_page)
-    assert page_lessons.steps(number, language) == whole
+    assert page_lessons.steps(number, language) == whole_steps
     assert all("[print]" in text and "[print]" not in less for text, less in pages) and pages
 
 
@@ -83,23 +83,23 @@ def test_the_judged_run_is_the_shown_one(
     state = judged_run.state()
     assert (state["touches"] is not None) is touches
     assert not state["is_running"]
-    took_s = (state["now_ms"] - state["began_ms"]) / 1000
+    run_s = (state["now_ms"] - state["began_ms"]) / 1000
     if touches:
         match = re.search(r"after (\d+\.\d) s", " ".join(answer["said"]))  # type: ignore[arg-type]
-        assert match and abs(took_s - float(match[1])) < 0.1
+        assert match and abs(run_s - float(match[1])) < 0.1
     if seconds is not None:
-        assert round(took_s, 1) == seconds
+        assert round(run_s, 1) == seconds
 
 
 def test_a_run_with_the_judges_keys_is_shown_with_them() -> None:
     """No one else presses keys."""
-    drives = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
-    answer, judged_run = judge(18, drives)
+    drive_program = "LOOP(FOREVER); IF(KEY_UP); M(60, 60); ELSE; M(0, 0); END_IF; W(0.02); END_LOOP"
+    answer, judged_run = judge(18, drive_program)
     assert "KEY_RIGHT was held" in answer["said"][0]  # type: ignore[index]
     state = judged_run.state()
     assert state["pose"][0] > 170, "it went forward"
     assert (state["now_ms"] - state["began_ms"]) == 5100
-    image = check(drives.encode(), "tinibot", "en").image
+    image = check(drive_program.encode(), "tinibot", "en").image
     judged_run = page_lessons.JudgedRun("tinibot", 18, 1, 900, image, Marks(()))
     for _ in range(9):
         judged_run.press(1, 0, 100)

@@ -28,7 +28,7 @@ from tiniscript.studio.robot_link import RobotLink
 
 BEAT_MS = 100
 LOOK_MS = 20
-RUN = {"do": "upload", "runs": True}
+RUN_REQUEST = {"do": "upload", "runs": True}
 
 
 class CountedLink:
@@ -36,15 +36,15 @@ class CountedLink:
 
     has_run = False
 
-    def __init__(self, does: Callable[[str, int], None]) -> None:
-        self._does = does
+    def __init__(self, note_action: Callable[[str, int], None]) -> None:
+        self._note_action = note_action
         self._news: list[Json] = []
 
     def stop(self) -> None:
-        self._does("stop", 0)
+        self._note_action("stop", 0)
 
     def ask(self, request: Json) -> None:
-        self._does("run", request["stops"])
+        self._note_action("run", request["stops"])
         self._news.append({"id": request["id"], "ok": True})
 
     def news(self, timeout_s: float = 0) -> list[Json]:
@@ -71,9 +71,9 @@ class SteppedRobot:
         self.link = CountedLink(self._note)
         self.has_ended = self.is_parting = False
 
-    def _note(self, what: str, stops: int) -> None:
+    def _note(self, action: str, stops: int) -> None:
         World.actions.append(
-            (what, self.attending.stop_count if what == "stop" else stops, World.now_ms)
+            (action, self.attending.stop_count if action == "stop" else stops, World.now_ms)
         )
 
     def leave(self) -> None:
@@ -104,83 +104,96 @@ def stepped_hosting(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosting]:
 class TornPage:
     """A page that behaves like `host.js`, with torn requests and answers."""
 
-    def __init__(self, hosting: Hosting, chance: Random, ask: Callable[[Json], Json]) -> None:
-        self.hosting, self.chance, self.ask = hosting, chance, ask
+    def __init__(self, hosting: Hosting, rng: Random, ask: Callable[[Json], Json]) -> None:
+        self.hosting, self.rng, self.ask = hosting, rng, ask
         self.presses: list[int] = []  # times of the presses
-        self.heard: list[int] = []  # presses sent with a beat that the robot has heard
-        self._connection = self._seen = self._stops = self._number = 0
+        self.heard_presses: list[int] = []  # presses sent with a beat that the robot has heard
+        self._connection = self._seen_number = self._stops = self._number = 0
         self._asked: list[Json] = []
-        self._under_way: list[tuple[int, Json]] = []
-        self.is_there = False
+        self._answers_under_way: list[tuple[int, Json]] = []
+        self.is_connected = False
 
     def connect(self) -> None:
         self._connection += 1
-        self._seen = self._stops = self._number = 0
-        self._asked, self.is_there = [], False
+        self._seen_number = self._stops = self._number = 0
+        self._asked, self.is_connected = [], False
 
     def press_stop(self) -> None:
         self.presses.append(World.now_ms)
-        if self.is_there:
+        if self.is_connected:
             self._stops = len(self.presses)
             self._send("stop")
 
     def press_run(self) -> None:
-        if self.is_there:
+        if self.is_connected:
             self._number += 1
-            request = {**RUN, "id": self._number, "stops": len(self.presses), "seen": self._seen}
+            request = {
+                **RUN_REQUEST,
+                "id": self._number,
+                "stops": len(self.presses),
+                "seen": self._seen_number,
+            }
             self._asked.append(request)
 
-    def _send(self, do: str, **more: object) -> None:
-        request = {"do": do, "page": "me", "connection": self._connection, "port": "p",
-                   "robot": "tinibot", "language": "en", "seen": self._seen,
-                   "stops": self._stops, **more}  # fmt: skip
-        times = self.chance.choice((0, 1, 1, 1, 2))
-        self._under_way += [(World.now_ms + self.chance.choice((1, 10, 700, 2500)), request)
+    def _send(self, action: str, **fields: object) -> None:
+        request = {"do": action, "page": "me", "connection": self._connection, "port": "p",
+                   "robot": "tinibot", "language": "en", "seen": self._seen_number,
+                   "stops": self._stops, **fields}  # fmt: skip
+        times = self.rng.choice((0, 1, 1, 1, 2))
+        self._answers_under_way += [(World.now_ms + self.rng.choice((1, 10, 700, 2500)), request)
                             for _ in range(times)]  # fmt: skip
 
     def beat(self) -> None:
-        if self.is_there:
+        if self.is_connected:
             self._send("beat", asked=list(self._asked[:8]))
         else:
             self._send("connect")
 
     def arrive(self) -> None:
-        due = [request for at_ms, request in self._under_way if at_ms <= World.now_ms]
-        self._under_way = [pair for pair in self._under_way if pair[0] > World.now_ms]
+        due = [
+            request for arrival_ms, request in self._answers_under_way if arrival_ms <= World.now_ms
+        ]
+        self._answers_under_way = [
+            pair for pair in self._answers_under_way if pair[0] > World.now_ms
+        ]
         for request in due:
             answer = self.ask(request)
             is_own = request["connection"] == self._connection
             robot = cast(SteppedRobot, self.hosting.robot_of("me"))
             if is_own and robot and request["do"] == "beat" and request["stops"]:
-                self.heard.append(request["stops"])
-            if not is_own or self.chance.random() < 0.4:
+                self.heard_presses.append(request["stops"])
+            if not is_own or self.rng.random() < 0.4:
                 continue  # the answer is lost
             if request["do"] == "connect":
-                self.is_there = answer == {}
+                self.is_connected = answer == {}
             for item in answer.get("news", ()):
                 if "over" in item:
-                    self.is_there = False
-                elif item["number"] > self._seen:
-                    self._seen = item["number"]
-                    self._asked = [one for one in self._asked if one["id"] != item.get("id")]
+                    self.is_connected = False
+                elif item["number"] > self._seen_number:
+                    self._seen_number = item["number"]
+                    self._asked = [
+                        request for request in self._asked if request["id"] != item.get("id")
+                    ]
 
 
 def check_stops_kept(page: TornPage) -> None:
     """Check this for all events so far."""
     newest = 0
     accepted_count = 0
-    for what, stops, _ in World.actions:
-        if what == "stop":
+    for action, stops, _ in World.actions:
+        if action == "stop":
             assert stops > newest, "once for each press"
             assert stops > accepted_count, "what was started later goes on"
             newest = stops
         else:
             assert stops >= newest, "it was asked for before"
             accepted_count = max(accepted_count, stops)
-    for number in page.heard:
-        after = [at_ms for what, _, at_ms in World.actions
-                 if what == "stop" and at_ms >= page.presses[number - 1]]  # fmt: skip
-        assert after or accepted_count >= number, f"press {number} was told, and stopped nothing"
+    for number in page.heard_presses:
+        stop_times_ms = [time_ms for action, _, time_ms in World.actions
+                 if action == "stop" and time_ms >= page.presses[number - 1]]  # fmt: skip
+        assert stop_times_ms or accepted_count >= number, (
+            f"press {number} was told, and stopped nothing"
+        )
 
 
 @pytest.mark.sampled("seed", keep=20)
@@ -188,8 +201,8 @@ def check_stops_kept(page: TornPage) -> None:
 def test_each_press_of_stop_stops_once_whatever_is_lost(
     stepped_hosting: Hosting, seed: int
 ) -> None:
-    chance = Random(seed)
-    page = TornPage(stepped_hosting, chance, stepped_hosting.answer)
+    rng = Random(seed)
+    page = TornPage(stepped_hosting, rng, stepped_hosting.answer)
     page.connect()
     for _ in range(1500):
         World.now_ms += LOOK_MS
@@ -198,18 +211,18 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
         if robot is not None:
             robot.step()
             if robot.has_ended:
-                page.is_there = False
+                page.is_connected = False
         check_stops_kept(page)
         if World.now_ms % BEAT_MS == 0:
             page.beat()
-        does = chance.random()
-        if does < 0.01:
+        draw_number = rng.random()
+        if draw_number < 0.01:
             page.press_stop()
-        elif does < 0.03:
+        elif draw_number < 0.03:
             page.press_run()
-        elif does < 0.032 or (not page.is_there and does < 0.05):
+        elif draw_number < 0.032 or (not page.is_connected and draw_number < 0.05):
             page.connect()
-    kinds = {what for what, _, _ in World.actions}
+    kinds = {action for action, _, _ in World.actions}
     assert kinds == {"stop", "run"}  # both kinds of requests were lost
 
 
@@ -217,21 +230,31 @@ def test_each_press_of_stop_stops_once_whatever_is_lost(
 def test_a_stop_of_the_previous_connection_works_unless_a_run_followed_it(
     stepped_hosting: Hosting, runs: bool
 ) -> None:
-    def send_request(do: str, connection: int, *asked: Json, **more: object) -> None:
-        stepped_hosting.answer({"do": do, "page": "me", "connection": connection, "port": "p",
-                                "seen": 0, "robot": "tinibot", "language": "en", "asked": [*asked],
-                        **more})  # fmt: skip
+    def send_request(action: str, connection: int, *requests: Json, **fields: object) -> None:
+        stepped_hosting.answer(
+            {
+                "do": action,
+                "page": "me",
+                "connection": connection,
+                "port": "p",
+                "seen": 0,
+                "robot": "tinibot",
+                "language": "en",
+                "asked": [*requests],
+                **fields,
+            }
+        )
         cast(SteppedRobot, stepped_hosting.robot_of("me")).step()
 
     send_request("connect", 1)
     send_request("beat", 1)
     send_request("connect", 2)  # a press before it is still on its way
     if runs:
-        send_request("beat", 2, {**RUN, "id": 1, "stops": 1, "seen": 0})
+        send_request("beat", 2, {**RUN_REQUEST, "id": 1, "stops": 1, "seen": 0})
         send_request("beat", 2)
     send_request("stop", 1, stops=1)
     send_request("stop", 1, stops=1)
-    assert [what for what, _, _ in World.actions] == ["run" if runs else "stop"]
+    assert [action for action, _, _ in World.actions] == ["run" if runs else "stop"]
 
 
 PAGE_SCRIPT = Path(__file__).with_name("lost_requests_in_node.mjs")
@@ -259,9 +282,9 @@ def test_each_request_of_a_page_is_answered_once_whatever_is_lost() -> None:
         for words in (row["held"], row["said"]):
             assert words == sorted(set(words)), row
         if not row["isWild"]:
-            first = row["first"]
-            assert first["isThere"] and len(row["made"]) == len(first["ends"]), row
-            assert bool(first["heard"]) == bool(first["presses"]), row
+            first_ask = row["first"]
+            assert first_ask["isThere"] and len(row["made"]) == len(first_ask["ends"]), row
+            assert bool(first_ask["heard"]) == bool(first_ask["presses"]), row
         # No press is lost: each press of STOP stops.
         assert len(row["second"]["heard"]) == row["second"]["presses"], row
         assert (row["second"], row["secondDone"]) == (row["fresh"], row["freshDone"]), row
@@ -308,16 +331,16 @@ def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
     asker.asks("beat", stops=1)
     until(lambda: has_news(1) and not robot.moves, "it stands")
     start_drive(1)
-    began = len(robot.heard)
+    start_count = len(robot.received)
     asker.asks("stop", stops=1)  # late, or a repeated beat
     for _ in range(10):
         asker.asks("beat", stops=1)
-    assert robot.moves and b"\0" * 4 not in robot.heard[began:]
+    assert robot.moves and b"\0" * 4 not in robot.received[start_count:]
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
-    others: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
-    for other in others:
-        asker.asks("stop", **other)
+    other_requests: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
+    for other_fields in other_requests:
+        asker.asks("stop", **other_fields)
         until(lambda: has_news(1) and not robot.moves, "it stands")
         start_drive(1)
 

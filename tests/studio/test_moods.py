@@ -22,7 +22,7 @@ Face = dict[str, Any]
 
 def faces(*runs: list[State]) -> list[tuple[list[Face], list[Face]]]:
     """Return the robot's faces in each state of its runs, and when looking back."""
-    rows = json.loads(in_node(SCRIPT, given=json.dumps(runs))[0])
+    rows = json.loads(in_node(SCRIPT, input_text=json.dumps(runs))[0])
     return [(face["seen"], face["again"]) for face in rows]
 
 
@@ -82,38 +82,47 @@ def test_the_mood_follows_the_events() -> None:
         run("W(9);F(2, 80)", "free", 10_000),
         run("F(1, 80)", "free", 800),
     )
-    looks = [frames for frames, _ in faces(crash, flag, wait, pause, drive)]
-    for states, frames in zip((crash, flag), looks, strict=False):
+    face_frames = [frames for frames, _ in faces(crash, flag, wait, pause, drive)]
+    for states, frames in zip((crash, flag), face_frames, strict=False):
         for state, face in zip(states, frames, strict=True):
             if not state["bumps"] and not state["score"]:
                 assert face["mood"] == "calm", state
             if state["touches"]:
                 assert face["mood"] == "dizzy", state
-    assert "dizzy" in {face["mood"] for face in looks[0]}
-    assert {face["mood"] for face in looks[2]} == {"tired"}
-    resting = [face["mood"] for face in looks[3]]
+    assert "dizzy" in {face["mood"] for face in face_frames[0]}
+    assert {face["mood"] for face in face_frames[2]} == {"tired"}
+    resting = [face["mood"] for face in face_frames[3]]
     assert resting[0] == resting[-1] == "calm" and "tired" in resting
-    assert {face["mood"] for face in looks[4]} == {"calm"}
-    assert any(face["isBlinking"] for face in looks[3])
-    assert not all(face["isBlinking"] for face in looks[3])
+    assert {face["mood"] for face in face_frames[4]} == {"calm"}
+    assert any(face["isBlinking"] for face in face_frames[3])
+    assert not all(face["isBlinking"] for face in face_frames[3])
 
 
 def test_each_mood_is_drawn_in_its_own_way_and_in_the_chosen_colour() -> None:
     """This includes robots without a distance sensor, which have their own face."""
     calm = {"mood": "calm", "ahead": 0, "aside": 0, "isBlinking": False}
-    looks = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
+    face_states = [*({**calm, "mood": mood} for mood in MOODS), {**calm, "isBlinking": True}]
     for name in ("tinibot", "liner", "grabber"):
-        drawing = drawings_of(*((name, None, {**STANDING_STILL, "face": face}) for face in looks))
-        assert len({json.dumps(calls) for calls in drawing}) == len(looks), name
-        ahead, left = drawings_of(
+        drawing = drawings_of(
+            *((name, None, {**STANDING_STILL, "face": face}) for face in face_states)
+        )
+        assert len({json.dumps(calls) for calls in drawing}) == len(face_states), name
+        ahead_drawing, turned_drawing = drawings_of(
             (name, None, {**STANDING_STILL, "face": {**calm, "ahead": 1}}),
             (name, None, {**STANDING_STILL, "face": {**calm, "aside": 1}}),
         )
-        pupils = [shapes(calls, "fill", "#20242a") for calls in (drawing[0], ahead, left)]
-        still, to_front, to_left = (
+        pupils = [
+            shapes(calls, "fill", "#20242a")
+            for calls in (drawing[0], ahead_drawing, turned_drawing)
+        ]
+        still_drawing, to_front, to_left = (
             [row for row in drawn_shapes if len(row) == 5] for drawn_shapes in pupils
         )
-        assert [a[0] > b[0] for a, b in zip(to_front, still, strict=True)].count(True) == 2
-        assert [a[1] > b[1] for a, b in zip(to_left, still, strict=True)].count(True) == 2
-        (own,) = drawings_of((name, None, {**STANDING_STILL, "colours": ["#123456", "#654321"]}))
-        assert shapes(own, "fill", "#123456") and shapes(own, "stroke", "#654321")
+        assert [a[0] > b[0] for a, b in zip(to_front, still_drawing, strict=True)].count(True) == 2
+        assert [a[1] > b[1] for a, b in zip(to_left, still_drawing, strict=True)].count(True) == 2
+        (colour_drawing,) = drawings_of(
+            (name, None, {**STANDING_STILL, "colours": ["#123456", "#654321"]})
+        )
+        assert shapes(colour_drawing, "fill", "#123456") and shapes(
+            colour_drawing, "stroke", "#654321"
+        )

@@ -11,23 +11,23 @@ from tiniscript.studio.names import are_alike, free_name, plain_name
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("name", "other_name"),
     [("José", "José"), ("Ana", "Аnа"), ("Ana", "Αna"), ("Ana", "𝐀𝐧𝐚"), ("Ana", "Ａｎａ"),
      ("Ana", "ana"), ("Luis", "LUIS"), ("Luis", "Iuis"), ("Inés", "1nés"), ("mia", "rnia"),
      ("Ola", "0la"), ("Ana", "A\ufe00na"), ("Ana", "An\u034fa"), ("Ana (2)", "Ana (２)"),
      ("O’Neil", "O'Neil"), ("Ana-Luz", "Ana‑Luz"), ("Maße", "MASSE")],
 )  # fmt: skip
-def test_names_that_look_alike_are_one_name(one: str, other: str) -> None:
-    assert are_alike(one, other) and are_alike(other, one)
+def test_names_that_look_alike_are_one_name(name: str, other_name: str) -> None:
+    assert are_alike(name, other_name) and are_alike(other_name, name)
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
+    ("name", "other_name"),
     [("Ana", "Anna"), ("José", "Jose"), ("Ana", "Ana 2"), ("Núria", "Nuria"), ("Luz", "Lua"),
      ("张伟", "王伟"), ("Ана", "Яна"), ("p1", "p2"), ("🤖", "🐈")],
 )  # fmt: skip
-def test_dissimilar_names_are_different(one: str, other: str) -> None:
-    assert not are_alike(one, other)
+def test_dissimilar_names_are_different(name: str, other_name: str) -> None:
+    assert not are_alike(name, other_name)
 
 
 @pytest.mark.parametrize(
@@ -54,5 +54,5 @@ def test_the_table_matches_unicode() -> None:
     """Each row's sign folds to its look-alike, and the look-alike to itself."""
     table = names._table()
     assert len(table) > 2500
-    for sign, looks in table.items():
-        assert names._case_folded(chr(sign)) == names._case_folded(looks), hex(sign)
+    for sign, folded_sign in table.items():
+        assert names._case_folded(chr(sign)) == names._case_folded(folded_sign), hex(sign)

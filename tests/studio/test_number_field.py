@@ -27,14 +27,16 @@ def test_commas_and_points_are_accepted_as_decimal_and_group_separators(
             rows.append((number_text.replace(".", ","), number))
     input_lines = "".join(f"{json.dumps(number_text)}\n" for number_text, _ in rows)
     for (number_text, number), row in zip(
-        rows, in_node(SCRIPT, str(page_data), given=input_lines), strict=True
+        rows, in_node(SCRIPT, str(page_data), input_text=input_lines), strict=True
     ):
         value, text = json.loads(row)
         assert value == number and float(text) == number, number_text
 
 
 def test_anything_but_a_number_changes_nothing(page_data: Path) -> None:
-    typed = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
-    input_lines = "".join(f"{json.dumps(text)}\n" for text in typed)
-    for text, row in zip(typed, in_node(SCRIPT, str(page_data), given=input_lines), strict=True):
+    typed_texts = ["1.2.3", "1,2,3", "1,000,5", "2,5.5", "dos", "1.5,0", "--1", "1,00,000"]
+    input_lines = "".join(f"{json.dumps(text)}\n" for text in typed_texts)
+    for text, row in zip(
+        typed_texts, in_node(SCRIPT, str(page_data), input_text=input_lines), strict=True
+    ):
         assert json.loads(row)[0] == 7, text

@@ -22,9 +22,9 @@ SCRIPT = Path(__file__).with_name("pad_in_node.mjs")
 HISTORIES_SCRIPT = Path(__file__).with_name("pad_histories_in_node.mjs")
 HISTORIES = 40
 ALL_READINGS = ["KEY_UP", "KEY_DOWN", "KEY_LEFT", "KEY_RIGHT", "KEY_A", "KEY_B", "PAD_X", "PAD_Y"]
-WHOLE: Any = ["offer", "driving", {"reads": ALL_READINGS}]
-UP, A = 1, 16
-NOTHING = [0, 0, 0]
+DRIVING_OFFER: Any = ["offer", "driving", {"reads": ALL_READINGS}]
+UP_KEY, A_KEY = 1, 16
+NO_KEYS = [0, 0, 0]
 
 
 def play_story(path: Path, *story: Any) -> dict[str, Any]:
@@ -40,55 +40,65 @@ def sent_to_robot(path: Path, *story: Any) -> list[Any]:
 
 def test_held_keys_are_sent_at_each_change_and_repeatedly(page_data: Path) -> None:
     packets = sent_to_robot(
-        page_data, WHOLE, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
+        page_data, DRIVING_OFFER, ["passes", 1000], ["down", "KEY_UP", 1], ["passes", 450],
         ["up", "KEY_UP", 1], ["passes", 2000],
     )  # fmt: skip
     assert REPEAT_MS == 200
-    assert packets == [[1000, UP, 0, 0], [1200, UP, 0, 0], [1400, UP, 0, 0], [1450, *NOTHING]]
+    assert packets == [
+        [1000, UP_KEY, 0, 0],
+        [1200, UP_KEY, 0, 0],
+        [1400, UP_KEY, 0, 0],
+        [1450, *NO_KEYS],
+    ]
 
 
 def test_a_stick_follows_the_finger_and_returns_when_released(page_data: Path) -> None:
     packets = sent_to_robot(
-        page_data, WHOLE, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
+        page_data, DRIVING_OFFER, ["down", "stick", 1, 80, 40], ["move", "stick", 1, 500, 60],
         ["move", "stick", 1, 501, 60], ["up", "stick", 1, 500, 60], ["passes", 900],
     )  # fmt: skip
-    assert packets == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NOTHING]]
+    assert packets == [[0, 0, 50, 50], [0, 0, 100, 0], [0, *NO_KEYS]]
 
 
 def test_two_fingers_hold_two_parts_and_a_second_one_moves_no_stick(page_data: Path) -> None:
     packets = sent_to_robot(
-        page_data, WHOLE, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
+        page_data, DRIVING_OFFER, ["down", "stick", 1, 60, 20], ["down", "KEY_A", 2],
         ["down", "stick", 3, 99, 60], ["move", "stick", 3, 99, 60], ["up", "stick", 3],
         ["up", "stick", 1], ["down", "KEY_A", 4], ["up", "KEY_A", 2], ["cancel", "KEY_A", 4],
     )  # fmt: skip
-    assert packets == [[0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING]]
+    assert packets == [[0, 0, 0, 100], [0, A_KEY, 0, 100], [0, A_KEY, 0, 0], [0, *NO_KEYS]]
 
 
 def test_keyboard_keys_are_keys_and_arrows_move_a_lone_stick(page_data: Path) -> None:
-    both = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
-    assert sent_to_robot(page_data, WHOLE, *both) == [
-        [0, UP, 0, 0], [0, UP | A, 0, 0], [0, A, 0, 0], [0, *NOTHING],
+    key_events = [["keydown", "ArrowUp"], ["keydown", "A"], ["keyup", "ArrowUp"], ["keyup", "A"]]
+    assert sent_to_robot(page_data, DRIVING_OFFER, *key_events) == [
+        [0, UP_KEY, 0, 0], [0, UP_KEY | A_KEY, 0, 0], [0, A_KEY, 0, 0], [0, *NO_KEYS],
     ]  # fmt: skip
     stick = ["offer", "driving", {"reads": ["PAD_Y", "KEY_A"]}]
-    assert sent_to_robot(page_data, stick, *both) == [
-        [0, 0, 0, 100], [0, A, 0, 100], [0, A, 0, 0], [0, *NOTHING],
+    assert sent_to_robot(page_data, stick, *key_events) == [
+        [0, 0, 0, 100], [0, A_KEY, 0, 100], [0, A_KEY, 0, 0], [0, *NO_KEYS],
     ]  # fmt: skip
     assert sent_to_robot(page_data, stick, ["keydown", "ArrowUp"], ["keydown", "ArrowLeft"]) == [
         [0, 0, 0, 100], [0, 0, -71, 71],
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("more", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
-def test_keys_typed_into_other_elements_are_ignored(page_data: Path, more: dict[str, Any]) -> None:
+@pytest.mark.parametrize("fields", [{"on": "field"}, {"ctrlKey": True}, {"repeat": True}], ids=str)
+def test_keys_typed_into_other_elements_are_ignored(
+    page_data: Path, fields: dict[str, Any]
+) -> None:
     """Keys of a text field, of the browser, or held before."""
-    assert sent_to_robot(page_data, WHOLE, ["keydown", "ArrowUp", more], ["passes", 500]) == []
+    assert (
+        sent_to_robot(page_data, DRIVING_OFFER, ["keydown", "ArrowUp", fields], ["passes", 500])
+        == []
+    )
 
 
 def test_the_space_bar_holds_a_focused_button(page_data: Path) -> None:
     on = {"on": "KEY_A"}
-    assert sent_to_robot(page_data, WHOLE, ["keydown", " ", on], ["keyup", " ", on]) == [
-        [0, A, 0, 0],
-        [0, *NOTHING],
+    assert sent_to_robot(page_data, DRIVING_OFFER, ["keydown", " ", on], ["keyup", " ", on]) == [
+        [0, A_KEY, 0, 0],
+        [0, *NO_KEYS],
     ]
 
 
@@ -97,57 +107,59 @@ def test_whatever_hands_do_what_is_held_and_nothing_else_is_told_to_the_driven_r
 ) -> None:
     """Fingers, keys and gamepads, while robots come, go and are replaced, and after each STOP."""
     lines = in_node(HISTORIES_SCRIPT, str(page_data), "0", str(HISTORIES))
-    done = {act for line in lines for act in json.loads(line)}
+    actions = {act for line in lines for act in json.loads(line)}
     assert len(lines) == HISTORIES
-    assert done >= {"held", "gamepads", "stop", "Escape", "blur", "pagehide", "freeze", "hidden"}
+    assert actions >= {"held", "gamepads", "stop", "Escape", "blur", "pagehide", "freeze", "hidden"}
 
 
-LET_GO = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
+RELEASES = [["hide"], ["event", "blur"], ["event", "pagehide"], ["stop"],
           ["side", "side_real"], ["offer", "driving", None],
           ["keydown", "Escape"]]  # fmt: skip
 
 
-@pytest.mark.parametrize("end", LET_GO, ids=str)
+@pytest.mark.parametrize("end", RELEASES, ids=str)
 def test_releasing_everything_requires_new_presses(page_data: Path, end: list[Any]) -> None:
     gamepad = ["gamepads", [[0, -1], [0]]]
     packets = sent_to_robot(
-        page_data, WHOLE, gamepad, ["event", "gamepadconnected"], ["down", "stick", 1, 60, 20],
+        page_data, DRIVING_OFFER, gamepad, ["event", "gamepadconnected"],
+        ["down", "stick", 1, 60, 20],
         ["keydown", "b"], ["passes", 10], end, ["passes", 500], ["see"], ["side", "side_virtual"],
-        WHOLE, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}], ["passes", 500],
+        DRIVING_OFFER, ["move", "stick", 1, 99, 60], ["keydown", "b", {"repeat": True}],
+        ["passes", 500],
         ["up", "stick", 1], ["keyup", "b"], ["passes", 500],
         ["gamepads", [[0, 0], []]], ["passes", 100], ["keydown", "b"],
     )  # fmt: skip
-    let_go = packets.index([10, *NOTHING])
-    assert [10, A | 32, 0, 100] in [[10, *held_keys] for _, *held_keys in packets[:let_go]]
-    assert [held for _, *held in packets[let_go + 1 :]] == [[32, 0, 0]]
+    let_go = packets.index([10, *NO_KEYS])
+    assert [10, A_KEY | 32, 0, 100] in [[10, *held_keys] for _, *held_keys in packets[:let_go]]
+    assert [held_keys for _, *held_keys in packets[let_go + 1 :]] == [[32, 0, 0]]
 
 
 def test_a_key_with_a_missed_release_is_dropped_at_the_next_one(page_data: Path) -> None:
     """The key was released in another window."""
     story = [["keydown", "b"], ["event", "blur"], ["keydown", "ArrowUp"]]
-    helds = [held_keys for _, *held_keys in sent_to_robot(page_data, WHOLE, *story)]
-    assert helds == [[32, 0, 0], NOTHING, [UP, 0, 0]]
+    helds = [held_keys for _, *held_keys in sent_to_robot(page_data, DRIVING_OFFER, *story)]
+    assert helds == [[32, 0, 0], NO_KEYS, [UP_KEY, 0, 0]]
 
 
 def test_a_gamepad_holds_until_it_is_unplugged(page_data: Path) -> None:
     packets = sent_to_robot(
-        page_data, WHOLE, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
+        page_data, DRIVING_OFFER, ["gamepads", [[0.1, -0.05], []]], ["event", "gamepadconnected"],
         ["passes", 50], ["gamepads", [[0.1, -1], [14, 1]]], ["passes", 20], ["gamepads"],
         ["passes", 500],
     )  # fmt: skip
-    assert [held_keys for _, *held_keys in packets] == [[4 | 32, 10, 100], NOTHING]
+    assert [held_keys for _, *held_keys in packets] == [[4 | 32, 10, 100], NO_KEYS]
     assert packets[1][0] - packets[0][0] <= 20, "it need not be told of"
 
 
 def test_only_controls_that_the_program_reads_are_shown(page_data: Path) -> None:
-    for reads in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
-        driven = ["offer", "driving", {"reads": reads}]
-        parts = [reading for reading in reads if reading.startswith("KEY")]
-        stick = ["stick"] if any(reading.startswith("PAD") for reading in reads) else []
-        assert play_story(page_data, driven)["shown"] == parts + stick
-    assert play_story(page_data, WHOLE, ["offer", "driving", None])["shown"] == []
-    another = ["offer", "link", {"reads": ALL_READINGS}]  # differs from the visible offer
-    assert play_story(page_data, another)["shown"] == []
+    for readings in (ALL_READINGS, ["KEY_A"], ["PAD_X"], ["KEY_LEFT", "PAD_Y"], []):
+        offer = ["offer", "driving", {"reads": readings}]
+        parts = [reading for reading in readings if reading.startswith("KEY")]
+        stick = ["stick"] if any(reading.startswith("PAD") for reading in readings) else []
+        assert play_story(page_data, offer)["shown"] == parts + stick
+    assert play_story(page_data, DRIVING_OFFER, ["offer", "driving", None])["shown"] == []
+    hidden_offer = ["offer", "link", {"reads": ALL_READINGS}]  # differs from the visible offer
+    assert play_story(page_data, hidden_offer)["shown"] == []
 
 
 def test_a_robot_without_a_remote_control_gets_no_key_messages(page_data: Path) -> None:
@@ -164,38 +176,44 @@ def test_a_newly_shown_robot_gets_only_later_presses(
     page_data: Path,
 ) -> None:
     """The one before hears that all is let go."""
-    real = ["offer", "link", {"reads": ALL_READINGS}]
+    link_offer = ["offer", "link", {"reads": ALL_READINGS}]
     outcome = play_story(
-        page_data, WHOLE, real, ["down", "KEY_UP", 1], ["passes", 10], ["side", "side_real"],
+        page_data, DRIVING_OFFER, link_offer, ["down", "KEY_UP", 1], ["passes", 10],
+        ["side", "side_real"],
         ["passes", 500], ["up", "KEY_UP", 1], ["down", "KEY_A", 1], ["side", "side_virtual"],
         ["passes", 500],
     )  # fmt: skip
     assert outcome["told"] == [
-        [0, "driving", UP, 0, 0], [10, "driving", *NOTHING],
-        [510, "link", A, 0, 0], [510, "link", *NOTHING],
+        [0, "driving", UP_KEY, 0, 0], [10, "driving", *NO_KEYS],
+        [510, "link", A_KEY, 0, 0], [510, "link", *NO_KEYS],
     ]  # fmt: skip
 
 
 def test_the_same_robot_keeps_its_held_keys(page_data: Path) -> None:
     packets = sent_to_robot(
-        page_data, WHOLE, ["down", "KEY_UP", 1], ["passes", 10], WHOLE, ["passes", 190]
+        page_data,
+        DRIVING_OFFER,
+        ["down", "KEY_UP", 1],
+        ["passes", 10],
+        DRIVING_OFFER,
+        ["passes", 190],
     )
-    assert packets == [[0, UP, 0, 0], [200, UP, 0, 0]]
+    assert packets == [[0, UP_KEY, 0, 0], [200, UP_KEY, 0, 0]]
 
 
-@pytest.mark.parametrize("way", ["host", "direct"])
+@pytest.mark.parametrize("stick_kind", ["host", "direct"])
 def test_a_constantly_moving_stick_is_sent_with_its_current_position(
-    page_data: Path, way: str
+    page_data: Path, stick_kind: str
 ) -> None:
     """No more often than the link says it, no word after a newer one, and the release at once."""
-    packets = json.loads(in_node(WAYS_SCRIPT, str(page_data), way)[0])
+    packets = json.loads(in_node(WAYS_SCRIPT, str(page_data), stick_kind)[0])
     moved = [y for _, y in packets["sent"][:-1]]
     assert moved == sorted(set(moved)) and len(moved) > 100
     assert packets["sent"][-1][1] == 0
     assert len(packets["sent"]) <= packets["asked"], "one word at a time: the newest"
-    assert packets["sent"][-1][0] - packets["released"] <= (31 if way == "host" else 150)
+    assert packets["sent"][-1][0] - packets["released"] <= (31 if stick_kind == "host" else 150)
     assert not packets["over"]
-    if way == "host":
+    if stick_kind == "host":
         seconds = 6
         assert packets["asked"] / seconds < classroom.REQUEST_RATE[1] - 1000 / 300, (
             "and it looks for its turn"

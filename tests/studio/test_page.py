@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.pupils import corpus
-from tests.studio.programs import LACKING, messages_of, programs
+from tests.studio.programs import MISSING_PART_CODES, messages_of, programs
 from tests.studio.programs import image as image_of
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -64,22 +64,25 @@ def test_every_program_gives_the_same_image_as_the_command(page: Page, part: int
         assert answer["image"] == ("" if unsupported else compiled_text), program.name
 
 
-@pytest.mark.sampled("first", "part")
-@pytest.mark.parametrize("first", range(2))
+@pytest.mark.sampled("first_index", "part")
+@pytest.mark.parametrize("first_index", range(2))
 @pytest.mark.parametrize("part", range(24))
 def test_every_wrong_program_gives_the_same_messages_as_the_command(
-    page: Page, first: int, part: int
+    page: Page, first_index: int, part: int
 ) -> None:
     """Languages alternate. This also detects missing parts of the package."""
     requests = [
-        {"text": entry.program, "robot": "tinibot", "language": ("en", "es")[(first + k) % 2]}
+        {"text": entry.program, "robot": "tinibot", "language": ("en", "es")[(first_index + k) % 2]}
         for k, entry in enumerate(corpus.entries()[part::24])
     ]
     for request, answer in zip(requests, checks(page, requests), strict=True):
         text = request["text"]
         expected = [message._asdict() for message in messages_of(text, request["language"])]
-        findings = [{key: finding[key] for key in Message._fields}
-               for finding in answer["findings"] if finding["code"] not in LACKING]  # fmt: skip
+        findings = [
+            {key: finding[key] for key in Message._fields}
+            for finding in answer["findings"]
+            if finding["code"] not in MISSING_PART_CODES
+        ]
         assert findings == expected, text
 
 
@@ -198,10 +201,10 @@ def test_a_program_is_kept_across_visits(page: Page, only_page: tuple[Pages, Pag
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
     assert (page.input_value("#robot"), page.input_value("#language")) == ("grabber", "es")
     page.click("#words")
-    other = only_page[0].another(page)  # a new tab begins with it
-    assert other.locator(".cm-content").inner_text() == "GRIPPER(90)"
-    write(other, "S")
-    other.close()
+    other_page = only_page[0].another(page)  # a new tab begins with it
+    assert other_page.locator(".cm-content").inner_text() == "GRIPPER(90)"
+    write(other_page, "S")
+    other_page.close()
     page.reload()  # each tab keeps its own program
     wait_until_checked(page)
     assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"

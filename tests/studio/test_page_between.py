@@ -52,27 +52,27 @@ CONFIRMED_STOP = "has (?:now )?confirmed the stop"
 UNCONFIRMED_STOP = "has not confirmed the stop"
 
 
-class Between(NamedTuple):
+class LineFaults(NamedTuple):
     """Faults between the page and `tsc studio`: pieces are late, or lost with their connection; for
     a while none get through, or `tsc studio` is suspended.
     """
 
     name: str
     late_s: float = 0.0
-    lost: float = 0.0
+    loss_rate: float = 0.0
     held_s: float = 0.0
     is_cut: bool = False
-    suspends: bool = False
+    is_suspended: bool = False
 
 
 NETWORK_FAULTS = (
-    Between("page and studio: late", late_s=0.3),
-    Between("page and studio: loses", lost=0.2),
-    Between("page and studio: stalls", held_s=4.0),
-    Between("page and studio: stalls long", held_s=12.0),
-    Between("page and studio: cut for a while", held_s=4.0, is_cut=True),
-    Between("studio suspended", held_s=4.0, suspends=True),
-    Between("studio suspended long", held_s=12.0, suspends=True),
+    LineFaults("page and studio: late", late_s=0.3),
+    LineFaults("page and studio: loses", loss_rate=0.2),
+    LineFaults("page and studio: stalls", held_s=4.0),
+    LineFaults("page and studio: stalls long", held_s=12.0),
+    LineFaults("page and studio: cut for a while", held_s=4.0, is_cut=True),
+    LineFaults("studio suspended", held_s=4.0, is_suspended=True),
+    LineFaults("studio suspended long", held_s=12.0, is_suspended=True),
 )
 LINES = tuple(fault for fault in FAULTS if not fault.pulls and not fault.suspends)
 MESSAGE_PLACE = "#link_said"
@@ -91,26 +91,26 @@ BUTTONS = {"connect": "#link_connect", "run": "#link_upload", "stop": "#stop",
 class BadNetwork(Network):
     """A bad network that looks like the server to the browser: it replaces the port in requests."""
 
-    def __init__(self, target: int, chance: Random) -> None:
-        self.fault = Between("nothing")
-        self.begun_s = 0.0
-        self._chance = chance
+    def __init__(self, target: int, rng: Random) -> None:
+        self.fault = LineFaults("nothing")
+        self.fault_start_s = 0.0
+        self._rng = rng
         super().__init__(target)
-        self._own, self._servers = (f":{port}".encode() for port in (self.port, target))
-        assert len(self._own) == len(self._servers)
+        self._own_port, self._server_port = (f":{port}".encode() for port in (self.port, target))
+        assert len(self._own_port) == len(self._server_port)
 
-    def begin(self, fault: Between) -> None:
-        self.fault, self.begun_s = fault, CLOCK.now_s
+    def begin(self, fault: LineFaults) -> None:
+        self.fault, self.fault_start_s = fault, CLOCK.now_s
         if fault.is_cut:
             self.cut()
 
     def mend(self) -> None:
-        self.fault = Between("nothing")
+        self.fault = LineFaults("nothing")
 
     @property
     def is_held(self) -> bool:
         fault = self.fault
-        return not fault.suspends and CLOCK.now_s < self.begun_s + fault.held_s
+        return not fault.is_suspended and CLOCK.now_s < self.fault_start_s + fault.held_s
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:
         if self.fault.is_cut and self.is_held:
@@ -118,9 +118,9 @@ class BadNetwork(Network):
         while self.is_held:
             time.sleep(0.02)
         time.sleep(self.fault.late_s)
-        if self._chance.random() < self.fault.lost:
+        if self._rng.random() < self.fault.loss_rate:
             return None
-        return data if is_back else data.replace(self._own, self._servers)
+        return data if is_back else data.replace(self._own_port, self._server_port)
 
 
 class TriedAction(NamedTuple):
@@ -128,25 +128,25 @@ class TriedAction(NamedTuple):
     fault: str
     silence_s: float
     took_s: float
-    wrong: tuple[str, ...]
+    errors: tuple[str, ...]
     messages: tuple[str, ...]
 
 
 class Scene:
     """A page, a process of `tsc studio`, a robot, and the connections between them."""
 
-    def __init__(self, browser: Browser, chance: Random, stack: ExitStack) -> None:
+    def __init__(self, browser: Browser, rng: Random, stack: ExitStack) -> None:
         self._folders = own_folders(stack.enter_context(tempfile.TemporaryDirectory()))
-        self._chance = chance
+        self._rng = rng
         self._stack = stack
-        self.line = BadLine(Fault("nothing"), chance, 0)
+        self.line = BadLine(Fault("nothing"), rng, 0)
         stack.callback(lambda: self.line.clear_away())
         self.studio = Command("studio", "--listen", "0", "--no-browser", env=self._folders)
         stack.callback(self.studio.kill)
         assert self.studio.process.stdout
         entrance = self.studio.process.stdout.readline().decode().strip()
         target = int(re.findall(r":(\d+)/", entrance)[0])
-        self.network = BadNetwork(target, chance)
+        self.network = BadNetwork(target, rng)
         stack.callback(self.network.close)
         address = f"http://127.0.0.1:{self.network.port}/"
         self.pages = Pages(browser, address, entrance=lambda: entrance.replace(
@@ -156,34 +156,40 @@ class Scene:
         write(self.page, FOREVER)
         self.page.click("#side_real")
 
-    def try_action(self, action: str, fault: Fault | Between) -> TriedAction:
+    def try_action(self, action: str, fault: Fault | LineFaults) -> TriedAction:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
-        begun_ms = page.evaluate(LISTENING_SCRIPT, place)
+        start_ms = page.evaluate(LISTENING_SCRIPT, place)
         self._begin(fault)
         page.click(BUTTONS[action])
         has_ended = self._until(END_PATTERNS[action], LONGEST_END_S, page)
-        wrong = [] if has_ended else ["it has no end"]
+        errors = [] if has_ended else ["it has no end"]
         page.wait_for_timeout(500)
         self._mend(fault)
         timed_messages: list[tuple[float, str]] = page.evaluate("window.told")
         texts = [text for _, text in timed_messages]
-        wrong += [f"said twice: {text}" for text, after in pairwise(texts) if text == after]
-        wrong += self._next_try()
-        times = [begun_ms, *(at_ms for at_ms, _ in timed_messages)]
-        gaps = [(after - at) / 1000 for k, (at, after) in enumerate(pairwise(times))
+        errors += [
+            f"said twice: {text}" for text, next_text in pairwise(texts) if text == next_text
+        ]
+        errors += self._next_try()
+        times = [start_ms, *(time_ms for time_ms, _ in timed_messages)]
+        gaps = [(end_ms - start_ms) / 1000 for k, (start_ms, end_ms) in enumerate(pairwise(times))
                 if not k or not UNFINISHED_MESSAGE.search(texts[k - 1])]  # fmt: skip
-        first = [at_ms for at_ms, text in timed_messages if re.search(END_PATTERNS[action], text)]
-        took_s = ((first[0] if first else begun_ms + 1000 * LONGEST_END_S) - begun_ms) / 1000
+        end_times_ms = [
+            time_ms for time_ms, text in timed_messages if re.search(END_PATTERNS[action], text)
+        ]
+        took_s = (
+            (end_times_ms[0] if end_times_ms else start_ms + 1000 * LONGEST_END_S) - start_ms
+        ) / 1000
         return TriedAction(action, fault.name, gaps[0] if gaps else LONGEST_END_S, took_s,
-                           tuple(wrong), tuple(texts))  # fmt: skip
+                           tuple(errors), tuple(texts))  # fmt: skip
 
-    def _prepare(self, action: str, fault: Fault | Between) -> None:
+    def _prepare(self, action: str, fault: Fault | LineFaults) -> None:
         if isinstance(fault, Fault):
             self._leave()
             self.line.clear_away()
-            self.line = BadLine(Fault("nothing"), self._chance, 0)
+            self.line = BadLine(Fault("nothing"), self._rng, 0)
         if action == "connect":
             self._leave()
             self._choose()
@@ -192,17 +198,17 @@ class Scene:
         if action == "stop":
             assert self._run() == "", self._link_text()
 
-    def _begin(self, fault: Fault | Between) -> None:
+    def _begin(self, fault: Fault | LineFaults) -> None:
         if isinstance(fault, Fault):
             self.line.begin(fault)
         else:
             self.network.begin(fault)
-            if fault.suspends:
+            if fault.is_suspended:
                 self.studio.signal(signal.SIGSTOP)
 
-    def _mend(self, fault: Fault | Between) -> None:
-        if isinstance(fault, Between):
-            left_s = self.network.begun_s + fault.held_s - CLOCK.now_s
+    def _mend(self, fault: Fault | LineFaults) -> None:
+        if isinstance(fault, LineFaults):
+            left_s = self.network.fault_start_s + fault.held_s - CLOCK.now_s
             self.page.wait_for_timeout(1000 * max(0.0, left_s))
             self.studio.signal(signal.SIGCONT)
             self.network.mend()
@@ -212,8 +218,8 @@ class Scene:
 
     def _next_try(self) -> list[str]:
         """Connect if that is needed, run, and stop; return the failures."""
-        why = self._connect() or self._run() or self._stop()
-        return [f"the next try: {why}"] if why else []
+        failure = self._connect() or self._run() or self._stop()
+        return [f"the next try: {failure}"] if failure else []
 
     def _link_text(self) -> str:
         return self.page.locator("#link_said").inner_text()
@@ -288,12 +294,12 @@ class Scene:
 class ClassScene(Scene):
     """A scene of a class: a pupil, a teacher, and the class's robot on the bad line."""
 
-    def __init__(self, browser: Browser, chance: Random, stack: ExitStack) -> None:
+    def __init__(self, browser: Browser, rng: Random, stack: ExitStack) -> None:
         patch = stack.enter_context(pytest.MonkeyPatch.context())
         for name, value in own_folders(stack.enter_context(tempfile.TemporaryDirectory())).items():
             patch.setenv(name, value)
-        self._chance = chance
-        self.line = BadLine(Fault("nothing"), chance, 0)
+        self._rng = rng
+        self.line = BadLine(Fault("nothing"), rng, 0)
         stack.callback(self.line.clear_away)
         class_ = stack.enter_context(studio.serve_class([self.line.port]))
         self.pages = Pages(browser, class_.server.address)
@@ -302,15 +308,15 @@ class ClassScene(Scene):
         self.page = self.pages.open(is_alone=True)
         write(self.page, FOREVER)
         self.page.click("#side_real")
-        for which, text in enumerate((class_.room.code, "Ana")):
-            self.page.locator("#class_pupil input").nth(which).fill(text)
+        for field_index, text in enumerate((class_.room.code, "Ana")):
+            self.page.locator("#class_pupil input").nth(field_index).fill(text)
         self.page.click("[data-text=class_join]")
         self.page.locator(ASK_BUTTON).wait_for()
 
     def _place(self, action: str) -> tuple[Page, str]:
         return (self.teacher, "#stops") if action == "stop all" else (self.page, MESSAGE_PLACE)
 
-    def _prepare(self, action: str, fault: Fault | Between) -> None:
+    def _prepare(self, action: str, fault: Fault | LineFaults) -> None:
         if action == "ask":
             self._leave()
             self.page.locator(ASK_BUTTON).wait_for()
@@ -319,7 +325,7 @@ class ClassScene(Scene):
         if action in ("stop", "stop all"):
             assert self._run() == "", self._link_text()
 
-    def _mend(self, fault: Fault | Between) -> None:
+    def _mend(self, fault: Fault | LineFaults) -> None:
         super()._mend(fault)
         self.line.begin(Fault("nothing"))
         self.page.wait_for_timeout(1000 * LATCH_S)  # no page drives after a teacher's stop
@@ -348,22 +354,22 @@ CLASS_LINES = tuple(line for line in LINES if line.name in (
 
 
 @contextmanager
-def class_scene(browser: Browser, chance: Random) -> Iterator[ClassScene]:
+def class_scene(browser: Browser, rng: Random) -> Iterator[ClassScene]:
     with ExitStack() as stack:
-        yield ClassScene(browser, chance, stack)
+        yield ClassScene(browser, rng, stack)
 
 
 @contextmanager
-def scene(browser: Browser, chance: Random) -> Iterator[Scene]:
+def scene(browser: Browser, rng: Random) -> Iterator[Scene]:
     with ExitStack() as stack:
-        yield Scene(browser, chance, stack)
+        yield Scene(browser, rng, stack)
 
 
 def list_faults(tried_action: TriedAction, room_s: float = TOLERANCE_S) -> list[str]:
-    silent = tried_action.silence_s > LONGEST_SILENCE_S + room_s
+    is_silent = tried_action.silence_s > LONGEST_SILENCE_S + room_s
     return [
-        *tried_action.wrong,
-        *([f"silent for {tried_action.silence_s:.1f} s"] if silent else []),
+        *tried_action.errors,
+        *([f"silent for {tried_action.silence_s:.1f} s"] if is_silent else []),
     ]
 
 
@@ -372,20 +378,20 @@ def print_table(tried_actions: Sequence[TriedAction]) -> None:
     for tried_action in tried_actions:
         rows[tried_action.action].append(tried_action)
     print("| page | tries | longest silence, s | to its end, s |\n|---|---:|---:|---:|")
-    for action, mine in rows.items():
-        quiet = max(mine, key=lambda tried_action: tried_action.silence_s)
-        late = max(mine, key=lambda tried_action: tried_action.took_s)
-        print(f"| {action} | {len(mine)} | {quiet.silence_s:.1f} ({quiet.fault}) |"
-              f" {late.took_s:.1f} ({late.fault}) |")  # fmt: skip
+    for action, page_actions in rows.items():
+        quietest = max(page_actions, key=lambda tried_action: tried_action.silence_s)
+        slowest = max(page_actions, key=lambda tried_action: tried_action.took_s)
+        print(f"| {action} | {len(page_actions)} | {quietest.silence_s:.1f} ({quietest.fault}) |"
+              f" {slowest.took_s:.1f} ({slowest.fault}) |")  # fmt: skip
 
 
 def test_a_sample_of_button_presses_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
-    chance = Random(sampling.seed(request.config))
-    with scene(browser, chance) as opened_scene:
-        faults: list[Fault | Between] = [*NETWORK_FAULTS[:5], *LINES[:6]]
-        tried_action = opened_scene.try_action(chance.choice(ACTIONS), chance.choice(faults))
+    rng = Random(sampling.seed(request.config))
+    with scene(browser, rng) as opened_scene:
+        faults: list[Fault | LineFaults] = [*NETWORK_FAULTS[:5], *LINES[:6]]
+        tried_action = opened_scene.try_action(rng.choice(ACTIONS), rng.choice(faults))
         assert not list_faults(tried_action, 3.0), tried_action
 
 
@@ -393,9 +399,9 @@ def test_a_sample_of_button_presses_keeps_the_laws(
 def test_a_sample_of_button_presses_in_a_class_keeps_the_laws(
     request: pytest.FixtureRequest, browser: Browser
 ) -> None:
-    chance = Random(sampling.seed(request.config))
-    with class_scene(browser, chance) as scene:
-        tried_action = scene.try_action(chance.choice(CLASS_ACTIONS), chance.choice(CLASS_LINES))
+    rng = Random(sampling.seed(request.config))
+    with class_scene(browser, rng) as scene:
+        tried_action = scene.try_action(rng.choice(CLASS_ACTIONS), rng.choice(CLASS_LINES))
         assert not list_faults(tried_action, 3.0), tried_action
 
 
@@ -418,7 +424,7 @@ if __name__ == "__main__":
                         )
         for seed in range(options.seed, options.seed + options.count * (not options.taught)):
             with scene(browser, Random(seed)) as opened_scene:
-                faults: list[Fault | Between] = [*NETWORK_FAULTS * (not options.line),
+                faults: list[Fault | LineFaults] = [*NETWORK_FAULTS * (not options.line),
                                                  *LINES * (not options.network)]  # fmt: skip
                 for fault in faults:
                     for action in ACTIONS:

@@ -60,7 +60,7 @@ from tools.builds.studio import BLOCKLY, unusable_reason
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-drawn = pytest.mark.sampled(of="details of blocks", keep=4)
+sampled = pytest.mark.sampled(of="details of blocks", keep=4)
 
 SAMPLE_SIZE = 8  # random programs
 # Whether a text field handles the undo key itself.
@@ -86,20 +86,22 @@ def test_blocks_of_the_page_match_python(pages: Pages, part: int) -> None:
     """
     page = pages.open()
     start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
-    first = box_of(block(page, "when it starts"))  # a program is seen from its beginning
-    pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
+    first_box = box_of(block(page, "when it starts"))  # a program is seen from its beginning
+    pane, words = (
+        page.locator(selector).bounding_box() for selector in ("#blocks", ".blocklyToolbox")
+    )
     assert pane is not None and words is not None
-    assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
+    assert first_box["x"] > words["x"] + words["width"] and first_box["y"] > pane["y"]
     forms = [
         read_blocks(program.text, robots.load(program.robot).kit)
         for program in programs()[part::10]
     ]
     for seed in range(part, 300, 10):
-        theirs, kit = KITS[seed % len(KITS)]
-        forms.append(read_blocks(oracle_programs.program(random.Random(seed), theirs), kit))
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        forms.append(read_blocks(oracle_programs.program(random.Random(seed), oracle_kit), kit))
     data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
-    for k, (want, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
-        assert actual == want, k
+    for k, (wanted_form, actual) in enumerate(zip(data, round_trip(page, data), strict=True)):
+        assert actual == wanted_form, k
     assert compare(page, SAMPLE_SIZE, seed=1000) > SAMPLE_SIZE * 0.9
 
 
@@ -172,11 +174,11 @@ def test_blocks_and_text_share_one_undo_history(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
-@drawn
+@sampled
 def test_an_undo_keeps_the_scroll_position(page: Page) -> None:
     """Also where the focus is on a block, which goes with all others and comes again."""
-    long = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
-    start(page, long)
+    long_program = "SI|" + "".join(f"F({k % 9 + 1}, 80);\n" for k in range(30))
+    start(page, long_program)
     page.locator(".zoom button").nth(1).click()
     page.mouse.move(600, 300)
     page.mouse.wheel(0, 500)
@@ -187,26 +189,26 @@ def test_an_undo_keeps_the_scroll_position(page: Page) -> None:
     page.mouse.click(place["x"] + 8, place["y"] + 8)
     page.keyboard.type("77")
     page.keyboard.press("Enter")
-    after = long.splitlines()
-    after[15] = "F(77, 80);"
-    wait_for_text(page, "\n".join(after) + "\n")
+    new_lines = long_program.splitlines()
+    new_lines[15] = "F(77, 80);"
+    wait_for_text(page, "\n".join(new_lines) + "\n")
     for _ in range(2):
         box_before = box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15))
         page.keyboard.press("Control+z")
-        wait_for_text(page, long)
+        wait_for_text(page, long_program)
         page.locator(f"{PROGRAM} .blocklyActiveFocus").wait_for(state="attached")
         # Blockly scrolls to the focused block, and the page scrolls back
         page.evaluate(SETTLED_SCRIPT)
         assert box_of(page.locator(f"{PROGRAM} .blocklyBlock").nth(15)) == pytest.approx(
             box_before, abs=2
         )
-        assert page.locator("#editor .cm-activeLine").inner_text() == long.splitlines()[15]
+        assert page.locator("#editor .cm-activeLine").inner_text() == long_program.splitlines()[15]
         page.keyboard.press("Control+y")
-        wait_for_text(page, "\n".join(after) + "\n")
-    high = box_of(block(page, "forward"))["height"]
+        wait_for_text(page, "\n".join(new_lines) + "\n")
+    block_height = box_of(block(page, "forward"))["height"]
     page.click("#words")
     wait_for_blocks(page)
-    assert box_of(block(page, "forward"))["height"] == pytest.approx(high, abs=1)
+    assert box_of(block(page, "forward"))["height"] == pytest.approx(block_height, abs=1)
     page.click("#words")
     page.locator(".zoom button").nth(0).click()
     wait_for_blocks(page)
@@ -238,7 +240,7 @@ def test_an_undo_while_a_block_is_dragged_does_nothing(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
 
 
-@drawn
+@sampled
 def test_a_block_snaps_near_a_connection_and_otherwise_stays_loose(page: Page) -> None:
     """Also one without values."""
     drag(page, "Move", "back", block(page, "stop"), off=(20, 24))
@@ -256,8 +258,8 @@ def test_a_block_snaps_near_a_connection_and_otherwise_stays_loose(page: Page) -
 
 def test_a_block_with_a_body_encloses_following_blocks(page: Page) -> None:
     """The preview before the drop shows it; a block that already has content does not do this."""
-    before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
-    start(page, before)
+    text_before = "SI|F(2, 80);\nL(1, 60);\nBEEP(0.5, 440);\n"
+    start(page, text_before)
     page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
     source = page.locator(FLYOUT).filter(has_text="times").first
     source.wait_for()
@@ -266,17 +268,17 @@ def test_a_block_with_a_body_encloses_following_blocks(page: Page) -> None:
     page.mouse.down()
     marker = page.locator(f"{PROGRAM} .blocklyInsertionMarker")
     moves_and_beeps = ".move, .beep"
-    for above, field_count in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
+    for words_above, field_count in (("forward", 2), ("turn left", 1), ("beep", 0), ("forward", 2)):
         page.mouse.move(700, 330, steps=8)  # away from all others: no block is lost
         assert block(page, "when it starts").locator(moves_and_beeps).count() == 3
-        place = box_of(block(page, above))
+        place = box_of(block(page, words_above))
         page.mouse.move(place["x"] + 10, place["y"] + place["height"] + 8, steps=8)
         assert marker.locator(moves_and_beeps).count() == field_count
     page.mouse.up()
     wrapped = "SI|F(2, 80);\nLOOP(3);\n  L(1, 60);\n  BEEP(0.5, 440);\nEND_LOOP;\n"
     wait_for_text(page, wrapped)
     page.click("#undo")
-    wait_for_text(page, before)
+    wait_for_text(page, text_before)
     page.click("#redo")
     wait_for_text(page, wrapped)
     place, top = box_of(block(page, "times")), box_of(block(page, "when it starts"))
@@ -293,12 +295,12 @@ def test_a_loose_block_is_kept(page: Page) -> None:
     wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert image(page) == compile("SI|F(2, 80);S").image
     assert page.inner_text("#status") == "1 loose block does not run"
-    loose = block(page, "forward")
-    path = path_of(loose)
+    loose_block = block(page, "forward")
+    path = path_of(loose_block)
     grey = path.evaluate("e => getComputedStyle(e).fill")
     white = "all => all.filter((e) => getComputedStyle(e).fill === 'rgb(255, 255, 255)').length"
     assert page.locator(f"{PROGRAM} > .loose .blocklyText").evaluate_all(white) == 0
-    place = box_of(loose)
+    place = box_of(loose_block)
     page.click("#undo")
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
     assert page.inner_text("#status").startswith("The program is correct")
@@ -306,7 +308,7 @@ def test_a_loose_block_is_kept(page: Page) -> None:
     page.click("#redo")
     wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
     assert path.evaluate("e => getComputedStyle(e).fill") == grey
-    assert box_of(loose) == pytest.approx(place, abs=1)
+    assert box_of(loose_block) == pytest.approx(place, abs=1)
     page.click("#view_text")
     page.click("#view_blocks")
     assert page.locator("#blocks .blocklyDraggable", has_text="forward").count() >= 2
@@ -350,8 +352,8 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
     icons.first.click()  # puts it away
     bubble.wait_for(state="detached")
     page.click("#view_text")
-    row, first = page.locator("#messages li"), page.locator("#first_message")
-    for place in (row, first):
+    row, first_message = page.locator("#messages li"), page.locator("#first_message")
+    for place in (row, first_message):
         row_text = place.text_content() or ""
         assert message.message in row_text and message.fix in row_text
     page.locator("#messages .repair").wait_for()
@@ -361,9 +363,11 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
     icons.first.click()
     bubble.wait_for()
     named_text, mended_text = "here “forward” takes 0", "Try: “back 2 s at 80 %”"
-    whole = "".join((bubble.text_content() or "").split())
-    assert "".join(named_text.split()) in whole and "".join(mended_text.split()) in whole
-    assert named_text in (first.text_content() or "")
+    bubble_text = "".join((bubble.text_content() or "").split())
+    assert (
+        "".join(named_text.split()) in bubble_text and "".join(mended_text.split()) in bubble_text
+    )
+    assert named_text in (first_message.text_content() or "")
     assert row.locator(".on_block").all_inner_texts() == ["forward", "back 2 s at 80 %"]
     assert page.locator("#messages .repair").count() == 1
     page.locator("#messages .place").click()
@@ -375,7 +379,7 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
     assert icons.count() == 0
 
 
-@drawn
+@sampled
 def test_a_message_covers_no_block(page: Page) -> None:
     """A message without room is hidden."""
     bubble = page.locator("#blocks .blocklyBubble")
@@ -397,22 +401,22 @@ def test_a_message_covers_no_block(page: Page) -> None:
     bubble.wait_for(state="detached")
 
 
-@drawn
+@sampled
 def test_the_block_of_each_task_that_runs_is_marked(page: Page) -> None:
     start(page, "SI|S;\nF(FOREVER, 20) UNTIL(FALSE);\nW(1);\n", "all")
     page.click("#run")
-    running = page.locator("#blocks .blocklyDraggable.running")
-    running.wait_for()
-    assert "until" in (running.text_content() or "")
+    running_block = page.locator("#blocks .blocklyDraggable.running")
+    running_block.wait_for()
+    assert "until" in (running_block.text_content() or "")
     page.click("#stop")
     wait_for_phase(page, "ended")
     page.select_option("#robot", "tinibot32")
     start(page, "SI|W(9);\nTASK;\n  LOOP(9);\n    W(9);\n  END_LOOP;\nEND_TASK;\n", "all")
     page.click("#run")
-    running.nth(1).wait_for()
-    assert running.count() == 2
+    running_block.nth(1).wait_for()
+    assert running_block.count() == 2
     page.click("#stop")
-    running.first.wait_for(state="detached")
+    running_block.first.wait_for(state="detached")
 
 
 def flyout(page: Page, group: str) -> str:
@@ -423,7 +427,7 @@ def flyout(page: Page, group: str) -> str:
     return (page.locator(".blocklyFlyout:visible").text_content() or "").replace("\xa0", " ")
 
 
-@drawn
+@sampled
 def test_the_words_of_the_robot_are_blocks(page: Page, pytestconfig: pytest.Config) -> None:
     for name in sample_of(pytestconfig, "words of robots", robots.names(), 3):
         page.select_option("#robot", name)
@@ -441,7 +445,7 @@ def texts_on_blocks(page: Page) -> set[str]:
     return {" ".join(text.split()) for text in texts if not text.isdigit()}
 
 
-@drawn
+@sampled
 def test_blocks_can_show_the_words_of_the_text(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert texts_on_blocks(page) == {
@@ -465,10 +469,10 @@ def test_blocks_can_show_the_words_of_the_text(page: Page) -> None:
     assert "stop" in texts_on_blocks(page)
 
 
-@drawn
+@sampled
 def test_a_move_has_a_time_or_a_distance(page: Page) -> None:
     start(page, "SI|F(2, 80);\n")
-    for field, choice, says, text in (
+    for field, choice, block_texts, text in (
         ("s", "cm", {"forward", "cm"}, "F(2 CM, 80)"),
         ("forward", "turn right", {"turn right", "°"}, "R(2 DEG, 80)"),
         ("°", "s", {"turn right", "s"}, "R(2, 80)"),
@@ -477,10 +481,10 @@ def test_a_move_has_a_time_or_a_distance(page: Page) -> None:
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text=re.compile(f"^{field}")).click()
         page.locator(".blocklyMenuItem", has_text=re.compile(rf"^{choice}$")).click()
         wait_for_text(page, f"SI|{text}\n")
-        assert texts_on_blocks(page) == {"when it starts", "at", "%", *says}
+        assert texts_on_blocks(page) == {"when it starts", "at", "%", *block_texts}
 
 
-@drawn
+@sampled
 def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -> None:
     page.click("#view_text")
     write(page, "S;" * 1600)
@@ -494,7 +498,7 @@ def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -
 
 # Opens one group after the other and measures how many pixels its lowest block is below the pane,
 # and its widest one beyond the side.
-LOWEST = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map((row) => {
+LOWEST_SCRIPT = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].map((row) => {
   const { x, y, width, height } = row.getBoundingClientRect();
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
   const press = () => ['pointerdown', 'pointerup'].forEach((type) =>
@@ -523,10 +527,10 @@ def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
                 wait_for_blocks(page)
                 rows = page.locator(".blocklyToolbox")
                 assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
-                groups = page.evaluate(LOWEST)
+                groups = page.evaluate(LOWEST_SCRIPT)
                 assert len(groups) > 3
-                for words, count, below, _, height in groups:
-                    assert count and below <= 1 and height >= 40, (screen, name, level, words)
+                for words, count, hidden_px, _, height in groups:
+                    assert count and hidden_px <= 1 and height >= 40, (screen, name, level, words)
 
 
 @pytest.mark.long
@@ -540,8 +544,8 @@ def test_no_block_of_the_toolbox_is_cut(pages: Pages, screen: tuple[int, int]) -
         for name in robots.names():
             page.select_option("#robot", name)
             wait_for_blocks(page)
-            for words, _, below, overhang, _ in page.evaluate(LOWEST):
-                assert below <= 1 and overhang <= 1, (language, name, words)
+            for words, _, hidden_px, overhang, _ in page.evaluate(LOWEST_SCRIPT):
+                assert hidden_px <= 1 and overhang <= 1, (language, name, words)
 
 
 def test_every_word_that_has_a_block_can_be_dragged_out(
@@ -553,7 +557,7 @@ def test_every_word_that_has_a_block_can_be_dragged_out(
     page.select_option("#robot", "grabber")
     start(page, with_names, "all")
     assert list_offered_blocks(page) == kinds
-    for word in (name for name, its in WORDS.items() if its.role.name != "later"):
+    for word in (name for name, entry in WORDS.items() if entry.role.name != "later"):
         assert (
             kinds_in(read_blocks(program_with_word(word), robots.load("grabber").kit)) <= kinds
         ), word
@@ -574,12 +578,12 @@ def test_a_lesson_offers_its_words_while_it_is_open(
     """
     page = pages.open(view="blocks")
     page.locator("#level").wait_for()
-    few = list_offered_blocks(page)
-    assert page.input_value("#level") == "few" and "show" not in few
+    offered_before = list_offered_blocks(page)
+    assert page.input_value("#level") == "few" and "show" not in offered_before
     page.click("#side_lessons")
     page.locator("#lesson:enabled").wait_for()
     folders = catalogue.folders()
-    few_before = few
+    few_before = offered_before
     for folder in sample_of(pytestconfig, "offers", folders, 4):
         number, lesson = folders.index(folder) + 1, catalogue.load(folder)
         kit = robots.load(lesson.robot).kit
@@ -613,7 +617,7 @@ def test_a_condition_dragged_out_checks_the_distance(page: Page) -> None:
     """If the robot can measure it: in the first world it stops before the wall."""
     for robot in robots.names():
         page.select_option("#robot", robot)
-        asks = "DISTANCE" in robots.load(robot).kit.names
+        asks_distance = "DISTANCE" in robots.load(robot).kit.names
         for group, words in (
             ("Move", "or until"), ("Wait", "or until"), ("Repeat", "while"), ("Decide", "if"),
             ("Events", "each time"),
@@ -622,7 +626,7 @@ def test_a_condition_dragged_out_checks_the_distance(page: Page) -> None:
             drag(page, group, words, block(page, "stop"))
             wait_for_other_text(page, "SI|S;\n")
             question = "DISTANCE > 20" if words == "while" else "DISTANCE < 20"
-            assert (question in text_of(page)) == asks, (robot, words, text_of(page))
+            assert (question in text_of(page)) == asks_distance, (robot, words, text_of(page))
             assert not [
                 message for message in check(text_of(page), robot) if message.severity == "mistake"
             ]
@@ -637,7 +641,7 @@ def test_a_condition_dragged_out_checks_the_distance(page: Page) -> None:
     assert page.locator("#values div", has_text="Collisions").inner_text().split()[-1] == "0"
 
 
-@drawn
+@sampled
 def test_switchable_devices_have_a_yes_no_choice(page: Page) -> None:
     """Dragged out, chosen later, and back; a number stays where it still fits."""
     page.select_option("#robot", "grabber")
@@ -653,54 +657,56 @@ def test_switchable_devices_have_a_yes_no_choice(page: Page) -> None:
     assert page.locator(f"{PROGRAM} .wrong").count() == 1
 
 
-@drawn
+@sampled
 def test_a_hat_block_cannot_be_nested_or_stacked(page: Page) -> None:
     page.select_option("#robot", "tinibot32")
-    for group, words, own in (
+    for group, words, hat_text in (
         ("Events", "each time", "WHEN(DISTANCE < 20);\nEND_WHEN;\n"),
         ("Events", "at the same time", "TASK;\nEND_TASK;\n"),
         ("My words", "new word", "DEF HOP;\nEND_DEF;\n"),
     ):
         start(page, "SI|LOOP(3);\nEND_LOOP;\n", "usual")
         loop = block(page, "repeat")
-        inside = 20 - round(box_of(loop)["height"])
-        drag(page, group, words, loop, off=(12, inside))
+        y_offset = 20 - round(box_of(loop)["height"])
+        drag(page, group, words, loop, off=(12, y_offset))
         wait_for_other_text(page, "SI|LOOP(3);\nEND_LOOP;\n")
         loops = "LOOP(3);\nEND_LOOP;\n"
-        wait_for_text(page, f"SI|{own}{loops}" if own.startswith("DEF") else f"SI|{loops}{own}")
+        wait_for_text(
+            page, f"SI|{hat_text}{loops}" if hat_text.startswith("DEF") else f"SI|{loops}{hat_text}"
+        )
         hat, program = box_of(block(page, words)), box_of(block(page, "repeat"))
         assert hat["y"] > program["bottom"] or hat["x"] > program["right"], (words, hat, program)
 
 
-@drawn
+@sampled
 def test_hat_blocks_are_written_from_top_to_bottom_after_a_move(page: Page) -> None:
-    first, then = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
-    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first}{then}"
+    first_hat, second_hat = (f"WHEN(DISTANCE < {n});\n  W(3);\nEND_WHEN;\n" for n in (10, 20))
+    text = f"SI|S;\nDEF SPIN;\n  L(1, 50);\nEND_DEF;\nW(2);\nSPIN;\n{first_hat}{second_hat}"
     start(page, text, "usual")
     assert text_of(page) == text
     drag(page, "Move", "back", block(page, "stop"))
     moved_text = text.replace("W(2);\n", "B(2, 80);\nW(2);\n")
     wait_for_text(page, moved_text)  # a hat that was not moved stays after its block
-    upper, last = (
+    upper, last_hat = (
         page.locator(f"{PROGRAM} > .blocklyDraggable", has_text=text) for text in ("10", "20")
     )
-    box, above = box_of(last), box_of(upper)
+    box, upper_box = box_of(last_hat), box_of(upper)
     page.mouse.move(box["x"] + 12, box["y"] + 16)
     page.mouse.down()
-    page.mouse.move(box["right"] + 24, above["y"] - 40, steps=8)
+    page.mouse.move(box["right"] + 24, upper_box["y"] - 40, steps=8)
     page.mouse.up()
-    moved = moved_text.replace(first + then, then + first)
+    moved = moved_text.replace(first_hat + second_hat, second_hat + first_hat)
     wait_for_text(page, moved)
-    place = box_of(last)
-    assert place["x"] > above["right"] and place["y"] < above["y"]
+    place = box_of(last_hat)
+    assert place["x"] > upper_box["right"] and place["y"] < upper_box["y"]
     page.click("#undo")
     wait_for_text(page, moved_text)
     page.click("#redo")
     wait_for_text(page, moved)
-    assert box_of(last)["x"] == pytest.approx(place["x"], abs=1)
+    assert box_of(last_hat)["x"] == pytest.approx(place["x"], abs=1)
 
 
-@drawn
+@sampled
 def test_a_restored_hat_block_is_placed_in_view(page: Page) -> None:
     """An existing hat stays if somebody put it, even out of sight."""
     word = "SI|DEF HOP;\n  F(1, 50);\nEND_DEF;\nHOP;\n"
@@ -770,9 +776,9 @@ def test_a_lesson_about_tasks_can_be_solved_with_blocks(pages: Pages, number: in
     start(page, "SI|")
     dragged, numbers = BLOCKS_BY_LESSON[number]
     for group, words, target, place in dragged:
-        text_before, to = text_of(page), block(page, target)
-        inside = 40 - round(box_of(to)["height"])
-        drag(page, group, words, to, off=(12, inside) if place == "in" else (0, 0))
+        text_before, target_block = text_of(page), block(page, target)
+        y_offset = 40 - round(box_of(target_block)["height"])
+        drag(page, group, words, target_block, off=(12, y_offset) if place == "in" else (0, 0))
         wait_for_other_text(page, text_before)
     if number == 14:  # every second time the lamp goes out
         page.locator(f"{PROGRAM} .blocklyDropdownText", has_text="yes").last.click()
@@ -790,7 +796,7 @@ def test_a_lesson_about_tasks_can_be_solved_with_blocks(pages: Pages, number: in
     assert page.locator("#lesson_said").get_attribute("data-verdict") == "passed", text_of(page)
 
 
-@drawn
+@sampled
 def test_an_if_block_can_get_more_branches(page: Page) -> None:
     start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
     for name, wanted_text in (
@@ -804,18 +810,20 @@ def test_an_if_block_can_get_more_branches(page: Page) -> None:
         wait_for_text(page, f"SI|{wanted_text}")
 
 
-@drawn
+@sampled
 def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
     start(page, "SI|DEF HOP(A);\n  F(A, 50);\n  A = A + 1;\nEND_DEF;\nHOP(2);\nHOP(3);\n", "usual")
     canvas = page.locator("#blocks .blocklyBlockCanvas")
     canvas.locator("image[*|href$='more.svg']").first.click()
     page.locator("#blocks[data-state=shown]").wait_for()
-    begin = "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
-    wait_for_text(page, begin.format(*"AAAA"))
+    hop_text = (
+        "SI|DEF HOP({}, C);\n  F({}, 50);\n  {} = {} + 1;\nEND_DEF;\nHOP(2, 1);\nHOP(3, 1);\n"
+    )
+    wait_for_text(page, hop_text.format(*"AAAA"))
     canvas.locator(".blocklyEditableField", has_text=re.compile("^A$")).last.click()
     page.keyboard.type("size")
     page.keyboard.press("Enter")
-    wait_for_text(page, begin.format(*["SIZE"] * 4))
+    wait_for_text(page, hop_text.format(*["SIZE"] * 4))
     texts = {text.strip() for text in canvas.locator(".blocklyText").all_text_contents()}
     assert {"SIZE", "C"} <= texts
     body = "  F(SIZE, 50);\n  SIZE = SIZE + 1;\nEND_DEF;\n"
@@ -825,7 +833,7 @@ def test_the_calls_of_a_word_follow_its_values(page: Page) -> None:
         wait_for_text(page, f"SI|DEF {head};\n{body}{calls}")
 
 
-@drawn
+@sampled
 def test_a_defined_word_has_at_most_the_languages_number_of_values(page: Page) -> None:
     text = "SI|DEF A{};\n  F(1, 50);\nEND_DEF;\n"
     start(page, text.format(""), "usual")
@@ -869,11 +877,11 @@ def test_all_blockly_texts_are_in_the_catalogue() -> None:
     rows = re.findall(r'^Blockly\.Msg\["(\w+)"\] = ("(?:[^"\\]|\\.)*");$', messages, re.MULTILINE)
     wanted_texts = {f"blockly/{name}": json.loads(text) for name, text in rows if name in names}
     texts = page_texts("en")
-    own = {key: texts[key] for key in texts if key.startswith("blockly/")}
-    assert own == {
+    blockly_texts = {key: texts[key] for key in texts if key.startswith("blockly/")}
+    assert blockly_texts == {
         key: wanted_texts[key]
         for key in wanted_texts
-        if key in own or not UNUSED_MESSAGE.search(key)
+        if key in blockly_texts or not UNUSED_MESSAGE.search(key)
     }
 
 
@@ -882,7 +890,7 @@ def test_the_sources_contain_no_emoji_faces() -> None:
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
 
 
-@drawn
+@sampled
 def test_a_fault_is_reported_at_its_block(page: Page) -> None:
     start(page, "X = 0;\nSHOW(1 / X);\nS;\n")
     page.select_option("#speed", "20")

@@ -38,7 +38,7 @@ from tests.support.studio import (
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-drawn = pytest.mark.sampled(of="touched blocks", keep=3)
+sampled = pytest.mark.sampled(of="touched blocks", keep=3)
 
 SCRIPT = Path(__file__).with_name("tones_in_node.mjs")
 LARGEST_GAP_PX = 30  # pixels between a block and its message
@@ -94,7 +94,7 @@ def test_a_clicked_block_runs_alone_with_its_contents(page: Page) -> None:
     page.click("#runs_close")
     start(page, LONG_PROGRAM)
     text = text_of(page)
-    for words, sounds, shows in (
+    for words, sounds, show_count in (
         ("forward", 0, 0), ("do", 1, 0), ("repeat", 2, 0), ("each time", 1, 0), ("new word", 1, 0),
         ("show", 0, 1),
     ):  # fmt: skip
@@ -102,7 +102,7 @@ def test_a_clicked_block_runs_alone_with_its_contents(page: Page) -> None:
         touch(page, words)
         events = list_actions(page)
         assert sum(line.startswith("BEEP") for line in events) == sounds, (words, events)
-        assert sum(line.startswith("SHOW") for line in events) == shows, (words, events)
+        assert sum(line.startswith("SHOW") for line in events) == show_count, (words, events)
     switch_robot_off(page)
     box = box_of(page.locator(f"{PROGRAM} .blocklyBlock.sensor").first)
     page.mouse.click(box["x"] + 6, box["y"] + 4)
@@ -112,7 +112,7 @@ def test_a_clicked_block_runs_alone_with_its_contents(page: Page) -> None:
     page.click("#runs_close")
 
 
-@drawn
+@sampled
 def test_a_block_that_cannot_run_alone_gives_the_reason(page: Page) -> None:
     start(page, LONG_PROGRAM)
     page.select_option("#speed", "1")
@@ -141,15 +141,15 @@ def test_a_click_ends_no_run_and_moves_no_hidden_robot(page: Page) -> None:
     wait_for_phase(page, "ended")
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["keys", "menu"])
-def test_keyboard_and_menu_also_try_a_block_on_a_phone(pages: Pages, way: str) -> None:
+@pytest.mark.sampled("try_action")
+@pytest.mark.parametrize("try_action", ["keys", "menu"])
+def test_keyboard_and_menu_also_try_a_block_on_a_phone(pages: Pages, try_action: str) -> None:
     page = pages.open(viewport={"width": 390, "height": 844})
     start(page, "SI|BEEP(0.2, 440);\nS;\n")
     touch(page, "beep")  # the block stays in the program
     page.locator("html[data-peek]").wait_for(state="attached")
     assert page.locator("html[data-half=program]").count() == 1
-    if way == "keys":
+    if try_action == "keys":
         page.keyboard.press("Shift+Enter")
     else:
         path_of(block(page, "beep")).click(button="right", position={"x": 6, "y": 6})
@@ -232,7 +232,7 @@ ARROWS_SCRIPT = """all => all.map((arrow) => {
 })"""
 
 
-@drawn
+@sampled
 def test_each_move_has_its_arrow(page: Page) -> None:
     start(page, "SI|F(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     arrows = page.locator(f"{PROGRAM} path.arrow")
@@ -245,7 +245,7 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     wait_for_text(page, "SI|L(1, 80);\nB(1, 80);\nL(1, 80);\nR(1, 80);\nW(1);\nM(10, 20);\n")
     evaluate_all_after = arrows.evaluate_all(ARROWS_SCRIPT)
     assert [evaluate_all_before[text] for text, _ in evaluate_all_after] == [
-        drawn for _, drawn in evaluate_all_after
+        drawn_moves for _, drawn_moves in evaluate_all_after
     ]
     assert [text for text, _ in evaluate_all_after].count("turn left") == 2
     gap = arrows.first.evaluate(
@@ -254,29 +254,31 @@ def test_each_move_has_its_arrow(page: Page) -> None:
     assert 0 < gap < 14
 
 
-@drawn
+@sampled
 def test_an_editor_opens_over_its_own_field(page: Page) -> None:
     start(page, "SI|F(2, 80);\nBEEP(0.5, 440);\nF(1, 60);\n")
     for k in range(6):
         field = page.locator(f"{PROGRAM} .blocklyNumberField").nth(k)
-        own = field.evaluate("e => e.closest('.blocklyBlock').getBoundingClientRect().toJSON()")
+        block_box = field.evaluate(
+            "e => e.closest('.blocklyBlock').getBoundingClientRect().toJSON()"
+        )
         field.click()
         editor = page.locator(".blocklyWidgetDiv input")
         editor.wait_for()
-        over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
-        assert over["top"] == pytest.approx(own["top"], abs=4)
-        assert over["bottom"] == pytest.approx(own["bottom"], abs=4)
+        editor_box = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
+        assert editor_box["top"] == pytest.approx(block_box["top"], abs=4)
+        assert editor_box["bottom"] == pytest.approx(block_box["bottom"], abs=4)
         page.keyboard.press("Escape")
         editor.wait_for(state="detached")
 
 
-@drawn
+@sampled
 def test_a_message_is_at_its_block(page: Page) -> None:
     """It is as near as possible without covering another block, with a line from the block."""
-    wide = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
+    wide_program = "IF(DISTANCE < 10 AND DISTANCE > 20 AND DISTANCE < 10);\n  S;\nENDIF;\n"
     for text, isolated in (
-        (f"SI|{wide}S;\nS;\nF(-2);\n", True), (f"SI|F(-2);\nS;\nS;\n{wide}", True),
-        (f"SI|{wide}F(-2);\n{wide}", False),
+        (f"SI|{wide_program}S;\nS;\nF(-2);\n", True), (f"SI|F(-2);\nS;\nS;\n{wide_program}", True),
+        (f"SI|{wide_program}F(-2);\n{wide_program}", False),
     ):  # fmt: skip
         start(page, text)
         bubble = page.locator("#blocks .blocklyBubble")
@@ -285,31 +287,37 @@ def test_a_message_is_at_its_block(page: Page) -> None:
         bubble_box = bubble.locator("rect").first.evaluate(
             "e => e.getBoundingClientRect().toJSON()"
         )
-        own = box_of(page.locator(f"{PROGRAM} .wrong").last)
-        others = page.locator(f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)")
-        boxes = others.evaluate_all("all => all.map((e) => e.getBoundingClientRect().toJSON())")
+        block_box = box_of(page.locator(f"{PROGRAM} .wrong").last)
+        other_blocks = page.locator(
+            f"{PROGRAM} .blocklyBlock > .blocklyPath:not(.blocklyPathSelected)"
+        )
+        boxes = other_blocks.evaluate_all(
+            "all => all.map((e) => e.getBoundingClientRect().toJSON())"
+        )
         if isolated:
-            assert 0 < bubble_box["left"] - own["right"] < LARGEST_GAP_PX
+            assert 0 < bubble_box["left"] - block_box["right"] < LARGEST_GAP_PX
             assert not [box for box in boxes if meet(box, bubble_box)]
         tail = page.locator("#blocks .blocklyBubbleTail")
-        begin = tail.evaluate("e => e.getBoundingClientRect().left")
-        assert begin > own["right"] - 14 and tail.is_visible()
+        tail_left = tail.evaluate("e => e.getBoundingClientRect().left")
+        assert tail_left > block_box["right"] - 14 and tail.is_visible()
 
 
-@drawn
+@sampled
 def test_warnings_stay_collapsed_until_opened(pages: Pages) -> None:
     """An unfinished program has many of them, so blocks keep their size."""
     for size in ((1366, 768), (390, 844)):
         page = pages.open(viewport={"width": size[0], "height": size[1]})
         start(page, "SI|S;\n")
-        high = page.evaluate("blocks.clientHeight")
+        blocks_height = page.evaluate("blocks.clientHeight")
         page.click("#view_text")
         write(page, "SI|LOOP(FOREVER);\nEND_LOOP;\n")
         page.click("#view_blocks")
         wait_for_blocks(page)
         list_of_all = page.locator("#messages li")
         assert list_of_all.count() and not list_of_all.first.is_visible()
-        assert page.evaluate("blocks.clientHeight") >= high - 24  # a phone's status has two lines
+        assert (
+            page.evaluate("blocks.clientHeight") >= blocks_height - 24
+        )  # a phone's status has two lines
         assert page.locator(f"{PROGRAM} .blocklyIconGroup").is_visible()
         page.click("#sheet")
         assert list_of_all.first.is_visible()
@@ -337,14 +345,16 @@ def test_the_tone_editor_has_piano_keys() -> None:
         assert key["hertz"] == round(440 * 2 ** ((key["key"] - 69) / 12))
     hertz = [key["hertz"] for key in keys]
     for step in tones["steps"]:
-        ahead = [
+        next_keys = [
             hertz_there for hertz_there in hertz if (hertz_there - step["hertz"]) * step["way"] > 0
         ]
         nearest = (
-            min(ahead, key=lambda frequency: abs(frequency - step["hertz"])) if ahead else None
+            min(next_keys, key=lambda frequency: abs(frequency - step["hertz"]))
+            if next_keys
+            else None
         )
-        ends = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
-        assert step["to"] == (nearest if nearest is not None else ends[0]), step
+        outer_keys = (hertz[-1],) if step["way"] > 0 else (hertz[0],)
+        assert step["to"] == (nearest if nearest is not None else outer_keys[0]), step
 
 
 def pitch(page: Page, hertz: str = "440") -> Locator:
@@ -353,7 +363,7 @@ def pitch(page: Page, hertz: str = "440") -> Locator:
     return field
 
 
-@drawn
+@sampled
 def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
     for language, name in (("en", "E"), ("es", "mi"), ("pt", "mi")):
         speak(page, language)
@@ -400,7 +410,7 @@ def test_escape_reverts_a_field_in_block_and_text(page: Page) -> None:
     wait_for_text(page, text)
 
 
-@drawn
+@sampled
 def test_arrow_keys_move_between_tones(page: Page) -> None:
     start(page, "SI|BEEP(0.5, 440);\nS;\n")
     pitch(page).first.click()
@@ -460,11 +470,11 @@ def test_a_block_is_found_by_its_words(page: Page, language: str, words: dict[st
     speak(page, "en")
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["search", "group"])
-def test_a_flyout_closes_when_a_block_is_dragged_out(page: Page, way: str) -> None:
+@pytest.mark.sampled("flyout_action")
+@pytest.mark.parametrize("flyout_action", ["search", "group"])
+def test_a_flyout_closes_when_a_block_is_dragged_out(page: Page, flyout_action: str) -> None:
     start(page, "SI|S;\n", "few")
-    if way == "search":
+    if flyout_action == "search":
         page.fill(".search input", "repeat")
     else:
         page.locator(".blocklyToolboxCategory", has_text="Repeat").click()
@@ -488,7 +498,7 @@ IS_SEEN_SCRIPT = """(path) => {
 }"""
 
 
-@drawn
+@sampled
 def test_a_tried_stack_hides_no_smaller_one(page: Page) -> None:
     start(page, "SI|S\n\nDEF A_LONG_WORD\n  BEEP(1, 440)\nEND_DEF\n\n/// SHOW(DISTANCE);\n", "all")
     value, pile = block(page, "distance"), block(page, "new word")

@@ -25,14 +25,14 @@ from tiniscript import robots
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
-WITH_BLUETOOTH = "--enable-features=WebBluetooth"  # Chromium for Linux has it off
+BLUETOOTH_OPTION = "--enable-features=WebBluetooth"  # Chromium for Linux has it off
 ADDRESS = "09:09:09:09:09:09"
 NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
-MOST = 20  # bytes that every module accepts
+MAX_WRITE_BYTES = 20  # bytes that every module accepts
 READ_MS = 30
 SILENT_MS = 300  # a robot stops after a silence of 500
-READ_INSTEAD = f"""
+READ_SCRIPT = f"""
 BluetoothRemoteGATTCharacteristic.prototype.startNotifications = async function () {{
   globalThis.isDeaf = false;
   const read = () => {{
@@ -50,22 +50,24 @@ class Radio:
     """A robot with a Bluetooth module: the browser asks it by CDP."""
 
     def __init__(self, browser: Browser, page: Page, service: str) -> None:
-        self.writes: list[int] = []  # lengths
+        self.write_sizes: list[int] = []  # lengths
         self.robot = HostFirmware(robots.load("tinibot").kit)
         self._service = service
-        self._made = self._chosen = False
-        self._there, self._back = b"", b""  # bytes under way in each direction
+        self._has_connected = self._has_chosen = False
+        self._to_robot, self._to_page = b"", b""  # bytes under way in each direction
         self._silent_ms = 0
-        self._emulated = page
-        self._whole = browser.new_browser_cdp_session()
+        self._emulated_page = page
+        self._browser_session = browser.new_browser_cdp_session()
         self._page = page.context.new_cdp_session(page)
         self._ask("enable", state="powered-on", leSupported=True)
         self._page.send("DeviceAccess.enable")
         self._ask("simulatePreconnectedPeripheral", address=ADDRESS, name="<b>TINI</b>",
                   manufacturerData=[], knownServiceUuids=[service])  # fmt: skip
         self._page.on("DeviceAccess.deviceRequestPrompted", self._choose)
-        self._whole.on("BluetoothEmulation.gattOperationReceived", self._gatt)
-        self._whole.on("BluetoothEmulation.characteristicOperationReceived", self._characteristic)
+        self._browser_session.on("BluetoothEmulation.gattOperationReceived", self._gatt)
+        self._browser_session.on(
+            "BluetoothEmulation.characteristicOperationReceived", self._characteristic
+        )
 
     def close(self) -> None:
         self._ask("disable")
@@ -78,22 +80,22 @@ class Radio:
 
     def go_away(self) -> None:
         # The emulation never reports the loss of a device that has an unanswered read.
-        self._emulated.evaluate("async () => { isDeaf = true; await reading; }")
+        self._emulated_page.evaluate("async () => { isDeaf = true; await reading; }")
         self._ask("simulateGATTDisconnection", address=ADDRESS)
 
-    def _ask(self, what: str, **fields: Any) -> Any:
-        return self._whole.send(f"BluetoothEmulation.{what}", fields)
+    def _ask(self, command: str, **fields: Any) -> Any:
+        return self._browser_session.send(f"BluetoothEmulation.{command}", fields)
 
     def _choose(self, prompt: Any) -> None:
         # The prompt comes twice; a second answer ends the browser.
-        if prompt["devices"] and not self._chosen:
-            self._chosen = True
-            chosen = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
-            self._page.send("DeviceAccess.selectPrompt", chosen)
+        if prompt["devices"] and not self._has_chosen:
+            self._has_chosen = True
+            selection = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
+            self._page.send("DeviceAccess.selectPrompt", selection)
 
     def _gatt(self, request: Any) -> None:
-        if request["type"] == "discovery" and not self._made:
-            self._made = True
+        if request["type"] == "discovery" and not self._has_connected:
+            self._has_connected = True
             service = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
             for uuid, properties in self._characteristics():
                 characteristic = self._ask("addCharacteristic", serviceId=service["serviceId"],
@@ -115,8 +117,8 @@ class Radio:
         answer: dict[str, Any] = {}
         if request["type"] == "write":
             data = base64.b64decode(request["data"])
-            self.writes.append(len(data))
-            self._there += data
+            self.write_sizes.append(len(data))
+            self._to_robot += data
             if request.get("writeType") == "write-without-response":
                 return
         elif request["type"] == "read":
@@ -128,20 +130,23 @@ class Radio:
 
     def _read_robot(self) -> bytes:
         """Advance the robot's time, and return its output in one read."""
-        passes_ms = READ_MS if self._there else min(READ_MS, SILENT_MS - self._silent_ms)
-        self._silent_ms = 0 if self._there else self._silent_ms + passes_ms
+        passes_ms = READ_MS if self._to_robot else min(READ_MS, SILENT_MS - self._silent_ms)
+        self._silent_ms = 0 if self._to_robot else self._silent_ms + passes_ms
         if passes_ms:
-            self._back += self.robot.wait(passes_ms, self._there)
-        self._there = b""
-        heard_bytes, self._back = self._back[:MOST], self._back[MOST:]
+            self._to_page += self.robot.wait(passes_ms, self._to_robot)
+        self._to_robot = b""
+        heard_bytes, self._to_page = (
+            self._to_page[:MAX_WRITE_BYTES],
+            self._to_page[MAX_WRITE_BYTES:],
+        )
         return heard_bytes
 
 
 @pytest.fixture(scope="module")
 def radio_page(playwright: Playwright) -> Iterator[tuple[Browser, Page]]:
-    with studio.serve_page() as server, studio.browser(playwright, WITH_BLUETOOTH) as browser:
+    with studio.serve_page() as server, studio.browser(playwright, BLUETOOTH_OPTION) as browser:
         context = browser.new_context(locale="en-US", service_workers="block")
-        context.add_init_script(READ_INSTEAD)
+        context.add_init_script(READ_SCRIPT)
         page = context.new_page()
         enter(page, server.address)
         page.click("#side_real")
@@ -161,7 +166,7 @@ def test_a_robot_is_driven_by_bluetooth(radio_page: tuple[Browser, Page], servic
         wait_for_message(page, "Done.")
         assert page.locator("#link_shown").inner_text() == "2.5"
         assert radio.actions.count("MOTORS 80 80") >= 1
-        assert max(radio.writes) == MOST
+        assert max(radio.write_sizes) == MAX_WRITE_BYTES
         write(page, FOREVER)
         page.click("#link_upload")
         wait_for_message(page, "The robot has the program")

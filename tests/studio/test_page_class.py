@@ -15,7 +15,7 @@ import pytest
 from tests.support import studio
 from tests.support.class_pages import join_class, open_teacher_page, wait_for_status
 from tests.support.command import FOREVER
-from tests.support.page_screens import LOOK, SCREENS
+from tests.support.page_screens import LOOK_SCRIPT, SCREENS
 from tests.support.pty_robot import PtyRobot
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -39,13 +39,13 @@ if TYPE_CHECKING:
     from playwright.sync_api import APIResponse, Browser, Locator, Page, Route
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-drawn = pytest.mark.sampled(of="details of a class", keep=2)
+sampled = pytest.mark.sampled(of="details of a class", keep=2)
 
 KIT = robots.load("tinibot").kit
 WALL_FITS_SCRIPT = (
     "() => wall.scrollHeight === wall.clientHeight && wall.scrollWidth === wall.clientWidth"
 )
-HOSTILE = "<img src=x onerror=1>"
+HOSTILE_NAME = "<img src=x onerror=1>"
 # The page waits for an answer however slow this computer is.
 NO_TIMEOUT_SCRIPT = """() => { window.limit = AbortSignal.timeout;
   AbortSignal.timeout = () => new AbortController().signal; }"""
@@ -112,8 +112,8 @@ def shared_pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
 @pytest.fixture
 def pages(shared_pages: Pages) -> Iterator[Pages]:
     yield shared_pages
-    wrong, shared_pages.wrong[:] = shared_pages.wrong[:], []
-    assert not wrong
+    errors, shared_pages.errors[:] = shared_pages.errors[:], []
+    assert not errors
 
 
 @pytest.fixture(scope="module")
@@ -145,13 +145,13 @@ def tile(teacher: Page, name: str) -> Locator:
     return teacher.locator("#wall li").filter(has_text=name)
 
 
-def remove_all_but_ana(taught: Class) -> None:
+def remove_all_but_ana(class_: Class) -> None:
     """Remove the others, and their remains."""
-    for pupil in taught.room.teach({"do": "class"})["pupils"]:
+    for pupil in class_.room.teach({"do": "class"})["pupils"]:
         if pupil["name"] != "Ana":
-            taught.room.teach({"do": "class_remove", "pupil": pupil["number"]})
-    for kept_work in taught.room.teach({"do": "class"})["kept"]:
-        taught.room.teach({"do": "class_forget", "key": kept_work["key"]})
+            class_.room.teach({"do": "class_remove", "pupil": pupil["number"]})
+    for kept_work in class_.room.teach({"do": "class"})["kept"]:
+        class_.room.teach({"do": "class_forget", "key": kept_work["key"]})
 
 
 def click_ask(page: Page) -> None:
@@ -212,7 +212,7 @@ def test_three_pupils_share_a_robot(
     luz.close()
 
 
-@drawn
+@sampled
 def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
     ana: Page, shared_pages: Pages
 ) -> None:
@@ -226,8 +226,8 @@ def test_a_pupil_whose_connect_is_lost_gets_the_robot_of_the_turn(
         ana.unroute_all(behavior="wait")
         ana.click("#link_leave")
         ana.locator("[data-text=class_ask]").wait_for()
-    wrong, shared_pages.wrong[:] = shared_pages.wrong[:], []
-    assert all("ERR_FAILED" in error or "500" in error for error in wrong)
+    errors, shared_pages.errors[:] = shared_pages.errors[:], []
+    assert all("ERR_FAILED" in error or "500" in error for error in errors)
 
 
 def test_features_missing_in_plain_http_are_not_offered(ana: Page) -> None:
@@ -283,7 +283,7 @@ def test_a_wrong_code_is_reported_and_a_pupil_can_be_removed(
     page = pages.open(locale="es-AR")
     page.click("#side_real")
     page.locator("#class_pupil input").nth(0).fill("000000")
-    page.locator("#class_pupil input").nth(1).fill(HOSTILE)
+    page.locator("#class_pupil input").nth(1).fill(HOSTILE_NAME)
     page.click("[data-text=class_join]")
     wait_for_status(page, "Ese no es el código de esta clase.")
     page.locator("#class_pupil input").nth(0).fill(shared_class.room.code)
@@ -292,8 +292,8 @@ def test_a_wrong_code_is_reported_and_a_pupil_can_be_removed(
     page.reload()  # a tab keeps its place
     wait_until_checked(page)
     page.click("#side_real")
-    wait_for_status(page, f"Estás en la clase, {HOSTILE}"[:40])
-    row = tile(teacher, HOSTILE)
+    wait_for_status(page, f"Estás en la clase, {HOSTILE_NAME}"[:40])
+    row = tile(teacher, HOSTILE_NAME)
     row.wait_for()
     assert (
         teacher.locator("#class img[src=x]").count()
@@ -307,33 +307,33 @@ def test_a_wrong_code_is_reported_and_a_pupil_can_be_removed(
     row.locator(".out").click()  # nor is the work kept then
     row.wait_for(state="detached")
     page.close()
-    assert [error for error in pages.wrong if "403" not in error] == []
-    pages.wrong.clear()
+    assert [error for error in pages.errors if "403" not in error] == []
+    pages.errors.clear()
 
 
-@drawn
+@sampled
 def test_a_late_answer_does_not_readmit_a_removed_pupil(teacher: Page, shared_class: Class) -> None:
     """A wall that looks while a pupil is removed does not show the pupil again."""
     room = shared_class.room
     for name in ("Eva", "Noa"):
         room.answer("", "192.0.2.7", {"do": "join", "code": room.code, "name": name})
-    late: list[tuple[Route, APIResponse]] = []
+    late_answers: list[tuple[Route, APIResponse]] = []
 
     def hold(route: Route) -> None:
-        if not late and '"do":"class"' in (route.request.post_data or ""):
-            late.append((route, route.fetch()))
+        if not late_answers and '"do":"class"' in (route.request.post_data or ""):
+            late_answers.append((route, route.fetch()))
         else:
             route.continue_()
 
     tile(teacher, "Eva").wait_for()
     teacher.evaluate(NO_TIMEOUT_SCRIPT)
     teacher.route("**/*", hold)
-    wait_for(teacher, lambda: late, "the wall looks")
+    wait_for(teacher, lambda: late_answers, "the wall looks")
     tile(teacher, "Eva").hover()
     tile(teacher, "Eva").locator(".out").click()
     tile(teacher, "Eva").wait_for(state="detached")
     teacher.evaluate(NOTES)
-    route, response = late[0]
+    route, response = late_answers[0]
     route.fulfill(response=response)
     teacher.unroute_all(behavior="wait")
     for pupil in room.teach({"do": "class"})["pupils"]:
@@ -344,7 +344,7 @@ def test_a_late_answer_does_not_readmit_a_removed_pupil(teacher: Page, shared_cl
     teacher.evaluate("() => { AbortSignal.timeout = window.limit; }")
 
 
-@drawn
+@sampled
 def test_thirty_tiles_fit_without_scrolling(teacher: Page, shared_class: Class) -> None:
     """Their pictures are made of the pupils' texts. A stop that failed takes the place of a row."""
     room = shared_class.room
@@ -363,14 +363,14 @@ def test_thirty_tiles_fit_without_scrolling(teacher: Page, shared_class: Class) 
         teacher.locator("#wall li").nth(29).wait_for()
         assert not teacher.locator("#wall .empty:visible").count()  # the picture arrives later
         teacher.wait_for_function(WALL_FITS_SCRIPT)  # a wall fits its tiles once it knows its size
-        assert teacher.evaluate(LOOK) == []
+        assert teacher.evaluate(LOOK_SCRIPT) == []
     tile(teacher, "Pupil 7").locator("img[src^=blob]").wait_for()
     assert tile(teacher, "Pupil 7").locator("i.done").count() == 1
     speak(teacher, "en")
     remove_all_but_ana(shared_class)
 
 
-@drawn
+@sampled
 def test_an_enlarged_picture_stays_while_the_next_is_drawn(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
@@ -383,13 +383,15 @@ def test_an_enlarged_picture_stays_while_the_next_is_drawn(
         ):
             speak(teacher, language)
         teacher.wait_for_function(ONE_HELD_SCRIPT)
-    first = tile(teacher, "Ana").locator("img").get_attribute("src")
+    first_picture = tile(teacher, "Ana").locator("img").get_attribute("src")
     teacher.evaluate("() => made()")
     teacher.wait_for_function(ONE_HELD_SCRIPT)
-    assert tile(teacher, "Ana").locator("img").get_attribute("src") != first
+    assert tile(teacher, "Ana").locator("img").get_attribute("src") != first_picture
     tile(teacher, "Ana").locator(".see").click()
-    large = teacher.locator("#big_pupil img[src^=blob]")
-    assert large.evaluate("async (image) => { await image.decode(); return image.width > 0; }")
+    large_picture = teacher.locator("#big_pupil img[src^=blob]")
+    assert large_picture.evaluate(
+        "async (image) => { await image.decode(); return image.width > 0; }"
+    )
     teacher.click("#big_pupil [data-text=close]")
     teacher.evaluate("() => released()")
 
@@ -441,7 +443,7 @@ COUNT_DRAWINGS_SCRIPT = """() => { window.told = []; window.drawn = [];
   URL.createObjectURL = (blob) => (window.drawn.push(newest), make(blob)); }"""
 
 
-@drawn
+@sampled
 def test_a_pupils_picture_is_drawn_once_a_second(
     first: Page, pages: Pages, shared_class: Class
 ) -> None:
@@ -456,19 +458,23 @@ def test_a_pupils_picture_is_drawn_once_a_second(
         teacher.evaluate(f"() => {{ window.now += {passed_ms}; }}")
         return text in teacher.evaluate(names)
 
-    whole = "F(1, 51)"
+    shown_program = "F(1, 51)"
 
     def add_line() -> str:
         """Write one line more, at once; return the whole."""
-        nonlocal whole
-        whole += "\nW(1)"
+        nonlocal shown_program
+        shown_program += "\nW(1)"
         first.locator(".cm-content").focus()
         first.keyboard.press("Control+End")
         first.keyboard.insert_text("\nW(1)")
-        return whole
+        return shown_program
 
-    write(first, whole)
-    wait_for(teacher, lambda: is_shown("drawn", whole, 1000), "what waits, and was written between")
+    write(first, shown_program)
+    wait_for(
+        teacher,
+        lambda: is_shown("drawn", shown_program, 1000),
+        "what waits, and was written between",
+    )
     teacher.evaluate("() => { window.now += 1000; }")
     newest = add_line()
     wait_for(teacher, lambda: is_shown("drawn", newest), "after a second it is drawn at once")
@@ -504,7 +510,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
     red.wait_for(state="detached")
 
 
-@drawn
+@sampled
 def test_robots_are_assigned_and_withdrawn(ana: Page, teacher: Page, robot: PtyRobot) -> None:
     click_ask(ana)
     wait_for_link(ana, "Connected: ")
@@ -520,7 +526,7 @@ def test_robots_are_assigned_and_withdrawn(ana: Page, teacher: Page, robot: PtyR
     teacher.click("#class_window [data-text=close]")
 
 
-@drawn
+@sampled
 def test_a_switched_off_robot_is_reported(ana: Page, robot: PtyRobot) -> None:
     robot.switch_off()
     click_ask(ana)
@@ -531,29 +537,29 @@ def test_a_switched_off_robot_is_reported(ana: Page, robot: PtyRobot) -> None:
 def test_every_element_is_visible_and_axe_finds_nothing(
     ana: Page, teacher: Page, pages: Pages, shared_class: Class, pytestconfig: pytest.Config
 ) -> None:
-    longest = join_class(pages, shared_class, "A" * 24)
-    click_ask(longest)
-    wait_for_link(longest, "Connected: ")
-    longest.click("#class_hand")
+    long_name_page = join_class(pages, shared_class, "A" * 24)
+    click_ask(long_name_page)
+    wait_for_link(long_name_page, "Connected: ")
+    long_name_page.click("#class_hand")
     tile(teacher, "A" * 24).locator(".hand").wait_for()
-    for page in (longest, teacher):
+    for page in (long_name_page, teacher):
         for width, height in sample_of(pytestconfig, "screens of a class", SCREENS, 2):
             page.set_viewport_size({"width": width, "height": height})
             for language in ("en", "es"):
                 speak(page, language)
                 wait_until_checked(page)
-                assert page.evaluate(LOOK) == []
+                assert page.evaluate(LOOK_SCRIPT) == []
             if page is teacher:  # the code is whole, and the tiles have two fifths of a low screen
                 assert page.locator("#class_come strong").last.bounding_box()["height"] < 40  # type: ignore[index]
                 wall = page.locator("#wall").bounding_box()["height"]  # type: ignore[index]
                 assert 5 * wall > 2 * height or height > width
         assert axe(page) == []
-    for opens, window in (
+    for button, window in (
         ("#class_come", "#big_code"),
         ("#wall .see >> nth=0", "#big_pupil"),
         ("#class_settings", "#class_window"),
     ):
-        teacher.click(opens)
+        teacher.click(button)
         teacher.emulate_media(color_scheme="light")
         assert axe(teacher, within=window) == []
         teacher.emulate_media(color_scheme="dark")
@@ -563,10 +569,10 @@ def test_every_element_is_visible_and_axe_finds_nothing(
     teacher.emulate_media(color_scheme="light")
     speak(teacher, "en")
     tile(teacher, "A" * 24).locator(".hand").click()
-    longest.locator("#class_hand[aria-pressed=false]").wait_for()
-    longest.evaluate(RAISE_HAND_SCRIPT)
+    long_name_page.locator("#class_hand[aria-pressed=false]").wait_for()
+    long_name_page.evaluate(RAISE_HAND_SCRIPT)
     tile(teacher, "A" * 24).locator(".hand").wait_for()
-    longest.close()
+    long_name_page.close()
     remove_all_but_ana(shared_class)
 
 
@@ -584,14 +590,14 @@ def test_the_work_of_a_class_is_saved_opened_and_given_back(
     texts = {pupil["name"]: pupil["text"] for pupil in json.loads(file.read_text())["pupils"]}
     assert texts["Ana"] == "F(1, 77)"
     write(ana, "F(1, 33)")
-    for name, says in (
+    for name, message in (
         ("bad.json", "bad.json is not a file of saved class work"),
         ("class.json", "Opened. "),
     ):
         (tmp_path / "bad.json").write_text('{"tiniscript_class": 1, "pupils": [{"name": 5}]}')
         teacher.click("#class_settings")
         teacher.set_input_files("#class_window input[type=file]", tmp_path / name)
-        teacher.locator("#class_said").filter(has_text=says).wait_for()
+        teacher.locator("#class_said").filter(has_text=message).wait_for()
     assert image(ana) == compile("F(1, 33)").image
     row = opened_row(teacher, "Ana")
     choice = row.locator("select")
@@ -655,7 +661,7 @@ def opened_row(teacher: Page, name: str) -> Locator:
     return row
 
 
-@drawn
+@sampled
 def test_a_pupil_who_reopens_the_page_is_the_same_pupil(
     pages: Pages, shared_class: Class, teacher: Page
 ) -> None:
@@ -673,12 +679,12 @@ def test_a_pupil_who_reopens_the_page_is_the_same_pupil(
     assert tile(teacher, "Noa").count() == 1
     page.close()
     remove_all_but_ana(shared_class)
-    wrong = [error for error in pages.wrong if "403" not in error]
-    assert wrong == []
-    pages.wrong.clear()
+    errors = [error for error in pages.errors if "403" not in error]
+    assert errors == []
+    pages.errors.clear()
 
 
-@drawn
+@sampled
 def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana: Page, teacher: Page, shared_class: Class
 ) -> None:
@@ -703,23 +709,23 @@ def test_the_teacher_plays_a_pupils_newest_run_in_one_click(
     ana.click("#side_real")
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("erases", [True, False])
 def test_the_end_of_a_class_is_shown(browser: Browser, erases: bool) -> None:
-    with studio.serve_class([]) as taught:
-        pages = Pages(browser, taught.server.address)
-        ends(pages, taught, erases)
+    with studio.serve_class([]) as class_:
+        pages = Pages(browser, class_.server.address)
+        ends(pages, class_, erases)
         pages.close()
-        assert not pages.wrong
+        assert not pages.errors
 
 
-def ends(pages: Pages, taught: Class, erases: bool) -> None:
-    ana = join_class(pages, taught, "Ana")
+def ends(pages: Pages, class_: Class, erases: bool) -> None:
+    ana = join_class(pages, class_, "Ana")
     write(ana, "F(1, 33)")
     ana.click("#my_programs")
     ana.click("#new")
-    teacher = open_teacher_page(pages, taught)
-    assert taught.server.entrances.token not in teacher.evaluate("location.href")
+    teacher = open_teacher_page(pages, class_)
+    assert class_.server.entrances.token not in teacher.evaluate("location.href")
     teacher.click("#class_settings")
     if erases:
         teacher.check("#class_window input[type=checkbox]")
@@ -732,14 +738,14 @@ def ends(pages: Pages, taught: Class, erases: bool) -> None:
     )
     wait_until_checked(ana)
     kept_text = "JSON.stringify(localStorage) + JSON.stringify(sessionStorage)"
-    ended = ana.evaluate(kept_text)
-    assert ("F(1, 33)" in ended) is not erases
+    ended_text = ana.evaluate(kept_text)
+    assert ("F(1, 33)" in ended_text) is not erases
     if erases:
-        assert "tiniscript." not in ended
+        assert "tiniscript." not in ended_text
         write(ana, "F(1, 44)")  # from here on, text is kept in this page only
         ana.click("#my_programs")
         ana.click("#new")
         ana.click("#my_programs")
         assert ana.locator("#versions li:not(:has(#new)) strong").all_inner_texts() == ["F(1, 44)"]
         assert "tiniscript." not in ana.evaluate(kept_text)
-    assert taught.room.has_ended
+    assert class_.room.has_ended

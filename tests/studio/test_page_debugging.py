@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="breakpoints of the page", keep=3)
+sampled = pytest.mark.sampled(of="breakpoints of the page", keep=3)
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_a_run_halts_at_a_breakpoint_each_time_and_shows_values(page: Page) -> N
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted_texts
 
 
-@drawn
+@sampled
 def test_a_breakpoint_on_an_empty_line_moves_to_the_next_part(page: Page) -> None:
     """Only the left button sets one."""
     write(page, COUNTING_PROGRAM)
@@ -74,7 +74,7 @@ def test_a_breakpoint_on_an_empty_line_moves_to_the_next_part(page: Page) -> Non
     assert points(page) == 0
 
 
-@drawn
+@sampled
 def test_a_breakpoint_moves_and_disappears_with_its_text(page: Page) -> None:
     write(page, "F(0.1, 80);\nSHOW(7);\nB(0.1, 80)")
     page.keyboard.press("Control+Home")
@@ -92,7 +92,7 @@ def test_a_breakpoint_moves_and_disappears_with_its_text(page: Page) -> None:
     assert points(page) == 0
 
 
-@drawn
+@sampled
 def test_one_line_may_have_several_breakpoints(page: Page) -> None:
     write(page, "SI|SHOW(1);SHOW(2);SHOW(3)")
     for _ in range(2):
@@ -108,7 +108,7 @@ def test_one_line_may_have_several_breakpoints(page: Page) -> None:
     wait_for_phase(page, "ended")
 
 
-@drawn
+@sampled
 def test_breakpoints_are_shown_and_set_at_blocks(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     press_margin(page, 3)
@@ -130,7 +130,7 @@ def test_breakpoints_are_shown_and_set_at_blocks(page: Page) -> None:
     page.locator("#blocks .show.breakpoint").wait_for(state="detached")
 
 
-@drawn
+@sampled
 def test_a_breakpoint_can_be_set_and_removed_while_running(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  F(0.2, 80);\n  SHOW(1);\nEND_LOOP")
     page.click("#run")
@@ -144,7 +144,7 @@ def test_a_breakpoint_can_be_set_and_removed_while_running(page: Page) -> None:
     wait_for_phase(page, "running")
 
 
-@drawn
+@sampled
 def test_breakpoints_of_a_running_program_are_unaffected_by_edits(
     page: Page,
 ) -> None:
@@ -171,7 +171,7 @@ def test_breakpoints_of_a_running_program_are_unaffected_by_edits(
     page.keyboard.press("Escape")
 
 
-@drawn
+@sampled
 def test_a_breakpoint_can_be_removed_after_an_edit(page: Page) -> None:
     write(page, "LOOP(FOREVER);\n  W(0.1);\n  SHOW(3);\nEND_LOOP")
     press_margin(page, 3)
@@ -190,25 +190,25 @@ def test_a_breakpoint_can_be_removed_after_an_edit(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-@drawn
+@sampled
 def test_breakpoints_on_every_line_work(page: Page) -> None:
     """In a program of the largest size, and after its end; the first ones work."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
-    pressed = page.locator(".cm-content").evaluate(
+    press_ms = page.locator(".cm-content").evaluate(
         "(content) => { const key = (key, keyCode) => content.dispatchEvent(new KeyboardEvent("
         "'keydown', {key, keyCode, bubbles: true, cancelable: true}));"
         " const began = performance.now();"
         " for (let k = 0; k < 200; k += 1) { key('F9', 120); key('ArrowUp', 38); }"
         " return performance.now() - began; }"
     )
-    assert pressed < 10_000
+    assert press_ms < 10_000
     page.click("#run")
     wait_until_stopped(page, 1)
     page.click("#pause")
     wait_until_stopped(page, 2)
 
 
-@drawn
+@sampled
 def test_curves_of_sensors_variables_and_values_are_drawn(page: Page) -> None:
     write(page, COUNTING_PROGRAM)
     page.click("#seen_plot")

@@ -41,22 +41,23 @@ def firefox(playwright: Playwright) -> Iterator[Browser]:
 
 
 # Playwright does not see downloads in this Firefox, so the data passed to the browser is kept.
-KEEP = """() => { const make = URL.createObjectURL.bind(URL);
+KEEP_DOWNLOAD_SCRIPT = """() => { const make = URL.createObjectURL.bind(URL);
   URL.createObjectURL = (blob) => { window.made = blob; return make(blob); }; }"""
-READ = """async () => { const bytes = new Uint8Array(await window.made.arrayBuffer());
+READ_DOWNLOAD_SCRIPT = """async () => {
+  const bytes = new Uint8Array(await window.made.arrayBuffer());
   return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join('')); }"""
 
 
 def read_saved_file(page: Page) -> bytes:
     """Return the newest file that the page has saved."""
-    return base64.b64decode(page.evaluate(READ))
+    return base64.b64decode(page.evaluate(READ_DOWNLOAD_SCRIPT))
 
 
 @pytest.fixture(scope="module")
 def firefox_page(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
     pages = Pages(firefox, address)
     page = pages.open("blocks", is_alone=True)
-    page.evaluate(KEEP)
+    page.evaluate(KEEP_DOWNLOAD_SCRIPT)
     yield pages, page
     pages.close()
 
@@ -66,8 +67,8 @@ def page(firefox_page: tuple[Pages, Page]) -> Iterator[Page]:
     pages, current_page = firefox_page
     studio.begin_anew(current_page)
     yield current_page
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.errors[:] = pages.errors[:], []
+    assert not errors
 
 
 def test_blocks_and_text_are_the_same_program(page: Page) -> None:

@@ -27,10 +27,10 @@ pytestmark = pytest.mark.root
 def test_a_new_board_becomes_a_robot(
     playwright: Playwright, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    why = studio_serial.missing()
+    reason = studio_serial.missing()
     # Skipped in CI too, without root or a serial port; tests/studio/test_flashing.py covers it.
-    if why:
-        pytest.skip(why)
+    if reason:
+        pytest.skip(reason)
     skip_unless_available()
     file = tmp_path / "tinibot-uno-digest.hex"
     to_hex(firmware("uno", tmp_path, shared_folder(tmp_path_factory)), file)

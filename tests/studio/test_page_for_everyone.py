@@ -12,7 +12,7 @@ import pytest
 from tests.studio import screens
 from tests.support import studio
 from tests.support.needs import need
-from tests.support.page_screens import LOOK, SCREENS
+from tests.support.page_screens import LOOK_SCRIPT, SCREENS
 from tests.support.sampling import sample_of
 from tests.support.studio import Pages, axe, enter, image, speak, wait_until_checked, write
 from tiniscript import check, compile
@@ -28,7 +28,7 @@ LOW_SIZES = ((683, 384), (640, 512), (320, 256), (1024, 500))
 LEAST_SIZES = {"wrong": ("#editor", 0, 96), "blocks": ("#blocks", 300, 96), "drawing": ("#arena", 120, 120),
                "plot": ("#plot_place", 300, 60), "trace": ("#trace_place", 300, 60)}  # fmt: skip
 # The same where the page is scrolled: it is at most too long, and STOP lies over it.
-SCROLLED_LOOK_SCRIPT = LOOK.replace(
+SCROLLED_LOOK_SCRIPT = LOOK_SCRIPT.replace(
     ".map((e) => [e.id || e.tagName, e.getBoundingClientRect()])",
     ".filter((e) => e.id !== 'stop').map((e) => [e.id || e.tagName, e.getBoundingClientRect()])"
     ".map(([id, box]) => [id, new DOMRect(box.x, box.y + scrollY, box.width, box.height)])",
@@ -83,36 +83,38 @@ def test_each_screen_is_fully_visible_and_axe_finds_nothing(
     page: Page, theme: Literal["light", "dark"], language: str, pytestconfig: pytest.Config
 ) -> None:
     """At two sizes, others in each commit; the class is in `test_page_class.py`."""
-    usual = {screen: sample_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
-    low = {screen: sample_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
-    axed = {screen: sample_of(pytestconfig, screen, usual[screen]) for screen in usual}
+    usual_sizes = {screen: sample_of(pytestconfig, screen, SCREENS) for screen in screens.SCREENS}
+    low_sizes = {screen: sample_of(pytestconfig, screen, LOW_SIZES) for screen in screens.SCREENS}
+    axed = {screen: sample_of(pytestconfig, screen, usual_sizes[screen]) for screen in usual_sizes}
     page.emulate_media(color_scheme=theme)
     speak(page, language)
     page.click("#home")
-    for screen, size in screens.each_screen(page, lambda name: (*usual[name], *low[name])):
+    for screen, size in screens.each_screen(
+        page, lambda name: (*usual_sizes[name], *low_sizes[name])
+    ):
         assert page.locator("#stop").is_visible()
         if screen not in ("teacher", "programs"):  # one screen scrolls, the other covers everything
             for end in (0,) if size in SCREENS else (0, 10_000):
-                look = LOOK if size in SCREENS else SCROLLED_LOOK_SCRIPT
+                look_script = LOOK_SCRIPT if size in SCREENS else SCROLLED_LOOK_SCRIPT
                 problems = page.evaluate(
-                    f"(end) => {{ scrollTo(0, end); return ({look})(); }}", end
+                    f"(end) => {{ scrollTo(0, end); return ({look_script})(); }}", end
                 )
                 assert problems == [], (screen, size, end)
         if size in SCREENS:
             assert page.evaluate(CUT_CHOICES_SCRIPT) == [], (screen, size)
         if size in SCREENS and screen in LEAST_SIZES:
-            where, width, height = LEAST_SIZES[screen]
-            box = page.locator(where).bounding_box()
+            selector, width, height = LEAST_SIZES[screen]
+            box = page.locator(selector).bounding_box()
             assert box is not None and box["width"] >= width and box["height"] >= height, screen
         if screen == "drawing":
             assert page.evaluate("arena.clientHeight") >= 60, size
         if screen == "programs":
             assert page.evaluate(DIALOG_SCRIPT) == [], size
             page.locator("#share").evaluate("e => { e.open = true; }")
-            for how in ("link", "line"):
-                page.click(f"#share_{how}")
+            for share_kind in ("link", "line"):
+                page.click(f"#share_{share_kind}")
                 page.locator("#programs:not([data-shared=asked])").wait_for()
-                assert page.evaluate(DIALOG_SCRIPT) == [], (how, size)
+                assert page.evaluate(DIALOG_SCRIPT) == [], (share_kind, size)
         if size in axed[screen]:
             assert axe(page) == [], (screen, size)
     page.emulate_media(color_scheme="null")
@@ -219,16 +221,16 @@ TRY_REQUEST_SCRIPT = """async (address) => {
 
 def test_the_content_security_policy_holds(page: Page, only_page: tuple[Pages, Page]) -> None:
     """The page does not reach another address, and no text becomes code."""
-    wrong = only_page[0].wrong
-    with socket.create_server(("127.0.0.1", 0)) as other:
-        address = f"http://127.0.0.1:{other.getsockname()[1]}/"
+    errors = only_page[0].errors
+    with socket.create_server(("127.0.0.1", 0)) as other_server:
+        address = f"http://127.0.0.1:{other_server.getsockname()[1]}/"
         tried: dict[str, Any] = page.evaluate(TRY_REQUEST_SCRIPT, address)
-        assert [name for name, how in tried.items() if how != "refused"] == []
-        other.setblocking(False)
+        assert [name for name, outcome in tried.items() if outcome != "refused"] == []
+        other_server.setblocking(False)
         with pytest.raises(BlockingIOError):
-            other.accept()
-    assert sum("Content Security Policy" in error for error in wrong) >= 5
-    wrong.clear()
+            other_server.accept()
+    assert sum("Content Security Policy" in error for error in errors) >= 5
+    errors.clear()
 
 
 # Waits until files of a language are kept.
@@ -277,13 +279,13 @@ def test_an_update_does_not_disturb_an_open_page(browser: Browser) -> None:
         enter(tab, server.address)
         tab.evaluate("navigator.serviceWorker.ready.then(() => 1)")
         tab.click("#view_text")
-        for name, old, new in (
+        for name, old_text, new_text in (
             ("index.html", b"<html ", b'<html data-build="2" '),
             ("service_worker.js", b'VERSION = "', b'VERSION = "newer'),
         ):
-            data = page[name].data.replace(old, new, 1)
+            data = page[name].data.replace(old_text, new_text, 1)
             assert data != page[name].data
-            page[name] = page[name]._replace(data=data, etag=f'"{new.hex()}"')
+            page[name] = page[name]._replace(data=data, etag=f'"{new_text.hex()}"')
         tab.evaluate(UPDATE_SCRIPT)
         write(tab, "SI|F(3, 30)")  # the old one continues
         tab.reload()
@@ -312,7 +314,7 @@ UPDATE_SCRIPT = """async () => {
 def test_the_service_worker_has_every_file() -> None:
     need(studio.missing())
     source = serving.files()["service_worker.js"].data.decode()
-    listed = json.loads(source.partition("FILES = ")[2].partition(";")[0])
+    listed_files = json.loads(source.partition("FILES = ")[2].partition(";")[0])
     names = set(serving.files()) - {
         "index.html",
         "service_worker.js",
@@ -321,5 +323,5 @@ def test_the_service_worker_has_every_file() -> None:
     }
     codes = json.loads(source.partition("LANGUAGES = ")[2].partition(";")[0])
     assert set(codes) == set(languages())
-    later = {name for code in codes if code != SOURCE_LANGUAGE for name in codes[code]}
-    assert set(listed) == {"./", *names} - later and later < names
+    later_files = {name for code in codes if code != SOURCE_LANGUAGE for name in codes[code]}
+    assert set(listed_files) == {"./", *names} - later_files and later_files < names

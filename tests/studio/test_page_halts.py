@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-drawn = pytest.mark.sampled(of="details of halts", keep=2)
+sampled = pytest.mark.sampled(of="details of halts", keep=2)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 MERGED_PROGRAM = "LOOP(2);\nDISTANCE;\nIF(DISTANCE < 10);\nSTOP;\nENDIF;\nW(0.05);\nEND_LOOP"
@@ -76,14 +76,16 @@ def state_of(page: Page, variables: int) -> tuple[str, list[str]]:
     return running(page), values[:variables]
 
 
-def list_halts(page: Page, begin: str, button: str, text: str) -> list[tuple[str, list[str]]]:
+def list_halts(
+    page: Page, start_selector: str, button: str, text: str
+) -> list[tuple[str, list[str]]]:
     """Go from halt to halt, to the end; return the state at each. Repeated if a busy computer kept
     the page silent until its robot was stopped.
     """
     variables = len(check(text.encode(), "tinibot", "en").variables)
     for _ in range(UPLOADS):
         halts = []
-        page.click(begin)
+        page.click(start_selector)
         page.locator("html[data-halt=read]").wait_for(state="attached")
         while is_halted(page):
             halts.append(state_of(page, variables))
@@ -98,11 +100,13 @@ def virtual_states(text: str, lines: tuple[int, ...], steps: bool) -> list[tuple
     """Return the state of the virtual robot in the same form."""
     program = check(text.encode(), "tinibot", "en")
     rows = text.split("\n")
-    first = [next(place for place in program.places if place.line == line) for line in lines]
-    wanted_spans = {place[1:3] for place in first}
-    breaks = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
+    wanted_places = [
+        next(place for place in program.places if place.line == line) for line in lines
+    ]
+    wanted_spans = {place[1:3] for place in wanted_places}
+    break_offsets = tuple(place.offset for place in program.places if place[1:3] in wanted_spans)
     parts = tuple(place.offset for place in program.places)
-    marks = Marks(parts, breaks, len(program.variables), is_held=steps)
+    marks = Marks(parts, break_offsets, len(program.variables), is_held=steps)
     it = Simulation("tinibot", worlds.load("obstacles"), program.image, marks)
     halts = []
     while it.robot.is_running:
@@ -151,7 +155,7 @@ def halts(page: Page, line: int) -> None:
     page.locator("html[data-halt=read]").wait_for(state="attached")
 
 
-@drawn
+@sampled
 def test_a_halt_reports_where_the_other_tasks_are(page: Page) -> None:
     tasks = "TASK;\nW(0.5);\nEND_TASK;\nTASK;\nF(0.5, 50);\nEND_TASK;\n"
     write_with_breakpoints(
@@ -170,7 +174,7 @@ def test_a_halt_reports_where_the_other_tasks_are(page: Page) -> None:
 LOOP_PROGRAM = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"
 
 
-@drawn
+@sampled
 def test_a_breakpoint_is_set_and_removed_while_the_robot_runs(page: Page, robot: PtyRobot) -> None:
     """It stays while the text changes; a waiting or restarted program has it too."""
     write_with_breakpoints(page, LOOP_PROGRAM, ())
@@ -198,7 +202,7 @@ def test_a_breakpoint_is_set_and_removed_while_the_robot_runs(page: Page, robot:
     halts(page, 5)
 
 
-@drawn
+@sampled
 def test_a_line_run_in_between_removes_no_breakpoint(page: Page) -> None:
     write_with_breakpoints(page, "W(0.1);\nSHOW(1);\nSHOW(2)", (3,))
     page.click("#link_upload")
@@ -213,7 +217,7 @@ def test_a_line_run_in_between_removes_no_breakpoint(page: Page) -> None:
     halts(page, 3)
 
 
-@drawn
+@sampled
 def test_a_robot_gets_the_first_four_breakpoints(page: Page) -> None:
     write_with_breakpoints(page, "SHOW(1);\nSHOW(2);\nSHOW(3);\nSHOW(4);\nSHOW(5)", (1, 2, 3, 4, 5))
     page.click("#link_upload")
@@ -227,7 +231,7 @@ def test_a_robot_gets_the_first_four_breakpoints(page: Page) -> None:
     note.wait_for(state="hidden")
 
 
-@drawn
+@sampled
 def test_a_robot_that_cannot_halt_is_reported_and_runs(
     page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -248,13 +252,13 @@ def test_a_robot_that_cannot_halt_is_reported_and_runs(
 
 
 HALTING_TITLE = title_of(robots.load("tinibot"), True)
-BROUGHT_FIRMWARES = [
+OFFERED_FIRMWARES = [
     ("tinibot", "nano"), ("tinibot", "uno"), (HALTING_TITLE, "uno"),
     ("liner", "nano"),
 ]  # fmt: skip
 
 
-@drawn
+@sampled
 def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     page: Page, pages: Pages, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -262,45 +266,45 @@ def test_a_robot_that_cannot_halt_is_offered_a_firmware_that_can(
     board or robot has no such firmware here."""
     monkeypatch.setattr(robot_link, "BREAKPOINTS", 0)
     leave_link(page)
-    other = pages.blank(is_alone=True)
+    other_page = pages.blank(is_alone=True)
     rows = [
         {"title": title, "board": board, "file": f"{title}-{board}-digest.hex"}
-        for title, board in BROUGHT_FIRMWARES
+        for title, board in OFFERED_FIRMWARES
     ]
     questions: list[str] = []
-    other.route("**/firmware.json", lambda route: route.fulfill(json=rows))
-    other.route("**/*.hex", lambda route: route.fulfill(body=":00"))
-    other.on("request", lambda request: questions.append(request.url.rpartition("/")[2]))
-    other.add_init_script(SILENT_SERIAL)
-    enter(other, pages.entrance())
-    other.click("#view_text")
-    connect(other, robot)
-    write(other, "SHOW(1);\nSHOW(2)")
-    offered_element = other.locator("#link_get_halting")
+    other_page.route("**/firmware.json", lambda route: route.fulfill(json=rows))
+    other_page.route("**/*.hex", lambda route: route.fulfill(body=":00"))
+    other_page.on("request", lambda request: questions.append(request.url.rpartition("/")[2]))
+    other_page.add_init_script(SILENT_SERIAL)
+    enter(other_page, pages.entrance())
+    other_page.click("#view_text")
+    connect(other_page, robot)
+    write(other_page, "SHOW(1);\nSHOW(2)")
+    offered_element = other_page.locator("#link_get_halting")
     assert offered_element.is_hidden()
-    press_margin(other, 2)
+    press_margin(other_page, 2)
     offered_element.wait_for()
-    press_margin(other, 2)
+    press_margin(other_page, 2)
     offered_element.wait_for(state="hidden")
-    press_margin(other, 2)
+    press_margin(other_page, 2)
     offered_element.click()
-    wait_for_message(other, "but no longer reads typed text")
-    assert other.locator("html[data-robot=none]").count() == 1
-    assert other.locator("#flash_halts").is_checked()
-    assert other.input_value("#flash_board") == "uno"
+    wait_for_message(other_page, "but no longer reads typed text")
+    assert other_page.locator("html[data-robot=none]").count() == 1
+    assert other_page.locator("#flash_halts").is_checked()
+    assert other_page.input_value("#flash_board") == "uno"
     assert not [name for name in questions if name.endswith(".hex")]
-    other.click("#flash_write")
-    wait_for_message(other, "That is not a complete HEX file")
+    other_page.click("#flash_write")
+    wait_for_message(other_page, "That is not a complete HEX file")
     assert [name for name in questions if name.endswith(".hex")] == [
         f"{HALTING_TITLE}-uno-digest.hex"
     ]
-    other.select_option("#flash_board", "nano")
-    other.locator("#flash_halts").wait_for(state="hidden")
-    assert not other.locator("#flash_halts").is_checked()
-    other.select_option("#flash_board", "uno")
-    other.locator("#flash_halts").wait_for()
-    other.select_option("#robot", "liner")
-    other.locator("#flash_halts").wait_for(state="hidden")
+    other_page.select_option("#flash_board", "nano")
+    other_page.locator("#flash_halts").wait_for(state="hidden")
+    assert not other_page.locator("#flash_halts").is_checked()
+    other_page.select_option("#flash_board", "uno")
+    other_page.locator("#flash_halts").wait_for()
+    other_page.select_option("#robot", "liner")
+    other_page.locator("#flash_halts").wait_for(state="hidden")
     connect(page, robot)
 
 
@@ -314,17 +318,19 @@ def connect_again(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
 
 
-@pytest.mark.sampled("how", keep=2)
-@pytest.mark.parametrize("how", ["stop", "Escape", "button", "restart"])
-def test_a_halted_program_ends_like_a_running_one(page: Page, robot: PtyRobot, how: str) -> None:
+@pytest.mark.sampled("end_kind", keep=2)
+@pytest.mark.parametrize("end_kind", ["stop", "Escape", "button", "restart"])
+def test_a_halted_program_ends_like_a_running_one(
+    page: Page, robot: PtyRobot, end_kind: str
+) -> None:
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     page.click("#link_upload")
     halts(page, 4)
-    if how == "stop":
+    if end_kind == "stop":
         page.click("#stop")
-    elif how == "Escape":
+    elif end_kind == "Escape":
         page.keyboard.press("Escape")
-    elif how == "button":
+    elif end_kind == "button":
         robot.push()
     else:
         robot.switch_off_and_on()
@@ -334,28 +340,28 @@ def test_a_halted_program_ends_like_a_running_one(page: Page, robot: PtyRobot, h
     assert page.locator("#link_go_on").is_disabled() and page.locator("#link_step").is_enabled()
 
 
-@pytest.mark.parametrize("what", ["upload", "break"])
+@pytest.mark.parametrize("end_kind", ["upload", "break"])
 def test_a_program_stopped_during_upload_never_starts(
-    page: Page, robot: PtyRobot, what: str
+    page: Page, robot: PtyRobot, end_kind: str
 ) -> None:
     """Its places come between the program and its start."""
     write_with_breakpoints(page, LOOP_PROGRAM, (4,))
     count_before = len(robot.actions)
-    pressed: list[bool] = []
+    presses: list[bool] = []
 
     def press(route: Route) -> None:
         questions = [
             request["do"] for request in (route.request.post_data_json or {}).get("asked", [])
         ]
         response = route.fetch()
-        if what in questions and not pressed:
-            pressed.append(True)
+        if end_kind in questions and not presses:
+            presses.append(True)
             page.evaluate("document.getElementById('stop').click()")
         route.fulfill(response=response)
 
     page.route("**/robots", press)
     page.click("#link_upload")
-    wait_for(page, lambda: pressed, "it is on its way")
+    wait_for(page, lambda: presses, "it is on its way")
     wait_for_message(page, re.compile("Stopped: |stopped"))
     page.wait_for_timeout(1000)
     page.unroute_all(behavior="wait")

@@ -20,20 +20,22 @@ from tiniscript.studio import serving
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page, Route
 
-drawn = pytest.mark.sampled(of="held files and ports", keep=2)
+sampled = pytest.mark.sampled(of="held files and ports", keep=2)
 
 SCRIPT = Path(__file__).with_name("progress_in_node.mjs")
-FILE = "tinibot-uno-digest.hex"
+FIRMWARE_FILE = "tinibot-uno-digest.hex"
 STUCK_PORT_MESSAGE = "The port no longer accepts data."
 
 
 @pytest.fixture(scope="module")
 def server(browser: Browser) -> Iterator[serving.Server]:
-    rows = [{"title": "tinibot", "board": board, "file": FILE} for board in ("uno", "esp32dev")]
+    rows = [
+        {"title": "tinibot", "board": board, "file": FIRMWARE_FILE} for board in ("uno", "esp32dev")
+    ]
     page = {
         **serving.files(),
         serving.FIRMWARE_FILE: serving.File(json.dumps(rows).encode(), "application/json"),
-        FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
+        FIRMWARE_FILE: serving.File(b":01000000FF00\n:00000001FF\n", "text/plain"),
     }
     with studio.serve_page(page) as server:
         yield server
@@ -46,14 +48,14 @@ def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
     opened_pages.close()
 
 
-class Held:
+class HeldRequests:
     """Requests that stay unanswered until they are released; later ones are then answered at
     once."""
 
-    def __init__(self, page: Page, what: str) -> None:
+    def __init__(self, page: Page, url: str) -> None:
         self.routes: list[Route] = []
         self._has_end = False
-        page.context.route(what, self._hold)
+        page.context.route(url, self._hold)
 
     def _hold(self, route: Route) -> None:
         self.routes.append(route)
@@ -86,19 +88,19 @@ def test_a_stalled_download_times_out() -> None:
     assert json.loads(in_node(SCRIPT)[0]) == ["TimeoutError 1", "AbortError", "there", "0 false"]
 
 
-@drawn
+@sampled
 def test_a_stalled_firmware_download_is_reported_cancelled_and_given_up(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
-    held_robot = Held(page, f"**/{FILE}")
-    for count, ends in enumerate(("cancel", "nothing"), 1):
+    held_robot = HeldRequests(page, f"**/{FIRMWARE_FILE}")
+    for count, action in enumerate(("cancel", "nothing"), 1):
         page.click("#flash_write")
         wait_for(page, partial(held_robot.has, count), "it is fetched")
         wait_for_message(page, "Fetching the firmware. Nothing has been written yet.")
         page.clock.fast_forward(4000)
         wait_for_message(page, "The firmware has not arrived.")
-        if ends == "cancel":
+        if action == "cancel":
             page.click("#flash_cancel")
             wait_for_message(page, "Cancelled. Nothing was written: the board has not changed.")
         else:
@@ -108,13 +110,13 @@ def test_a_stalled_firmware_download_is_reported_cancelled_and_given_up(
     assert page.evaluate("window.port.opened") == 0
 
 
-@drawn
+@sampled
 def test_a_stalled_esp32_flasher_is_reported_and_cancelled(
     pages: Pages, server: serving.Server
 ) -> None:
     page = with_serial(pages, server, has_clock=True)
     page.select_option("#flash_board", "esp32dev")
-    held_robot = Held(page, "**/esp32-*.js")
+    held_robot = HeldRequests(page, "**/esp32-*.js")
     for _ in range(2):
         page.click("#flash_write")
         wait_for(page, lambda: held_robot.routes, "it is fetched")
@@ -126,7 +128,7 @@ def test_a_stalled_esp32_flasher_is_reported_and_cancelled(
     assert page.evaluate("window.port.opened") == 0
 
 
-@drawn
+@sampled
 def test_a_port_that_accepts_no_bytes_is_closed_and_can_be_retried(
     pages: Pages, server: serving.Server
 ) -> None:
@@ -146,7 +148,7 @@ def test_a_port_that_accepts_no_bytes_is_closed_and_can_be_retried(
     wait_for(page, lambda: not page.evaluate("window.port.isOpen"), "it is closed")
 
 
-@drawn
+@sampled
 def test_a_connect_is_cancelled_while_its_port_opens(pages: Pages, server: serving.Server) -> None:
     page = with_serial(pages, server)
     page.evaluate("() => { window.port.open = () => new Promise(() => {}); }")
@@ -189,7 +191,7 @@ def hasty(browser: Browser) -> Iterator[serving.Server]:
 def visits(browser: Browser, hasty: serving.Server) -> Iterator[Pages]:
     opened_pages = Pages(browser, hasty.address)
     yield opened_pages
-    opened_pages.wrong.clear()  # a browser complains of each file that it has not got
+    opened_pages.errors.clear()  # a browser complains of each file that it has not got
     opened_pages.close()
 
 
@@ -202,7 +204,7 @@ new MutationObserver(() => {
 WAITS_SCRIPT = """window.told
   .map((said) => /waiting(?= for the compiler)|did not load/.exec(said ?? '')?.[0])
   .filter(Boolean).filter((each, k, all) => each !== all[k - 1])"""
-TRIES = 10
+TRY_COUNT = 10
 
 
 def check_dance_goes_on(page: Page) -> None:
@@ -224,18 +226,18 @@ def test_any_stalled_file_of_a_run_is_reported_until_it_arrives(
     assert {*COMPILER_FILES, "main.js", "texts.en.json"} <= {*names}
     for name in names:
         page = visits.blank(is_alone=True)
-        held_robot = Held(page, f"**/{name}")
+        held_robot = HeldRequests(page, f"**/{name}")
         page.goto(visits.address, wait_until="commit")
-        begin, word = page.locator(f"{BEGIN_BUTTON}:visible"), page.locator(HANGING_MESSAGE)
-        running = page.locator("html:is([data-phase=running], [data-phase=ended])")
+        begin_button, word = page.locator(f"{BEGIN_BUTTON}:visible"), page.locator(HANGING_MESSAGE)
+        run_page = page.locator("html:is([data-phase=running], [data-phase=ended])")
 
-        def is_told(begin: Locator = begin, word: Locator = word) -> bool:
-            return word.first.is_visible() or begin.count() > 0
+        def is_told(begin_button: Locator = begin_button, word: Locator = word) -> bool:
+            return word.first.is_visible() or begin_button.count() > 0
 
-        def continues(begin: Locator = begin, running: Locator = running) -> bool:
-            if begin.count():
-                begin.click()  # a busy page may miss the first one
-            return is_told(running)
+        def continues(begin_button: Locator = begin_button, run_page: Locator = run_page) -> bool:
+            if begin_button.count():
+                begin_button.click()  # a busy page may miss the first one
+            return is_told(run_page)
 
         wait_for(page, is_told, name)
         wait_for(page, continues, name)
@@ -254,7 +256,7 @@ def test_an_abandoned_compiler_is_loaded_again_by_the_next_run(visits: Pages, na
     """The first retry fails, the next succeeds."""
     page = visits.blank(is_alone=True)
     page.add_init_script(RECORDING_SCRIPT)
-    Held(page, f"**/{name}")
+    HeldRequests(page, f"**/{name}")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     for _ in range(2):
@@ -264,7 +266,7 @@ def test_an_abandoned_compiler_is_loaded_again_by_the_next_run(visits: Pages, na
     assert page.evaluate(WAITS_SCRIPT)[:4] == ["waiting", "did not load"] * 2
     page.context.unroute_all()
     outcome = page.locator("html[data-phase=running], #doing:has-text('did not load')")
-    for _ in range(TRIES):
+    for _ in range(TRY_COUNT):
         outcome.first.wait_for(state="attached")
         if not page.locator("#doing", has_text="did not load").count():
             break
@@ -277,7 +279,7 @@ def test_an_abandoned_compiler_is_loaded_again_by_the_next_run(visits: Pages, na
 
 def test_a_stop_while_the_compiler_loads_cancels_the_run(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
-    held_robot = Held(page, "**/pyodide.asm.mjs")
+    held_robot = HeldRequests(page, "**/pyodide.asm.mjs")
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     page.locator("#doing", has_text="Press STOP to cancel.").wait_for()
@@ -293,7 +295,7 @@ def test_a_stop_while_the_compiler_loads_cancels_the_run(visits: Pages) -> None:
     check_dance_goes_on(page)
 
 
-@drawn
+@sampled
 def test_a_run_on_a_robot_retries_the_compiler(visits: Pages) -> None:
     page = visits.blank(is_alone=True)
     page.context.route("**/tiniscript.zip", lambda route: route.abort())
@@ -309,7 +311,7 @@ def test_an_unanswered_stop_is_reported_at_once_and_retried(pages: Pages) -> Non
         page = pages.blank(is_alone=True)
         page.clock.install()
         enter(page, server.entrance())
-        held_robot = Held(page, "**/robots")
+        held_robot = HeldRequests(page, "**/robots")
         page.keyboard.press("Escape")
         wait_for(page, lambda: held_robot.routes, "it is asked")
         page.clock.fast_forward(3100)

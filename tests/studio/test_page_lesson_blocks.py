@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="blocks of lessons", keep=1)
+sampled = pytest.mark.sampled(of="blocks of lessons", keep=1)
 
 LESSONS = range(1, len(catalogue.folders()) + 1)
 LEVELS = ["few", "usual", "all"]
@@ -47,14 +47,14 @@ def test_each_kind_of_block_is_introduced_by_the_first_lesson_that_names_it(lang
     """Each lesson has a block to look for; no later lesson removes a block."""
     taught_words: set[str] = set()
     for number in LESSONS:
-        taught, new = (
+        known_kinds, new_kinds = (
             f(number, language) for f in (page_lessons.taught_kinds, page_lessons.new_pieces)
         )
-        kinds = {piece.partition(" ")[0] for piece in new}
-        assert new and kinds <= set(taught)
-        assert set(taught) - taught_words <= kinds
-        assert set(page_lessons.needed_kinds(number, language)) <= set(taught) <= KINDS.keys()
-        taught_words |= set(taught)
+        kinds = {piece.partition(" ")[0] for piece in new_kinds}
+        assert new_kinds and kinds <= set(known_kinds)
+        assert set(known_kinds) - taught_words <= kinds
+        assert set(page_lessons.needed_kinds(number, language)) <= set(known_kinds) <= KINDS.keys()
+        taught_words |= set(known_kinds)
         assert set(page_lessons.offered_kinds(number, language)) == taught_words
 
 
@@ -79,8 +79,8 @@ def test_the_level_rises_to_a_lessons_needs_and_never_falls(
     for number in sample_of(pytestconfig, "levels of lessons", LESSONS, 4):
         open_lesson(page, number)
         needed_names = set(page_lessons.needed_kinds(number, "en")) & kinds["all"]
-        least = next(level for level in LEVELS if needed_names <= kinds[level] | {"set"})
-        level = max(level, least, key=LEVELS.index)
+        needed_level = next(level for level in LEVELS if needed_names <= kinds[level] | {"set"})
+        level = max(level, needed_level, key=LEVELS.index)
         assert page.input_value("#level") == level, number
     page.select_option("#level", "few")
     open_lesson(page, 1)
@@ -108,7 +108,7 @@ def test_a_lesson_removes_no_block(page: Page) -> None:
     assert "endless" in list_offered_blocks(page)
 
 
-@drawn
+@sampled
 def test_a_new_block_is_highlighted_until_it_is_used(page: Page) -> None:
     start(page, "SI|F(1, 80);\n")
     open_lesson(page, 6)
@@ -130,7 +130,7 @@ def test_a_new_block_is_highlighted_until_it_is_used(page: Page) -> None:
     assert locator.all_inner_texts() == ["Robot"]
 
 
-@drawn
+@sampled
 def test_the_highlight_respects_reduced_motion(pages: Pages) -> None:
     page = pages.open(view="blocks", reduced_motion="reduce")
     page.click("#side_lessons")
@@ -141,7 +141,7 @@ def test_the_highlight_respects_reduced_motion(pages: Pages) -> None:
     assert path.evaluate("e => getComputedStyle(e).animationName") == "none"
 
 
-@drawn
+@sampled
 def test_a_lesson_matches_its_readers_blocks_or_text(page: Page) -> None:
     """Its programs are drawn, and its words are those on blocks, while blocks are seen; a screen
     reader has the text of both."""
@@ -244,6 +244,6 @@ def test_a_shadow_indicates_more_text_below(page: Page, size: tuple[int, int]) -
         place = page.locator("#lesson_page")
         for _ in range(2):
             page.evaluate(SETTLED_SCRIPT)
-            left = place.evaluate("e => e.scrollHeight - e.clientHeight - e.scrollTop")
-            page.locator(f"#lesson_page{'.more' if left >= 4 else ':not(.more)'}").wait_for()
+            hidden_px = place.evaluate("e => e.scrollHeight - e.clientHeight - e.scrollTop")
+            page.locator(f"#lesson_page{'.more' if hidden_px >= 4 else ':not(.more)'}").wait_for()
             place.evaluate("e => e.scrollTo(0, e.scrollHeight)")

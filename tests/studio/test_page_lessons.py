@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 FOLDERS = catalogue.folders()
-drawn = pytest.mark.sampled(of="details of lessons", keep=3)
+sampled = pytest.mark.sampled(of="details of lessons", keep=3)
 
 NIGHT_COLOUR = "39,50,75"
 BUSY_PROGRAM = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
@@ -50,12 +50,12 @@ def page(page: Page) -> Page:
 def test_each_lesson_judges_wrong_answers_like_the_command(page: Page, part: int) -> None:
     """The results of `tsc lesson check` are tested with the lessons."""
     for number, folder in list(enumerate(FOLDERS, 1))[part::6]:
-        _, wrong = catalogue.answers(folder)
+        _, wrong_answers = catalogue.answers(folder)
         choose_lesson(page, number)
-        verdict = check_answer(page, wrong[0].program)
+        verdict = check_answer(page, wrong_answers[0].program)
         assert verdict == (
             "failed",
-            [wrong[0].sentence_by_language["en"], *later_sentences(page)],
+            [wrong_answers[0].sentence_by_language["en"], *later_sentences(page)],
         ), number
         assert page.inner_text("#lesson_said").startswith("Not yet"), number
 
@@ -63,9 +63,9 @@ def test_each_lesson_judges_wrong_answers_like_the_command(page: Page, part: int
 @pytest.mark.sampled("number")
 @pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
 def test_a_lesson_is_solved_by_its_answer(page: Page, number: int) -> None:
-    right, _ = catalogue.answers(FOLDERS[number - 1])
+    right_answers, _ = catalogue.answers(FOLDERS[number - 1])
     choose_lesson(page, number)
-    assert check_answer(page, right[0].program) == ("passed", [])
+    assert check_answer(page, right_answers[0].program) == ("passed", [])
     lesson = catalogue.load(FOLDERS[number - 1])
     worlds = f", in {lesson.world_count} worlds" if lesson.world_count > 1 else ""
     wanted_text = f"Done! You solved lesson {number}{worlds}."
@@ -78,7 +78,7 @@ def later_sentences(page: Page) -> list[str]:
     return page.locator("#lesson_findings li").all_inner_texts()[1:]
 
 
-@drawn
+@sampled
 def test_any_program_can_be_checked(page: Page) -> None:
     choose_lesson(page, 1)
     for program, verdict in (
@@ -90,7 +90,7 @@ def test_any_program_can_be_checked(page: Page) -> None:
         assert (shown_verdict, len(sentences)) == (verdict, verdict == "failed"), program
 
 
-@drawn
+@sampled
 def test_a_check_can_be_ended(page: Page) -> None:
     choose_lesson(page, 9)
     write(page, BUSY_PROGRAM)
@@ -100,12 +100,12 @@ def test_a_check_can_be_ended(page: Page) -> None:
     assert page.inner_text("#lesson_said") == "You stopped the check, so there is no result."
     assert page.evaluate("document.activeElement.id") == "lesson_check"
     choose_lesson(page, 1)
-    right, _ = catalogue.answers(FOLDERS[0])
+    right_answers, _ = catalogue.answers(FOLDERS[0])
     # The verdict is not that of the other check.
-    assert check_answer(page, right[0].program) == ("passed", [])
+    assert check_answer(page, right_answers[0].program) == ("passed", [])
 
 
-@drawn
+@sampled
 def test_the_judged_run_is_shown_until_it_fails(page: Page) -> None:
     """The robot stays at the wall that it touched; then the answer appears."""
     choose_lesson(page, 1)
@@ -122,7 +122,7 @@ def test_the_judged_run_is_shown_until_it_fails(page: Page) -> None:
     assert page.locator("html[data-phase=ended]").count() == 1
 
 
-@drawn
+@sampled
 def test_the_shown_run_can_be_skipped_to_the_verdict(page: Page) -> None:
     choose_lesson(page, 2)
     write(page, "F(3, 80); W(9)")
@@ -140,8 +140,8 @@ def test_no_highlight_remains_after_a_run(page: Page, pytestconfig: pytest.Confi
     choose_lesson(page, 4)
     write(page, "SI|LOOP(FOREVER)\n  F(0.3, 30)\n  L(0.3, 60)\nEND_LOOP\n")
     page.select_option("#speed", "1")
-    ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
-    for view, end in sample_of(pytestconfig, "ends of a run", ends, 2):
+    view_ends = [*product(("#view_blocks", "#view_text"), ("#lesson_end", "#stop", ""))]
+    for view, end in sample_of(pytestconfig, "ends of a run", view_ends, 2):
         page.click(view)
         page.click("#lesson_check")
         page.locator("#lesson_end", has_text="Skip").wait_for()
@@ -167,7 +167,7 @@ CUT_NAMES_SCRIPT = """() => {
 }"""
 
 
-@drawn
+@sampled
 def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     for language, word in (("es", "Detente"), ("pt", "Pare antes"), ("en", "Stop before")):
         speak(page, language)
@@ -185,8 +185,8 @@ def test_a_lesson_is_one_step_at_a_time(page: Page) -> None:
     assert page.locator("#lesson_next").is_hidden()
     page.click("#lesson_hint summary")
     assert "Three instructions" in page.inner_text("#lesson_hint_said")
-    right, _ = catalogue.answers(FOLDERS[1])
-    assert check_answer(page, right[0].program)[0] == "passed"
+    right_answers, _ = catalogue.answers(FOLDERS[1])
+    assert check_answer(page, right_answers[0].program)[0] == "passed"
     page.get_by_role("button", name="Next lesson").click()
     page.locator("#lesson_page", has_text="behind a block of houses").wait_for()
     assert page.input_value("#lesson") == "3"
@@ -213,12 +213,12 @@ def test_a_step_and_the_robot_are_visible_together(page: Page, size: tuple[int, 
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         for button in page.locator("#lesson_steps button").all():
             button.click()
-            height, whole = page.evaluate(
+            height, total_height = page.evaluate(
                 "(({clientHeight, scrollHeight}) => [clientHeight, scrollHeight])"
                 "(document.querySelector('#lesson_page'))"
             )
-            assert height >= min(PAGES[size], whole), (number, button.inner_text())
-            assert size[0] != 1366 or height == whole
+            assert height >= min(PAGES[size], total_height), (number, button.inner_text())
+            assert size[0] != 1366 or height == total_height
             if page.locator("#lesson_hint").is_visible() and size == (1024, 600):
                 page.click("#lesson_hint summary")
                 height = page.evaluate("document.querySelector('#lesson_page').clientHeight")
@@ -239,8 +239,8 @@ def test_a_step_and_the_robot_are_visible_together(page: Page, size: tuple[int, 
 
 def test_a_verdict_applies_to_the_current_program(page: Page) -> None:
     choose_lesson(page, 1)
-    right, _ = catalogue.answers(FOLDERS[0])
-    assert check_answer(page, right[0].program)[0] == "passed"
+    right_answers, _ = catalogue.answers(FOLDERS[0])
+    assert check_answer(page, right_answers[0].program)[0] == "passed"
     page.locator(".cm-content").focus()
     page.keyboard.type(" ")
     page.locator("#lesson_said[data-verdict=before]").wait_for()
@@ -254,11 +254,11 @@ def test_a_verdict_applies_to_the_current_program(page: Page) -> None:
     assert page.locator("#lesson_said[data-verdict]").count() == 0
 
 
-@drawn
+@sampled
 def test_the_world_of_a_failure_is_shown(page: Page) -> None:
     choose_lesson(page, 12)
-    _, wrong = catalogue.answers(FOLDERS[11])
-    assert check_answer(page, wrong[0].program)[0] == "failed"
+    _, wrong_answers = catalogue.answers(FOLDERS[11])
+    assert check_answer(page, wrong_answers[0].program)[0] == "failed"
     message = page.inner_text("#lesson_said")
     assert page.input_value("#robot") == "liner"
     label = page.locator("#world option:checked").inner_text()
@@ -279,7 +279,7 @@ def test_the_world_of_a_failure_is_shown(page: Page) -> None:
     page.locator("#world option:checked", has_text="12").wait_for(state="attached")
 
 
-@drawn
+@sampled
 def test_a_lesson_page_is_available_in_spanish_with_usable_programs(page: Page) -> None:
     choose_lesson(page, 4)
     page.locator("#lesson_steps button").nth(1).click()
@@ -305,10 +305,10 @@ def test_lessons_can_be_loaded_later_and_progress_is_kept(
     page.locator("#lesson_said", has_text="did not load").wait_for()
     assert page.locator("#lesson_next").is_disabled()
     page.unroute("**/lessons.zip")
-    pages.wrong.clear()
+    pages.errors.clear()
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-    right, _ = catalogue.answers(FOLDERS[1])
+    right_answers, _ = catalogue.answers(FOLDERS[1])
     kept_state = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
     locator = page.locator("#lesson option", has_text="✓")
     for k, lesson in enumerate(kept_state):
@@ -320,7 +320,7 @@ def test_lessons_can_be_loaded_later_and_progress_is_kept(
         assert locator.count() == int(k == 0)
     choose_lesson(page, 2)
     page.select_option("#speed", "20")
-    assert check_answer(page, right[0].program)[0] == "passed"
+    assert check_answer(page, right_answers[0].program)[0] == "passed"
     assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
     counts = (0, 2, len(FOLDERS))
     for count in sample_of(
@@ -340,13 +340,13 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     page = pages.open("start")
     axe_of = [axe(page)]
 
-    def press(where: str, most: int = 3) -> None:
+    def press(selector: str, max_presses: int = 3) -> None:
         """Go on with Tab to an element, past few others, and press Enter."""
-        for _ in range(most):
-            if page.evaluate("where => document.activeElement.matches(where)", where):
+        for _ in range(max_presses):
+            if page.evaluate("where => document.activeElement.matches(where)", selector):
                 return page.keyboard.press("Enter")
             page.keyboard.press("Tab")
-        raise AssertionError(f"Tab does not lead to {where}")
+        raise AssertionError(f"Tab does not lead to {selector}")
 
     press("#start_lessons", 16)
     page.locator("#lesson_next:enabled").wait_for()
@@ -363,7 +363,7 @@ def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Page
     assert axe_of == [[], []]
 
 
-@drawn
+@sampled
 def test_the_start_screen_leads_to_the_lessons_from_anywhere(page: Page) -> None:
     """Also from a page with a drawn floor, and with Back from a panel in front of it."""
     page.click("#side_virtual")
@@ -378,12 +378,12 @@ def test_the_start_screen_leads_to_the_lessons_from_anywhere(page: Page) -> None
 @pytest.mark.parametrize("number", [1, 11])
 def test_a_lesson_starts_correctly_whatever_robot_was_selected(page: Page, number: int) -> None:
     """It brings its own robot and an empty program; the other program returns after the lesson."""
-    robot, own = (
+    robot, program = (
         ("liner", "SI|IF(LINE_L);S;END_IF") if number == 1 else ("tinibot", "SI|SHOW(DISTANCE)")
     )
     page.click("#side_virtual")
     page.select_option("#robot", robot)
-    write(page, own)
+    write(page, program)
     page.click("#side_lessons")
     choose_lesson(page, 2)
     choose_lesson(page, number)
@@ -391,11 +391,11 @@ def test_a_lesson_starts_correctly_whatever_robot_was_selected(page: Page, numbe
     wait_for_note(page, "Your program is kept, and comes back after the lesson.")
     page.locator("#lesson:enabled").wait_for()
     wait_for(page, lambda: page.input_value("#robot") == lesson.robot, "its robot")
-    page.locator(".cm-content", has_text=own).wait_for(state="detached")
+    page.locator(".cm-content", has_text=program).wait_for(state="detached")
     wait_until_checked(page)
     assert page.locator("#messages li").count() == 0
     page.click("#side_virtual")  # without work, there is nothing to lose
-    page.locator(".cm-content", has_text=own).wait_for()
+    page.locator(".cm-content", has_text=program).wait_for()
     assert page.input_value("#robot") == robot
     page.click("#side_lessons")
     wait_for_note(page, "Your program is kept, and comes back after the lesson.")
@@ -405,7 +405,7 @@ def test_a_lesson_starts_correctly_whatever_robot_was_selected(page: Page, numbe
     assert "F(1, 80)" in page.inner_text(".cm-content")  # the lesson continues
     page.click("#home")
     page.click("#start_write")
-    page.locator(".cm-content", has_text=own).wait_for()
+    page.locator(".cm-content", has_text=program).wait_for()
     assert page.input_value("#robot") == robot
     assert page.locator("#world option", has_text="Lesson").count() == 0
     page.click("#my_programs")
@@ -414,7 +414,7 @@ def test_a_lesson_starts_correctly_whatever_robot_was_selected(page: Page, numbe
     assert lesson.title("en").replace(":", "") in names
 
 
-@drawn
+@sampled
 def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     """The start page shows no verdict, and after a change of language the reason is translated."""
     choose_lesson(page, 7)
@@ -425,8 +425,8 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     page.locator("#lesson_said", has_text="No hay resultado").wait_for()
     speak(page, "en")
     choose_lesson(page, 1)
-    right, _ = catalogue.answers(FOLDERS[0])
-    write(page, right[0].program)
+    right_answers, _ = catalogue.answers(FOLDERS[0])
+    write(page, right_answers[0].program)
     page.select_option("#speed", "1")
     page.click("#lesson_check")
     wait_for_phase(page, "running")
@@ -438,11 +438,11 @@ def test_a_check_ends_with_the_lesson_and_with_the_language(page: Page) -> None:
     page.click("#start_write")
 
 
-@drawn
+@sampled
 def test_switching_lessons_reports_where_the_previous_program_is(page: Page) -> None:
     """Programs of lessons are in the list; the person's own program returns."""
-    own, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
-    write(page, own)
+    program, of_lesson = "SI|F(1, 70)", "SI|SHOW(DISTANCE)"
+    write(page, program)
     choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
@@ -457,61 +457,61 @@ def test_switching_lessons_reports_where_the_previous_program_is(page: Page) -> 
     wait_for_note(page, "The program of the previous lesson is in My programs.")
     page.click("#home")
     page.click("#start_write")
-    page.locator(".cm-content", has_text=own).wait_for()
+    page.locator(".cm-content", has_text=program).wait_for()
     page.click("#my_programs")
     versions = page.locator("#versions button", has_text=catalogue.load(FOLDERS[0]).title("en"))
     versions.first.click()  # a slow page may also have kept the earlier text
     page.locator(".cm-content", has_text=of_lesson).wait_for()
 
 
-@drawn
+@sampled
 def test_returning_to_a_lesson_restores_its_program(page: Page) -> None:
     """After another lesson, the start screen, or a reload; the own program returns later."""
-    own, first, second = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
+    own_text, first_text, second_text = "SI|F(1, 70)", "SI|SHOW(1)", "SI|SHOW(2)"
     editor = page.locator(".cm-content")
-    write(page, own)
+    write(page, own_text)
     choose_lesson(page, 1)
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
-    write(page, first)
+    write(page, first_text)
     choose_lesson(page, 2)
-    write(page, second)  # in the existing program
+    write(page, second_text)  # in the existing program
     page.select_option("#lesson", "1")
     wait_for_note(page, "Here is your program for this lesson again.")
-    assert editor.inner_text() == first
+    assert editor.inner_text() == first_text
     choose_lesson(page, 3)
     assert not page.locator("#note").is_visible()  # the program has no note yet
     page.click("#home")
     page.click("#start_write")
-    editor.filter(has_text=own).wait_for()
+    editor.filter(has_text=own_text).wait_for()
     page.click("#home")
     page.click("#start_lessons")
     choose_lesson(page, 1)
-    editor.filter(has_text=first).wait_for()
+    editor.filter(has_text=first_text).wait_for()
     choose_lesson(page, 2)
-    editor.filter(has_text=second).wait_for()
+    editor.filter(has_text=second_text).wait_for()
     page.reload()
     wait_until_checked(page)
-    assert editor.inner_text() == second
+    assert editor.inner_text() == second_text
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
     choose_lesson(page, 1)
-    editor.filter(has_text=first).wait_for()
+    editor.filter(has_text=first_text).wait_for()
     page.click("#home")
     page.click("#start_write")
-    editor.filter(has_text=own).wait_for()
+    editor.filter(has_text=own_text).wait_for()
 
 
 def test_a_program_that_suits_the_lesson_is_kept(page: Page) -> None:
     """Wrong programs stay unchanged too, and so do those that name their robot."""
-    for own in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
-        write(page, own)
+    for program in ("SI|F(1, 80)", "SI|LINE_L(", "// robot: tinibot\nSI|SHOW(DISTANCE)"):
+        write(page, program)
         for number in (1, 11):
             choose_lesson(page, number)
-            if number == 11 and "LINE_L" not in own and "robot:" not in own:
+            if number == 11 and "LINE_L" not in program and "robot:" not in program:
                 label = page.locator("#robot option:checked").inner_text()
                 wait_for_note(page, f"This lesson’s robot is {label}.")
-        assert page.inner_text(".cm-content").splitlines()[-1] == own.splitlines()[-1]
+        assert page.inner_text(".cm-content").splitlines()[-1] == program.splitlines()[-1]
 
 
 def test_a_room_that_a_lesson_calls_dark_is_dark(page: Page) -> None:

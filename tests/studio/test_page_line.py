@@ -35,7 +35,7 @@ class Page:
         self.news: list[dict[str, Any]] = []
         self.file = ""
         self._count = 0
-        self._back = b""
+        self._to_page = b""
 
     def advance(self, milliseconds: int, *requests: dict[str, Any], is_away: bool = False) -> None:
         """Advance time. A hidden page sends no requests."""
@@ -43,15 +43,15 @@ class Page:
             now_ms = self.robot.now_ms + 1
             sent_bytes = b""
             if not is_away:
-                answer = self.page.advance(self._back, now_ms, list(requests) if ms == 0 else [])
-                sent_bytes, self._back = bytes.fromhex(answer["send"]), b""
+                answer = self.page.advance(self._to_page, now_ms, list(requests) if ms == 0 else [])
+                sent_bytes, self._to_page = bytes.fromhex(answer["send"]), b""
                 self.news += answer["news"]
                 self.file = answer.get("keys", self.file)
-            self._back += self.robot.step(now_ms, sent_bytes)
+            self._to_page += self.robot.step(now_ms, sent_bytes)
 
-    def ask(self, do: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
+    def ask(self, action: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
         self._count += 1
-        self.advance(1, {"do": do, "id": self._count, **fields})
+        self.advance(1, {"do": action, "id": self._count, **fields})
         for _ in range(limit_ms):
             answers = [item for item in self.news if item.get("id") == self._count]
             if answers:
@@ -131,8 +131,8 @@ def test_only_the_owner_drives_a_claimed_robot_from_the_page(page: Page) -> None
     assert owner.robot.is_running
 
 
-def key(robot: int, which: int = OWNER, byte: int = 1) -> RobotKey:
-    return RobotKey(robot, which, bytes([byte] * 16), "TINI")
+def key(robot: int, kind: int = OWNER, byte: int = 1) -> RobotKey:
+    return RobotKey(robot, kind, bytes([byte] * 16), "TINI")
 
 
 def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
@@ -155,16 +155,16 @@ def test_concurrent_pages_lose_no_key(seed: int, monkeypatch: pytest.MonkeyPatch
     robot and person, and so does the session with a connected robot.
     """
     monkeypatch.setattr(page_line, "_robot", None)
-    chance, kept_text, known_text = Random(seed), "", ""
+    rng, kept_text, known_text = Random(seed), "", ""
     newest_keys: dict[tuple[int, int], bytes] = {}
 
     def add_in_other_tab() -> None:
         nonlocal kept_text
-        others = PageKeys(kept_text.encode())
-        robot = chance.randrange(5, 9)
-        others.add(keys.encode_keys([RobotKey(robot, OWNER, chance.randbytes(KEY_BYTES))]))
-        kept_text = others.file()
-        newest_keys.update({key.slot: key.key for key in others.keys})
+        other_tab_keys = PageKeys(kept_text.encode())
+        robot = rng.randrange(5, 9)
+        other_tab_keys.add(keys.encode_keys([RobotKey(robot, OWNER, rng.randbytes(KEY_BYTES))]))
+        kept_text = other_tab_keys.file()
+        newest_keys.update({key.slot: key.key for key in other_tab_keys.keys})
 
     def link(now_ms: int) -> dict[str, Any]:
         fields = {} if kept_text == known_text else {"kept": kept_text}
@@ -172,12 +172,12 @@ def test_concurrent_pages_lose_no_key(seed: int, monkeypatch: pytest.MonkeyPatch
 
     for now_ms in range(40):
         new_keys = [
-            RobotKey(robot, chance.choice((OWNER, KEY_TEACHER)), chance.randbytes(KEY_BYTES))
-            for robot in chance.sample(range(1, 5), 2)
+            RobotKey(robot, rng.choice((OWNER, KEY_TEACHER)), rng.randbytes(KEY_BYTES))
+            for robot in rng.sample(range(1, 5), 2)
         ]
-        if chance.random() < 0.3:
+        if rng.random() < 0.3:
             add_in_other_tab()
-        match chance.choice(("connect", "import", "claim", "link")):
+        match rng.choice(("connect", "import", "claim", "link")):
             case "connect":
                 ask(kept_text.encode(), do="connect", robot="tinibot", language="en")
                 new_keys, known_text = [], kept_text
@@ -185,14 +185,14 @@ def test_concurrent_pages_lose_no_key(seed: int, monkeypatch: pytest.MonkeyPatch
                 kept_text = ask(keys.encode_keys(new_keys), do="import_keys", kept=kept_text)[
                     "keys"
                 ]
-            case "claim" | "link" as does if page_line._robot:
-                new_keys = new_keys[: does == "claim"]
+            case "claim" | "link" as action if page_line._robot:
+                new_keys = new_keys[: action == "claim"]
                 for key in (*new_keys, *new_keys):  # the second time it is there already
                     page_line._robot.keys.settle_key(key)
                 answer = link(now_ms)
                 assert ("keys" in answer) == bool(new_keys)
                 known_text = kept_text
-                if new_keys and chance.random() < 0.3:  # in this moment, so they are not stored
+                if new_keys and rng.random() < 0.3:  # in this moment, so they are not stored
                     add_in_other_tab()
                     answer = link(now_ms)
                 known_text = kept_text = answer.get("keys", kept_text)
@@ -304,13 +304,13 @@ def test_keys_neither_end_nor_displace_an_upload(page: Page) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "wrong_fields",
     [{"keys": 64}, {"keys": -1}, {"x": 101}, {"y": -101}, {"x": 1.5}, {"keys": True}, {"y": None}],
     ids=str,
 )
-def test_impossible_key_states_are_refused(page: Page, wrong: dict[str, Any]) -> None:
+def test_impossible_key_states_are_refused(page: Page, wrong_fields: dict[str, Any]) -> None:
     with pytest.raises(BadRequest):
-        page.page.link.ask({"do": "keys", "id": 1, "keys": 0, "x": 0, "y": 0, **wrong})
+        page.page.link.ask({"do": "keys", "id": 1, "keys": 0, "x": 0, "y": 0, **wrong_fields})
 
 
 def test_a_robot_without_a_remote_control_gets_no_key_messages(page: Page) -> None:

@@ -25,7 +25,7 @@ from tests.support.page_link import (
     wait_for_message,
 )
 from tests.support.page_robot import running, wait_for_nothing_running, wait_for_running
-from tests.support.page_screens import LOOK, SCREENS
+from tests.support.page_screens import LOOK_SCRIPT, SCREENS
 from tests.support.pty_robot import PtyRobot
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -48,7 +48,7 @@ from tiniscript.studio import robot_link, serving
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-drawn = pytest.mark.sampled(of="details of a link", keep=4)
+sampled = pytest.mark.sampled(of="details of a link", keep=4)
 
 __all__ = ["first", "first_robot", "page", "pages", "robot"]  # fixtures
 
@@ -95,15 +95,15 @@ def test_a_restart_of_the_robot_is_reported(page: Page, robot: PtyRobot) -> None
 
 def test_stop_stops(page: Page, robot: PtyRobot) -> None:
     """It stops by its button, by a key in the editor, and while the virtual robot is shown."""
-    for way in ("button", "Escape", "virtual"):
+    for stop_action in ("button", "Escape", "virtual"):
         start_drive(page, robot)
-        if way == "Escape":
+        if stop_action == "Escape":
             page.locator(".cm-content").focus()
             page.keyboard.press("Escape")
         else:
-            page.click("#side_virtual" if way == "virtual" else "#side_real")
+            page.click("#side_virtual" if stop_action == "virtual" else "#side_real")
             page.click("#stop")
-        robot.until(lambda: not robot.moves, f"it stands: {way}")
+        robot.until(lambda: not robot.moves, f"it stands: {stop_action}")
         page.click("#side_real")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
 
@@ -112,9 +112,9 @@ def test_a_hanging_hidden_or_offline_page_stops_its_robot(
     first: tuple[Pages, Page], page: Page, robot: PtyRobot
 ) -> None:
     start_drive(page, robot)
-    began_ms = robot.robot_ms
+    start_ms = robot.robot_ms
     hang(page, LONGEST_HANG_MS)
-    assert robot.stands_after_ms(began_ms) < 0.9 * LONGEST_HANG_MS
+    assert robot.stands_after_ms(start_ms) < 0.9 * LONGEST_HANG_MS
     wait_for_message(page, "Stopped")  # the page shows it after reconnecting
     start_drive(page, robot)
     page.evaluate(
@@ -129,30 +129,30 @@ def test_a_hanging_hidden_or_offline_page_stops_its_robot(
     robot.until(lambda: not robot.moves, "it stands")
     wait_for_message(page, "tsc studio has stopped responding")
     page.context.set_offline(False)
-    wrong = first[0].wrong
-    assert wrong and all("ERR_INTERNET_DISCONNECTED" in error for error in wrong)
-    wrong.clear()
+    errors = first[0].errors
+    assert errors and all("ERR_INTERNET_DISCONNECTED" in error for error in errors)
+    errors.clear()
 
 
-@drawn
+@sampled
 def test_two_tabs_do_not_compete_for_a_robot(
     first: tuple[Pages, Page], page: Page, robot: PtyRobot
 ) -> None:
-    other = first[0].another(page)
-    other.click("#side_real")
-    other.locator("#link_port option").first.wait_for(state="attached")
-    other.click("#link_connect")
-    wait_for_message(other, "Another tab of this browser is driving this robot.")
+    other_page = first[0].another(page)
+    other_page.click("#side_real")
+    other_page.locator("#link_port option").first.wait_for(state="attached")
+    other_page.click("#link_connect")
+    wait_for_message(other_page, "Another tab of this browser is driving this robot.")
     start_drive(page, robot)
-    other.click("#stop")  # anyone who sees STOP may press it
+    other_page.click("#stop")  # anyone who sees STOP may press it
     robot.until(lambda: not robot.moves, "it stands")
-    other.close()
+    other_page.close()
     while BLINKING_MESSAGE not in page.locator("#link_said").inner_text():
         page.click("#link_identify")  # refused for a moment after a STOP for all
         wait_for_message(page, re.compile(f"{VOID_STOP_MESSAGE}|{BLINKING_MESSAGE}"))
 
 
-@drawn
+@sampled
 def test_identify_name_and_trim_work(page: Page, robot: PtyRobot) -> None:
     page.click("#link_identify")
     wait_for_message(page, BLINKING_MESSAGE)
@@ -185,7 +185,7 @@ def test_identify_name_and_trim_work(page: Page, robot: PtyRobot) -> None:
     )
 
 
-@drawn
+@sampled
 def test_every_element_is_visible_and_axe_finds_nothing(
     page: Page, robot: PtyRobot, pytestconfig: pytest.Config
 ) -> None:
@@ -196,7 +196,7 @@ def test_every_element_is_visible_and_axe_finds_nothing(
             speak(page, language)
             wait_until_checked(page)
             turn(page, "robot")
-            assert page.evaluate(LOOK) == [], (width, language, is_connected)
+            assert page.evaluate(LOOK_SCRIPT) == [], (width, language, is_connected)
         if is_connected:
             page.click("#link_leave")
             page.locator("#link_connect").wait_for()
@@ -242,7 +242,7 @@ def test_the_reason_for_a_failed_connection_is_shown(pages: Pages) -> None:
         wait_for_message(page, "cable")
 
 
-@drawn
+@sampled
 def test_the_token_is_not_in_the_address(page: Page, server: serving.Server) -> None:
     assert page.evaluate("location.href") == server.address + "#editor"
     page.reload()
@@ -268,23 +268,23 @@ def test_an_address_grants_access_once_per_run_of_tsc_studio(
     first, second = pages.visit(entrance), pages.visit(entrance)
     studio.wait_for_note(second, "This address has already been used")
     assert first.locator("#note").inner_text() == ""
-    for either, has_robots in ((first, True), (second, False)):
-        either.click("#side_real")
-        assert either.locator("#link_ports").is_visible() is has_robots
+    for opened_page, has_robots in ((first, True), (second, False)):
+        opened_page.click("#side_real")
+        assert opened_page.locator("#link_ports").is_visible() is has_robots
     connect(first, robot)
     start_drive(first, robot)
-    began_ms = robot.robot_ms
+    start_ms = robot.robot_ms
     first.close()
-    assert robot.stands_after_ms(began_ms) < 0.9 * LONGEST_HANG_MS
+    assert robot.stands_after_ms(start_ms) < 0.9 * LONGEST_HANG_MS
     second.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
     enter(second, server.address)
     second.click("#side_real")
     wait_for_message(second, "tsc studio was restarted")
-    assert [error for error in pages.wrong if "403" not in error] == []
-    pages.wrong.clear()
+    assert [error for error in pages.errors if "403" not in error] == []
+    pages.errors.clear()
 
 
-@drawn
+@sampled
 def test_values_of_the_robot_have_the_names_of_their_shows(page: Page) -> None:
     """This holds next to another text, too; a line of the same code has its own names."""
     shown_element = page.locator("#link_shown")
@@ -300,11 +300,11 @@ def test_values_of_the_robot_have_the_names_of_their_shows(page: Page) -> None:
         shown_element.filter(has_text=f"{line.split()[0]} 4").wait_for()
 
 
-@drawn
+@sampled
 def test_a_run_keeps_its_names_until_the_next_program_starts(page: Page) -> None:
     """The next one has the same code, and is sent before the last values of the one before come."""
     shown_element = page.locator("#link_shown")
-    late: list[dict[str, Any]] = []
+    late_news: list[dict[str, Any]] = []
     has_begun: list[bool] = []
 
     def hold(route: Route) -> None:
@@ -312,30 +312,32 @@ def test_a_run_keeps_its_names_until_the_next_program_starts(page: Page) -> None
         answer = response.json()
         news = answer.get("news", [])
         if any(item.get("event") == "STARTED" for item in news):
-            news[:0] = late
+            news[:0] = late_news
             has_begun.append(True)
         elif not has_begun:
             values = [item for item in news if item.get("event") == "SHOW"]
             answer["news"] = [item for item in news if item not in values]
-            late.extend({key: value[key] for key in value if key != "number"} for value in values)
+            late_news.extend(
+                {key: value[key] for key in value if key != "number"} for value in values
+            )
         route.fulfill(response=response, json=answer)
 
     write(page, "NEAR = 4;\nLOOP(FOREVER);\nSHOW(NEAR);\nW(0.1);\nEND_LOOP")
     upload_until_it_runs(page)
     shown_element.filter(has_text="NEAR 4").wait_for()
     page.route("**/robots", hold)
-    wait_for(page, lambda: len(late) > 2, "values are held back")
+    wait_for(page, lambda: len(late_news) > 2, "values are held back")
     write(page, "FAR = 4;\nLOOP(FOREVER);\nSHOW(FAR);\nW(0.1);\nEND_LOOP")
     upload_until_it_runs(page)
     shown_element.filter(has_text="FAR 4").wait_for()
     names = [line.split()[0] for line in shown_element.inner_text().splitlines()]
-    assert names[: len(late)] == ["NEAR"] * len(late), names
+    assert names[: len(late_news)] == ["NEAR"] * len(late_news), names
     page.unroute_all(behavior="wait")
     page.click("#stop")
     wait_for_message(page, "Stopped: the robot has confirmed the stop")
 
 
-@drawn
+@sampled
 def test_a_line_and_a_lost_link_do_not_change_a_recording(page: Page) -> None:
     write(page, "SHOW(5);\nW(60);\nSHOW(6)")
     upload_until_it_runs(page)
@@ -353,7 +355,7 @@ def test_a_line_and_a_lost_link_do_not_change_a_recording(page: Page) -> None:
     assert events(page) == ["SHOW 5", "LOST"]
 
 
-@drawn
+@sampled
 def test_a_program_of_the_button_is_recorded_from_its_first_event(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -413,7 +415,7 @@ def agrees(page: Page, run: Callable[[], None]) -> None:
     assert doing.inner_text() == "Both robots did the same. Values compared: 3."
 
 
-@drawn
+@sampled
 def test_a_run_is_recorded_and_replayed_beside_the_virtual_robot(page: Page) -> None:
     write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
 
@@ -433,7 +435,7 @@ def test_a_run_is_recorded_and_replayed_beside_the_virtual_robot(page: Page) -> 
 # -- the line and the block that the robot runs now
 
 
-DRIVE = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
+DRIVE_PROGRAM = "F(3, 80);\nR(3, 60)"  # parts that differ, and longer than a busy page is late
 
 
 def wait_for_no_mark(page: Page) -> None:
@@ -442,13 +444,13 @@ def wait_for_no_mark(page: Page) -> None:
 
 
 @pytest.mark.usefixtures("no_page_timeouts")
-@drawn
+@sampled
 def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
-    write(page, DRIVE)
+    write(page, DRIVE_PROGRAM)
     page.click("#view_blocks")
     wait_for_blocks(page)
     page.click("#link_upload")
-    for part in DRIVE.split(";\n"):
+    for part in DRIVE_PROGRAM.split(";\n"):
         wait_for_running(page, part)
         assert page.locator("#blocks .blocklyDraggable.running").count() == 1
     page.click("#view_text")
@@ -456,7 +458,7 @@ def test_the_line_that_runs_is_marked_until_the_end(page: Page) -> None:
     wait_for_no_mark(page)
 
 
-@drawn
+@sampled
 def test_an_edit_removes_the_mark_and_its_undo_restores_it(page: Page) -> None:
     write(page, "F(600, 80)")
     page.click("#link_upload")
@@ -473,7 +475,7 @@ def test_an_edit_removes_the_mark_and_its_undo_restores_it(page: Page) -> None:
     wait_for_no_mark(page)
 
 
-def upload_until_told(page: Page, at: int) -> None:
+def upload_until_told(page: Page, place: int) -> None:
     """Upload, and wait until the page got the place `at` instead of the robot's."""
     places: list[int] = []
 
@@ -482,7 +484,7 @@ def upload_until_told(page: Page, at: int) -> None:
         answer = response.json()
         for item in answer.get("news", []):
             if item.get("event") == "PLACE":
-                item["at"] = at
+                item["at"] = place
                 places.append(item["at"])
         route.fulfill(response=response, json=answer)
 
@@ -493,18 +495,18 @@ def upload_until_told(page: Page, at: int) -> None:
     page.wait_for_timeout(200)
 
 
-@drawn
+@sampled
 def test_a_place_outside_the_program_marks_nothing(page: Page) -> None:
     write(page, "F(60, 80)")
     upload_until_told(page, 60_000)
     assert running(page) == ""
 
 
-@drawn
+@sampled
 def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     """Both are held at the first line, then one continues, then the other one."""
-    first, second = "W(0.1)", "F(60, 80)"
-    write(page, f"{first};\n{second}")
+    first_row, second_row = "W(0.1)", "F(60, 80)"
+    write(page, f"{first_row};\n{second_row}")
     page.click("#side_virtual")
     breakpoint = page.locator(".cm-lineNumbers .cm-gutterElement").filter(has_text="1").last
     breakpoint.click()
@@ -513,17 +515,17 @@ def test_the_robot_whose_side_is_open_is_marked(page: Page) -> None:
     page.click("#side_real")
     page.click("#link_upload")
     page.locator("html[data-halt='read']").wait_for()
-    wait_for_running(page, first)
+    wait_for_running(page, first_row)
     page.click("#link_go_on")
-    wait_for_running(page, second)
+    wait_for_running(page, second_row)
     page.click("#side_virtual")
-    wait_for_running(page, first)
+    wait_for_running(page, first_row)
     page.click("#pause")  # continues
-    wait_for_running(page, second)
+    wait_for_running(page, second_row)
     page.click("#stop")
     breakpoint.click()  # no later program is to halt
     page.click("#side_real")
     page.click("#link_upload")
-    wait_for_running(page, second)
+    wait_for_running(page, second_row)
     page.click("#link_leave")
     wait_for_no_mark(page)

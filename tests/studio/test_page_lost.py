@@ -20,7 +20,7 @@ from tiniscript.studio.attending import LEFT_S
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
 
-drawn = pytest.mark.sampled(of="lost requests", keep=3)
+sampled = pytest.mark.sampled(of="lost requests", keep=3)
 
 CONFIRMED_MESSAGE = "Stopped: the robot has confirmed the stop."
 HIDDEN_MESSAGE = "The robot was stopped because this page was hidden. Come back here to drive it."
@@ -66,32 +66,34 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     current_page.evaluate("delete document.visibilityState")
     if current_page.locator("#link_leave").is_visible():
         current_page.click("#link_leave")
-    pages.wrong.clear()  # a browser complains of each lost request
+    pages.errors.clear()  # a browser complains of each lost request
 
 
 def test_a_lost_stop_is_delivered_with_the_next_heartbeat(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):
         start_drive(page, robot)
-        torn = tear_requests(page, "stop", lambda route: route.abort(), times=9)
+        torn_requests = tear_requests(page, "stop", lambda route: route.abort(), times=9)
         page.click("#stop")
         wait_for(page, lambda: not robot.moves, "it stands")
         wait_for_message(page, CONFIRMED_MESSAGE)
-        assert torn
+        assert torn_requests
         page.unroute_all(behavior="wait")
 
 
-@drawn
+@sampled
 def test_a_transport_error_ends_no_connection(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
-    torn = tear_requests(page, "beat", refuse, times=2)
-    wait_for(page, lambda: len(torn) == 2, "they are refused")
+    torn_requests = tear_requests(page, "beat", refuse, times=2)
+    wait_for(page, lambda: len(torn_requests) == 2, "they are refused")
     page.wait_for_timeout(300)
     assert page.locator("html[data-robot=connected]").count() and robot.moves
-    torn = tear_requests(page, "beat", refuse, times=1000)  # a failure that lasts is reported
+    torn_requests = tear_requests(
+        page, "beat", refuse, times=1000
+    )  # a failure that lasts is reported
     wait_for_message(page, "tsc studio has stopped responding")
-    assert torn
+    assert torn_requests
 
 
 @pytest.mark.sampled("tear")
@@ -99,13 +101,13 @@ def test_a_transport_error_ends_no_connection(page: Page, robot: PtyRobot) -> No
 def test_a_lost_connect_is_retried(
     page: Page, robot: PtyRobot, tear: Callable[[Route], None]
 ) -> None:
-    torn = tear_requests(page, "connect", tear)
+    torn_requests = tear_requests(page, "connect", tear)
     connect(page, robot)
-    assert len(torn) == 1
+    assert len(torn_requests) == 1
     start_drive(page, robot)
 
 
-@drawn
+@sampled
 def test_a_connect_after_lost_ones_takes_over_their_connection(page: Page, robot: PtyRobot) -> None:
     tear_requests(page, "connect", lose_answer, times=3)
     page.click("#side_real")
@@ -126,17 +128,17 @@ def test_a_connect_after_lost_ones_takes_over_their_connection(page: Page, robot
 # -- reports of a stop
 
 
-class Mute:
+class EventFilter:
     """A filter that keeps a stop's event from a page until it is released."""
 
     def __init__(self, page: Page, *kinds: str) -> None:
-        self.withheld: list[dict[str, Any]] = []
+        self.withheld_stops: list[dict[str, Any]] = []
         self.is_open = False
         self._kinds = kinds
         page.route("**/robots", self._handle)
 
     def keeps(self, is_any: bool) -> bool:
-        return bool(self.withheld) == is_any
+        return bool(self.withheld_stops) == is_any
 
     def _handle(self, route: Route) -> None:
         response = route.fetch()
@@ -144,32 +146,34 @@ class Mute:
         news = answer.get("news", [])
         stops = [item for item in news if item.get("event") in self._kinds]
         answer["news"] = [item for item in news if item not in stops]
-        self.withheld += [{k: stop[k] for k in stop if k != "number"} for stop in stops]
+        self.withheld_stops += [{k: stop[k] for k in stop if k != "number"} for stop in stops]
         if self.is_open:
-            answer["news"] += self.withheld
-            self.withheld = []
+            answer["news"] += self.withheld_stops
+            self.withheld_stops = []
         route.fulfill(response=response, json=answer)
 
 
-@pytest.mark.sampled("way")
-@pytest.mark.parametrize("way", ["button", "hidden"])
-def test_only_the_outcome_of_a_stop_is_reported_once(page: Page, robot: PtyRobot, way: str) -> None:
+@pytest.mark.sampled("stop_action")
+@pytest.mark.parametrize("stop_action", ["button", "hidden"])
+def test_only_the_outcome_of_a_stop_is_reported_once(
+    page: Page, robot: PtyRobot, stop_action: str
+) -> None:
     connect(page, robot)
     start_drive(page, robot)
     page.evaluate(LISTENING_SCRIPT)
-    mute = Mute(page, "STOPPED")
+    mute = EventFilter(page, "STOPPED")
 
     def stop() -> None:
-        if way == "button":
+        if stop_action == "button":
             page.click("#stop")
         else:
             page.evaluate(VISIBILITY_SCRIPT, "hidden")
 
     stop()
-    wait_for(page, lambda: mute.withheld, "it has stopped")
+    wait_for(page, lambda: mute.withheld_stops, "it has stopped")
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
-    wait_for_message(page, HIDDEN_MESSAGE if way == "hidden" else CONFIRMED_MESSAGE)
+    wait_for_message(page, HIDDEN_MESSAGE if stop_action == "hidden" else CONFIRMED_MESSAGE)
     mute.is_open = False
     page.evaluate(VISIBILITY_SCRIPT, "visible")
     start_drive(page, robot)
@@ -182,12 +186,12 @@ def test_only_the_outcome_of_a_stop_is_reported_once(page: Page, robot: PtyRobot
     assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE, LATE_MESSAGE]
 
 
-@drawn
+@sampled
 def test_two_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     for _ in range(2):  # the second round is another stop
         start_drive(page, robot)
-        mute = Mute(page, "STOPPED")
+        mute = EventFilter(page, "STOPPED")
         page.evaluate(LISTENING_SCRIPT)
         page.dblclick("#stop")
         wait_for(page, partial(mute.keeps, True), "it has stopped")
@@ -200,16 +204,16 @@ def test_two_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> N
         assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
 
 
-@drawn
+@sampled
 def test_five_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> None:
     """This holds even if every request of it is lost; and none of them stops the next run."""
     connect(page, robot)
     start_drive(page, robot)
-    torn = tear_requests(page, "stop", lambda route: route.abort(), times=99)
+    torn_requests = tear_requests(page, "stop", lambda route: route.abort(), times=99)
     page.evaluate(LISTENING_SCRIPT)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
     wait_for_message(page, CONFIRMED_MESSAGE)
-    wait_for(page, lambda: torn, "they are lost")
+    wait_for(page, lambda: torn_requests, "they are lost")
     page.wait_for_timeout(300)
     assert page.evaluate("window.told") == ["Stopping…", CONFIRMED_MESSAGE]
     page.unroute_all(behavior="wait")
@@ -246,7 +250,7 @@ def test_a_silent_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     assert page.evaluate("window.told") == ["Stopping…", SILENT_MESSAGE]
 
 
-@drawn
+@sampled
 def test_a_lost_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     """Its requests and the link end. A slow page, which is not heard for a while, first stops the
     run under way, and reports that, too.
@@ -263,10 +267,10 @@ def test_a_lost_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     assert [text for text in texts if text == "The robot has stopped responding"] == texts[-1:]
 
 
-@drawn
+@sampled
 def test_a_request_to_a_silent_robot_is_reported_as_waiting(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
-    Mute(page, "LOST")
+    EventFilter(page, "LOST")
     robot.switch_off()
     page.evaluate(LISTENING_SCRIPT)
     page.click("#link_identify")
@@ -274,25 +278,25 @@ def test_a_request_to_a_silent_robot_is_reported_as_waiting(page: Page, robot: P
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
 
 
-@drawn
+@sampled
 def test_a_timed_out_page_gets_the_reason_for_its_disconnection(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
-    torn = tear_requests(page, "beat", lambda route: route.abort(), times=1)
-    wait_for(page, lambda: torn, "a beat is lost")
+    torn_requests = tear_requests(page, "beat", lambda route: route.abort(), times=1)
+    wait_for(page, lambda: torn_requests, "a beat is lost")
     page.unroute_all(behavior="wait")
     hang(page, round(1000 * LEFT_S) + 500)
     wait_for_message(page, "tsc studio heard nothing from this page for a while")
 
 
-@drawn
+@sampled
 def test_a_disconnection_before_confirmation_reports_an_unconfirmed_stop(
     page: Page, robot: PtyRobot
 ) -> None:
     connect(page, robot)
     start_drive(page, robot)
-    Mute(page, "STOPPED", "LOST")
+    EventFilter(page, "STOPPED", "LOST")
     page.evaluate(LISTENING_SCRIPT)
     page.click("#stop")
     page.click("#link_leave")

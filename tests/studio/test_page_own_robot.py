@@ -37,8 +37,10 @@ def name_robot(page: Page, name: str, colour: int) -> None:
     page.get_by_role("button", name="Close").click()
 
 
-def store(page: Page, place: str, what: object) -> None:
-    page.evaluate("([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(what)])
+def store(page: Page, place: str, value: object) -> None:
+    page.evaluate(
+        "([place, what]) => localStorage.setItem(place, what)", [place, json.dumps(value)]
+    )
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
@@ -63,9 +65,9 @@ def test_colour_and_name_of_a_robot_are_shown_everywhere_and_kept(pages: Pages) 
     assert PINK_COLOUR in colors and GREEN_COLOUR not in colors
 
 
-@pytest.mark.sampled("what")
+@pytest.mark.sampled("value")
 @pytest.mark.parametrize(
-    "what",
+    "value",
     [
         5,
         "x",
@@ -76,10 +78,10 @@ def test_colour_and_name_of_a_robot_are_shown_everywhere_and_kept(pages: Pages) 
         {"<b>": 1},
     ],
 )
-def test_damaged_stored_data_does_no_harm(pages: Pages, what: object) -> None:
+def test_damaged_stored_data_does_no_harm(pages: Pages, value: object) -> None:
     page = pages.open("start")
     for place in (OWN_ROBOT_KEY, STARS_KEY):
-        store(page, place, what)
+        store(page, place, value)
     store(page, LESSONS_KEY, [])
     page.reload()
     enter(page, page.url)
@@ -105,28 +107,28 @@ def test_name_and_face_do_not_affect_a_run(pages: Pages) -> None:
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
-@pytest.mark.parametrize("way", ["seen and heard", "muted", "still"])
-def test_a_solved_lesson_is_celebrated(pages: Pages, way: str) -> None:
+@pytest.mark.parametrize("motion", ["seen and heard", "muted", "still"])
+def test_a_solved_lesson_is_celebrated(pages: Pages, motion: str) -> None:
     """The stars of all lessons are added up, once each."""
-    page = pages.open(reduced_motion="reduce" if way == "still" else "no-preference")
+    page = pages.open(reduced_motion="reduce" if motion == "still" else "no-preference")
     store(page, LESSONS_KEY, ["01_first_line"])
     store(page, STARS_KEY, {"01_first_line": 1, "04_none": 2})
     page.evaluate(NOTE_EFFECTS)
     page.evaluate(CONFETTI)
-    if way == "muted":
+    if motion == "muted":
         page.click("#sound")
     page.select_option("#speed", "20")
     page.click("#side_lessons")
     folder = catalogue.folders()[1]
-    right, _ = catalogue.answers(folder)
+    right_answers, _ = catalogue.answers(folder)
     worlds = catalogue.load(folder).world_count
     for _ in range(2):
         choose_lesson(page, 2)
-        assert check_answer(page, right[0].program)[0] == "passed"
+        assert check_answer(page, right_answers[0].program)[0] == "passed"
         assert f"You have {3 + worlds} stars." in page.inner_text("#lesson_said")
-    assert page.evaluate("window.fell") == (0 if way == "still" else 2)
+    assert page.evaluate("window.fell") == (0 if motion == "still" else 2)
     tune = [523, 659, 784, 1047]
-    assert page.evaluate("window.heard").count(tune[-1]) == (0 if way == "muted" else 2)
+    assert page.evaluate("window.heard").count(tune[-1]) == (0 if motion == "muted" else 2)
     page.locator(".confetti").wait_for(state="detached")
     page.click("#home")
     badge = page.locator("#start_badge")
@@ -147,10 +149,12 @@ def test_the_teacher_sees_whose_robot_is_whose(browser: Browser) -> None:
         pupil.locator("#own [role=radiogroup] label").nth(3).click()
         tile = teacher.locator("#wall li").filter(has_text="Ana · <b>Pip")
         tile.wait_for()
-        look = "getComputedStyle(document.querySelector('#wall .own_robot')).getPropertyValue"
+        style_script = (
+            "getComputedStyle(document.querySelector('#wall .own_robot')).getPropertyValue"
+        )
         wait_for(
             teacher,
-            lambda: teacher.evaluate(f"{look}('--robot')") == "#d0468f",
+            lambda: teacher.evaluate(f"{style_script}('--robot')") == "#d0468f",
             "it has its colour",
         )
         assert tile.locator("b").count() == 0

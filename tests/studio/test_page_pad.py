@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-drawn = pytest.mark.sampled(of="details of the remote control", keep=1)
+sampled = pytest.mark.sampled(of="details of the remote control", keep=1)
 
 STICK_PROGRAM = "LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nW(0.02);\nEND_LOOP;\n"
 KEYS = "LOOP(FOREVER);\nIF(KEY_UP);\nM(60, 60);\nELSE;\nM(0, 0);\nENDIF;\nW(0.02);\nEND_LOOP;\n"
@@ -106,18 +106,18 @@ def test_a_start_picture_can_be_driven_at_once(pages: Pages, size: dict[str, int
     assert not page.locator("#pad").is_visible()
 
 
-@drawn
+@sampled
 def test_the_picture_opens_the_example(pages: Pages) -> None:
     page = pages.visit(pages.entrance(), "start")
     page.click("[data-begin=drive]")
     wait_for_blocks(page)
     example = (ROOT / "examples" / "remote.ts").read_text("utf-8")
     page.click("#view_text")
-    ours = page.locator(".cm-content").inner_text()
-    assert ours.split() == re.sub(r"//.*", "", example).split()
+    opened_text = page.locator(".cm-content").inner_text()
+    assert opened_text.split() == re.sub(r"//.*", "", example).split()
 
 
-@drawn
+@sampled
 def test_a_resumed_or_restarted_run_reads_the_currently_held_keys(pages: Pages) -> None:
     page = pages.open()
     write(page, STICK_PROGRAM)
@@ -146,14 +146,14 @@ def test_a_resumed_or_restarted_run_reads_the_currently_held_keys(pages: Pages) 
     page.keyboard.down("ArrowUp")
     wait_for(page, lambda: read_motor_powers(page) == "100 100", "it drives")
     page.select_option("#speed", "20")
-    since = trace(page)[-1]
-    wait_for(page, lambda: since not in trace(page), "it goes on, at each speed")
+    held_cm = trace(page)[-1]
+    wait_for(page, lambda: held_cm not in trace(page), "it goes on, at each speed")
     assert not any(line.endswith("MOTORS 0 0") for line in trace(page))
     page.keyboard.up("ArrowUp")
     wait_for(page, lambda: read_motor_powers(page) == "0 0", "it stands")
 
 
-@drawn
+@sampled
 def test_a_robot_without_key_support_gets_none_and_the_page_reports_it(pages: Pages) -> None:
     sensors = tuple(Device(f"S{k}", YES_NO, "", 0, 1) for k in range(9))
     with PtyRobot(Kit(sensors)) as robot:
@@ -174,7 +174,7 @@ def test_a_robot_without_key_support_gets_none_and_the_page_reports_it(pages: Pa
         assert axe(page) == []
 
 
-@drawn
+@sampled
 def test_the_controls_of_a_real_robot_are_accessible(pages: Pages) -> None:
     with PtyRobot(robots.load("tinibot").kit) as robot:
         known_ports.remember(robot.port, "TINI")
@@ -186,15 +186,15 @@ def test_the_controls_of_a_real_robot_are_accessible(pages: Pages) -> None:
         assert axe(page) == []
 
 
-@drawn
+@sampled
 def test_a_judged_run_accepts_no_other_keys(pages: Pages) -> None:
     page = pages.open()
     write(page, f"// robot: tinibot\n{KEYS}")
     page.click("#side_lessons")
     page.locator("#lesson_next:enabled").wait_for()
-    first = page.locator("#lesson_name").text_content()
+    lesson_name = page.locator("#lesson_name").text_content()
     page.select_option("#lesson", index=17)
-    page.locator("#lesson_name").filter(has_not_text=first or "?").wait_for(state="attached")
+    page.locator("#lesson_name").filter(has_not_text=lesson_name or "?").wait_for(state="attached")
     page.locator("#lesson_steps button").last.click()
     page.click("#run")  # the own run
     wait_for_phase(page, "running")
@@ -221,8 +221,8 @@ def press_until_driven(
     for _ in range(UPLOADS):
         press()
 
-        def is_over(began_ms: int = robot.robot_ms) -> bool:
-            has_driven = robot.moves and robot.robot_ms >= began_ms + least_ms
+        def is_over(start_ms: int = robot.robot_ms) -> bool:
+            has_driven = robot.moves and robot.robot_ms >= start_ms + least_ms
             return has_driven or "Stopped: " in word.inner_text()
 
         wait_for(page, is_over, "it drives or is stopped")

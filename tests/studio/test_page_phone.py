@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="looks of a phone", keep=2)
+sampled = pytest.mark.sampled(of="looks of a phone", keep=2)
 
-NINE = """SI|LOOP(3)
+NINE_BLOCKS = """SI|LOOP(3)
   F(1, 80)
   BEEP(0.1, 440)
   R(0.5, 60)
@@ -39,7 +39,7 @@ F(-2, 80)
 B(1, 80)
 L(1, 80)"""
 # The number of blocks fully visible above the compiler's message.
-SEEN = """() => {
+SEEN_SCRIPT = """() => {
   const sheet = document.querySelector('#messages').getBoundingClientRect();
   const { top, bottom } = document.querySelector('#blocks').getBoundingClientRect();
   const low = sheet.height ? sheet.top : bottom;
@@ -67,21 +67,21 @@ def shown_half(page: Page) -> str:
     return str(page.evaluate("document.documentElement.dataset.half"))
 
 
-@drawn
+@sampled
 def test_six_blocks_are_visible_beside_a_message(phone: Page) -> None:
-    write(phone, NINE)
+    write(phone, NINE_BLOCKS)
     phone.click("#view_blocks")
     wait_for_blocks(phone)
     assert phone.locator("#messages li").is_visible()
-    assert phone.evaluate(SEEN) >= 6
+    assert phone.evaluate(SEEN_SCRIPT) >= 6
     assert axe(phone) == []
 
 
-@drawn
+@sampled
 def test_the_messages_can_be_collapsed(phone: Page) -> None:
-    for wrong in ("F(-2, 80)", "F(-3, 80)"):
-        write(phone, wrong)
-        assert phone.locator("#messages li").is_visible() == (wrong == "F(-2, 80)")
+    for wrong_text in ("F(-2, 80)", "F(-3, 80)"):
+        write(phone, wrong_text)
+        assert phone.locator("#messages li").is_visible() == (wrong_text == "F(-2, 80)")
         if phone.get_attribute("#sheet", "aria-expanded") == "true":
             phone.click("#sheet")
         assert not phone.locator("#messages li").is_visible()
@@ -100,16 +100,16 @@ def test_the_messages_can_be_collapsed(phone: Page) -> None:
 def test_run_and_stop_are_on_both_phone_screens(phone: Page, size: tuple[int, int]) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.set_viewport_size({"width": size[0], "height": size[1]})
-    for where in ("program", "robot"):
+    for screen_name in ("program", "robot"):
         turn(phone, "program")
         phone.click("#run")
         wait_for_phase(phone, "running")
         assert shown_half(phone) == "robot"
         assert phone.locator("#arena").is_visible() and not phone.locator("#writing").is_visible()
-        turn(phone, where)
+        turn(phone, screen_name)
         phone.click("#stop")
         wait_for_phase(phone, "ended")
-        assert shown_half(phone) == where
+        assert shown_half(phone) == screen_name
 
 
 def test_run_shows_the_virtual_robot_unless_the_real_one_is_shown(phone: Page) -> None:
@@ -132,7 +132,7 @@ def test_run_shows_the_virtual_robot_unless_the_real_one_is_shown(phone: Page) -
     wait_for_phase(phone, "running")
 
 
-@drawn
+@sampled
 def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     """On a tablet, a second tap does not hit the element that replaces the first."""
     page = pages.open("start", viewport={"width": 390, "height": 844}, has_touch=True)
@@ -157,7 +157,7 @@ def test_a_phone_begins_with_the_pictures(pages: Pages) -> None:
     assert page.get_attribute("#side_real", "aria-pressed") == "false"
 
 
-@drawn
+@sampled
 def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
     write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     phone.click("#run")
@@ -178,7 +178,7 @@ def test_a_phone_is_turned_while_a_program_runs(phone: Page) -> None:
 TRANSPARENT = "rgba(0, 0, 0, 0)"
 
 
-@drawn
+@sampled
 def test_selected_and_running_items_are_visible_in_forced_colors(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.emulate_media(forced_colors="active")
@@ -203,7 +203,7 @@ def test_selected_and_running_items_are_visible_in_forced_colors(page: Page) -> 
 
 
 # The height of letters in a box of blocks, and the width and height of its touch targets.
-TOUCHED = """all => all.map((e) => {
+TOUCHED_SCRIPT = """all => all.map((e) => {
   const isNumber = e.matches('.blocklyNumberField'); // which is all of its block
   const shape = e.querySelector(':scope > .blocklyFieldRect') ?? e;
   const own = isNumber ? e.closest('.blocklyBlock') : shape;
@@ -211,7 +211,7 @@ TOUCHED = """all => all.map((e) => {
   return [e.textContent, Math.min(width, height)];
 })"""
 LETTERS = """all => all.map((e) => parseFloat(getComputedStyle(e).fontSize) * e.getScreenCTM().a)"""
-LONG = """SI|IF(LIGHT_L > LIGHT_R AND DISTANCE < 20 OR TIME > 3);
+LONG_PROGRAM = """SI|IF(LIGHT_L > LIGHT_R AND DISTANCE < 20 OR TIME > 3);
   L(0.5, 60);
 ELSE;
   M(30, 60);
@@ -220,7 +220,7 @@ F(5, 60) UNTIL(DISTANCE < 10);
 """
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_blocks_on_a_phone_are_readable_and_touchable(pages: Pages, language: str) -> None:
     """Letters are 12 pixels high, touch targets 24, and a long question has more rows: the whole
@@ -228,19 +228,19 @@ def test_blocks_on_a_phone_are_readable_and_touchable(pages: Pages, language: st
     """
     page = pages.open(viewport={"width": 390, "height": 844})
     speak(page, language)
-    write(page, LONG)
+    write(page, LONG_PROGRAM)
     page.click("#view_blocks")
     wait_for_blocks(page)
     canvas = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"
     letters = page.locator(f"{canvas} .blocklyText").evaluate_all(LETTERS)
     assert letters and min(letters) >= 11.99
     fields = ".blocklyDropdownField, .blocklyNumberField, .blocklyImageField"
-    for name, least in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED):
-        assert least >= 23, name
+    for name, height in page.locator(f"{canvas} :is({fields})").evaluate_all(TOUCHED_SCRIPT):
+        assert height >= 23, name
     rows = page.locator(f"{canvas} .compare > .blocklyPath:not(.blocklyPathSelected)")
     width = page.evaluate("document.querySelector('#blocks').getBoundingClientRect().right")
-    last = rows.last.evaluate("e => e.getBoundingClientRect()['right']")
-    assert last <= width
+    last_right = rows.last.evaluate("e => e.getBoundingClientRect()['right']")
+    assert last_right <= width
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") > 60  # two rows
     page.set_viewport_size({"width": 1366, "height": 768})
     speak(page, "en" if language != "en" else "es")  # blocks are made anew
@@ -248,7 +248,7 @@ def test_blocks_on_a_phone_are_readable_and_touchable(pages: Pages, language: st
     assert rows.first.evaluate("e => e.getBoundingClientRect().height") < 60
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_moves_and_messages_on_a_phone_are_fully_visible(pages: Pages, language: str) -> None:
     """They are below one row of buttons: a move gets a second row if it needs one, and no scrollbar
@@ -278,7 +278,7 @@ def test_moves_and_messages_on_a_phone_are_fully_visible(pages: Pages, language:
 
 
 # Touch targets below STOP; those scrolled out at the top are not below anything.
-UNDER_STOP = """() => {
+UNDER_STOP_SCRIPT = """() => {
   const stop = document.querySelector('#stop').getBoundingClientRect();
   const top = document.querySelector('body > header').getBoundingClientRect().bottom;
   return [...document.querySelectorAll('button, select')].filter((each) => {
@@ -291,7 +291,7 @@ UNDER_STOP = """() => {
 }"""
 
 
-@drawn
+@sampled
 def test_a_new_program_can_be_started_from_the_bar_of_a_phone(phone: Page) -> None:
     """Its button shares one row with the rest of the bar, in every language."""
     bar = phone.locator("body > header")
@@ -311,7 +311,7 @@ def test_a_new_program_can_be_started_from_the_bar_of_a_phone(phone: Page) -> No
     assert phone.locator(".cm-content").inner_text().strip() == ""
 
 
-@drawn
+@sampled
 def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, view="start")
 
@@ -321,9 +321,9 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
         return float(box["width"])
 
     assert width() < 130
-    assert page.evaluate(UNDER_STOP) == []
+    assert page.evaluate(UNDER_STOP_SCRIPT) == []
     page.evaluate("scrollTo(0, document.documentElement.scrollHeight)")
-    assert page.evaluate(UNDER_STOP) == []
+    assert page.evaluate(UNDER_STOP_SCRIPT) == []
     page.evaluate("document.querySelector('#link_connected').hidden = false")
     assert width() > 360
     page.evaluate("document.querySelector('#link_connected').hidden = true")
@@ -333,7 +333,7 @@ def test_stop_is_as_wide_as_a_phone_only_where_something_may_move(pages: Pages) 
     assert width() < 130
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language: str) -> None:
     """The other screen is a tap away, and all is where it was once the run is over."""
@@ -357,9 +357,9 @@ def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language:
         phone.click("#pause") if step == "paused" else turn(phone, step)
         if step == "paused":
             wait_for_phase(phone, "paused")
-        now = boxes()
-        assert now["stop"]["width"] > 0.75 * 390
-        assert now["run"] == boxes_before["run"], "nothing moves"
+        boxes_now = boxes()
+        assert boxes_now["stop"]["width"] > 0.75 * 390
+        assert boxes_now["run"] == boxes_before["run"], "nothing moves"
         assert axe(phone, within="#bar") == []
     phone.click("#stop")
     wait_for_phase(phone, "ended")

@@ -43,7 +43,7 @@ from tools.builds.studio import find_tools
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-drawn = pytest.mark.sampled(of="details of programs", keep=2)
+sampled = pytest.mark.sampled(of="details of programs", keep=2)
 
 TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
 
@@ -86,7 +86,7 @@ ADDRESSES_BY_REACH = {
 }
 
 
-@drawn
+@sampled
 def test_a_program_can_be_named(page: Page) -> None:
     write(page, "SI|F(1, 33)")
     page.click("#my_programs")
@@ -109,7 +109,7 @@ def test_a_program_can_be_named(page: Page) -> None:
     page.click("#programs_close")
 
 
-@drawn
+@sampled
 def test_a_link_has_the_public_address_of_the_page(page: Page) -> None:
     write(page, "SI|F(1, 34)")
     share(page)
@@ -160,7 +160,7 @@ WRONG_LINKS = {
 }
 
 
-@drawn
+@sampled
 @each_row("name", WRONG_LINKS)
 def test_a_wrong_link_leaves_the_program_unchanged(page: Page, name: str) -> None:
     write(page, "SI|F(4, 80)")
@@ -174,13 +174,13 @@ def test_a_wrong_link_leaves_the_program_unchanged(page: Page, name: str) -> Non
     assert page.locator("img").count() == 0
 
 
-@drawn
+@sampled
 def test_an_unshareable_program_gives_the_reason(page: Page) -> None:
     """A program that is too long for a link, one that the robot cannot read in a line, a wrong one,
     and one that is too long for a picture of a line."""
-    chance = random.Random(1)
+    rng = random.Random(1)
     # Text that cannot be compressed.
-    noise = "".join(f"// {chance.randbytes(40).hex()}\n" for _ in range(200))
+    noise = "".join(f"// {rng.randbytes(40).hex()}\n" for _ in range(200))
     write(page, noise)
     assert share(page) == ""
     assert "too long for a link" in page.inner_text("#shared_told")
@@ -255,7 +255,7 @@ def read_picture(page: Page) -> str:
     return str(completed.stdout)
 
 
-@drawn
+@sampled
 def test_the_pictures_contain_the_shared_program(page: Page) -> None:
     """A phone cannot open an address that only this computer has, so such a link gets no
     picture."""
@@ -265,15 +265,15 @@ def test_the_pictures_contain_the_shared_program(page: Page) -> None:
     page.fill("#public", "https://school.example/studio/")
     page.locator("#public").blur()
     page.locator("#shared_picture").wait_for()
-    for how in ("link", "line"):
-        shared_text = share(page, how)
+    for share_kind in ("link", "line"):
+        shared_text = share(page, share_kind)
         assert read_picture(page) == shared_text != ""
     page.fill("#public", "")
     page.locator("#public").blur()
     page.keyboard.press("Escape")
 
 
-@drawn
+@sampled
 def test_the_window_opens_on_programs(page: Page) -> None:
     """Each with a picture, a large plus before them, and how one is shared is folded away."""
     page.evaluate("localStorage.removeItem('tiniscript.versions')")
@@ -317,7 +317,7 @@ def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
     return colours(page, Path(download.value.path()).read_bytes())
 
 
-@drawn
+@sampled
 def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     """This works from the text view, too, unless there are too many blocks."""
     for view in ("text", "blocks"):
@@ -325,19 +325,21 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
         write(page, "SI|F(2, 80)")
         page.click(f"#view_{view}")
         page.click("#my_programs")
-        small = picture_of_blocks(page)
+        small_image = picture_of_blocks(page)
         page.click("#programs_close")
         assert page.locator("#blocks").is_visible() == (view == "blocks")
         page.click("#view_text")
         write(page, "SI|" + "F(2, 80);" * 5)
         page.click("#my_programs")
-        large = picture_of_blocks(page)
+        large_image = picture_of_blocks(page)
         page.keyboard.press("Escape")
-        assert large[1] > small[1] * 1.8, view  # rows
+        assert large_image[1] > small_image[1] * 1.8, view  # rows
         # the blocks are filled
-        assert large[2][MOVE_COLOUR] > 4 * small[2][MOVE_COLOUR] > 4000, view
-        assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and their surroundings
-        assert "0,0,0" not in small[2], view  # every block has its colour
+        assert large_image[2][MOVE_COLOUR] > 4 * small_image[2][MOVE_COLOUR] > 4000, view
+        assert (
+            small_image[2]["255,255,255"] > small_image[0] * small_image[1] / 10
+        )  # letters and their surroundings
+        assert "0,0,0" not in small_image[2], view  # every block has its colour
     write(page, "S;" * 1600)
     page.click("#my_programs")
     unfold(page)
@@ -346,7 +348,7 @@ def test_the_blocks_are_saved_as_a_picture(page: Page) -> None:
     page.keyboard.press("Escape")
 
 
-@drawn
+@sampled
 def test_a_shared_program_can_be_copied(page: Page) -> None:
     write(page, "SI|F(1, 80)")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
@@ -436,15 +438,15 @@ def test_a_program_is_deleted_and_restored(page: Page) -> None:
         page.keyboard.press("Escape")
     page.click("#my_programs")
     rows = page.locator("#versions li:not(:has(#new))")
-    for at in (0, 2, 3, 1):
-        title = texts[::-1][at]
+    for index in (0, 2, 3, 1):
+        title = texts[::-1][index]
         assert list_programs(page) == texts[::-1]
-        delete = rows.nth(at).get_by_role("button", name=f"Delete {title}")
-        assert delete.count() == (at > 0)
-        if not at:
+        delete = rows.nth(index).get_by_role("button", name=f"Delete {title}")
+        assert delete.count() == (index > 0)
+        if not index:
             continue
         delete.click()
-        assert list_programs(page) == [each for each in texts[::-1] if each != title]
+        assert list_programs(page) == [text for text in texts[::-1] if text != title]
         assert axe(page, within="#programs") == []
         page.keyboard.press("Enter")  # the button in the program's place has the focus
     rows.nth(2).locator(".delete").click()
@@ -515,8 +517,8 @@ def test_escape_closes_a_window_and_only_then_stops(page: Page) -> None:
     write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
     page.click("#run")
     wait_for_phase(page, "running")
-    for opens, window in (("#my_programs", "#programs"), ("#runs_open", "#runs")):
-        page.click(opens)
+    for button, window in (("#my_programs", "#programs"), ("#runs_open", "#runs")):
+        page.click(button)
         page.keyboard.press("Escape")
         page.locator(window).wait_for(state="hidden")
         page.evaluate(SETTLED_SCRIPT)

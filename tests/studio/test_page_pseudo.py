@@ -82,12 +82,12 @@ def test_longer_texts_fit_on_every_screen(pages: Pages) -> None:
     page.evaluate("document.querySelector('#start_title').append(' in English')")
     assert page.evaluate(PLAIN_TEXTS_SCRIPT) == [" in English"]
     page.evaluate("document.querySelector('#start_title').lastChild.remove()")
-    wrong = {}
+    cut_texts = {}
     for screen, size in each_screen(page, lambda screen: SIZES):
-        wrong[screen, size] = page.evaluate(CUT_TEXTS_SCRIPT)
+        cut_texts[screen, size] = page.evaluate(CUT_TEXTS_SCRIPT)
         if size == SIZES[0]:
-            wrong[screen, size] += page.evaluate(PLAIN_TEXTS_SCRIPT)
-    assert {where: value for where, value in wrong.items() if value} == {}
+            cut_texts[screen, size] += page.evaluate(PLAIN_TEXTS_SCRIPT)
+    assert {place: value for place, value in cut_texts.items() if value} == {}
 
 
 def check_narrow_button_is_noticed(page: Page, button: str) -> None:
@@ -113,16 +113,16 @@ def test_longer_texts_fit_on_the_wall_of_a_class(browser: Browser) -> None:
         page.locator("#class_settings", has_text="Cläss").wait_for()
         page.locator("#wall li").nth(9).wait_for()
         check_narrow_button_is_noticed(page, "#class_settings")
-        cut = {}
+        cut_texts = {}
         for width, height in SIZES:
             page.set_viewport_size({"width": width, "height": height})
             page.evaluate(SETTLED_SCRIPT)
-            cut["wall", width] = page.evaluate(CUT_TEXTS_SCRIPT)
-            for opens, window in WINDOWS:
-                page.click(opens)
+            cut_texts["wall", width] = page.evaluate(CUT_TEXTS_SCRIPT)
+            for button, window in WINDOWS:
+                page.click(button)
                 page.locator(f"{window} [data-text=close]").wait_for()
                 page.evaluate(SETTLED_SCRIPT)
-                cut[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)
+                cut_texts[window, width] = page.evaluate(CUT_TEXTS_SCRIPT)
                 page.click(f"{window} [data-text=close]")
-        assert {where: value for where, value in cut.items() if value} == {}
+        assert {place: value for place, value in cut_texts.items() if value} == {}
         pages.close()

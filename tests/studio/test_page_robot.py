@@ -185,10 +185,11 @@ def test_a_program_waits_for_its_button(page: Page) -> None:
 
 
 # The parts of the run's display; messages contain their own words.
-PLACES = """() => 'arena controls told run pause step speed world values'.split(' ').map((id) => {
-  const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
-  return [id, x, y, width, height];
-})"""
+PLACES_SCRIPT = """() =>
+  'arena controls told run pause step speed world values'.split(' ').map((id) => {
+    const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
+    return [id, x, y, width, height];
+  })"""
 
 
 @pytest.mark.sampled("screen")
@@ -211,17 +212,17 @@ def test_the_layout_does_not_shift_when_a_run_begins(page: Page, screen: tuple[i
             page.click("#stop")
             wait_for_phase(page, "ended")
         page.evaluate(SETTLED_SCRIPT)
-        before = page.evaluate(PLACES)
+        places_before = page.evaluate(PLACES_SCRIPT)
         page.click("#run")
         page.locator("#push").wait_for()
-        assert page.evaluate(PLACES) == before
+        assert page.evaluate(PLACES_SCRIPT) == places_before
         page.click("#push")
         wait_for_running(page)
         page.locator("#values").get_by_text("X", exact=True).wait_for()
-        assert page.evaluate(PLACES) == before
+        assert page.evaluate(PLACES_SCRIPT) == places_before
         page.click("#stop")
         wait_for_phase(page, "ended")
-        assert page.evaluate(PLACES) == before
+        assert page.evaluate(PLACES_SCRIPT) == places_before
     page.set_viewport_size({"width": 1366, "height": 768})
 
 

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="earlier runs", keep=2)
+sampled = pytest.mark.sampled(of="earlier runs", keep=2)
 
 KEYS = (
     "SI|LOOP(FOREVER);\nM(PAD_Y, PAD_Y);\nIF(KEY_A);\nSHOW(RANDOM(1, 99));\nEND_IF;\n"
     "W(0.05);\nEND_LOOP"
 )
-LOOKS = "SI|LOOP(2);\nW(0.2);\nSHOW(DISTANCE);\nEND_LOOP;\nSHOW(5)"
+SHOW_PROGRAM = "SI|LOOP(2);\nW(0.2);\nSHOW(DISTANCE);\nEND_LOOP;\nSHOW(5)"
 
 
 @pytest.fixture
@@ -57,9 +57,9 @@ def wait_for_status(page: Page, text: str) -> None:
     page.locator("#doing", has_text=text).wait_for()
 
 
-def real_recording(*rows: tuple[int, str], text: str = LOOKS) -> str:
-    first = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
-    return encode(first, [Row(*row) for row in rows], rows[-1][0])
+def real_recording(*rows: tuple[int, str], text: str = SHOW_PROGRAM) -> str:
+    header = header_line(REAL, text, robots.load("tinibot"), compile(text).checksum)
+    return encode(header, [Row(*row) for row in rows], rows[-1][0])
 
 
 def open_run(page: Page, data: bytes | str, file: Path) -> None:
@@ -68,7 +68,7 @@ def open_run(page: Page, data: bytes | str, file: Path) -> None:
     page.set_input_files("#run_file", file)
 
 
-@drawn
+@sampled
 def test_an_earlier_run_is_replayed_and_the_newest_restored(page: Page) -> None:
     run_to_end(page, "SI|X = 7;\nF(0.5, 60);\nSHOW(X)", "SHOW 7")
     pose = page.locator("#where").text_content()
@@ -86,7 +86,7 @@ def test_an_earlier_run_is_replayed_and_the_newest_restored(page: Page) -> None:
     wait_for_phase(page, "paused")
 
 
-@drawn
+@sampled
 def test_only_the_newest_ten_runs_are_kept(page: Page) -> None:
     for number in range(12):
         run_to_end(page, f"SI|SHOW({number})", f"SHOW {number}")
@@ -132,19 +132,19 @@ def test_a_saved_run_replays_alike_in_page_and_command_line(page: Page, tmp_path
     page.click("#runs_close")
 
 
-@drawn
+@sampled
 def test_the_run_of_another_robot_and_world_is_played(page: Page, tmp_path: Path) -> None:
     data, rows = next(run for run in map(record_run, range(99)) if b'"tinibot32"' in run[0])
     open_run(page, data, tmp_path / "run.tsr")
     wait_for_status(
         page, f"The virtual robot did exactly the same again. Rows compared: {len(rows)}."
     )
-    first = json.loads(data.splitlines()[0])
+    header = json.loads(data.splitlines()[0])
     assert (page.input_value("#robot"), page.input_value("#world")) == (
-        first["robot"], first["world"])  # fmt: skip
+        header["robot"], header["world"])  # fmt: skip
 
 
-@drawn
+@sampled
 def test_a_real_run_is_replayed_beside_the_virtual_one_with_divergences_marked(
     page: Page, tmp_path: Path
 ) -> None:
@@ -189,18 +189,18 @@ def test_a_file_that_is_not_a_run_is_refused_with_a_reason(
     page: Page, tmp_path: Path, data: bytes, message: str
 ) -> None:
     run_to_end(page, "SI|SHOW(77)", "SHOW 77")
-    before = run_names(page)
+    names_before = run_names(page)
     page.click("#runs_close")
     open_run(page, data, tmp_path / "run.tsr")
     page.locator("#runs_said", has_text=message).wait_for()
     page.click("#runs_close")
-    assert run_names(page) == before
+    assert run_names(page) == names_before
     page.click("#runs_close")
     assert status_text(page) == "It has ended."
     assert running(page) == ""
 
 
-@drawn
+@sampled
 def test_a_dropped_file_is_opened(page: Page) -> None:
     rows = ((217, "SHOW 17.5"), (434, "SHOW 9"), (451, "SHOW 5"), (452, "DONE"))
     drop = """([name, data]) => {

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from tests.machines.host_firmware import HostFirmware
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-drawn = pytest.mark.sampled(of="details of the senses", keep=2)
+sampled = pytest.mark.sampled(of="details of the senses", keep=2)
 
-SENSED = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
-MEASURED = 40  # values
+SENSED_READINGS = ((12, 1, 250), (1023, 0, 7), (512, 88, 0), (12, 1, 250))
+MEASURED_COUNT = 40  # values
 FOREVER_SHOW = "LOOP(FOREVER);SHOW(7);W(0.1);END_LOOP"
 
 
@@ -76,13 +76,13 @@ def page(open_page: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
     current_page.click("#side_real")
     current_page.locator("#link_leave").dispatch_event("click")
     current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.errors[:] = pages.errors[:], []
+    assert not errors
 
 
-def wait_for_action(page: Page, what: str) -> None:
+def wait_for_action(page: Page, action: str) -> None:
     """Wait until the page says that the robot does so."""
-    page.locator(f"#link_doing[data-does={what}]").wait_for()
+    page.locator(f"#link_doing[data-does={action}]").wait_for()
 
 
 def senses(page: Page, robot: PtyRobot, *values: int) -> None:
@@ -124,7 +124,7 @@ def test_gauges_show_sensor_values_without_announcing_them(page: Page, robot: Pt
     count_before = len(robot.actions)
     runs = seen_runs(page)
     watch_senses(page)
-    for values in SENSED:
+    for values in SENSED_READINGS:
         senses(page, robot, *values)
     assert not [line for line in robot.actions[count_before:] if line.startswith(("BEEP", "SET"))]
     assert not robot.moves
@@ -149,7 +149,7 @@ def test_during_a_run_gauges_show_the_programs_readings(page: Page, robot: PtyRo
     assert page.locator("#gauges dd").first.inner_text() == ""
 
 
-@drawn
+@sampled
 def test_a_program_takes_precedence_over_the_gauges(page: Page, robot: PtyRobot) -> None:
     watch_senses(page)
     write(page, "SHOW(5);\nF(0.3, 80);\nSHOW(6)")
@@ -168,11 +168,11 @@ def test_a_program_takes_precedence_over_the_gauges(page: Page, robot: PtyRobot)
     assert set(page.locator("#link_shown").inner_text().split()) == {"7"}
 
 
-@pytest.mark.sampled("way", "runs_before", keep=2)
+@pytest.mark.sampled("button_mode", "runs_before", keep=2)
 @pytest.mark.parametrize("runs_before", [False, True])
-@pytest.mark.parametrize("way", ["waits for it", "is sent only"])
+@pytest.mark.parametrize("button_mode", ["waits for it", "is sent only"])
 def test_a_program_that_waits_for_the_robots_button_gets_it(
-    page: Page, robot: PtyRobot, way: str, runs_before: bool
+    page: Page, robot: PtyRobot, button_mode: str, runs_before: bool
 ) -> None:
     """The first press starts it, even if sensors were read before, or another program ran, whose
     end it reports.
@@ -182,8 +182,10 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
         write(page, FOREVER_SHOW)
         upload_until_it_runs(page)
         wait_for_action(page, "own")
-    write(page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if way == "waits for it" else "F(9, 80)")
-    page.click("#link_upload" if way == "waits for it" else "#link_send")
+    write(
+        page, "SB|LOOP(FOREVER);F(9, 80);END_LOOP" if button_mode == "waits for it" else "F(9, 80)"
+    )
+    page.click("#link_upload" if button_mode == "waits for it" else "#link_send")
     wait_for_message(page, re.compile("The robot has the program.|Done."))
     wait_for_no_reading(page)
     page.wait_for_timeout(1500)  # no run may start by itself in this time
@@ -192,7 +194,7 @@ def test_a_program_that_waits_for_the_robots_button_gets_it(
     wait_for_action(page, "own")
 
 
-@drawn
+@sampled
 def test_the_robots_button_ends_the_gauges_and_then_starts_its_program(
     page: Page, robot: PtyRobot
 ) -> None:
@@ -208,8 +210,8 @@ def test_the_robots_button_ends_the_gauges_and_then_starts_its_program(
 
 
 def test_a_stop_also_stops_the_gauges_until_requested(page: Page, robot: PtyRobot) -> None:
-    for begins in (watch_senses, lambda page: start_drive(page, robot)):
-        begins(page)
+    for start in (watch_senses, lambda page: start_drive(page, robot)):
+        start(page)
         page.click("#stop")
         wait_for_message(page, "Stopped: the robot has confirmed the stop.")
         wait_for_no_reading(page)
@@ -219,7 +221,7 @@ def test_a_stop_also_stops_the_gauges_until_requested(page: Page, robot: PtyRobo
     senses(page, robot, 9, 8, 7)
 
 
-@drawn
+@sampled
 def test_requested_gauges_return_automatically(page: Page, robot: PtyRobot) -> None:
     watch_senses(page)
     page.click("#link_leave")
@@ -244,7 +246,7 @@ def test_requested_gauges_return_automatically(page: Page, robot: PtyRobot) -> N
     assert not page.locator("#senses").is_visible()
 
 
-@drawn
+@sampled
 def test_the_robots_action_is_described_without_numbers(page: Page, robot: PtyRobot) -> None:
     """The text is in the chosen language, for every action."""
     wait_for_action(page, "still")
@@ -282,7 +284,7 @@ def test_a_silent_port_is_reported_within_three_seconds(
     page.close()
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("name", ["tinibot", "liner"])
 def test_the_readings_take_a_third_of_the_line_at_most(
     open_page: tuple[Pages, Page], name: str
@@ -293,10 +295,10 @@ def test_the_readings_take_a_third_of_the_line_at_most(
         known_ports.remember(robot.port, "TINI")
         connect(page, robot)
         watch_senses(page)
-        robot.until(lambda: len(robot.values) > MEASURED, "values have come")
-        (began_ms, _), *rest = robot.values
-        passed_ms = rest[-1][0] - began_ms
-        assert 3 * sum(size for _, size in rest) <= passed_ms
+        robot.until(lambda: len(robot.values) > MEASURED_COUNT, "values have come")
+        (first_ms, _), *later_values = robot.values
+        passed_ms = later_values[-1][0] - first_ms
+        assert 3 * sum(size for _, size in later_values) <= passed_ms
         page.click("#link_leave")
         page.locator("html:not([data-robot=connected])").wait_for(state="attached")
     page.close()

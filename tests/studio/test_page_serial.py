@@ -31,9 +31,9 @@ def context(
     playwright: Playwright, robot: PtyRobot, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[BrowserContext]:
     """A browser of its own: a page that no `tsc studio` has given, as on any static host."""
-    why = studio_serial.missing()
-    if why:  # skipped in CI too, without root or a serial port
-        pytest.skip(why)
+    reason = studio_serial.missing()
+    if reason:  # skipped in CI too, without root or a serial port
+        pytest.skip(reason)
     folder: Path = tmp_path_factory.mktemp("serial")
     with (
         studio.serve_page() as server,
@@ -41,8 +41,8 @@ def context(
             playwright, folder, robot.port, server.address
         ) as opened_browser_context,
     ):
-        first = opened_browser_context.pages[0]
-        enter(first, server.address)
+        first_page = opened_browser_context.pages[0]
+        enter(first_page, server.address)
         yield opened_browser_context
 
 
@@ -76,21 +76,21 @@ def test_stop_stops(page: Page, robot: PtyRobot) -> None:
 
 def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     start_drive(page, robot)
-    began_ms = robot.robot_ms
+    start_ms = robot.robot_ms
     hang(page, LONGEST_HANG_MS)
-    assert robot.stands_after_ms(began_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
+    assert robot.stands_after_ms(start_ms) < LONGEST_HANG_MS  # the dead-man timer stops it
 
 
 def test_two_tabs_do_not_compete_for_a_robot(
     context: BrowserContext, page: Page, robot: PtyRobot
 ) -> None:
-    other = context.new_page()
-    enter(other, page.url)
-    other.click("#side_real")
-    other.locator("#link_port option").first.wait_for(state="attached")
-    other.click("#link_connect")
-    wait_for_message(other, "Another tab of this browser is driving this robot.")
-    other.close()
+    other_page = context.new_page()
+    enter(other_page, page.url)
+    other_page.click("#side_real")
+    other_page.locator("#link_port option").first.wait_for(state="attached")
+    other_page.click("#link_connect")
+    wait_for_message(other_page, "Another tab of this browser is driving this robot.")
+    other_page.close()
     assert page.locator("html[data-robot=connected]").count() == 1
 
 

@@ -82,14 +82,14 @@ def test_the_robot_view_takes_a_third_of_the_page(page: Page, world: str) -> Non
     page.reload()  # a chosen camera is kept
     page.select_option("#world", world)
     write(page, FOREVER)
-    small = page.evaluate(AREA_SCRIPT)
+    small_area = page.evaluate(AREA_SCRIPT)
     page.click("#run")
     wait_for_large_run(page, 1366 * 768 / 3)
     page.keyboard.press("Escape")
     wait_for_phase(page, "ended")
     assert page.evaluate(AREA_SCRIPT) >= 1366 * 768 / 3  # until someone continues to write
     page.hover("#editor")
-    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small, "as before")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) == small_area, "as before")
 
 
 def wait_for_large_run(page: Page, least_area: float = 0) -> None:
@@ -125,25 +125,27 @@ def test_in_a_lesson_the_robot_view_is_large_until_the_next_step(
     page: Page, size: tuple[int, int]
 ) -> None:
     """The step comes back by the lesson's own buttons, the check is in reach all the time."""
-    large = see_last_step(page, size)
-    small = page.evaluate(AREA_SCRIPT)
+    large_area = see_last_step(page, size)
+    small_area = page.evaluate(AREA_SCRIPT)
     for is_ended in (False, True):
         page.click("#run")
-        wait_for_large_run(page, large)
+        wait_for_large_run(page, large_area)
         assert not page.locator("#lesson_page").is_visible()
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
             page.keyboard.press("Escape")
             wait_for_phase(page, "ended")
-            assert page.evaluate(AREA_SCRIPT) > small
+            assert page.evaluate(AREA_SCRIPT) > small_area
         page.locator("#lesson_steps button").last.click()
-        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small
+        assert (
+            page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small_area
+        )
         page.click("#stop")
     page.click("#run")
     wait_for_phase(page, "running")
     page.click("#lesson_check")
     page.locator("#lesson_said[data-verdict]").wait_for()
-    assert page.evaluate(AREA_SCRIPT) <= small and page.locator("#lesson_page").is_visible()
+    assert page.evaluate(AREA_SCRIPT) <= small_area and page.locator("#lesson_page").is_visible()
     page.click("#side_virtual")
     turn(page, "program")
 
@@ -151,16 +153,16 @@ def test_in_a_lesson_the_robot_view_is_large_until_the_next_step(
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
 def test_a_judged_run_is_large_until_its_verdict(page: Page, size: tuple[int, int]) -> None:
-    large = see_last_step(page, size)
+    large_area = see_last_step(page, size)
     for is_still in (False, True):
         page.emulate_media(reduced_motion="reduce" if is_still else "no-preference")
         page.click("#lesson_check")
         if not is_still:
-            wait_for_large_run(page, large)
+            wait_for_large_run(page, large_area)
             page.click("#lesson_end")  # the button leads to the lesson's result
         page.locator("#lesson_said[data-verdict]").wait_for()
         assert page.locator("html[data-big]").count() == 0
-        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) < large
+        assert page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) < large_area
     page.emulate_media(reduced_motion="no-preference")
     page.click("#side_virtual")
     turn(page, "program")
@@ -191,9 +193,11 @@ def test_a_finger_drags_the_touched_block_after_a_run(pages: Pages) -> None:
     editor = page.locator(".blocklyWidgetDiv input")
     editor.wait_for()
     page.evaluate(SETTLED_SCRIPT)
-    over = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
-    own = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
-    assert over["left"] <= own["left"] + 1 and over["right"] >= own["right"] - 1
+    editor_box = editor.evaluate("e => e.getBoundingClientRect().toJSON()")
+    text_box = field.evaluate("e => e.querySelector('text').getBoundingClientRect().toJSON()")
+    assert (
+        editor_box["left"] <= text_box["left"] + 1 and editor_box["right"] >= text_box["right"] - 1
+    )
 
 
 # Running blocks that the edges of the program cut off.
@@ -250,8 +254,8 @@ def test_each_running_block_is_scrolled_into_view(page: Page, size: tuple[int, i
         transform = canvas.get_attribute("transform") or ""
         return [round(100 * float(number)) for number in re.findall(r"[-\d.e]+(?=[,)])", transform)]
 
-    whole, cut = place(), page.evaluate(CUT_HATS_SCRIPT)
-    assert size[0] != 1366 or cut == []
+    start_place, cut_hats = place(), page.evaluate(CUT_HATS_SCRIPT)
+    assert size[0] != 1366 or cut_hats == []
     page.click("#run")
     wait_for_phase(page, "running")
     wait_for(page, lambda: page.locator("#blocks .running").count() == 3, "all hats run")
@@ -262,9 +266,9 @@ def test_each_running_block_is_scrolled_into_view(page: Page, size: tuple[int, i
     # The view stays for someone who looks at the robot.
     assert page.locator("html[data-big]").count()
     page.wait_for_timeout(AFTER_RUN_MS)
-    assert page.evaluate(CUT_HATS_SCRIPT) == cut, "what was seen before the run is seen"
+    assert page.evaluate(CUT_HATS_SCRIPT) == cut_hats, "what was seen before the run is seen"
     page.hover("#views")
-    wait_for(page, lambda: place() == whole, "as before")
+    wait_for(page, lambda: place() == start_place, "as before")
     page.click("#view_text")
 
 
@@ -282,22 +286,22 @@ def test_a_pressed_block_stays_under_the_mouse_after_a_run(page: Page) -> None:
     def scale() -> str:
         return (canvas.get_attribute("transform") or "").rpartition("scale")[2]
 
-    def drag(right: float, down: float, steps: int) -> tuple[float, float]:
+    def drag(x_shift: float, down: float, steps: int) -> tuple[float, float]:
         box = box_of(hat)
         x, y = box["x"] + 20, box["y"] + 20
         page.mouse.move(x, y, steps=steps)
         page.evaluate(SETTLED_SCRIPT)
         page.mouse.down()
-        page.mouse.move(x + right, y + down, steps=4)
+        page.mouse.move(x + x_shift, y + down, steps=4)
         page.wait_for_timeout(AFTER_RUN_MS)
-        now = box_of(hat)
+        moved_box = box_of(hat)
         page.mouse.up()
         wait_for_blocks(page)
-        return now["x"] - box["x"], now["y"] - box["y"]
+        return moved_box["x"] - box["x"], moved_box["y"] - box["y"]
 
     drag(200, 60, 1)
-    whole, width = scale(), page.evaluate("blocks.clientWidth")
-    for steps, ends, right in (
+    full_scale, width = scale(), page.evaluate("blocks.clientWidth")
+    for steps, end_action, x_shift in (
         (1, "click", -30),
         (9, "Escape", 30),
         (0, "click", -30),
@@ -305,17 +309,17 @@ def test_a_pressed_block_stays_under_the_mouse_after_a_run(page: Page) -> None:
     ):
         page.click("#run")
         wait_for_phase(page, "running")
-        wait_for(page, lambda: scale() != whole, "smaller beside the robot")
-        page.click("#stop") if ends == "click" else page.keyboard.press(ends)
+        wait_for(page, lambda: scale() != full_scale, "smaller beside the robot")
+        page.click("#stop") if end_action == "click" else page.keyboard.press(end_action)
         wait_for_phase(page, "ended")
         page.wait_for_timeout(AFTER_RUN_MS)
         if not steps:
             page.hover("#views")
             wait_for(page, lambda: page.evaluate("blocks.clientWidth") == width, "its room")
-            assert scale() == whole
-        assert drag(right, 20, steps or 1) == pytest.approx((right, 20), abs=4)
+            assert scale() == full_scale
+        assert drag(x_shift, 20, steps or 1) == pytest.approx((x_shift, 20), abs=4)
         wait_for(page, lambda: page.evaluate("blocks.clientWidth") == width, "the room that it had")
-        wait_for(page, lambda: scale() == whole, "as before")
+        wait_for(page, lambda: scale() == full_scale, "as before")
     page.click("#view_text")
 
 
@@ -369,8 +373,8 @@ def test_the_block_selector_stays_in_one_row_beside_a_large_robot(
     page.locator("html[data-big]").wait_for(state="attached")
     for level in ("few", "usual", "all"):
         page.select_option("#level", level)
-        look = "getComputedStyle(document.querySelector('#level'), '::picker-icon').display"
-        assert page.evaluate(look) != "none"
+        style_script = "getComputedStyle(document.querySelector('#level'), '::picker-icon').display"
+        assert page.evaluate(style_script) != "none"
         rows = "new Set([...views.children].map((each) => each.getBoundingClientRect().top)).size"
         assert page.evaluate(rows) == 1, (language, level)
     page.click("#stop")
@@ -385,9 +389,9 @@ def test_a_key_toggles_full_screen(page: Page) -> None:
     assert page.locator("html[data-full]").count() == 0
     page.keyboard.press("Backspace")
     page.locator("#run").focus()
-    for way in ("f", "F", "click"):
+    for trigger in ("f", "F", "click"):
         for is_full in (True, False):
-            page.click("#full") if way == "click" else page.keyboard.press(way)
+            page.click("#full") if trigger == "click" else page.keyboard.press(trigger)
             page.locator("html[data-full]" if is_full else "html:not([data-full])").wait_for(
                 state="attached"
             )
@@ -437,22 +441,22 @@ def test_objects_have_sides_in_the_view_from_behind(page: Page) -> None:
 
 def test_each_start_picture_leads_to_its_world(page: Page) -> None:
     """A dance floor has tiles that light, and lamps shine in the dark."""
-    for begin, world in (
+    for start_name, world in (
         ("dance", "dance"), ("light", "light"), ("line", "line"), ("obstacle", "obstacles"),
         ("square", "free"),
     ):  # fmt: skip
         page.click("#home")
-        page.click(f"[data-begin={begin}]")
+        page.click(f"[data-begin={start_name}]")
         wait_for_phase(page, "running")
         assert page.input_value("#world") == world
-        if begin == "dance":
+        if start_name == "dance":
             assert {"251,238,252", "227,240,253", "255,243,207"} <= set(
                 page.evaluate(COLORS_SCRIPT)
             )
-        if begin == "light":
+        if start_name == "light":
             assert "39,50,75" in set(page.evaluate(COLORS_SCRIPT))
             assert "255,253,246" not in set(page.evaluate(COLORS_SCRIPT))
-        if begin == "square":  # a camera that follows shows that it drives
+        if start_name == "square":  # a camera that follows shows that it drives
             assert "230,220,196" in set(page.evaluate(COLORS_SCRIPT))
         page.click("#stop")
         wait_for_phase(page, "ended")
@@ -480,12 +484,12 @@ def test_cameras_and_full_page_view_work_on_small_screens(
         write(page, FOREVER)
         page.set_viewport_size({"width": size[0], "height": size[1]})
         turn(page, "robot")
-    small = page.evaluate(AREA_SCRIPT)
+    small_area = page.evaluate(AREA_SCRIPT)
     for button in ("#camera", "#full"):
         box = page.locator(button).bounding_box()
         assert box is not None and min(box["width"], box["height"]) >= 44
     page.click("#full")
-    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) > small, "more of the robot")
+    wait_for(page, lambda: page.evaluate(AREA_SCRIPT) > small_area, "more of the robot")
     page.click("#run")
     wait_for_phase(page, "running")
     shown_buttons = "all => all.filter((e) => e.checkVisibility()).map((e) => e.id)"

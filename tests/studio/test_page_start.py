@@ -26,7 +26,7 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page, Route
 
-drawn = pytest.mark.sampled(of="details of the start", keep=2)
+sampled = pytest.mark.sampled(of="details of the start", keep=2)
 
 PICTURES = ("dance", "square", "obstacle", "line", "light", "music", "drive")
 START = "html[data-screen=start]"
@@ -85,7 +85,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
     assert start.locator("#start_programs li").count() == 0  # the page has brought all of them
 
 
-@drawn
+@sampled
 def test_late_files_do_not_disturb_a_run(pages: Pages) -> None:
     """The robot moves before the blocks are fetched, and continues when the lessons arrive."""
     page = pages.blank()
@@ -136,11 +136,11 @@ def test_missing_files_are_reported_and_no_empty_page_is_shown(pages: Pages) -> 
     page.locator("#doing", has_text="The compiler did not load. Press Run to try again").wait_for()
     page.click("#side_lessons")
     page.locator("#lesson_said", has_text="The compiler did not load. Press").wait_for()
-    wait_for(page, lambda: pages.wrong, "what the compiler lacks")
-    pages.wrong.clear()
+    wait_for(page, lambda: pages.errors, "what the compiler lacks")
+    pages.errors.clear()
 
 
-@drawn
+@sampled
 def test_the_address_selects_the_screen(start: Page) -> None:
     start.click("#start_write")
     assert (screen(start), start.evaluate("location.hash")) == ("program", "#editor")
@@ -163,16 +163,16 @@ def test_the_address_selects_the_screen(start: Page) -> None:
     assert start.locator("#link").is_visible()
 
 
-@drawn
+@sampled
 def test_a_link_opens_its_program_and_not_the_start(pages: Pages, start: Page) -> None:
     start.goto(f"{pages.address}#program={GOOD_WORK}")
     wait_for_note(start, "This program came from a link.")
     assert screen(start) == "program"
     wait_until_checked(start)
     assert image(start) == compile("SI|F(9, 90)").image
-    other = pages.visit(f"{pages.address}#program={GOOD_WORK[:-8]}")
-    wait_for_note(other, "The link is incomplete")
-    assert screen(other) == "program"
+    other_page = pages.visit(f"{pages.address}#program={GOOD_WORK[:-8]}")
+    wait_for_note(other_page, "The link is incomplete")
+    assert screen(other_page) == "program"
 
 
 NO_MARKS = """() => {
@@ -212,7 +212,7 @@ def test_no_name_of_a_picture_is_covered(pages: Pages) -> None:
         )
 
 
-@drawn
+@sampled
 def test_earlier_programs_are_listed_with_pictures(start: Page) -> None:
     start.click("[data-begin=dance]")
     start.click("#view_text")
@@ -285,14 +285,14 @@ def test_a_new_program_puts_the_robot_at_its_start(start: Page) -> None:
     start.wait_for_function("document.documentElement.dataset.phase === 'off'")
     assert set(start.locator("#values dd").all_inner_texts()) == {"–"}
     start.evaluate(SETTLED_SCRIPT)
-    fresh = start.locator("#arena").screenshot()
-    assert fresh != screenshot_before
+    new_program_image = start.locator("#arena").screenshot()
+    assert new_program_image != screenshot_before
     start.click("#erase_ways")
     start.evaluate(SETTLED_SCRIPT)
-    assert start.locator("#arena").screenshot() == fresh
+    assert start.locator("#arena").screenshot() == new_program_image
 
 
-@drawn
+@sampled
 def test_a_double_press_does_not_hit_a_moved_control(start: Page) -> None:
     start.dblclick("#start_write")
     assert start.get_attribute("#side_real", "aria-pressed") == "false"

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="looks back at a run", keep=2)
+sampled = pytest.mark.sampled(of="looks back at a run", keep=2)
 
 # The number of points of the line that have the color of a WHEN.
-MARKED = """() => {
+MARKED_SCRIPT = """() => {
   const paper = () => document.createElement('canvas').getContext('2d', {willReadFrequently: true});
   const pen = paper(), colored = paper();
   Object.assign(pen.canvas, {width: time_marks.width, height: time_marks.height});
@@ -33,7 +33,7 @@ MARKED = """() => {
   }
   return count;
 }"""
-COUNT = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
+COUNTING_PROGRAM = "SI|X = 0;\nLOOP(3);\nX = X + 1;\nSHOW(X);\nF(0.5, 60);\nEND_LOOP"
 
 
 def start_run(page: Page, text: str) -> None:
@@ -49,9 +49,9 @@ def seconds(page: Page) -> float:
     return float(value(page, "Time").split()[0])
 
 
-@drawn
+@sampled
 def test_events_can_be_stepped_backward_and_forward(page: Page) -> None:
-    start_run(page, COUNT)
+    start_run(page, COUNTING_PROGRAM)
     wait_for_phase(page, "ended")
     page.focus("#time_at")
     end_s, pose = seconds(page), page.locator("#where").text_content()
@@ -67,9 +67,9 @@ def test_events_can_be_stepped_backward_and_forward(page: Page) -> None:
         times.append(seconds(page))
         shown_values.append(value(page, "X"))
     assert shown_values[0] == "3" and shown_values[-1] in ("0", "1")
-    for at_s in times[-2::-1]:
+    for time_s in times[-2::-1]:
         page.keyboard.press("ArrowRight")
-        assert seconds(page) == at_s
+        assert seconds(page) == time_s
     assert page.locator("#where").text_content() == pose
     page.keyboard.press("Home")
     assert seconds(page) == 0
@@ -94,7 +94,7 @@ def test_a_run_pauses_while_rewound_and_resumes_from_the_present(page: Page, but
     wait_for_phase(page, {"pause": "running", "step": "paused", "stop": "ended"}[button])
 
 
-@drawn
+@sampled
 def test_shift_steps_through_each_executed_part(page: Page) -> None:
     start_run(page, "SI|F(0.3, 60);\nW(0.3);\nB(0.3, 60)")
     wait_for_phase(page, "ended")
@@ -107,9 +107,9 @@ def test_shift_steps_through_each_executed_part(page: Page) -> None:
     assert parts == ["F(0.3, 60)", "W(0.3)", "B(0.3, 60)"]
 
 
-@drawn
+@sampled
 def test_a_new_run_has_its_own_time_line(page: Page) -> None:
-    start_run(page, COUNT)
+    start_run(page, COUNTING_PROGRAM)
     wait_for_phase(page, "ended")
     page.focus("#time_at")
     page.keyboard.press("Home")
@@ -117,11 +117,13 @@ def test_a_new_run_has_its_own_time_line(page: Page) -> None:
     page.locator("#trace", has_text="DONE", has_not_text="SHOW").wait_for(state="attached")
     wait_for_phase(page, "ended")
     assert status_text(page) == "It has ended."
-    first, last, now = (float(page.evaluate(f"time_at.{end}")) for end in ("min", "max", "value"))
-    assert last - first < 1000 and now == last
+    start_ms, end_ms, shown_ms = (
+        float(page.evaluate(f"time_at.{end}")) for end in ("min", "max", "value")
+    )
+    assert end_ms - start_ms < 1000 and shown_ms == end_ms
 
 
-@drawn
+@sampled
 def test_the_executed_part_is_shown_with_its_values(page: Page) -> None:
     start_run(page, "SI|NEAR = 30;\nF(1, 60) UNTIL(DISTANCE < NEAR)")
     wait_for_phase(page, "ended")
@@ -133,10 +135,10 @@ def test_the_executed_part_is_shown_with_its_values(page: Page) -> None:
 
 
 # Texts for users of text only: a word of the language, or a line number.
-CODE = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
+CODE_PATTERN = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
-@drawn
+@sampled
 def test_the_time_line_keeps_its_length_while_dragged(page: Page) -> None:
     """Else what a finger drags runs away under it."""
     start_run(page, "F(0.4, 60)")
@@ -154,7 +156,7 @@ def test_the_time_line_keeps_its_length_while_dragged(page: Page) -> None:
     page.locator("#why").wait_for()
 
 
-@drawn
+@sampled
 def test_why_explains_the_condition_and_its_readings(page: Page) -> None:
     """It also names the task that had the motors. No extra click is needed at each place."""
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
@@ -182,7 +184,7 @@ def test_why_explains_the_condition_and_its_readings(page: Page) -> None:
     assert "Line 3" not in status_text(page) and "motors" not in status_text(page)
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("language", ["en", "es", "pt"])
 def test_block_users_get_messages_about_blocks(page: Page, language: str) -> None:
     """At each moment of a run: no code and no line; users of text are told about text."""
@@ -192,28 +194,30 @@ def test_block_users_get_messages_about_blocks(page: Page, language: str) -> Non
     )
     wait_for_phase(page, "ended")
     speak(page, language)
-    assert re.search(CODE, status_text(page))
+    assert re.search(CODE_PATTERN, status_text(page))
     page.click("#view_blocks")
     wait_for_blocks(page)
     page.focus("#time_at")
     page.keyboard.press("Home")
     page.click("#why")
     page.focus("#time_at")
-    told = set()
+    status_texts = set()
     for _ in range(12):
-        wait_for(page, lambda: not re.search(CODE, status_text(page)), "no code")
-        told.add(status_text(page))
+        wait_for(page, lambda: not re.search(CODE_PATTERN, status_text(page)), "no code")
+        status_texts.add(status_text(page))
         page.keyboard.press("ArrowRight")
     was = str(page_texts(language)["why_value"]).format(name="[^.]+", value="[0-9]")
-    assert any(re.search(was, each) for each in told)
-    assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", each) for each in told), "a small first letter"
+    assert any(re.search(was, text) for text in status_texts)
+    assert not any(re.search(r"\. [^\W\dA-ZÀ-Ý]", text) for text in status_texts), (
+        "a small first letter"
+    )
     page.click("#why")
     page.click("#view_text")
-    wait_for(page, lambda: re.search(CODE, status_text(page)), "code")
+    wait_for(page, lambda: re.search(CODE_PATTERN, status_text(page)), "code")
     speak(page, "en")
 
 
-@drawn
+@sampled
 def test_a_starting_when_is_marked_on_the_time_line(page: Page) -> None:
     for begins_s, is_marked in ((0.5, True), (90, False)):
         body = "W(0.3);\nW(9);\nEND_WHEN;\nSHOW(1);\nW(1.5);\nSHOW(2)"
@@ -221,4 +225,4 @@ def test_a_starting_when_is_marked_on_the_time_line(page: Page) -> None:
         page.locator("#trace", has_text="SHOW 2").wait_for(state="attached")
         page.click("#stop")
         wait_for_phase(page, "ended")
-        assert (page.evaluate(MARKED) > 0) is is_marked
+        assert (page.evaluate(MARKED_SCRIPT) > 0) is is_marked

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Dialog, Page
 
 pytestmark = pytest.mark.usefixtures("no_page_timeouts")
-drawn = pytest.mark.sampled(of="details of groups", keep=2)
+sampled = pytest.mark.sampled(of="details of groups", keep=2)
 
 PROGRAM = "F(1, 80);\nLOOP(3);\n  B(1, 40);\nEND_LOOP;\nS;\n"
 ROWS = [row.strip() for row in PROGRAM.splitlines()]
@@ -62,11 +62,11 @@ def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
     opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
-    assert {"ERR_INTERNET_DISCONNECTED" in error for error in opened_pages.wrong} <= {True}
+    assert {"ERR_INTERNET_DISCONNECTED" in error for error in opened_pages.errors} <= {True}
 
 
 @pytest.fixture(scope="module")
-def two(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
+def page_pair(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     ana = join_class(pages, shared_class, "Ana")
     write(ana, PROGRAM)
     luz = join_class(pages, shared_class, "Luz")
@@ -75,10 +75,10 @@ def two(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     return ana, luz
 
 
-def program_of(taught: Class) -> str:
+def program_of(class_: Class) -> str:
     """Return the program of the only group, as the teacher sees it."""
-    [group] = taught.room.teach({"do": "class"})["groups"]
-    return str(taught.room.teach({"do": "class_text", "group": group["key"]})["text"])
+    [group] = class_.room.teach({"do": "class"})["groups"]
+    return str(class_.room.teach({"do": "class_text", "group": group["key"]})["text"])
 
 
 def show_program_on_both(two: tuple[Page, Page]) -> None:
@@ -91,9 +91,9 @@ def show_program_on_both(two: tuple[Page, Page]) -> None:
         wait_for_lines(page, *ROWS)
 
 
-def test_two_pupils_typing_at_once_get_the_same_program(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+def test_two_pupils_typing_at_once_get_the_same_program(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     go_to_line(ana, "F(1, 80)")
     type_slowly(ana, "\nBEEP(1, 440)")  # her line is locked until she leaves it
     go_to_line(luz, "S;")
@@ -103,18 +103,20 @@ def test_two_pupils_typing_at_once_get_the_same_program(two: tuple[Page, Page]) 
     )
     assert "BEEP" not in "".join(lines(luz))
     type_slowly(ana, "\n")
-    both = ("F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
-    for page in two:
+    all_lines = ("F(1, 80);", "BEEP(1, 440);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(2);")
+    for page in page_pair:
         page.locator(".cm-content").evaluate("(it) => it.blur()")
-        wait_for_lines(page, *both)
+        wait_for_lines(page, *all_lines)
         wait_until_checked(page)
-        until(lambda page=page: image(page) == compile("".join(both)).image, "compiled")  # type: ignore[misc]
+        until(lambda page=page: image(page) == compile("".join(all_lines)).image, "compiled")  # type: ignore[misc]
 
 
-@drawn
-def test_a_half_typed_value_stays_local_and_unchanged(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+@sampled
+def test_a_half_typed_value_stays_local_and_unchanged(
+    page_pair: tuple[Page, Page],
+) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     go_to_line(ana, "B(1, 40)")
     for key in ("ArrowLeft", "ArrowLeft", "Backspace", "Backspace"):
         ana.keyboard.press(key)
@@ -128,10 +130,10 @@ def test_a_half_typed_value_stays_local_and_unchanged(two: tuple[Page, Page]) ->
     wait_for_lines(luz, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 95);", "END_LOOP;", "S;")
 
 
-@drawn
-def test_undo_reverts_only_local_changes(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+@sampled
+def test_undo_reverts_only_local_changes(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     go_to_line(ana, "S;")
     type_slowly(ana, "\nW(7)\n")
     go_to_line(luz, "F(1, 80)")
@@ -141,14 +143,14 @@ def test_undo_reverts_only_local_changes(two: tuple[Page, Page]) -> None:
     )
     ana.locator(".cm-content").focus()
     ana.keyboard.press("Control+z")
-    for page in two:
+    for page in page_pair:
         wait_for_lines(page, "F(1, 80);", "R(1, 50);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;")
 
 
-@drawn
-def test_undo_keeps_later_changes_of_others(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+@sampled
+def test_undo_keeps_later_changes_of_others(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     for page, text in ((ana, "95)\n"), (luz, "70)\n")):
         go_to_line(page, "B(1, ")
         for _ in range(4):
@@ -162,7 +164,7 @@ def test_undo_keeps_later_changes_of_others(two: tuple[Page, Page]) -> None:
     ana.keyboard.press("Control+z")
     ana.wait_for_timeout(500)  # an older one may be taken back
     assert "B(1, 70);" in [row.strip() for row in lines(ana)]
-    show_program_on_both(two)
+    show_program_on_both(page_pair)
     go_to_line(ana, "B(1, 40)")
     for _ in range(4):
         ana.keyboard.press("Backspace")
@@ -175,10 +177,10 @@ def test_undo_keeps_later_changes_of_others(two: tuple[Page, Page]) -> None:
     wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 8);", "END_LOOP;", "S;")
 
 
-@drawn
-def test_each_pupil_sees_the_others_cursor(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+@sampled
+def test_each_pupil_sees_the_others_cursor(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     go_to_line(ana, "B(1, 40)")
     mark = luz.locator(".cm-line", has_text="B(1, 40)").locator(".cm-mate")
     mark.filter(has_text="Ana").wait_for()
@@ -187,10 +189,12 @@ def test_each_pupil_sees_the_others_cursor(two: tuple[Page, Page]) -> None:
     luz.locator("#class_mates", has_text="Ana").wait_for()
 
 
-@drawn
-def test_a_reloaded_page_is_still_in_the_group(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+@sampled
+def test_a_reloaded_page_is_still_in_the_group(
+    page_pair: tuple[Page, Page],
+) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     go_to_line(luz, "F(1, 80)")
     type_slowly(luz, "\nBEEP(1, 4")  # the line is unfinished
     go_to_line(ana, "S;")
@@ -210,9 +214,9 @@ def test_a_reloaded_page_is_still_in_the_group(two: tuple[Page, Page]) -> None:
     )
 
 
-def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+def test_a_broken_network_loses_nothing(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     ana.context.set_offline(True)
     go_to_line(ana, "F(1, 80)")
     type_slowly(ana, "\nW(4)\n")
@@ -220,20 +224,20 @@ def test_a_broken_network_loses_nothing(two: tuple[Page, Page]) -> None:
     go_to_line(luz, "S;")
     type_slowly(luz, "\nW(5)\n")
     ana.context.set_offline(False)
-    for page in two:
+    for page in page_pair:
         wait_for_lines(
             page, "F(1, 80);", "W(4);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(5);"
         )
 
 
 def test_each_member_drives_and_stops_the_robot_of_the_group(
-    two: tuple[Page, Page], shared_class: Class
+    page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     with PtyRobot(robots.load("tinibot").kit) as robot:
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
-        for page in two:
+        for page in page_pair:
             page.click("#side_real")
         ana.click("[data-text=class_ask]")
         ana.locator("html[data-robot=connected]").wait_for(state="attached")
@@ -248,40 +252,40 @@ def test_each_member_drives_and_stops_the_robot_of_the_group(
         ana.keyboard.press("Escape")
         until(lambda: not robot.moves, "the robot stands")
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
-        for page in two:
+        for page in page_pair:
             page.locator("html:not([data-robot=connected])").wait_for(state="attached")
 
 
 def test_all_members_see_the_actions_of_the_groups_robot(
-    two: tuple[Page, Page], shared_class: Class
+    page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     rows = ("SPEED = 5;", "SHOW(SPEED);", "F(3, 80);", "SHOW(SPEED + 1);", "R(3, 60);")
     with PtyRobot(robots.load("tinibot").kit) as robot:
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": True})
-        for page in two:
+        for page in page_pair:
             page.click("#side_real")
         ana.click("[data-text=class_ask]")
         ana.locator("html[data-robot=connected]").wait_for(state="attached")
         write(ana, "\n".join(rows) + "\n")
         ana.locator(".cm-content").evaluate("(it) => it.blur()")
-        for page in two:
+        for page in page_pair:
             wait_for_lines(page, *rows)
             wait_until_checked(page)
         ana.click("#link_upload")
         for row in ("F(3, 80)", "R(3, 60)"):
-            for page in two:
+            for page in page_pair:
                 wait_for_running(page, row)
         assert luz.locator("#link_shown").inner_text() == "SPEED 5\nSPEED + 1 6"
         assert not luz.locator("#link_upload").is_visible()
         ana.click("#stop")
-        for page in two:
+        for page in page_pair:
             wait_for_nothing_running(page)
         luz.locator("#link_said", has_text="stopped").wait_for()
         luz.locator("#record_play:visible").wait_for()
         assert events(luz) == events(ana) == ["SHOW 5", "SHOW 6", "STOPPED"]
-        for page in two:
+        for page in page_pair:
             page.click("#side_real")
         ana.fill("#link_line", "SHOW(7)")  # a line is her own
         ana.keyboard.press("Enter")
@@ -290,15 +294,15 @@ def test_all_members_see_the_actions_of_the_groups_robot(
         wait_for_running(luz, "F(3, 80)")
         assert "7" not in luz.locator("#link_shown").inner_text()
         shared_class.room.teach({"do": "class_robot", "port": robot.port, "gives": False})
-        for page in two:
+        for page in page_pair:
             wait_for_nothing_running(page)
 
 
 def test_another_program_becomes_the_groups_only_on_request(
-    two: tuple[Page, Page],
+    page_pair: tuple[Page, Page],
 ) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     questions: list[str] = []
 
     def answer_dialog(dialog: Dialog) -> None:
@@ -319,15 +323,15 @@ def test_another_program_becomes_the_groups_only_on_request(
     ana.remove_listener("dialog", answer_dialog)
     ana.locator(".cm-content").focus()
     ana.keyboard.press("Control+z")
-    for page in two:
+    for page in page_pair:
         wait_for_lines(page, *ROWS)
 
 
 def test_returned_work_goes_to_my_programs_if_the_pupil_keeps_it_out_of_the_group(
-    two: tuple[Page, Page], shared_class: Class
+    page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
-    _, luz = two
-    show_program_on_both(two)
+    _, luz = page_pair
+    show_program_on_both(page_pair)
     shared_class.room.teach({"do": "class_bring", "name": "Lia", "text": "F(1, 77)", "robot": "",
                        "lessons": []})  # fmt: skip
     state = shared_class.room.teach({"do": "class"})
@@ -341,16 +345,16 @@ def test_returned_work_goes_to_my_programs_if_the_pupil_keeps_it_out_of_the_grou
     until(lambda: not shared_class.room.teach({"do": "class"})["kept"], "the class has heard of it")
     luz.reload()
     luz.locator("html[data-group=in]").wait_for(state="attached")
-    for page in two:
+    for page in page_pair:
         wait_for_lines(page, *ROWS)
     luz.click("#my_programs")
     luz.locator("#versions strong", has_text="F(1, 77)").wait_for()
     luz.click("#programs_close")
 
 
-def test_an_outdated_change_is_reported(two: tuple[Page, Page], shared_class: Class) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+def test_an_outdated_change_is_reported(page_pair: tuple[Page, Page], shared_class: Class) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     ana.context.set_offline(True)
     go_to_line(ana, "LOOP(3)")
     for key in ("Home", "Shift+ArrowDown", "Shift+ArrowDown", "Shift+ArrowDown", "Delete"):
@@ -363,17 +367,17 @@ def test_an_outdated_change_is_reported(two: tuple[Page, Page], shared_class: Cl
     until(lambda: "BEEP" in program_of(shared_class), "the class has hers")
     ana.context.set_offline(False)
     wait_for_note(ana, "Somebody else changed that part first, so your last change was not made.")
-    for page in two:
+    for page in page_pair:
         wait_for_lines(
             page, "F(1, 80);", "LOOP(3);", "B(1, 40);", "BEEP(1, 440);", "END_LOOP;", "S;"
         )
 
 
 def test_remote_changes_wait_up_to_two_seconds_for_a_composition(
-    two: tuple[Page, Page], shared_class: Class
+    page_pair: tuple[Page, Page], shared_class: Class
 ) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     ana.evaluate(NOTES_WHEN, "W(6)")
     go_to_line(ana, "F(1, 80)")
     type_slowly(ana, "\n")
@@ -388,16 +392,18 @@ def test_remote_changes_wait_up_to_two_seconds_for_a_composition(
     assert ana.evaluate("window.seen_ms") - there_ms >= 500
     tells.send("Input.insertText", {"text": "// ni"})
     ana.keyboard.press("ArrowDown")
-    for page in two:
+    for page in page_pair:
         wait_for_lines(
             page, "F(1, 80);", "// ni", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(6);"
         )
 
 
-@drawn
-def test_a_leaving_pupil_keeps_the_program_without_further_changes(two: tuple[Page, Page]) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+@sampled
+def test_a_leaving_pupil_keeps_the_program_without_further_changes(
+    page_pair: tuple[Page, Page],
+) -> None:
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     luz.click("#side_class")  # the page was reloaded
     luz.click("[data-text=group_leave]")
     luz.locator("[data-text=group_join]").wait_for()
@@ -414,12 +420,12 @@ def test_a_leaving_pupil_keeps_the_program_without_further_changes(two: tuple[Pa
     wait_for_lines(luz, "F(1, 80);", "LOOP(3);", "B(1, 40);", "END_LOOP;", "S;", "W(8);")
 
 
-@drawn
+@sampled
 def test_the_teacher_sees_a_group_as_one_tile_with_its_history(
-    two: tuple[Page, Page], shared_class: Class, browser: Browser
+    page_pair: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     teacher_pages = Pages(browser, shared_class.server.address)
     teacher = open_teacher_page(teacher_pages, shared_class)
     tile = teacher.locator("#wall li").filter(has_text="Red")
@@ -440,10 +446,10 @@ def test_the_teacher_sees_a_group_as_one_tile_with_its_history(
 
 
 def test_the_teacher_joins_and_leaves_a_group(
-    two: tuple[Page, Page], shared_class: Class, browser: Browser
+    page_pair: tuple[Page, Page], shared_class: Class, browser: Browser
 ) -> None:
-    ana, luz = two
-    show_program_on_both(two)
+    ana, luz = page_pair
+    show_program_on_both(page_pair)
     teacher_pages = Pages(browser, shared_class.server.address)
     teacher = open_teacher_page(teacher_pages, shared_class)
     tile = teacher.locator("#wall li").filter(has_text="Red")

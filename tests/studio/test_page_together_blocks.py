@@ -33,7 +33,7 @@ from tiniscript import compile
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-drawn = pytest.mark.sampled(of="blocks of groups", keep=2)
+sampled = pytest.mark.sampled(of="blocks of groups", keep=2)
 
 PROGRAM = """F(1.50, (80));  // first
 LOOP(3);
@@ -56,19 +56,19 @@ def pages(browser: Browser, shared_class: Class) -> Iterator[Pages]:
     opened_pages = Pages(browser, shared_class.server.address)
     yield opened_pages
     opened_pages.close()
-    assert not opened_pages.wrong
+    assert not opened_pages.errors
 
 
 @pytest.fixture(scope="module")
-def both(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
+def loaded_pair(pages: Pages, shared_class: Class) -> tuple[Page, Page]:
     return group_of(pages, shared_class)
 
 
-def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
+def group_of(pages: Pages, class_: Class) -> tuple[Page, Page]:
     """Ana has blocks, Luz has the text."""
-    ana = join_class(pages, taught, "Ana")
+    ana = join_class(pages, class_, "Ana")
     write(ana, PROGRAM)
-    luz = join_class(pages, taught, "Luz")
+    luz = join_class(pages, class_, "Luz")
     for page in (ana, luz):
         enters(page)
     ana.set_viewport_size({"width": 1366, "height": 768})
@@ -76,9 +76,9 @@ def group_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
     return ana, luz
 
 
-def others_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
+def others_of(pages: Pages, class_: Class) -> tuple[Page, Page]:
     """Two more of the group: Teo has blocks, Eva the text. It is full."""
-    teo, eva = (join_class(pages, taught, name) for name in ("Teo", "Eva"))
+    teo, eva = (join_class(pages, class_, name) for name in ("Teo", "Eva"))
     for page in (teo, eva):
         enters(page)
     teo.set_viewport_size({"width": 1366, "height": 768})
@@ -88,15 +88,15 @@ def others_of(pages: Pages, taught: Class) -> tuple[Page, Page]:
 
 
 @pytest.fixture
-def two(both: tuple[Page, Page]) -> tuple[Page, Page]:
+def page_pair(loaded_pair: tuple[Page, Page]) -> tuple[Page, Page]:
     """Both have the program."""
-    ana, luz = both
+    ana, luz = loaded_pair
     write(luz, PROGRAM)
     luz.locator(".cm-content").evaluate("(it) => it.blur()")
     wait_for_lines(luz, *ROWS)
     until(lambda: text_of(ana) == PROGRAM, "Ana has the program")
     wait_for_blocks(ana)
-    return both
+    return loaded_pair
 
 
 def text_of(page: Page) -> str:
@@ -104,10 +104,10 @@ def text_of(page: Page) -> str:
     return str(text)
 
 
-def field(page: Page, words: str, which: int = 0) -> None:
+def field(page: Page, words: str, field_index: int = 0) -> None:
     """Open a field of a block, with nothing in it."""
     page.locator("html").evaluate("() => getSelection().removeAllRanges()")
-    block(page, words).locator(".blocklyNumberField").nth(which).click()
+    block(page, words).locator(".blocklyNumberField").nth(field_index).click()
     page.locator(".blocklyWidgetDiv input").wait_for()
     page.keyboard.press("Control+a")
 
@@ -137,16 +137,16 @@ def change_rows(*pairs: tuple[str, str]) -> list[str]:
     return [dict(pairs).get(row, row) for row in ROWS]
 
 
-def test_a_changed_field_changes_only_its_line(two: tuple[Page, Page]) -> None:
-    ana, _ = two
+def test_a_changed_field_changes_only_its_line(page_pair: tuple[Page, Page]) -> None:
+    ana, _ = page_pair
     field(ana, "back")
     type_slowly(ana, "7\n")
-    ends(two, *change_rows(("B(1, 40);", "B(7, 40);")))
+    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")))
 
 
-@drawn
-def test_a_half_typed_field_is_not_a_change_and_stays_open(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+@sampled
+def test_a_half_typed_field_is_not_a_change_and_stays_open(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "6")
     go_to_line(luz, "S;")
@@ -156,13 +156,15 @@ def test_a_half_typed_field_is_not_a_change_and_stays_open(two: tuple[Page, Page
     type_slowly(ana, "5")  # the field is where it was
     assert "B(1, 40);" in text_of(luz)
     ana.keyboard.press("Enter")
-    ends(two, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
+    ends(page_pair, *change_rows(("B(1, 40);", "B(65, 40);")), "W(2);")
     block(ana, "wait").wait_for()
 
 
-@drawn
-def test_a_block_dragged_during_remote_edits_lands_in_its_place(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+@sampled
+def test_a_block_dragged_during_remote_edits_lands_in_its_place(
+    page_pair: tuple[Page, Page],
+) -> None:
+    ana, luz = page_pair
     source_box, target = box_of(block(ana, "stop")), box_of(block(ana, "forward"))
     ana.mouse.move(source_box["x"] + 8, source_box["y"] + 10)
     ana.mouse.down()
@@ -172,24 +174,24 @@ def test_a_block_dragged_during_remote_edits_lands_in_its_place(two: tuple[Page,
     until(lambda: "BEEP" in text_of(ana), "the others' line arrives after a while")
     ana.mouse.move(target["x"] + 10, target["y"] + target["height"] + 8, steps=8)
     ana.mouse.up()
-    first, loop, end_loop, *rest = ROWS[:-1]
-    ends(two, first, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
+    first_row, loop, end_loop, *rest = ROWS[:-1]
+    ends(page_pair, first_row, "S;", loop, end_loop, "BEEP(1, 440);", *rest)
 
 
-@drawn
-def test_the_later_of_two_changes_of_a_block_wins(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+@sampled
+def test_the_later_of_two_changes_of_a_block_wins(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "6")
     change_power(luz, "B(1, 40)")
     until(lambda: "B(1, 95);" in text_of(ana), "the others' value arrives")
     ana.keyboard.press("Enter")
-    ends(two, *change_rows(("B(1, 40);", "B(6, 40);")))
+    ends(page_pair, *change_rows(("B(1, 40);", "B(6, 40);")))
 
 
-@drawn
-def test_loose_blocks_exist_only_on_the_local_page(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+@sampled
+def test_loose_blocks_exist_only_on_the_local_page(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     drag(ana, "Move", "left", None)
     go_to_line(luz, "S;")
     type_slowly(luz, "\nw(2)\n")
@@ -198,8 +200,8 @@ def test_loose_blocks_exist_only_on_the_local_page(two: tuple[Page, Page]) -> No
     assert block(ana, "left").count() == 1
     assert "///" in text_of(ana)
     assert "///" not in text_of(luz)
-    loose = box_of(block(ana, "left"))
-    ana.mouse.move(loose["x"] + 8, loose["y"] + 10)
+    loose_box = box_of(block(ana, "left"))
+    ana.mouse.move(loose_box["x"] + 8, loose_box["y"] + 10)
     ana.mouse.down()
     target = box_of(block(ana, "wait"))
     ana.mouse.move(target["x"] + 60, target["y"] + 90, steps=4)
@@ -210,9 +212,9 @@ def test_loose_blocks_exist_only_on_the_local_page(two: tuple[Page, Page]) -> No
     until(lambda: text_of(ana) == text_of(luz), "both have the same")
 
 
-@drawn
-def test_undo_in_blocks_reverts_the_local_change(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+@sampled
+def test_undo_in_blocks_reverts_the_local_change(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     field(ana, "back")
     type_slowly(ana, "7\n")
     wait_for_lines(luz, *change_rows(("B(1, 40);", "B(7, 40);")))
@@ -222,19 +224,19 @@ def test_undo_in_blocks_reverts_the_local_change(two: tuple[Page, Page]) -> None
     wait_for_blocks(ana)
     ana.locator("#speed").focus()
     ana.keyboard.press("Control+z")
-    ends(two, *ROWS, "W(2);")
+    ends(page_pair, *ROWS, "W(2);")
     ana.click("#redo")
-    ends(two, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
+    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 40);")), "W(2);")
     change_power(luz, "B(7, 40)")
     until(lambda: "B(7, 95);" in text_of(ana), "the others' value arrives")
     wait_for_blocks(ana)
     ana.click("#undo")  # his block has a new owner
-    ends(two, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
+    ends(page_pair, *change_rows(("B(1, 40);", "B(7, 95);")), "W(2);")
 
 
-@drawn
-def test_each_pupil_sees_the_others_block(two: tuple[Page, Page]) -> None:
-    ana, luz = two
+@sampled
+def test_each_pupil_sees_the_others_block(page_pair: tuple[Page, Page]) -> None:
+    ana, luz = page_pair
     go_to_line(luz, "B(1, 40)")
     mark = block(ana, "back").locator("> .mate_mark")
     mark.filter(has_text="Luz").wait_for()
@@ -255,9 +257,9 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
 
     if has_blocks:
         number_fields = page.locator(f"{PROGRAM_BLOCKS} .blocklyNumberField")
-        which = rng.randrange(max(1, number_fields.count()))
+        field_index = rng.randrange(max(1, number_fields.count()))
         try:
-            number_fields.nth(which).click(timeout=3000)
+            number_fields.nth(field_index).click(timeout=3000)
         except Error:  # others have taken it away meanwhile
             return False
         page.keyboard.press("Control+a")
@@ -265,9 +267,9 @@ def random_change(page: Page, has_blocks: bool, rng: Random) -> bool:
         return True
     rows = [row for row in lines(page) if row.strip()]
     row = rng.choice(rows)
-    at = page.locator(".cm-line").filter(has_text=row.strip()).first
+    line = page.locator(".cm-line").filter(has_text=row.strip()).first
     try:
-        at.click(timeout=3000)
+        line.click(timeout=3000)
     except Error:  # others have changed it meanwhile
         return False
     page.keyboard.press("End")
@@ -305,17 +307,17 @@ def race(members: Sequence[Page], count: int, seed: int) -> None:
         assert block_count >= len([row for row in text.splitlines() if row and "END_" not in row])
 
 
-def test_two_pages_end_with_the_same_program(two: tuple[Page, Page]) -> None:
-    race(two, 12, 1)
+def test_two_pages_end_with_the_same_program(page_pair: tuple[Page, Page]) -> None:
+    race(page_pair, 12, 1)
 
 
 @pytest.mark.long
 def test_four_pages_end_with_the_same_program(
-    two: tuple[Page, Page], pages: Pages, shared_class: Class
+    page_pair: tuple[Page, Page], pages: Pages, shared_class: Class
 ) -> None:
-    more = others_of(pages, shared_class)
-    race((*two, *more), 16, 2)
-    for page in more:
+    other_pages = others_of(pages, shared_class)
+    race((*page_pair, *other_pages), 16, 2)
+    for page in other_pages:
         page.click("[data-text=group_leave]")
         page.locator("[data-text=group_join]").wait_for()
 
@@ -337,7 +339,7 @@ def main() -> None:
             if len(sys.argv) > 2:
                 page.screenshot(path=f"{sys.argv[2]}/{name}.png")
         opened_pages.close()
-        assert not opened_pages.wrong
+        assert not opened_pages.errors
 
 
 if __name__ == "__main__":

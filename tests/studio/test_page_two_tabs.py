@@ -39,7 +39,7 @@ FULL_STORAGE_SCRIPT = """(full) => {
     put.call(this, place, whole);
   };
 }"""
-REFUSED = """for (const name of ['localStorage', 'sessionStorage']) {
+NO_STORAGE_SCRIPT = """for (const name of ['localStorage', 'sessionStorage']) {
   Object.defineProperty(window, name, { get() { throw new DOMException('no', 'SecurityError'); } });
 }"""
 PASTE_SCRIPT = """(count) => {
@@ -68,53 +68,59 @@ def test_changes_in_another_tab_become_one_previous_world(pages: Pages) -> None:
     page.click("#world_draw")
     open_world(page, 100)
     open_world(page, 101)
-    other = pages.another(page)
-    other.locator("#world_draw:enabled").wait_for()
-    other.click("#world_draw")
-    open_world(other, 102)
+    other_page = pages.another(page)
+    other_page.locator("#world_draw:enabled").wait_for()
+    other_page.click("#world_draw")
+    open_world(other_page, 102)
     for _ in range(5):
-        for tab in (page, other):
+        for tab in (page, other_page):
             tab.select_option("#world_part", label="Robot")
             tab.locator("#arena").focus()
             tab.keyboard.press("ArrowRight")
             save_world(tab)
     kept_text = "(store) => JSON.parse(window[store]['tiniscript.worlds_before'])"
     widths = {
-        store: [read(world, "before").width_cm for world in other.evaluate(kept_text, store)]
+        store: [read(world, "before").width_cm for world in other_page.evaluate(kept_text, store)]
         for store in ("localStorage", "sessionStorage")
     }
     # The next tab finds those of both; this one has its own.
     assert widths == {"localStorage": [101, 100, 101], "sessionStorage": [101, 100]}
-    newest = read(other.evaluate("localStorage['tiniscript.world']"), "newest")
-    theirs = read(other.evaluate(kept_text, "localStorage")[-1], "theirs")
+    newest = read(other_page.evaluate("localStorage['tiniscript.world']"), "newest")
+    other_world = read(other_page.evaluate(kept_text, "localStorage")[-1], "theirs")
     assert (newest.width_cm, newest.start.x_cm) == (102, 45)
-    assert theirs.start.x_cm == 45  # without any earlier step
+    assert other_world.start.x_cm == 45  # without any earlier step
 
 
 def test_programs_of_both_tabs_are_kept(pages: Pages) -> None:
     page = pages.open()
-    other = pages.another(page)
+    other_page = pages.another(page)
     for k in (1, 2):
         write(page, f"SI|F({k}, 10)")
-        write(other, f"SI|B({k}, 20)")
+        write(other_page, f"SI|B({k}, 20)")
     draw_wall(page)
-    other.locator("#world_draw:enabled").wait_for()
-    other.click("#world_draw")
+    other_page.locator("#world_draw:enabled").wait_for()
+    other_page.click("#world_draw")
     for count in (1, 2):  # the second change does not forget the first one's findings
-        other.click("#world_add_walls")
-        drag(other, [(150, 30), (190, 60)])
-        other.locator("#world_part option", has_text=f"Wall {count}").wait_for(state="attached")
-        assert len(save_world(other).walls) == count
-    other.click("#world_done")
+        other_page.click("#world_add_walls")
+        drag(other_page, [(150, 30), (190, 60)])
+        other_page.locator("#world_part option", has_text=f"Wall {count}").wait_for(
+            state="attached"
+        )
+        assert len(save_world(other_page).walls) == count
+    other_page.click("#world_done")
     with page.expect_event("close"):
         page.close(run_before_unload=True)
     kept_text = "(localStorage['tiniscript.versions'] ?? '').includes('SI|F(2, 10)')"
-    wait_for(other, lambda: other.evaluate(kept_text), "the closed tab has kept its program")
-    assert "B(2, 20)" in other.evaluate("localStorage['tiniscript.work']")  # kept for the next tab
-    newest, before = other.evaluate(
+    wait_for(
+        other_page, lambda: other_page.evaluate(kept_text), "the closed tab has kept its program"
+    )
+    assert "B(2, 20)" in other_page.evaluate(
+        "localStorage['tiniscript.work']"
+    )  # kept for the next tab
+    newest, older_texts = other_page.evaluate(
         "[localStorage['tiniscript.world'], JSON.parse(localStorage['tiniscript.worlds_before'])]"
     )
-    assert [text.count("[[walls]]") for text in (newest, *before)] == [2, 1]
+    assert [text.count("[[walls]]") for text in (newest, *older_texts)] == [2, 1]
 
 
 def test_a_program_of_a_hidden_tab_is_kept(page: Page) -> None:
@@ -139,7 +145,7 @@ def test_a_browser_without_storage_reports_it_and_otherwise_works(pages: Pages) 
     drag(page, [(60, 30), (100, 60)])
     page.locator("#doing", has_text="This browser has no room for this world").wait_for()
     assert "F(2, 20)" in page.evaluate("sessionStorage['tiniscript.work']")  # this tab has it
-    page.context.add_init_script(REFUSED)
+    page.context.add_init_script(NO_STORAGE_SCRIPT)
     page.reload()
     wait_until_checked(page)
     page.click("#view_text")

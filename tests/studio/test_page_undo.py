@@ -39,8 +39,8 @@ def page(only_page: tuple[Pages, Page]) -> Any:
     current_page.set_viewport_size({"width": 1366, "height": 768})
     speak(current_page, "en")
     yield current_page
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.errors[:] = pages.errors[:], []
+    assert not errors
 
 
 def state_of(page: Page) -> BlocksState:
@@ -53,11 +53,11 @@ def wait_for_state(page: Page, wanted_state: BlocksState) -> None:
     wait_for(page, lambda: state_of(page) == wanted_state, str(wanted_state))
 
 
-def move(page: Page, words: str, to: tuple[float, float]) -> None:
+def move(page: Page, words: str, target: tuple[float, float]) -> None:
     box = box_of(block(page, words))
     page.mouse.move(box["x"] + 8, box["y"] + 20)
     page.mouse.down()
-    page.mouse.move(*to, steps=6)
+    page.mouse.move(*target, steps=6)
     page.mouse.up()
     page.locator("#blocks[data-state=shown]").wait_for()
 
@@ -82,7 +82,7 @@ def _type_text(page: Page, dice: random.Random) -> None:
     page.click("#view_blocks")
 
 
-ACTS: tuple[Callable[[Page, random.Random], None], ...] = (
+ACTIONS: tuple[Callable[[Page, random.Random], None], ...] = (
     _move_block,
     _move_block,
     _add_block,
@@ -98,10 +98,10 @@ def test_each_undo_restores_the_text_and_every_position(page: Page, seed: int) -
     page.select_option("#robot", "tinibot32")
     start(page, dice.choice(PROGRAMS), "usual")
     past_states = [state_of(page)]
-    for act in (_move_block, *dice.choices(ACTS, k=5)):
+    for act in (_move_block, *dice.choices(ACTIONS, k=5)):
         act(page, dice)
-        if (now := state_of(page)) != past_states[-1]:
-            past_states.append(now)
+        if (state := state_of(page)) != past_states[-1]:
+            past_states.append(state)
     for wanted_state in past_states[-2::-1]:
         page.click("#undo")
         wait_for_state(page, wanted_state)
@@ -114,15 +114,15 @@ def test_undo_moves_a_hat_block_back(page: Page) -> None:
     """After it was dragged in, or the program was written as text: in the blocks and by the key."""
     start(page, "SI|F(2, 80);\n")
     drag(page, "Events", "each time", None)
-    whole = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
-    wait_for_text(page, whole)
-    for begins in ("dragged", "written"):
-        if begins == "written":
-            start(page, whole)
+    text = "SI|F(2, 80);\nWHEN(DISTANCE < 20);\nEND_WHEN;\n"
+    wait_for_text(page, text)
+    for trigger in ("dragged", "written"):
+        if trigger == "written":
+            start(page, text)
         state_before = state_of(page)
         move(page, "each time", (520, 560))
         state_after = state_of(page)
-        assert state_after[0] == whole and state_after != state_before
+        assert state_after[0] == text and state_after != state_before
         page.click("#undo")
         wait_for_state(page, state_before)
         page.click("#redo")

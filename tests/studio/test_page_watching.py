@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="what is heard and seen", keep=3)
+sampled = pytest.mark.sampled(of="what is heard and seen", keep=3)
 
 # The computer's sound, noted as often as it is opened. `rest` closes it after a while: the test
 # decides when, since a run on a slow computer may take longer.
@@ -54,15 +54,15 @@ def count(page: Page, color: str) -> int:
     pixels = zip(*(band.tobytes() for band in picture.split()), strict=True)
     return sum(
         all(
-            abs(one - other) < COLOUR_TOLERANCE
-            for one, other in zip(pixel, wanted_bytes, strict=True)
+            abs(channel - other_value) < COLOUR_TOLERANCE
+            for channel, other_value in zip(pixel, wanted_bytes, strict=True)
         )
         for pixel in pixels
     )
 
 
 @pytest.fixture
-def listening(page: Page) -> Page:
+def heard_page(page: Page) -> Page:
     """A page that records its sound, and draws no path."""
     if not page.evaluate("'heard' in window"):
         page.reload()  # earlier sounds are not recorded
@@ -86,9 +86,9 @@ def run(page: Page, program: str) -> None:
     wait_for_phase(page, "ended")
 
 
-@drawn
-def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(listening: Page) -> None:
-    page = listening
+@sampled
+def test_the_buzzer_is_heard_unless_it_is_muted_or_there_is_none(heard_page: Page) -> None:
+    page = heard_page
     run(page, "BEEP(0.1, 440);W(0.1);BEEP(0.2, 880)")
     assert page.evaluate("window.heard") == [440, 880]
     page.get_by_role("button", name="Sound").click()
@@ -143,7 +143,7 @@ def test_an_empty_program_is_reported_before_and_after_its_run(page: Page, text:
     assert "It has ended." in page.inner_text("#doing")
 
 
-@drawn
+@sampled
 def test_no_audio_context_is_open_at_rest(pages: Pages) -> None:
     """An open one works all the time, and empties a battery. A page must wait before it closes
     this."""
@@ -164,24 +164,24 @@ def test_no_audio_context_is_open_at_rest(pages: Pages) -> None:
         assert page.evaluate("window.closings") == closings + 1
 
 
-@drawn
-def test_stop_and_pause_silence_the_buzzer(listening: Page) -> None:
-    page = listening
+@sampled
+def test_stop_and_pause_silence_the_buzzer(heard_page: Page) -> None:
+    page = heard_page
     write(page, "BEEP(30, 440)")
     for button, phase in (("pause", "paused"), ("stop", "ended")):
-        before = page.evaluate("window.stopped")
+        stops_before = page.evaluate("window.stopped")
         page.click("#run")
         wait_for_phase(page, "running")
         until(lambda: page.evaluate("window.heard.length"), "a sound")
         page.evaluate("window.heard = []")
         page.click(f"#{button}")
         wait_for_phase(page, phase)
-        assert page.evaluate("window.stopped") == before + 1
+        assert page.evaluate("window.stopped") == stops_before + 1
 
 
-@drawn
-def test_a_crash_is_heard_reported_with_its_place_and_shaken(listening: Page) -> None:
-    page = listening
+@sampled
+def test_a_crash_is_heard_reported_with_its_place_and_shaken(heard_page: Page) -> None:
+    page = heard_page
     noted_text = "[window.heard.length, window.started, window.shaken]"
     page.evaluate(
         "() => { window.told = []; new MutationObserver(([row]) => window.told.push("
@@ -190,16 +190,18 @@ def test_a_crash_is_heard_reported_with_its_place_and_shaken(listening: Page) ->
     run(page, CRASH_PROGRAM)
     assert page.evaluate(noted_text) == [1, 1, 1]
     assert count(page, "ffd84d") > 20  # the star where it touches the box
-    first, *_, last = page.evaluate("window.told")
-    assert first.startswith("The robot has bumped into something. The robot is ")
-    assert last.startswith("Collisions: 1. The robot is ") and last.endswith("to the right.")
+    first_message, *_, last_message = page.evaluate("window.told")
+    assert first_message.startswith("The robot has bumped into something. The robot is ")
+    assert last_message.startswith("Collisions: 1. The robot is ") and last_message.endswith(
+        "to the right."
+    )
     run(page, "W(1)")
     assert page.evaluate(noted_text) == [1, 1, 1]
 
 
-@drawn
-def test_shaking_respects_reduced_motion(listening: Page) -> None:
-    page = listening
+@sampled
+def test_shaking_respects_reduced_motion(heard_page: Page) -> None:
+    page = heard_page
     page.emulate_media(reduced_motion="reduce")
     run(page, CRASH_PROGRAM)
     page.emulate_media(reduced_motion="no-preference")
@@ -207,16 +209,16 @@ def test_shaking_respects_reduced_motion(listening: Page) -> None:
     assert count(page, "ffd84d") > 20
 
 
-@drawn
-def test_paths_stay_until_they_are_erased(listening: Page) -> None:
-    page = listening
+@sampled
+def test_paths_stay_until_they_are_erased(heard_page: Page) -> None:
+    page = heard_page
     page.select_option("#world", "obstacles")
     assert count(page, WAY_COLOUR) == 0
     run(page, "R(0.1, 60);F(1.5, 80)")  # oblique: both edges of a level line may have that color
-    few = count(page, EARLIER_WAY_COLOUR)
+    pixels_before = count(page, EARLIER_WAY_COLOUR)
     assert count(page, WAY_COLOUR) > 20
     run(page, "L(0.5, 60);F(0.5, 80)")
-    assert count(page, WAY_COLOUR) > 5 and count(page, EARLIER_WAY_COLOUR) > few + 20
+    assert count(page, WAY_COLOUR) > 5 and count(page, EARLIER_WAY_COLOUR) > pixels_before + 20
     erase(page)
     assert count(page, WAY_COLOUR) == 0 and count(page, EARLIER_WAY_COLOUR) < 10
     run(page, "F(1, 80)")
@@ -241,9 +243,9 @@ y_cm = 50
 """
 
 
-@drawn
-def test_flags_points_and_stars_are_shown_and_heard(listening: Page) -> None:
-    page = listening
+@sampled
+def test_flags_points_and_stars_are_shown_and_heard(heard_page: Page) -> None:
+    page = heard_page
     page.set_input_files(
         "#world_file", {"name": "task.toml", "mimeType": "", "buffer": TASK.encode()}
     )
@@ -281,9 +283,9 @@ power_percent = 0
 RIVAL_COLOUR, DARK_COLOUR = "9a4fc0", "3b434c"
 
 
-@drawn
-def test_a_bout_and_its_result_are_shown_and_heard(listening: Page) -> None:
-    page = listening
+@sampled
+def test_a_bout_and_its_result_are_shown_and_heard(heard_page: Page) -> None:
+    page = heard_page
     page.set_input_files(
         "#world_file",
         {"name": "bout.toml", "mimeType": "", "buffer": SLEEPING_RIVAL_WORLD.encode()},

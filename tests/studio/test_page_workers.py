@@ -55,7 +55,7 @@ class Stranger(ThreadingHTTPServer):
     def __init__(self, port: int, scripts: dict[str, bytes]) -> None:
         super().__init__((serving.HOST, port), _Handler)
         self.scripts = scripts
-        self.taken: list[bytes] = []
+        self.loot: list[bytes] = []
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -70,7 +70,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(script or b"<!doctype html><title>x</title>")
 
     def do_POST(self) -> None:
-        self.server.taken.append(self.rfile.read(int(self.headers["Content-Length"])))
+        self.server.loot.append(self.rfile.read(int(self.headers["Content-Length"])))
         self.send_response(204)
         self.end_headers()
 
@@ -112,9 +112,9 @@ def leave_worker(
     context: BrowserContext, loot: Stranger, name: str, options: dict[str, str]
 ) -> int:
     """Install the worker of another server; return its port, which is free afterwards."""
-    evil = EVIL_WORKER.replace("VERSION", version())
-    evil = evil.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
-    with page_server.serves(Stranger(0, {f"/{name}": evil.encode()})) as stranger:
+    worker_code = EVIL_WORKER.replace("VERSION", version())
+    worker_code = worker_code.replace("LOOT", f"http://{serving.HOST}:{loot.server_port}/")
+    with page_server.serves(Stranger(0, {f"/{name}": worker_code.encode()})) as stranger:
         page = context.new_page()
         page.goto(f"http://{serving.HOST}:{stranger.server_port}/")
         page.evaluate(LEAVE_WORKER_SCRIPT, [f"./{name}", options])
@@ -147,7 +147,7 @@ def test_no_foreign_service_worker_gets_the_code(
         enter(page, server.entrance())  # no stored answers are shown later
         check_own_worker(page, server)
         assert page.evaluate(CONTROLLER_SCRIPT) == f"{server.address}{serving.WORKER_FILE}"
-    assert loot.taken == []
+    assert loot.loot == []
 
 
 @pytest.mark.sampled(of="pages of their own", keep=2)
@@ -174,7 +174,7 @@ def test_a_service_worker_that_stays_gets_no_code(context: BrowserContext, loot:
         locator = page.locator("#note").filter(has_text="Delete this address’s data in the browser")
         locator.wait_for()
         assert page.evaluate(TOKEN_SCRIPT) is None and server.is_unused(entrance)
-    assert loot.taken == []
+    assert loot.loot == []
 
 
 def test_a_request_for_a_foreign_service_worker_unregisters_it() -> None:
@@ -183,13 +183,13 @@ def test_a_request_for_a_foreign_service_worker_unregisters_it() -> None:
         serving.WORKER_FILE: serving.File(b"y", "z"),
     }
     with page_server.serves(serving.Server(page, 0)) as server:
-        own = f"{serving.HOST}:{server.server_port}"
+        server_host = f"{serving.HOST}:{server.server_port}"
         for path in ("/evil.js", "/", "/index.html", "/a/b.js?c"):
-            answer, data = page_server.ask(own, path, headers={"Service-Worker": "script"})
+            answer, data = page_server.ask(server_host, path, headers={"Service-Worker": "script"})
             assert answer.status == 200 and b"registration.unregister()" in data
             assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
         response = page_server.ask(
-            own, f"/{serving.WORKER_FILE}", headers={"Service-Worker": "script"}
+            server_host, f"/{serving.WORKER_FILE}", headers={"Service-Worker": "script"}
         )
         assert response[1] == b"y"
-        assert page_server.ask(own, "/evil.js")[0].status == 404
+        assert page_server.ask(server_host, "/evil.js")[0].status == 404

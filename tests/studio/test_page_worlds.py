@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 pytestmark = pytest.mark.sampled(files="sides of the page", keep=3)
-drawn = pytest.mark.sampled(of="details of worlds", keep=2)
+sampled = pytest.mark.sampled(of="details of worlds", keep=2)
 
 
-KEPT = "() => localStorage.getItem('tiniscript.world')"
+STORED_WORLD_SCRIPT = "() => localStorage.getItem('tiniscript.world')"
 
 
 def number(page: Page, key: str) -> float:
@@ -80,7 +80,7 @@ def test_world_parts_are_added_moved_and_deleted_by_mouse(floor: Page) -> None:
     assert abs(number(floor, "x_cm") - 145) <= 1 and abs(number(floor, "y_cm") - 120) <= 1
 
 
-@drawn
+@sampled
 def test_an_undo_during_a_drag_puts_the_part_back(floor: Page) -> None:
     shipped_world = worlds.load("obstacles")
     floor.click("#world_add_boxes")
@@ -110,7 +110,7 @@ def picture(page: Page) -> str:
     return url
 
 
-@drawn
+@sampled
 def test_a_cancelled_stroke_disappears(floor: Page) -> None:
     start = save_world(floor).start
     floor.keyboard.down("Control")
@@ -118,7 +118,7 @@ def test_a_cancelled_stroke_disappears(floor: Page) -> None:
     floor.keyboard.up("Control")
     assert save_world(floor).start == start
     drag(floor, [(56, 82.5), (56, 90)])  # creates a step to undo
-    for way in ("cancel", "undo"):
+    for stroke_end in ("cancel", "undo"):
         if floor.get_attribute("#world_add_walls", "aria-pressed") == "false":
             floor.click("#world_add_walls")
         wanted_text = picture(floor)
@@ -126,18 +126,18 @@ def test_a_cancelled_stroke_disappears(floor: Page) -> None:
         floor.mouse.down()
         floor.mouse.move(*screen_position(floor, (100, 60)), steps=4)
         assert picture(floor) != wanted_text
-        if way == "undo":
+        if stroke_end == "undo":
             # Touched by a second finger.
             floor.evaluate("document.querySelector('#world_undo').click()")
         else:
             floor.locator("#arena").dispatch_event("pointercancel")
         shown_text = picture(floor)
         floor.mouse.up()
-        assert shown_text == wanted_text, way
+        assert shown_text == wanted_text, stroke_end
         assert save_world(floor).walls == ()
 
 
-@drawn
+@sampled
 def test_each_kind_of_part_is_drawn_and_selectable(floor: Page) -> None:
     floor.click("#world_add_walls")
     drag(floor, [(60, 30), (100, 60)])
@@ -190,8 +190,8 @@ def test_the_world_editor_works_by_keyboard(floor: Page) -> None:
     floor.locator("#world_heading").fill("-90")
     press("Enter")
     assert save_world(floor).start.heading == -90
-    for wrong in ("", "1e9"):
-        floor.locator("#world_x_cm").fill(wrong)
+    for wrong_number in ("", "1e9"):
+        floor.locator("#world_x_cm").fill(wrong_number)
         press("Enter")
         assert 0 <= save_world(floor).start.x_cm <= 220
     floor.select_option("#world_part", label="Floor")
@@ -202,7 +202,7 @@ def test_the_world_editor_works_by_keyboard(floor: Page) -> None:
     assert (world.width_cm, world.start.x_cm, world.has_border) == (100, 100, False)
 
 
-@drawn
+@sampled
 def test_a_handle_turns_the_robot_and_flags_can_be_placed(floor: Page) -> None:
     floor.click("#world_add_boxes")
     drag(floor, [(140, 60), (200, 80)])
@@ -228,7 +228,7 @@ def test_a_handle_turns_the_robot_and_flags_can_be_placed(floor: Page) -> None:
     assert save_world(floor).seconds == 30
 
 
-@drawn
+@sampled
 @pytest.mark.parametrize("step", ["world_undo", "world_redo"])
 def test_undo_steps_of_a_world_do_not_affect_another(floor: Page, step: str) -> None:
     drag(floor, [(56, 82.5), (56, 90)])
@@ -242,7 +242,7 @@ def test_undo_steps_of_a_world_do_not_affect_another(floor: Page, step: str) -> 
     assert floor.locator(f"#{step}").is_disabled()
 
 
-@drawn
+@sampled
 def test_no_part_leaves_the_floor(floor: Page) -> None:
     drag(floor, [(56, 82.5), (-60, 300)])
     assert save_world(floor).start[:2] == (0, 200)
@@ -251,13 +251,13 @@ def test_no_part_leaves_the_floor(floor: Page) -> None:
     assert save_world(floor).start[:2] == (56, 82.5)
 
 
-def draw(page: Page, way: Sequence[Place]) -> None:
+def draw(page: Page, places: Sequence[Place]) -> None:
     """Go along a way on the floor with a finger."""
     page.evaluate(SETTLED_SCRIPT)  # earlier taps may have changed the floor's size
-    finger(page, [screen_position(page, place) for place in way])
+    finger(page, [screen_position(page, place) for place in places])
 
 
-@drawn
+@sampled
 def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     page = pages.open(viewport={"width": 390, "height": 844}, has_touch=True, locale="es-ES")
     turn(page, "robot")
@@ -272,9 +272,9 @@ def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
     assert len(world.lines) == 1 and abs(world.lines[0].points[-1].x - 160) < 1
     page.tap("#world_done")
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
-    kept_state = page.evaluate(KEPT)
+    kept_state = page.evaluate(STORED_WORLD_SCRIPT)
     draw(page, [(60, 110), (60, 100)])  # outside of the drawing, too
-    page.wait_for_function(f"before => ({KEPT})() !== before", arg=kept_state)
+    page.wait_for_function(f"before => ({STORED_WORLD_SCRIPT})() !== before", arg=kept_state)
     page.reload()
     wait_until_checked(page)
     assert page.locator("#world option:checked").inner_text() == "mi mundo"
@@ -292,7 +292,7 @@ def test_the_floor_replaces_the_curves(page: Page) -> None:
     assert page.get_attribute("#seen_arena", "aria-pressed") == "true"
 
 
-@drawn
+@sampled
 def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     """In a shipped world, without drawing, and again after a run."""
     page.select_option("#world", "light")
@@ -318,7 +318,7 @@ def test_the_robot_begins_where_it_was_put(page: Page) -> None:
     assert read_start(page) == (40, 40)
 
 
-OWN = b"""[floor]
+OWN_WORLD = b"""[floor]
 width_cm = 90
 height_cm = 70
 [start]
@@ -336,28 +336,28 @@ es = "aula"
 """
 
 
-@drawn
+@sampled
 def test_a_file_is_opened_or_refused_with_a_reason(floor: Page) -> None:
-    open_world_file(floor, OWN)
+    open_world_file(floor, OWN_WORLD)
     wait_for_status(floor, "Opened: own.toml")
-    wanted_world = read(OWN.decode(), "own")
+    wanted_world = read(OWN_WORLD.decode(), "own")
     world = save_world(floor)
     assert (world.start, world.width_cm, world.labels) == (
         wanted_world.start,
         90,
         wanted_world.labels,
     )
-    near = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
-    assert near == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
+    rounded_box = [(round(x, 2), round(y, 2)) for x, y in world.boxes[0]]
+    assert rounded_box == [(round(x, 2), round(y, 2)) for x, y in wanted_world.boxes[0]]
     assert floor.locator("img").count() == 0
-    for data, why in (
+    for data, message in (
         (b"\xff", "UTF-8"),
         (b"[floor]\nwidth_cm = 1\n", "own.toml was not opened. "),
-        (OWN.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
+        (OWN_WORLD.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
         (b"#" * 3_000_000, "has more than"),
     ):
         open_world_file(floor, data)
-        wait_for_status(floor, why)
+        wait_for_status(floor, message)
         assert floor.input_value("#world_width_cm") == "90"
     speak(floor, "es")
     open_world_file(floor, b"\xff")

@@ -22,7 +22,7 @@ from tiniscript.virtual import worlds
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
 
-drawn = pytest.mark.sampled(of="kept worlds", keep=2)
+sampled = pytest.mark.sampled(of="kept worlds", keep=2)
 
 OBSTACLES_START = (56, 82.5)
 
@@ -68,7 +68,7 @@ def test_a_world_is_not_overwritten_by_the_next(pages: Pages) -> None:
     assert "mi mundo (de antes 2)" in list_own_worlds(page)
 
 
-@drawn
+@sampled
 def test_changes_of_one_world_create_no_other(page: Page) -> None:
     draw_wall(page)
     count = len(list_own_worlds(page))
@@ -94,7 +94,7 @@ def test_five_previous_worlds_are_kept(page: Page) -> None:
     assert list_own_worlds(page) == names
 
 
-@drawn
+@sampled
 def test_damaged_previous_worlds_do_no_harm(page: Page) -> None:
     draw_wall(page)
     page.click("#world_draw")
@@ -112,11 +112,11 @@ def test_damaged_previous_worlds_do_no_harm(page: Page) -> None:
     assert walls_of(page, "my world") == 1
 
 
-@drawn
+@sampled
 def test_nothing_is_drawn_before_the_kept_world_is_loaded(page: Page) -> None:
     draw_wall(page)
     page.select_option("#world", "obstacles")
-    mine = list_own_worlds(page)
+    own_worlds = list_own_worlds(page)
     held_routes: list[Route] = []
     page.route("**/python.zip", lambda route: held_routes.append(route))
     page.reload()
@@ -132,11 +132,11 @@ def test_nothing_is_drawn_before_the_kept_world_is_loaded(page: Page) -> None:
         page.unroute("**/python.zip")
     wait_until_checked(page)
     page.locator("#world_draw:not([disabled])").wait_for()
-    assert list_own_worlds(page) == mine
+    assert list_own_worlds(page) == own_worlds
     assert walls_of(page, "my world") == 1
 
 
-@drawn
+@sampled
 def test_a_drag_ends_when_another_world_is_opened(page: Page) -> None:
     page.mouse.move(*screen_position(page, OBSTACLES_START))
     page.mouse.down()
@@ -148,7 +148,7 @@ def test_a_drag_ends_when_another_world_is_opened(page: Page) -> None:
     assert read_start(page) == (light.x_cm, light.y_cm)
 
 
-@drawn
+@sampled
 def test_an_abandoned_run_moves_nothing(page: Page) -> None:
     write(page, "F(30, 80)")
     page.select_option("#speed", "20")
@@ -168,7 +168,7 @@ def test_an_abandoned_run_moves_nothing(page: Page) -> None:
     wait_for_status(page, "Collect the flags in order (1)")
 
 
-@drawn
+@sampled
 def test_the_robot_stays_on_the_floor_at_any_size(page: Page) -> None:
     page.click("#world_draw")
     open_world_file(page, NO_BORDER)

@@ -26,24 +26,24 @@ from tiniscript.studio.recordings import (
 )
 from tiniscript.studio.robot_link import RobotLink
 
-LOOKS = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
+SHOW_PROGRAM = "LOOP(2);\n  W(1);\n  SHOW(DISTANCE);\n  X = DISTANCE * 2;\n  SHOW(X);\nEND_LOOP"
 LINES = ((1000, "SHOW 17.5"), (1020, "SHOW 35"), (2040, "SHOW 4"), (2060, "SHOW 8"), (2061, "DONE"))
 TINIBOT = robots.load("tinibot")
 
 
-def first_line(text: str = LOOKS, of: str = recordings.REAL, **more: Any) -> str:
-    if of == recordings.VIRTUAL:
-        more = {"world": "obstacles", **more}
-    return header_line(of, text, TINIBOT, compile(text).checksum, **more)
+def first_line(text: str = SHOW_PROGRAM, robot_kind: str = recordings.REAL, **fields: Any) -> str:
+    if robot_kind == recordings.VIRTUAL:
+        fields = {"world": "obstacles", **fields}
+    return header_line(robot_kind, text, TINIBOT, compile(text).checksum, **fields)
 
 
-def file(*events: tuple[int, str], text: str = LOOKS, **more: Any) -> bytes:
+def file(*events: tuple[int, str], text: str = SHOW_PROGRAM, **fields: Any) -> bytes:
     rows = [Row(*event) for event in events]
     end_ms = rows[-1].ms if rows else 0
-    return encode(first_line(text, **more), rows, end_ms).encode()
+    return encode(first_line(text, **fields), rows, end_ms).encode()
 
 
-def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
+def parting(*events: tuple[int, str], text: str = SHOW_PROGRAM) -> Divergence:
     was_started_by_button = text.startswith("SB|")
     played_run = play(
         prepare(decode(file(*events, text=text, was_started_by_button=was_started_by_button)))
@@ -52,7 +52,7 @@ def parting(*events: tuple[int, str], text: str = LOOKS) -> Divergence:
     return played_run.divergence
 
 
-def recording_of(*events: tuple[int, str], text: str = LOOKS) -> tuple[str, int, int]:
+def recording_of(*events: tuple[int, str], text: str = SHOW_PROGRAM) -> tuple[str, int, int]:
     return parting(*events, text=text)[:3]
 
 
@@ -62,7 +62,7 @@ def test_recorded_readings_are_fed_to_the_virtual_sensors() -> None:
 
 
 def test_pressed_keys_are_known_where_the_program_shows_them() -> None:
-    assert parting(*LINES, text=LOOKS.replace("DISTANCE", "PAD_Y")) == Divergence("same", 5)
+    assert parting(*LINES, text=SHOW_PROGRAM.replace("DISTANCE", "PAD_Y")) == Divergence("same", 5)
 
 
 @pytest.mark.parametrize("value", ["17.5", "38.7"])
@@ -80,12 +80,12 @@ def test_no_divergence_is_marked_after_an_unrecorded_reading(value: str) -> None
 @pytest.mark.parametrize("value", ["TRUE", "FALSE"])
 def test_a_recorded_reading_holds_from_its_time_on(value: str) -> None:
     text = "W(1);\nIF(KEY_A);SHOW(1);ENDIF;W(1);\nSHOW(DISTANCE * 2)"
-    shows = [(1017, "SHOW 1")] if value == "TRUE" else []
-    rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *shows,
+    show_rows = [(1017, "SHOW 1")] if value == "TRUE" else []
+    rows = [(0, f"READ KEY_A {value}"), (900, "READ DISTANCE 8"), *show_rows,
             (1900, "READ DISTANCE 9"), (2030, "SHOW 18"), (2031, "DONE")]  # fmt: skip
-    assert parting(*rows, text=text) == Divergence("same", len(shows) + 2)
+    assert parting(*rows, text=text) == Divergence("same", len(show_rows) + 2)
     rows[-2] = (2030, "SHOW 16")
-    assert recording_of(*rows, text=text) == ("value", len(shows), 3)
+    assert recording_of(*rows, text=text) == ("value", len(show_rows), 3)
 
 
 def test_the_first_divergence_is_reported_with_its_line() -> None:
@@ -93,8 +93,8 @@ def test_the_first_divergence_is_reported_with_its_line() -> None:
     assert (divergence.outcome, divergence.agreed, divergence.line) == ("value", 3, 5)
     assert divergence.robot == Row(2060, "SHOW 9")
     assert divergence.virtual is not None and divergence.virtual.event == "SHOW 8"
-    late = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
-    assert recording_of(*late) == ("time", 2, 3)
+    late_rows = [(ms + 900 * (ms > 2000), event) for ms, event in LINES]
+    assert recording_of(*late_rows) == ("time", 2, 3)
 
 
 def test_time_differences_within_tolerance_are_ignored() -> None:
@@ -104,8 +104,8 @@ def test_time_differences_within_tolerance_are_ignored() -> None:
 
 def test_a_robot_that_continues_longer_is_reported() -> None:
     assert recording_of(*LINES[:2], (9000, "STOPPED")) == ("virtual_more", 2, 3)
-    more = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
-    assert more[:2] == ("value", 1)  # DONE in place of the second one
+    divergence = recording_of((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
+    assert divergence[:2] == ("value", 1)  # DONE in place of the second one
     assert recording_of((100, "SHOW 1"), text="W(9);SHOW(1)")[0] == "robot_more"
 
 
@@ -170,13 +170,17 @@ def test_a_program_with_a_changed_meaning_is_not_replayed() -> None:
     for text in ("SHOW(1)", "SHOW("):
         with pytest.raises(BadRecording, match="other_program"):
             prepare(
-                decode(file(*LINES).replace(json.dumps(LOOKS).encode(), json.dumps(text).encode()))
+                decode(
+                    file(*LINES).replace(
+                        json.dumps(SHOW_PROGRAM).encode(), json.dumps(text).encode()
+                    )
+                )
             )
 
 
 # -- files of anybody -----------------------------------------------------------------------------
 
-VIRTUAL = {"of": recordings.VIRTUAL}
+VIRTUAL = {"robot_kind": recordings.VIRTUAL}
 
 
 @pytest.mark.parametrize(
@@ -225,7 +229,7 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
     """No file of anybody ends in another error."""
     rng = random.Random(1)
     world = {"form": 1}
-    whole = [
+    recordings_data = [
         file(*LINES),
         file((289, "START"), (300, "KEYS 5 -100 0"), (400, "SHOW 1"), **VIRTUAL),
         file(**VIRTUAL, world=world),
@@ -233,17 +237,17 @@ def test_a_file_with_any_change_is_refused_or_can_be_played() -> None:
     ]
     outcomes = set()
     for _ in range(3000):
-        data = bytearray(rng.choice(whole))
+        data = bytearray(rng.choice(recordings_data))
         for _ in range(rng.randint(1, 3)):
-            at = rng.randrange(len(data))
+            offset = rng.randrange(len(data))
             piece = bytes(
                 rng.choice(b'09-,"[]{}:e.\\nulltruE\xff ') for _ in range(rng.randint(0, 3))
             )
-            data[at : at + rng.randint(0, 4)] = piece
+            data[offset : offset + rng.randint(0, 4)] = piece
         try:
             recording = decode(bytes(data))
-        except BadRecording as bad:
-            outcomes.add(bad.reason)
+        except BadRecording as error:
+            outcomes.add(error.reason)
             continue
         outcomes.add("read")
         assert recording.rows == tuple(sorted(recording.rows, key=lambda row: row.ms))
@@ -258,9 +262,9 @@ def test_a_long_recording_ends_before_its_file_is_too_large() -> None:
     data = encode(first_line(), rows.rows, rows.rows[-1].ms).encode()
     assert len(data) < recordings.MOST_BYTES
     assert decode(data).rows == tuple(rows.rows)
-    short = Rows()
-    assert short.add(Row(recordings.MOST_MS, "SHOW 1"))
-    assert not short.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
+    short_rows = Rows()
+    assert short_rows.add(Row(recordings.MOST_MS, "SHOW 1"))
+    assert not short_rows.add(Row(recordings.MOST_MS + 1, "SHOW 1"))
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -286,10 +290,10 @@ def test_each_differing_row_is_reported() -> None:
     for k, row in enumerate(rows):
         if k % max(1, len(rows) // 10):
             continue
-        at = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
+        index = next(n for n, line in enumerate(lines) if line == recordings.encode_row(row))
         for changed_lines in ([recordings.encode_row(Row(row.ms, "BEEP 1 1"))], []):
-            other = "\n".join((*lines[:at], *changed_lines, *lines[at + 1 :]))
-            divergence = play(prepare(decode(other.encode()))).divergence
+            changed_text = "\n".join((*lines[:index], *changed_lines, *lines[index + 1 :]))
+            divergence = play(prepare(decode(changed_text.encode()))).divergence
             assert divergence is not None
             assert divergence.outcome == "otherwise" and divergence.agreed <= k
 
@@ -364,8 +368,8 @@ def test_readings_have_the_robots_time_whenever_they_arrive() -> None:
             rows = reading_rows.rows(event, ms + rng.randrange(300))
             assert (rows[-1].ms, rows[-1].is_reading) == (ms, True)
             if len(rows) == 2:
-                before = ms_of.get("DISTANCE", [-1])[-1]
-                assert rows[0] == Row(before + 1, "UNREAD DISTANCE")
+                last_ms = ms_of.get("DISTANCE", [-1])[-1]
+                assert rows[0] == Row(last_ms + 1, "UNREAD DISTANCE")
             ms_of.setdefault("DISTANCE", []).append(ms)
         assert reading_rows.incomplete_names in ([], ["DISTANCE"])
     assert ReadingRows(kit).rows(ReadingEvent(1, 99, 1, 1), 0) == [], "of no sensor"

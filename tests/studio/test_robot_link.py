@@ -33,31 +33,33 @@ class Robot:
         self.run = 0  # the last one that has begun
         self.runs_own: bool | None = None  # the current run is the page's; None: no run
         self.is_program = False
-        self.pending: PendingRequest[Any] | None = None
+        self.pending_request: PendingRequest[Any] | None = None
 
     def enable_place_events(self) -> None:
         """The robot sends none."""
 
-    def begin(self, make: Callable[[Requester], PendingRequest[Any]]) -> PendingRequest[Any]:
+    def begin(
+        self, make_request: Callable[[Requester], PendingRequest[Any]]
+    ) -> PendingRequest[Any]:
         session = SimpleNamespace(
             start=lambda: PendingRequest[Any](), live=lambda *_: PendingRequest[Any]()
         )
-        self.pending = make(cast(Requester, session))
-        self.pending.starts_program = True
-        return self.pending
+        self.pending_request = make_request(cast(Requester, session))
+        self.pending_request.starts_program = True
+        return self.pending_request
 
     def event(self, timeout_s: float) -> tuple[int, Event] | None:
         return (0, self.events.pop(0)) if self.events else None
 
-    def ends(self, how: str) -> None:
+    def ends(self, event_name: str) -> None:
         """Report that a run has ended so: the current one or, as a late message, an earlier one."""
         self.runs_own = None
-        if how == "DONE":
+        if event_name == "DONE":
             self.events.append(DoneEvent(self.run))
-        elif how == "FAULT":
+        elif event_name == "FAULT":
             self.events.append(FaultEvent(self.run, 1, 0, PROGRAM))
         else:
-            self.events.append(event("STOPPED") if how == "STOPPED" else LostEvent())
+            self.events.append(event("STOPPED") if event_name == "STOPPED" else LostEvent())
 
     def begins(self, is_own: bool, look_at_end: Callable[[], object] | None = None) -> None:
         """A run begins; the answer about its starter may come after its end."""
@@ -66,10 +68,10 @@ class Robot:
         if look_at_end is not None:
             self.ends("DONE")
             look_at_end()
-        if is_own and self.pending is not None:
+        if is_own and self.pending_request is not None:
             fields = {**dict.fromkeys(ReceiptReply._fields, 0), "run": self.run}
-            self.pending.outcome = Reply(OK, 0, ReceiptReply(**fields))
-            self.pending = None
+            self.pending_request.outcome = Reply(OK, 0, ReceiptReply(**fields))
+            self.pending_request = None
         self.events.append(StartedEvent(self.run, PROGRAM))
 
     def restarts(self) -> None:
@@ -82,40 +84,44 @@ class Robot:
 def test_the_run_of_a_page_is_tracked_until_its_end(seed: int) -> None:
     """Earlier runs, whoever started them, and late messages do not matter: its run counts until it
     ends, or another one begins."""
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     robot = Robot()
     link = RobotLink(cast(LinkConnection, robot), "en")
     own_programs, own_runs = set[tuple[int, int]](), 0
     for number in range(120):
-        match chance.choice((*ACTIONS, "ask", "answer")):
-            case "ask" if robot.pending is None:
-                robot.is_program = chance.random() < 0.5
+        match rng.choice((*ACTIONS, "ask", "answer")):
+            case "ask" if robot.pending_request is None:
+                robot.is_program = rng.random() < 0.5
                 fields = {"do": "start"} if robot.is_program else {"do": "live", "image": LINE}
                 link.ask({"id": number, "robot": "tinibot", **fields})
                 link.news()
-            case "answer" if robot.pending is not None:
-                if chance.random() < 0.3:
-                    robot.ends(chance.choice(("STOPPED", "DONE")))  # that of the run before
-                look = chance.choice((lambda: None, link.news))
-                robot.begins(is_own=True, look_at_end=look if chance.random() < 0.3 else None)
+            case "answer" if robot.pending_request is not None:
+                if rng.random() < 0.3:
+                    robot.ends(rng.choice(("STOPPED", "DONE")))  # that of the run before
+                on_end = rng.choice((lambda: None, link.news))
+                robot.begins(is_own=True, look_at_end=on_end if rng.random() < 0.3 else None)
                 if robot.is_program:
                     own_programs.add((robot.boot, robot.run))
-            case "refuse" if robot.pending is not None:
-                robot.pending.outcome, robot.pending = Reply(CANCELLED), None
+            case "refuse" if robot.pending_request is not None:
+                robot.pending_request.outcome, robot.pending_request = Reply(CANCELLED), None
             case "other":
                 robot.begins(is_own=False)
             case "end":
-                robot.ends(chance.choice(("DONE", "FAULT", "STOPPED")))
-            case "lost" | "restart" as how:
+                robot.ends(rng.choice(("DONE", "FAULT", "STOPPED")))
+            case "lost" | "restart" as event_name:
                 link.news()  # earlier reports have arrived
-                robot.ends("LOST") if how == "lost" else robot.restarts()
+                robot.ends("LOST") if event_name == "lost" else robot.restarts()
                 link.news()  # no run begins soon after it
             case _:
                 continue
-        if chance.random() < 0.7:
-            boot_and_runs = [(robot.boot, one.run) for one in robot.events if one.name == "STARTED"]
-            told = [news["is_program"] for news in link.news() if news.get("event") == "STARTED"]
-            assert told == [run in own_programs for run in boot_and_runs]
-            assert link.has_run == (robot.pending is not None or robot.runs_own is True)
+        if rng.random() < 0.7:
+            boot_and_runs = [
+                (robot.boot, event.run) for event in robot.events if event.name == "STARTED"
+            ]
+            is_program_values = [
+                news["is_program"] for news in link.news() if news.get("event") == "STARTED"
+            ]
+            assert is_program_values == [run in own_programs for run in boot_and_runs]
+            assert link.has_run == (robot.pending_request is not None or robot.runs_own is True)
             own_runs += robot.runs_own is True
     assert own_runs

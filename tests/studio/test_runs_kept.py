@@ -10,8 +10,8 @@ from tests.support.node import in_node
 
 SCRIPT = Path(__file__).parent / "runs_kept_in_node.mjs"
 MOST_RUNS, MOST_CHARACTERS = 10, 2_000_000
-LARGE = (9_900, 188, 0)  # nearly as much as there is room for
-TOO_LARGE = (9_900, 188, 50_000)
+LARGE_RUN = (9_900, 188, 0)  # nearly as much as there is room for
+TOO_LARGE_RUN = (9_900, 188, 50_000)
 ROW_CHARACTERS = 12  # of a row, beside its text
 
 
@@ -20,9 +20,9 @@ Kept = tuple[int, int, int]  # rows, characters of each, and of a file
 
 def run(rng: random.Random, kind: int) -> Kept:
     """Return a small run, a middling one, a large one, or one of which nothing is known."""
-    small = rng.randint(1, 20), rng.randint(1, 60), 0
+    small_run = rng.randint(1, 20), rng.randint(1, 60), 0
     middling = rng.randint(500, 3000), rng.randint(1, 80), rng.choice((0, 600_000))
-    return (small, middling, rng.choice((LARGE, TOO_LARGE)), (0, 0, 0))[kind]
+    return (small_run, middling, rng.choice((LARGE_RUN, TOO_LARGE_RUN)), (0, 0, 0))[kind]
 
 
 def stories() -> list[list[Kept]]:
@@ -44,20 +44,20 @@ def test_the_newest_runs_are_kept_while_there_is_room() -> None:
     """One of which nothing is known goes as soon as another one begins."""
     histories = stories()
     by_count = by_size = by_nothing = 0
-    lines = in_node(SCRIPT, given=json.dumps(histories))
+    lines = in_node(SCRIPT, input_text=json.dumps(histories))
     for history, line in zip(histories, lines, strict=True):
-        kept: list[tuple[int, int]] = []  # numbers and sizes, the oldest first
-        for number, (at_start, at_end, size, own) in enumerate(json.loads(line), 1):
+        kept_runs: list[tuple[int, int]] = []  # numbers and sizes, the oldest first
+        for number, (at_start, at_end, size, run_size) in enumerate(json.loads(line), 1):
             if number > 1 and not history[number - 2][0]:
                 by_nothing += 1
-                kept.pop()
-            kept = trimmed([*kept, (number, 0)])
-            assert at_start == [known for known, _ in reversed(kept)]
+                kept_runs.pop()
+            kept_runs = trimmed([*kept_runs, (number, 0)])
+            assert at_start == [run_number for run_number, _ in reversed(kept_runs)]
             rows, characters, file = history[number - 1]
-            assert own == rows * (characters + ROW_CHARACTERS) + file
-            before, kept = kept, trimmed([*kept[:-1], (number, own)])
-            by_size += len(kept) < len(before)
-            by_count += len(kept) == MOST_RUNS < number
-            assert at_end == [known for known, _ in reversed(kept)]
-            assert size == sum(each for _, each in kept)
+            assert run_size == rows * (characters + ROW_CHARACTERS) + file
+            kept_before, kept_runs = kept_runs, trimmed([*kept_runs[:-1], (number, run_size)])
+            by_size += len(kept_runs) < len(kept_before)
+            by_count += len(kept_runs) == MOST_RUNS < number
+            assert at_end == [run_number for run_number, _ in reversed(kept_runs)]
+            assert size == sum(run_size for _, run_size in kept_runs)
     assert by_count > 40 and by_size > 100 and by_nothing > 40

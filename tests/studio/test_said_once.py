@@ -26,10 +26,10 @@ from tiniscript.studio.checking import profile_of
 from tools.builds.page_texts import page_texts
 
 SCRIPT = Path(__file__).with_name("said_in_node.mjs")
-CODE = re.compile("`([^`]+)`")
+CODE_PATTERN = re.compile("`([^`]+)`")
 WORD = re.compile(r"[^\W\d_]+|\d+")
-NEAR = 2  # words next to a block
-STEM = 4  # letters that the forms of a word share
+NEARBY_WORD_COUNT = 2  # words next to a block
+STEM_LETTERS = 4  # letters that the forms of a word share
 REPEATED_WORD = re.compile(r"\b(\w+)[ (%]{1,3}\1\b", re.IGNORECASE)
 
 __all__ = ["page_data"]
@@ -38,14 +38,14 @@ Parts = list[tuple[bool, str]]
 
 
 def words(text: str) -> list[str]:
-    plain = unicodedata.normalize("NFD", text.lower())
+    decomposed_text = unicodedata.normalize("NFD", text.lower())
     return WORD.findall(
-        "".join(character for character in plain if not unicodedata.combining(character))
+        "".join(character for character in decomposed_text if not unicodedata.combining(character))
     )
 
 
 def stem(word: str) -> str:
-    return word[:STEM]
+    return word[:STEM_LETTERS]
 
 
 def list_repetitions(parts: Parts) -> list[str]:
@@ -59,13 +59,13 @@ def list_repetitions(parts: Parts) -> list[str]:
     for k, (is_block, label) in enumerate(parts):
         if not is_block:
             continue
-        own = {stem(word) for word in words(label) if len(word) >= STEM}
+        label_stems = {stem(word) for word in words(label) if len(word) >= STEM_LETTERS}
         text_before, text_after = (
             parts[k + step][1] if 0 <= k + step < len(parts) else "" for step in (-1, 1)
         )
-        near = words(re.split(r"[.?!:;]", text_before)[-1])[-NEAR:]
-        near += words(re.split(r"[.?!:;]", text_after)[0])[:NEAR]
-        repeated_words += [word for word in near if stem(word) in own]
+        nearby_words = words(re.split(r"[.?!:;]", text_before)[-1])[-NEARBY_WORD_COUNT:]
+        nearby_words += words(re.split(r"[.?!:;]", text_after)[0])[:NEARBY_WORD_COUNT]
+        repeated_words += [word for word in nearby_words if stem(word) in label_stems]
     return repeated_words
 
 
@@ -84,9 +84,11 @@ def found_sentences(language: str) -> Iterator[str]:
         if not key.startswith("said/"):
             continue
         for word in ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",):
-            own = {"word": word, "question": "DISTANCE < 15"}
+            question_values = {"word": word, "question": "DISTANCE < 15"}
             yield sentence(
-                Finding("", key.removeprefix("said/"), {**values, **own}, {language: "X"}),
+                Finding(
+                    "", key.removeprefix("said/"), {**values, **question_values}, {language: "X"}
+                ),
                 language,
                 BLOCKS,
             )
@@ -96,13 +98,13 @@ def shown_parts(page_data: Path, language: str, rows: list[dict[str, Any]]) -> l
     """Return the parts of sentences as a page in a language shows them."""
     (page_data / "texts.json").write_text(json.dumps(page_texts(language)), encoding="utf-8")
     given_text = "\n".join(json.dumps(row) for row in rows)
-    lines = in_node(SCRIPT, str(page_data), given=given_text)
+    lines = in_node(SCRIPT, str(page_data), input_text=given_text)
     assert len(lines) == len(rows)
     return [[(bool(is_block), text) for is_block, text in json.loads(line)] for line in lines]
 
 
 def blocks_of_code(text: str) -> dict[str, dict[str, Any]]:
-    return block_speech.blocks_of(CODE.findall(text), profile_of("tinibot").kit)
+    return block_speech.blocks_of(CODE_PATTERN.findall(text), profile_of("tinibot").kit)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -117,9 +119,12 @@ def test_no_lesson_repeats_the_text_of_a_block(page_data: Path, language: str) -
              for sentence in found_sentences(language)]  # fmt: skip
     parts = shown_parts(page_data, language, rows)
     assert sum(is_block for row in parts for is_block, _ in row) > 100
-    wrong = {"".join(f"[{text}]" if is_block else text for is_block, text in row): repeated_words
-             for row in parts if (repeated_words := list_repetitions(row))}  # fmt: skip
-    assert wrong == {}
+    repeated_by_text = {
+        "".join(f"[{text}]" if is_block else text for is_block, text in row): repeated_words
+        for row in parts
+        if (repeated_words := list_repetitions(row))
+    }
+    assert repeated_by_text == {}
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -139,9 +144,9 @@ def test_a_warning_names_code_like_blocks_do(page_data: Path, language: str) -> 
     parts = shown_parts(page_data, language, rows)
     assert {finding["code"] for finding in findings} > set(warned[:5])
     assert sum(is_block for row in parts for is_block, _ in row) > len(warned)
-    plain = [part for row in parts for is_block, part in row if not is_block]
-    assert [part for part in plain if set(CAPITAL_WORDS.findall(part)) & WORDS.keys()] == []
-    assert [part for part in plain if re.search(r"\b[Ll](ine|ínea|inha)s? \d", part)] == []
+    plain_parts = [part for row in parts for is_block, part in row if not is_block]
+    assert [part for part in plain_parts if set(CAPITAL_WORDS.findall(part)) & WORDS.keys()] == []
+    assert [part for part in plain_parts if re.search(r"\b[Ll](ine|ínea|inha)s? \d", part)] == []
 
 
 @pytest.mark.parametrize("sentence, marked_text", [

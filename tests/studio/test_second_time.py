@@ -37,7 +37,7 @@ from tiniscript.studio.robot_link import BadRequest, RobotLink
 Json = dict[str, Any]
 LOOK_MS = 20
 BEAT_MS = 100
-RUN = {"do": "upload", "runs": True}
+RUN_REQUEST = {"do": "upload", "runs": True}
 
 
 class Room:
@@ -46,7 +46,7 @@ class Room:
     now_ms = 0
     actions: ClassVar[list[tuple[str, int]]] = []  # actions with their times
     robots: ClassVar[list[ThreadlessRobot]] = []
-    not_waited_for: ClassVar[list[tuple[ThreadlessRobot, ThreadlessRobot]]] = []
+    unwaited_pairs: ClassVar[list[tuple[ThreadlessRobot, ThreadlessRobot]]] = []
 
     @classmethod
     def clock(cls) -> float:
@@ -92,7 +92,7 @@ class ThreadlessRobot:
         self.has_ended = self.is_parting = False
         self._meets_ms = Room.now_ms + 300 * (connection % 4)
         self._closed_ms = 0
-        Room.not_waited_for += [
+        Room.unwaited_pairs += [
             (self, robot)
             for robot in Room.robots
             if robot.port == port and robot.is_open and robot not in robots_before
@@ -143,7 +143,7 @@ def own_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Room, "now_ms", 0)
     monkeypatch.setattr(Room, "actions", [])
     monkeypatch.setattr(Room, "robots", [])
-    monkeypatch.setattr(Room, "not_waited_for", [])
+    monkeypatch.setattr(Room, "unwaited_pairs", [])
 
 
 @pytest.fixture
@@ -159,34 +159,36 @@ def hosting(monkeypatch: pytest.MonkeyPatch) -> Hosting:
 class ComingPage:
     """A page that comes, asks for runs, and goes, reloads or falls silent, as it happens."""
 
-    def __init__(self, hosting: Hosting, name: str, chance: Random) -> None:
-        self.hosting, self.name, self.chance = hosting, name, chance
+    def __init__(self, hosting: Hosting, name: str, rng: Random) -> None:
+        self.hosting, self.name, self.rng = hosting, name, rng
         self.tab = self.port = name
         self.ports = [name]
         self.end = ""  # why its connection has ended, which it has not heard yet
         self.stops = 0  # that its tab has counted
-        self._connection = self._seen = self._number = 0
-        self._is_there = self._sleeps = False
+        self._connection = self._seen_number = self._number = 0
+        self._is_connected = self._is_asleep = False
         self._asked: list[Json] = []
 
-    def _ask(self, do: str, **more: object) -> Json:
+    def _ask(self, action: str, **fields: object) -> Json:
         return self.hosting.answer({
-            "do": do, "page": self.name, "tab": self.tab, "connection": self._connection,
-            "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen,
-            "stops": self.stops, **more,
+            "do": action, "page": self.name, "tab": self.tab, "connection": self._connection,
+            "port": self.port, "robot": "tinibot", "language": "en", "seen": self._seen_number,
+            "stops": self.stops, **fields,
         })  # fmt: skip
 
     def _connect(self) -> None:
         self._connection += 1
-        self.end, self.port = "", self.chance.choice(self.ports)
-        self._seen = self._number = 0
+        self.end, self.port = "", self.rng.choice(self.ports)
+        self._seen_number = self._number = 0
         self._asked = []
-        for _ in range(self.chance.choice((1, 2))):  # the answer was lost
-            self._is_there = self._ask("connect") == {}
+        for _ in range(self.rng.choice((1, 2))):  # the answer was lost
+            self._is_connected = self._ask("connect") == {}
 
     def _wants_run(self) -> None:
         self._number += 1
-        self._asked.append({**RUN, "id": self._number, "stops": self.stops, "seen": self._seen})
+        self._asked.append(
+            {**RUN_REQUEST, "id": self._number, "stops": self.stops, "seen": self._seen_number}
+        )
 
     def stop(self) -> None:
         self.stops += 1
@@ -198,24 +200,24 @@ class ComingPage:
 
     @property
     def is_beating(self) -> bool:
-        return self._is_there and not self._sleeps
+        return self._is_connected and not self._is_asleep
 
     def turn(self) -> None:
-        does = self.chance.random()
-        if not self._is_there:
-            if does < 0.1:
+        draw_number = self.rng.random()
+        if not self._is_connected:
+            if draw_number < 0.1:
                 self._connect()
                 self._wants_run()  # requested at once, because a run may be under way
-        elif does < 0.01:
+        elif draw_number < 0.01:
             self._ask("leave")
-            self._is_there, self.end = False, ""
-        elif does < 0.02:  # loaded again, under another name of its own or the same one
-            self._is_there, self._connection = False, self._connection + 3
-            if self.chance.random() < 0.5:
+            self._is_connected, self.end = False, ""
+        elif draw_number < 0.02:  # loaded again, under another name of its own or the same one
+            self._is_connected, self._connection = False, self._connection + 3
+            if self.rng.random() < 0.5:
                 self.tab, self.stops = f"{self.tab}+", 0
-        elif does < 0.04:
-            self._sleeps, self.end = not self._sleeps, ""
-        elif does < 0.3:
+        elif draw_number < 0.04:
+            self._is_asleep, self.end = not self._is_asleep, ""
+        elif draw_number < 0.3:
             self._wants_run()
         if self.is_beating:
             self._beat()
@@ -223,11 +225,13 @@ class ComingPage:
     def _beat(self) -> None:
         for item in self._ask("beat", asked=self._asked[:8]).get("news", ()):
             if "over" in item:
-                self._is_there = False
+                self._is_connected = False
                 assert item["over"] == (self.end or item["over"])
-            elif item["number"] > self._seen:
-                self._seen = item["number"]
-                self._asked = [one for one in self._asked if one["id"] != item.get("id")]
+            elif item["number"] > self._seen_number:
+                self._seen_number = item["number"]
+                self._asked = [
+                    request for request in self._asked if request["id"] != item.get("id")
+                ]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -235,12 +239,12 @@ def test_nothing_starts_after_a_stop_for_all_at_any_time(hosting: Hosting, seed:
     """Neither open pages nor new connections start anything; driving robots stop. After the latch
     time, pages drive again.
     """
-    chance = Random(seed)
-    pages = [ComingPage(hosting, f"page{k}", chance) for k in range(5)]
+    rng = Random(seed)
+    pages = [ComingPage(hosting, f"page{k}", rng) for k in range(5)]
     latched_until_ms = stops = late_runs = 0
     for _ in range(3000):
         Room.now_ms += LOOK_MS
-        if chance.random() < 0.005:
+        if rng.random() < 0.005:
             hosting.answer({"do": "stop_all"})
             latched_until_ms = Room.now_ms + round(1000 * LATCH_S)
             stops += 1
@@ -251,7 +255,7 @@ def test_nothing_starts_after_a_stop_for_all_at_any_time(hosting: Hosting, seed:
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
-        runs = [what for what, _ in Room.actions[action_count_before:] if what == "run"]
+        runs = [action for action, _ in Room.actions[action_count_before:] if action == "run"]
         assert not (runs and Room.now_ms < latched_until_ms), (Room.now_ms, latched_until_ms)
         late_runs += len(runs) if stops else 0
     assert stops > 3 and late_runs > 10
@@ -263,8 +267,8 @@ def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed
     stops those that drive, and the result of each is soon known. A page's STOP stops its robot even
     after a reload. A page learns why its connection has ended, whoever connects meanwhile, and at
     the end no connection is left open."""
-    chance = Random(seed)
-    pages = [ComingPage(hosting, f"page{k}", chance) for k in range(4)]
+    rng = Random(seed)
+    pages = [ComingPage(hosting, f"page{k}", rng) for k in range(4)]
     for page in pages:
         page.ports = ["first", "second", "third"]
     stopped_ms = 0
@@ -274,12 +278,12 @@ def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed
             robot.step()
         driving = [robot for robot in Room.robots if not robot.has_ended and not robot.is_parting]
         for page in pages:
-            own = [robot for robot in driving if robot.tab == page.tab and page.is_beating]
-            if own and chance.random() < 0.01:
-                own[-1].fail()
+            page_robots = [robot for robot in driving if robot.tab == page.tab and page.is_beating]
+            if page_robots and rng.random() < 0.01:
+                page_robots[-1].fail()
                 page.end = "port_gone"
-                driving.remove(own[-1])
-        if chance.random() < 0.005:
+                driving.remove(page_robots[-1])
+        if rng.random() < 0.005:
             states = hosting.answer({"do": "stop_all"})["robots"]
             assert sorted(state["name"] for state in states) == sorted(
                 robot.name for robot in driving
@@ -291,13 +295,13 @@ def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed
         if Room.now_ms % BEAT_MS == 0:
             for page in pages:
                 page.turn()
-            page = chance.choice(pages)
-            driven = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
-            if driven is not None and chance.random() < 0.1:
+            page = rng.choice(pages)
+            driven_robot = cast(ThreadlessRobot | None, hosting.robot_of(page.name))
+            if driven_robot is not None and rng.random() < 0.1:
                 page.stop()
-                driven.step()
-                assert not driven.link.has_run
-        assert not Room.not_waited_for
+                driven_robot.step()
+                assert not driven_robot.link.has_run
+        assert not Room.unwaited_pairs
     assert stopped_ms and len(Room.robots) > 20
     assert len({(robot.tab, robot.connection) for robot in Room.robots}) == len(Room.robots)
     for page in pages:
@@ -312,16 +316,16 @@ def test_earlier_users_of_a_port_do_not_affect_later_ones(hosting: Hosting, seed
 @pytest.mark.parametrize("seed", range(20))
 def test_each_silence_of_a_page_stops_its_robot_once(seed: int) -> None:
     """However often it was silent before, and whether it drove then; one that is heard goes on."""
-    chance = Random(seed)
+    rng = Random(seed)
     attending, link = Attending(Room.clock), NotingLink()
     number = 0
     silences = 0
     for _ in range(150):
-        is_heard, lasts_ms = chance.random() < 0.5, chance.choice((100, 400, 800, 2000))
-        drives, is_stopped = chance.random() < 0.6, chance.random() < 0.2
-        if is_heard and drives:
+        is_heard, lasts_ms = rng.random() < 0.5, rng.choice((100, 400, 800, 2000))
+        starts_drive, is_stopped = rng.random() < 0.6, rng.random() < 0.2
+        if is_heard and starts_drive:
             number += 1
-            attending.on_beat([{**RUN, "id": number, "stops": 0, "seen": 0}], 0)
+            attending.on_beat([{**RUN_REQUEST, "id": number, "stops": 0, "seen": 0}], 0)
             attending.attend(cast(RobotLink, link), 0)
         if is_stopped:
             attending.stop()
@@ -334,7 +338,7 @@ def test_each_silence_of_a_page_stops_its_robot_once(seed: int) -> None:
             is_silent = attending.silent_s > ATTENDED_S
             attending.attend(cast(RobotLink, link), 0)
             assert link.has_run == (was_driving and not is_silent)
-            stops = [what for what, _ in Room.actions[call_count:]]
+            stops = [action for action, _ in Room.actions[call_count:]]
             assert stops == (["stop"] if was_driving and is_silent else [])
             silences += len(stops)
     assert silences > 3 and ATTENDED_S < LEFT_S
@@ -346,8 +350,8 @@ def test_each_silence_of_a_page_stops_its_robot_once(seed: int) -> None:
 class HeldClient:
     """Another command drives the robot through it until all its clients have left."""
 
-    all_left: ClassVar[Event] = Event()
-    was_held: ClassVar[bool | None] = None
+    has_emptied: ClassVar[Event] = Event()
+    is_held: ClassVar[bool | None] = None
     holds_for_others = True
 
     def __init__(self, *_: object, **__: object) -> None:
@@ -361,40 +365,42 @@ class HeldClient:
         return SimpleNamespace(name="TINI")
 
     def hold_for_others(self, goes_on: Callable[[], bool]) -> None:
-        assert HeldClient.all_left.wait(HANG_LIMIT_S)
-        HeldClient.was_held = goes_on()
+        assert HeldClient.has_emptied.wait(HANG_LIMIT_S)
+        HeldClient.is_held = goes_on()
 
     def close(self, has_run: bool) -> None:
         """Do nothing, because no run of the page is affected."""
 
 
-@pytest.mark.parametrize("leaves", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)])
+@pytest.mark.parametrize(
+    "lets_go_values", [bits for k in (1, 2, 3) for bits in product((0, 1), repeat=k)]
+)
 def test_a_released_port_is_held_for_nobody(
-    monkeypatch: pytest.MonkeyPatch, leaves: tuple[int, ...]
+    monkeypatch: pytest.MonkeyPatch, lets_go_values: tuple[int, ...]
 ) -> None:
     """It does not matter who else releases it, before or after: a page, the end of a turn, or the
     studio's end."""
     monkeypatch.setattr(hosted_robot, "Client", HeldClient)
     monkeypatch.setattr(hosted_robot, "robot_data", lambda robot: {})
     monkeypatch.setattr(opening, "remember", lambda *_: None)
-    monkeypatch.setattr(HeldClient, "all_left", Event())
-    monkeypatch.setattr(HeldClient, "was_held", None)
+    monkeypatch.setattr(HeldClient, "has_emptied", Event())
+    monkeypatch.setattr(HeldClient, "is_held", None)
     robot = hosted_robot.HostedRobot("p", "tinibot", "en")
     until(lambda: robot.name != "", "it is met")
-    for lets_go in leaves:
+    for lets_go in lets_go_values:
         robot.leave(is_letting_go=bool(lets_go))
-    HeldClient.all_left.set()
+    HeldClient.has_emptied.set()
     robot.join(HANG_LIMIT_S)
-    assert HeldClient.was_held == (not any(leaves))
+    assert HeldClient.is_held == (not any(lets_go_values))
     assert robot.has_ended and not robot.is_parting
 
 
 # -- many requests on one connection
 
-BEAT = b'{"do": "beat"}'
-PAGE = {"index.html": serving.File(b"<!doctype html>", serving.TYPES[".html"]),
+BEAT_REQUEST = b'{"do": "beat"}'
+PAGE_FILES = {"index.html": serving.File(b"<!doctype html>", serving.TYPES[".html"]),
         "main.js": serving.File(b"0", serving.TYPES[".js"], '"tag"')}  # fmt: skip
-STRANGE = "a letter from a page of the class before"
+STRANGE_ERROR = "a letter from a page of the class before"
 # Bytes of padding in a head; the last one is too large.
 PADDINGS = (0, 3000, 9000, 12_000, serving.HEAD_BYTES)
 
@@ -407,7 +413,7 @@ def answer_beat(request: Json) -> Json:
 
 @pytest.fixture
 def server() -> Iterator[serving.Server]:
-    with serves(serving.Server(PAGE, 0, answer_beat)) as server:
+    with serves(serving.Server(PAGE_FILES, 0, answer_beat)) as server:
         yield server
 
 
@@ -418,14 +424,16 @@ def ask(server: serving.Server) -> Callable[[HTTPConnection, str, int], tuple[in
     """
     token = server.entrances.token
 
-    def ask_server(connection: HTTPConnection, what: str, padding: int) -> tuple[int, bytes, bool]:
+    def ask_server(
+        connection: HTTPConnection, request: str, padding: int
+    ) -> tuple[int, bytes, bool]:
         given_fields = {"Origin": f"http://{serving.HOST}:{server.server_port}"}
         given_fields["X-Padding"] = " " + "x " * (padding // 2)
-        if what.startswith("/"):
-            connection.request("GET", what, None, given_fields)
+        if request.startswith("/"):
+            connection.request("GET", request, None, given_fields)
         else:
-            body = what.encode()
-            shown_token = "" if what == STRANGE else token
+            body = request.encode()
+            shown_token = "" if request == STRANGE_ERROR else token
             connection.request(
                 "POST",
                 serving.ROBOTS_PATH,
@@ -445,23 +453,25 @@ def test_a_request_is_answered_like_the_first_of_a_connection(
     seed: int,
 ) -> None:  # fmt: skip
     """The kind and the number of earlier requests there do not matter."""
-    chance = Random(seed)
+    rng = Random(seed)
     httpconnection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-    longest = request_count = 0
+    most_requests = request_count = 0
     for _ in range(40):
-        is_odd = chance.random() < 0.06
-        what = chance.choice(
-            ("/nothing", "{}", STRANGE) if is_odd else ("/", "/main.js", BEAT.decode())
+        is_odd = rng.random() < 0.06
+        request = rng.choice(
+            ("/nothing", "{}", STRANGE_ERROR)
+            if is_odd
+            else ("/", "/main.js", BEAT_REQUEST.decode())
         )
-        padding = chance.choice(PADDINGS if is_odd else PADDINGS[:-1])
-        fresh = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
-        expected = ask(fresh, what, padding)
-        fresh.close()
-        assert ask(httpconnection, what, padding) == expected, (what, padding)
+        padding = rng.choice(PADDINGS if is_odd else PADDINGS[:-1])
+        new_connection = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
+        expected = ask(new_connection, request, padding)
+        new_connection.close()
+        assert ask(httpconnection, request, padding) == expected, (request, padding)
         request_count += 1
-        longest = max(longest, request_count)
+        most_requests = max(most_requests, request_count)
         if expected[2]:
             httpconnection.close()
             request_count = 0
     httpconnection.close()
-    assert longest > 4
+    assert most_requests > 4

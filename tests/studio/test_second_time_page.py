@@ -97,16 +97,16 @@ LEAST_ACTION_KINDS = 30  # of doing something
 ROW = 8  # seeds
 
 
-@pytest.mark.sampled("first", keep=1)
-@pytest.mark.parametrize("first", range(0, 10 * ROW, ROW))
-def test_starting_anew_shows_the_same_as_a_reload(page_data: Path, first: int) -> None:
+@pytest.mark.sampled("first_seed", keep=1)
+@pytest.mark.parametrize("first_seed", range(0, 10 * ROW, ROW))
+def test_starting_anew_shows_the_same_as_a_reload(page_data: Path, first_seed: int) -> None:
     """Whatever was pressed before, and whatever is pressed then; what the page keeps, both keep.
 
     At rest the page says and shows what is so, and nothing that was typed is lost."""
-    lines = in_node(WHOLE_PAGE, str(page_data), str(first), str(ROW))
+    lines = in_node(WHOLE_PAGE, str(page_data), str(first_seed), str(ROW))
     rows: list[dict[str, Any]] = [json.loads(line) for line in lines]
     assert len(rows) == ROW
-    done = {end for row in rows for end in row["ends"]}
-    assert done >= NEEDED_ACTIONS and len(done) > LEAST_ACTION_KINDS
+    end_kinds = {end for row in rows for end in row["ends"]}
+    assert end_kinds >= NEEDED_ACTIONS and len(end_kinds) > LEAST_ACTION_KINDS
     for row in rows:
         assert row["isSame"] and not row["unhandled"], row

@@ -38,32 +38,34 @@ def server(folder: Path) -> Iterator[serving.Server]:
 
 def test_the_next_studio_has_the_port_as_soon_as_the_last_one_has_ended(folder: Path) -> None:
     page = serving.files(folder)
-    with serves(serving.Server(page, 0)) as first:
+    with serves(serving.Server(page, 0)) as first_server:
         with pytest.raises(OSError):
-            serving.Server(page, first.server_port)
-        with socket.create_connection((serving.HOST, first.server_port), HANG_LIMIT_S) as browser:
+            serving.Server(page, first_server.server_port)
+        with socket.create_connection(
+            (serving.HOST, first_server.server_port), HANG_LIMIT_S
+        ) as browser:
             browser.sendall(b"GET / HTTP/1.0\r\n\r\n")
             while browser.recv(4096):  # the server is the first that closes
                 pass
-    serving.Server(page, first.server_port).server_close()
+    serving.Server(page, first_server.server_port).server_close()
 
 
-def test_the_page_is_served_with_its_policy(own: str) -> None:
-    response, data = ask(own, "/?anything=1")
+def test_the_page_is_served_with_its_policy(server_host: str) -> None:
+    response, data = ask(server_host, "/?anything=1")
     assert (response.status, data) == (200, b"<!doctype html>")
     policy = response.getheader("Content-Security-Policy") or ""
     assert policy.startswith(POLICY) and "frame-ancestors 'none'" in policy
     assert "unsafe-inline" not in policy and "unsafe-eval'" not in policy.replace("wasm-unsafe", "")
     assert response.getheader("X-Content-Type-Options") == "nosniff"
     assert response.getheader("Access-Control-Allow-Origin") is None
-    response, data = ask(own, "/main.js")
+    response, data = ask(server_host, "/main.js")
     assert response.getheader("Content-Type") == "text/javascript; charset=utf-8"
-    response, data = ask(own, "/main.js", "HEAD")
+    response, data = ask(server_host, "/main.js", "HEAD")
     assert (response.status, data, response.getheader("Content-Length")) == (200, b"", "1")
     with socket.create_connection(
-        (serving.HOST, int(own.rpartition(":")[2])), HANG_LIMIT_S
+        (serving.HOST, int(server_host.rpartition(":")[2])), HANG_LIMIT_S
     ) as browser:
-        browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {own}\r\n\r\n".encode())
+        browser.sendall(f"HEAD /main.js HTTP/1.0\r\nHost: {server_host}\r\n\r\n".encode())
         reply = b"".join(iter(lambda: browser.recv(4096), b""))
     assert b" 200 " in reply and reply.endswith(b"\r\n\r\n")  # the answer has no body
 
@@ -73,8 +75,8 @@ def test_the_page_is_served_with_its_policy(own: str) -> None:
     ["/../secret.txt", "/%2e%2e/secret.txt", "//etc/passwd", "/inside/deep.js", "/build.json",
      "/notes.unknown", "/nothing", "/..\\secret.txt"],
 )  # fmt: skip
-def test_only_the_page_is_served(own: str, path: str) -> None:
-    response, data = ask(own, path)
+def test_only_the_page_is_served(server_host: str, path: str) -> None:
+    response, data = ask(server_host, path)
     assert response.status == 404 and b"secret" not in data
 
 
@@ -90,31 +92,33 @@ def test_only_the_page_is_served(own: str, path: str) -> None:
         {"Origin": "http://127.0.0.1:1"},
     ],
 )
-def test_requests_of_other_origins_are_refused(own: str, headers: dict[str, str]) -> None:
-    port = own.partition(":")[2]
+def test_requests_of_other_origins_are_refused(server_host: str, headers: dict[str, str]) -> None:
+    port = server_host.partition(":")[2]
     filled = {name: value.replace("PORT", port) for name, value in headers.items()}
-    response, data = ask(own, "/", headers=filled)
+    response, data = ask(server_host, "/", headers=filled)
     assert response.status == 403 and b"doctype" not in data
 
 
-def test_requests_of_the_own_origin_are_answered(own: str) -> None:
-    for name in (own, own.replace(serving.HOST, "localhost")):
-        response, _ = ask(own, headers={"Host": name, "Origin": f"http://{name}"})
+def test_requests_of_the_own_origin_are_answered(server_host: str) -> None:
+    for name in (server_host, server_host.replace(serving.HOST, "localhost")):
+        response, _ = ask(server_host, headers={"Host": name, "Origin": f"http://{name}"})
         assert response.status == 200, name
 
 
-def test_the_server_accepts_no_uploads(server: serving.Server, own: str) -> None:
+def test_the_server_accepts_no_uploads(server: serving.Server, server_host: str) -> None:
     """It listens on this computer only."""
     for method in ("PUT", "DELETE", "OPTIONS", "TRACE"):
-        assert ask(own, "/", method)[0].status == 501, method
+        assert ask(server_host, "/", method)[0].status == 501, method
     assert server.server_address[0] == "127.0.0.1"
 
 
-def test_two_host_headers_are_refused(server: serving.Server, own: str) -> None:
+def test_two_host_headers_are_refused(server: serving.Server, server_host: str) -> None:
     with socket.create_connection(
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
     ) as client:
-        client.sendall(f"GET / HTTP/1.1\r\nHost: {own}\r\nHost: evil.example\r\n\r\n".encode())
+        client.sendall(
+            f"GET / HTTP/1.1\r\nHost: {server_host}\r\nHost: evil.example\r\n\r\n".encode()
+        )
         assert client.recv(100).startswith(b"HTTP/1.1 403")
 
 

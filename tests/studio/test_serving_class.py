@@ -44,19 +44,19 @@ def served_class(tmp_path: Path) -> Iterator[Class]:
         yield Class(server, room)
 
 
-def host_header(taught: Class) -> str:
-    return f"{HOST}:{taught.server.server_port}"
+def host_header(class_: Class) -> str:
+    return f"{HOST}:{class_.server.server_port}"
 
 
-def post(taught: Class, request: object, token: str = "", **headers: str) -> int:
+def post(class_: Class, request: object, token: str = "", **headers: str) -> int:
     """Post as a page of the class does; return the status."""
     body = json.dumps(request).encode()
-    return page_server.post(host_header(taught), token, body, headers=headers)[0]
+    return page_server.post(host_header(class_), token, body, headers=headers)[0]
 
 
-def join_class(taught: Class) -> str:
-    request = {"do": "join", "code": taught.room.code, "name": "Ana"}
-    return str(taught.room.answer("", OTHER_HOST, request)["token"])
+def join_class(class_: Class) -> str:
+    request = {"do": "join", "code": class_.room.code, "name": "Ana"}
+    return str(class_.room.answer("", OTHER_HOST, request)["token"])
 
 
 @pytest.mark.parametrize(
@@ -121,27 +121,28 @@ def test_many_connections_block_nobody(served_class: Class, is_same: bool) -> No
     pupil = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
     pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
-    kept_socket, before = pupil.sock, active_count()
+    kept_socket, threads_before = pupil.sock, active_count()
     source = kept_socket.getsockname()[0] if is_same else OTHER_HOST
     with ExitStack() as strangers:
         for _ in range(0, STRANGER_COUNT, 500):
-            some = crowd(
-                served_class.server.server_port, count=500, says=(b"", HALF_A_REQUEST), host=HOST,
+            client_crowd = crowd(
+                served_class.server.server_port, count=500, packets=(b"", HALF_A_REQUEST),
+                host=HOST,
                 source=source,
             )  # fmt: skip
-            strangers.enter_context(some)
+            strangers.enter_context(client_crowd)
             pupil.request("POST", serving.ROBOTS_PATH, '{"do": "here"}', headers)
             assert pupil.getresponse().read()
             assert ask(host_header(served_class))[0].status == 200
         assert pupil.sock is kept_socket
-        assert active_count() - before <= serving.MOST_CLASS_CONNECTIONS + 30
+        assert active_count() - threads_before <= serving.MOST_CLASS_CONNECTIONS + 30
     pupil.close()
 
 
 def test_a_slow_stranger_does_not_disconnect_page_loads(served_class: Class) -> None:
     """The address that has most connections loses one, not the one that asked first."""
-    early = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
-    early.connect()
+    early_client = HTTPConnection(host_header(served_class), timeout=HANG_LIMIT_S)
+    early_client.connect()
     with crowd(
         served_class.server.server_port,
         count=serving.MOST_CLASS_CONNECTIONS + 50,
@@ -149,9 +150,9 @@ def test_a_slow_stranger_does_not_disconnect_page_loads(served_class: Class) -> 
         source=OTHER_HOST,
     ):
         assert ask(host_header(served_class))[0].status == 200  # therefore all of them have arrived
-        early.request("GET", "/")
-        assert early.getresponse().status == 200
-    early.close()
+        early_client.request("GET", "/")
+        assert early_client.getresponse().status == 200
+    early_client.close()
 
 
 @pytest.mark.parametrize(
@@ -186,10 +187,10 @@ def test_a_users_second_class_is_refused_without_effects(
     (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n')
     monkeypatch.setattr(serving, "PAGE", tmp_path)
     words = ("studio", "--class", "--address", HOST, "--no-browser", "--lang", "en")
-    with closing(class_keeping.Keeper()) as first:
+    with closing(class_keeping.Keeper()) as first_keeper:
         room = Classroom(Hosting(), [])
         room.answer("", OTHER_HOST, {"do": "join", "code": room.code, "name": "Ana"})
-        first.keep(room.state_to_keep())
+        first_keeper.keep(room.state_to_keep())
         kept_bytes = class_keeping.path().read_bytes()
         result = tsc(*words)
         assert result.code == 3 and "another tsc studio." in result.err

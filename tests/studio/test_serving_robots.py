@@ -24,10 +24,10 @@ class Recorder:
     """Robots played by a test: they record their requests."""
 
     def __init__(self) -> None:
-        self.asked: list[dict[str, Any]] = []
+        self.requests: list[dict[str, Any]] = []
 
     def answer(self, request: dict[str, Any]) -> dict[str, Any]:
-        self.asked.append(request)
+        self.requests.append(request)
         if request.get("do") != "ports":
             raise BadRequest
         return {"ports": []}
@@ -49,14 +49,14 @@ PORTS = b'{"do": "ports"}'
 
 
 def test_requests_of_the_studios_page_are_answered(
-    server: serving.Server, own: str, robots: Recorder
+    server: serving.Server, server_host: str, robots: Recorder
 ) -> None:
-    status, data = post(own, server.entrances.token, PORTS)
+    status, data = post(server_host, server.entrances.token, PORTS)
     assert (status, json.loads(data)) == (200, {"ports": []})
     name = f"localhost:{server.server_port}"
     headers = {"Host": name, "Origin": f"http://{name}"}
-    assert post(own, server.entrances.token, PORTS, headers=headers)[0] == 200
-    assert len(robots.asked) == 2
+    assert post(server_host, server.entrances.token, PORTS, headers=headers)[0] == 200
+    assert len(robots.requests) == 2
 
 
 @pytest.mark.parametrize(
@@ -77,10 +77,10 @@ def test_requests_of_the_studios_page_are_answered(
     ids=str,
 )
 def test_requests_of_other_pages_are_refused(
-    server: serving.Server, own: str, robots: Recorder, headers: dict[str, str | None]
+    server: serving.Server, server_host: str, robots: Recorder, headers: dict[str, str | None]
 ) -> None:
-    assert post(own, server.entrances.token, PORTS, headers=headers)[0] == 403
-    assert robots.asked == []
+    assert post(server_host, server.entrances.token, PORTS, headers=headers)[0] == 403
+    assert robots.requests == []
 
 
 @pytest.mark.parametrize(
@@ -89,9 +89,11 @@ def test_requests_of_other_pages_are_refused(
      b'{"do": "ports"}' + b" " * serving.REQUEST_BYTES],
     ids=lambda body: repr(body[:12]),
 )  # fmt: skip
-def test_anything_but_a_request_is_refused(server: serving.Server, own: str, body: bytes) -> None:
-    assert post(own, server.entrances.token, body)[0] == 400
-    assert post(own, server.entrances.token, PORTS)[0] == 200
+def test_anything_but_a_request_is_refused(
+    server: serving.Server, server_host: str, body: bytes
+) -> None:
+    assert post(server_host, server.entrances.token, body)[0] == 400
+    assert post(server_host, server.entrances.token, PORTS)[0] == 200
 
 
 @pytest.mark.parametrize(
@@ -102,10 +104,10 @@ def test_anything_but_a_request_is_refused(server: serving.Server, own: str, bod
      (f"{serving.TOKEN_HEADER}: x\r\nContent-Length: 5", 403)],
 )  # fmt: skip
 def test_a_wrong_length_and_two_tokens_are_refused(
-    server: serving.Server, own: str, robots: Recorder, field: str, status: int
+    server: serving.Server, server_host: str, robots: Recorder, field: str, status: int
 ) -> None:
     head = (
-        f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
+        f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {server_host}\r\nOrigin: http://{server_host}\r\n"
         f"{serving.TOKEN_HEADER}: {server.entrances.token}\r\n{field}\r\n\r\n"
     )
     with socket.create_connection(
@@ -113,40 +115,40 @@ def test_a_wrong_length_and_two_tokens_are_refused(
     ) as client:
         client.sendall(head.encode() + b'{"do"')
         assert client.recv(100).startswith(f"HTTP/1.1 {status}".encode())
-    assert robots.asked == []
+    assert robots.requests == []
 
 
 def test_other_addresses_accept_no_requests(
-    server: serving.Server, own: str, robots: Recorder
+    server: serving.Server, server_host: str, robots: Recorder
 ) -> None:
     for path in ("/", "/robots/"):
-        assert post(own, server.entrances.token, PORTS, path)[0] == 404
-    assert robots.asked == []
+        assert post(server_host, server.entrances.token, PORTS, path)[0] == 404
+    assert robots.requests == []
 
 
 def test_the_token_differs_each_time_and_is_in_no_file(
-    server: serving.Server, own: str, tmp_path: Path, robots: Recorder
+    server: serving.Server, server_host: str, tmp_path: Path, robots: Recorder
 ) -> None:
     assert server.entrances.token not in server.entrance()
     assert len(server.entrances.token) == 32
-    other = serving.Server(serving.files(tmp_path), 0, robots.answer)
-    other.server_close()
-    assert other.entrances.token != server.entrances.token
-    response, data = ask(own)
+    other_server = serving.Server(serving.files(tmp_path), 0, robots.answer)
+    other_server.server_close()
+    assert other_server.entrances.token != server.entrances.token
+    response, data = ask(server_host)
     assert server.entrances.token not in data.decode() + str(response.getheaders())
 
 
 def test_a_server_without_robots_offers_none(tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text("<!doctype html>")
     with serves(serving.Server(serving.files(tmp_path), 0)) as server:
-        own = f"{serving.HOST}:{server.server_port}"
-        assert post(own, server.entrances.token, PORTS)[0] == 404
+        server_host = f"{serving.HOST}:{server.server_port}"
+        assert post(server_host, server.entrances.token, PORTS)[0] == 404
         assert server.entrance() == server.address
 
 
-def test_a_thousand_connections_block_nobody(server: serving.Server, own: str) -> None:
+def test_a_thousand_connections_block_nobody(server: serving.Server, server_host: str) -> None:
     """They send nothing, or half a request; the page's own connection stays."""
-    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
+    headers = {"Origin": f"http://{server_host}", serving.TOKEN_HEADER: server.entrances.token}
     page = HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
 
     def ask() -> int:
@@ -160,18 +162,18 @@ def test_a_thousand_connections_block_nobody(server: serving.Server, own: str) -
     active_count_before = active_count()
     with ExitStack() as strangers:
         for _ in range(10):
-            some = crowd(server.server_port, count=100, says=(b"", HALF_A_REQUEST))
-            strangers.enter_context(some)
+            client_crowd = crowd(server.server_port, count=100, packets=(b"", HALF_A_REQUEST))
+            strangers.enter_context(client_crowd)
             assert ask() == 200
         assert page.sock is kept_socket
         assert active_count() - active_count_before <= serving.MOST_CONNECTIONS + 30
     page.close()
 
 
-def test_closed_pages_take_no_place(server: serving.Server, own: str) -> None:
+def test_closed_pages_take_no_place(server: serving.Server, server_host: str) -> None:
     """However many there were: a new one fetches its files over several connections at once."""
     for _ in range(serving.MOST_CONNECTIONS + 2):
-        assert post(own, server.entrances.token, PORTS)[0] == 200
+        assert post(server_host, server.entrances.token, PORTS)[0] == 200
     with ExitStack() as browser:
         connections = [
             browser.enter_context(
@@ -188,7 +190,7 @@ def test_closed_pages_take_no_place(server: serving.Server, own: str) -> None:
 
 @pytest.mark.parametrize("line", [b"X-More: " + b"x" * 1000 + b"\r\n", b"x" * 70_000, b"X: y\r\n"])
 def test_a_request_head_is_limited_to_16_kilobytes(
-    server: serving.Server, own: str, line: bytes
+    server: serving.Server, server_host: str, line: bytes
 ) -> None:
     """However its bytes are divided into lines, and whether it ends or not."""
     with socket.create_connection(
@@ -209,14 +211,14 @@ def test_a_request_head_is_limited_to_16_kilobytes(
         # Empty if the connection was reset.
         assert heard_bytes[:12] in (b"HTTP/1.1 431", b""), heard_bytes
         assert sent_count <= serving.HEAD_BYTES + len(line)
-    assert post(own, server.entrances.token, PORTS)[0] == 200
+    assert post(server_host, server.entrances.token, PORTS)[0] == 200
 
 
 def test_a_page_asks_on_one_connection_as_often_as_it_wants(
-    server: serving.Server, own: str
+    server: serving.Server, server_host: str
 ) -> None:
     """Its tenth head may be as long as its first."""
-    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
+    headers = {"Origin": f"http://{server_host}", serving.TOKEN_HEADER: server.entrances.token}
     headers["X-More"] = "x" * (serving.HEAD_BYTES // 3)
     with closing(
         HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S)
@@ -230,9 +232,11 @@ def test_a_page_asks_on_one_connection_as_often_as_it_wants(
         assert len(sockets) == 1
 
 
-def test_the_body_of_a_refused_request_is_no_request(server: serving.Server, own: str) -> None:
-    body = f"GET / HTTP/1.1\r\nHost: {own}\r\n\r\n"
-    head = f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://e\r\n"
+def test_the_body_of_a_refused_request_is_no_request(
+    server: serving.Server, server_host: str
+) -> None:
+    body = f"GET / HTTP/1.1\r\nHost: {server_host}\r\n\r\n"
+    head = f"POST {serving.ROBOTS_PATH} HTTP/1.1\r\nHost: {server_host}\r\nOrigin: http://e\r\n"
     with socket.create_connection(
         (serving.HOST, server.server_port), timeout=HANG_LIMIT_S
     ) as client:
@@ -247,12 +251,12 @@ def test_the_body_of_a_refused_request_is_no_request(server: serving.Server, own
 
 
 def test_the_most_recently_active_page_is_kept(
-    server: serving.Server, own: str, monkeypatch: pytest.MonkeyPatch
+    server: serving.Server, server_host: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If all have shown the token, the one idle for longest is closed."""
     monkeypatch.setattr(serving._Handler, "timeout", 10 * HANG_LIMIT_S)  # so silence drops none
     server.most_connections = 2
-    headers = {"Origin": f"http://{own}", serving.TOKEN_HEADER: server.entrances.token}
+    headers = {"Origin": f"http://{server_host}", serving.TOKEN_HEADER: server.entrances.token}
     pages = [
         HTTPConnection(serving.HOST, server.server_port, timeout=HANG_LIMIT_S) for _ in range(3)
     ]

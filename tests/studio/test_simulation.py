@@ -32,13 +32,13 @@ def test_a_simulated_run_matches_the_virtual_robot(name: str, robot: str, world:
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
     simulation = Simulation(robot, worlds.load(world), compile(text, robot).image)
     simulation.advance(8000)
-    other = VirtualRobot(load(robot), worlds.load(world))
-    talk = Talk(other)
+    other_robot = VirtualRobot(load(robot), worlds.load(world))
+    talk = Talk(other_robot)
     talk.upload(text)
     talk.wait(8000)
-    ours, theirs = trace_of(simulation), trace(other.take_events())
-    shorter = min(len(ours), len(theirs)) - 5  # the two were uploaded at other times
-    assert shorter > 10 and ours[:shorter] == theirs[:shorter]
+    page_trace, virtual_trace = trace_of(simulation), trace(other_robot.take_events())
+    shorter = min(len(page_trace), len(virtual_trace)) - 5  # the two were uploaded at other times
+    assert shorter > 10 and page_trace[:shorter] == virtual_trace[:shorter]
 
 
 def test_the_running_part_of_the_text_is_reported() -> None:
@@ -76,8 +76,8 @@ def test_the_place_of_each_task_is_reported() -> None:
     def marked_lines() -> set[int]:
         """The lines of the text that are marked."""
         lines = set()
-        for at in simulation.state()["places"]:
-            lines.add(next(place for place in reversed(places) if place.offset <= at).line)
+        for offset in simulation.state()["places"]:
+            lines.add(next(place for place in reversed(places) if place.offset <= offset).line)
         return lines
 
     simulation.advance(100)
@@ -88,14 +88,16 @@ def test_the_place_of_each_task_is_reported() -> None:
     assert marked_lines() == {1, 2}
     simulation.stop()
     assert simulation.state()["places"] == []
-    plain = started_simulation("W(1)")
-    plain.advance(500)
-    assert plain.state()["places"] == [plain.state()["at"]]
+    plain_simulation = started_simulation("W(1)")
+    plain_simulation.advance(500)
+    assert plain_simulation.state()["places"] == [plain_simulation.state()["at"]]
 
 
 @pytest.mark.parametrize("parts", [range(8), (2,), (4, 5)])
 def test_held_tasks_do_the_same_as_unheld_ones(parts: Iterable[int]) -> None:
-    free, simulation = (started_simulation(TASKS, at, robot="tinibot32") for at in ((), parts))
+    free, simulation = (
+        started_simulation(TASKS, held_parts, robot="tinibot32") for held_parts in ((), parts)
+    )
     free.advance(600)
     held_places: set[int | None] = set()
     while simulation.robot.now_ms < free.robot.now_ms:
@@ -122,19 +124,19 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     assert simulation.state()["events"] == []
 
 
-PUSHED = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
+BUTTON_PROGRAM = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
 
 
 @pytest.mark.parametrize("seed", range(16))
 def test_a_run_after_any_history_equals_the_first(seed: int) -> None:
     """Each stop counts, whatever stopped the robot before."""
     rng = random.Random(seed)
-    fresh, simulation = (
-        started_simulation(PUSHED),
-        started_simulation(PUSHED, is_held=rng.random() < 0.3),
+    fresh_simulation, simulation = (
+        started_simulation(BUTTON_PROGRAM),
+        started_simulation(BUTTON_PROGRAM, is_held=rng.random() < 0.3),
     )
     parts = simulation.marks.part_offsets
-    acts: list[Callable[[], object]] = [
+    actions: list[Callable[[], object]] = [
         simulation.push,
         simulation.push,
         simulation.go_on,
@@ -144,16 +146,16 @@ def test_a_run_after_any_history_equals_the_first(seed: int) -> None:
         simulation.stop,
     ]
     if rng.random() < 0.3:
-        acts += [lambda: simulation.set_breakpoints(rng.sample(parts, rng.randint(0, 2)))]
+        actions += [lambda: simulation.set_breakpoints(rng.sample(parts, rng.randint(0, 2)))]
     for _ in range(rng.randint(2, 9)):
-        act = rng.choice(acts)
+        act = rng.choice(actions)
         act()
         assert act != simulation.stop or not any(simulation.state()["motors"])
     simulation.set_breakpoints(())
     simulation.stop()
     assert not simulation.robot.is_running and not any(simulation.state()["motors"])
     runs = []
-    for one_simulation in (fresh, simulation):
+    for one_simulation in (fresh_simulation, simulation):
         one_simulation.robot.take_events()
         one_simulation.push()
         one_simulation.advance(1500)
@@ -199,7 +201,7 @@ def test_a_remote_control_is_read_until_it_times_out() -> None:
 
 
 def test_keys_held_during_a_halt_count_when_the_run_continues() -> None:
-    simulation = started_simulation(STICK, at=(1,))
+    simulation = started_simulation(STICK, held_parts=(1,))
     simulation.advance(100)
     assert simulation.held_at is not None
     for _ in range(3):
@@ -220,8 +222,8 @@ def test_keys_held_during_a_halt_count_when_the_run_continues() -> None:
 def test_the_page_sends_the_held_keys() -> None:
     """A new run begins without held keys."""
 
-    def motors(do: str, data: bytes = b"", **more: object) -> object:
-        return json.loads(worker.answer(json.dumps({"do": do, **more}), data))["motors"]
+    def motors(action: str, data: bytes = b"", **fields: object) -> object:
+        return json.loads(worker.answer(json.dumps({"do": action, **fields}), data))["motors"]
 
     answer = json.loads(
         worker.answer(

@@ -30,7 +30,7 @@ class Meeting:
     """A page, its robot, and a teacher."""
 
     def __init__(self, seed: int) -> None:
-        self.chance = Random(seed)
+        self.rng = Random(seed)
         floor = "[floor]\nwidth_cm = 200\nheight_cm = 200\n[start]\nx_cm = 100\ny_cm = 100\n"
         self.robot = robot_in(read(floor, "floor"))
         profile = robots.load("tinibot")
@@ -43,7 +43,7 @@ class Meeting:
         self._beat_ms = 0
         self._look_ms = 0
         # Answers under way, with their arrival times.
-        self._under_way: list[tuple[int, dict[str, Any]]] = []
+        self._answers_under_way: list[tuple[int, dict[str, Any]]] = []
         self.is_cut = False
 
     def advance(self, milliseconds: int, step_ms: int = 1) -> None:
@@ -51,13 +51,15 @@ class Meeting:
             now_ms = self.robot.now_ms + step_ms
             heard_bytes = self.robot.step(now_ms, b"" if self.is_cut else self._sent)
             self._sent = self.line.advance(b"" if self.is_cut else heard_bytes, now_ms)
-            arrived = [answer for at_ms, answer in self._under_way if at_ms <= now_ms]
-            self._under_way = [pair for pair in self._under_way if pair[0] > now_ms]
-            if arrived or now_ms >= self._beat_ms:
+            arrived_answers = [
+                answer for arrival_ms, answer in self._answers_under_way if arrival_ms <= now_ms
+            ]
+            self._answers_under_way = [pair for pair in self._answers_under_way if pair[0] > now_ms]
+            if arrived_answers or now_ms >= self._beat_ms:
                 self._beat_ms = now_ms + BEAT_MS
-                self.news += self.attending.on_beat(arrived, self.newest_number)
+                self.news += self.attending.on_beat(arrived_answers, self.newest_number)
             if now_ms >= self._look_ms:
-                self._look_ms = now_ms + self.chance.randrange(1, LOOK_MS)
+                self._look_ms = now_ms + self.rng.randrange(1, LOOK_MS)
                 self.attending.attend(self.link, 0)
 
     @property
@@ -68,9 +70,9 @@ class Meeting:
     def upload(self, delay_ms: int) -> int:
         """The page sends a program; return the number of the request."""
         self._number += 1
-        request = {"do": "upload", "id": self._number, "image": self.chance.choice(PROGRAMS),
+        request = {"do": "upload", "id": self._number, "image": self.rng.choice(PROGRAMS),
                    "robot": "tinibot", "runs": True, "seen": self.newest_number}  # fmt: skip
-        self._under_way.append((self.robot.now_ms + delay_ms, request))
+        self._answers_under_way.append((self.robot.now_ms + delay_ms, request))
         return self._number
 
     def answer(self, number: int) -> dict[str, Any]:
@@ -78,11 +80,11 @@ class Meeting:
 
     def races(self) -> None:
         """Some uploads are before the STOP, in the middle of it, and after it."""
-        late_ms = self.chance.choice((30, 400, 1900, 4000))
+        late_ms = self.rng.choice((30, 400, 1900, 4000))
         numbers = []
-        for _ in range(self.chance.randrange(1, 4)):
-            numbers.append(self.upload(self.chance.randrange(late_ms)))
-            self.advance(self.chance.choice((1, 5, 20, 60, 150)) + self.chance.randrange(10))
+        for _ in range(self.rng.randrange(1, 4)):
+            numbers.append(self.upload(self.rng.randrange(late_ms)))
+            self.advance(self.rng.choice((1, 5, 20, 60, 150)) + self.rng.randrange(10))
         self.attending.latch()
         self.advance(500)
         assert self.attending.last_stop == CONFIRMED
@@ -115,12 +117,12 @@ def test_a_page_drives_again_after_a_stop() -> None:
     assert meeting.robot.is_running
     meeting.attending.latch()
     meeting.advance(round(1000 * LATCH_S) - 200)
-    early = meeting.upload(0)
+    early_request = meeting.upload(0)
     meeting.advance(300)
-    assert meeting.answer(early)["failure"] == "stopped_elsewhere"
-    late = meeting.upload(0)
+    assert meeting.answer(early_request)["failure"] == "stopped_elsewhere"
+    late_request = meeting.upload(0)
     meeting.advance(1500)
-    assert meeting.answer(late)["ok"] and meeting.robot.is_running
+    assert meeting.answer(late_request)["ok"] and meeting.robot.is_running
 
 
 def test_a_robot_that_misses_a_stop_is_reported() -> None:
@@ -138,15 +140,15 @@ class LateLink:
 
     has_run = True
 
-    def __init__(self, chance: Random) -> None:
+    def __init__(self, rng: Random) -> None:
         self.now_ms = 0
-        self._chance = chance
+        self._rng = rng
         self._news: list[dict[str, Any]] = []
         self._confirms_ms = float("inf")
 
     def tells(self) -> None:
         """Report stops of other clients, and the events between them."""
-        names = self._chance.choices(("STOPPED", "STARTED", "SHOW"), k=self._chance.randrange(6))
+        names = self._rng.choices(("STOPPED", "STARTED", "SHOW"), k=self._rng.randrange(6))
         self._news += [{"event": name} for name in names]
 
     def hears(self, confirms_after_ms: float) -> None:
@@ -170,14 +172,14 @@ def test_no_earlier_stop_confirms_the_newest_one(
     monkeypatch: pytest.MonkeyPatch, seed: int, end: str
 ) -> None:
     """This holds for any number of stops, from any source, confirmed or not."""
-    chance = Random(seed)
-    link = LateLink(chance)
+    rng = Random(seed)
+    link = LateLink(rng)
     attending = Attending(lambda: link.now_ms / 1000)
     monkeypatch.setattr(hosted_robot, "monotonic", lambda: link.now_ms / 1000)
     hosted_simple_namespace = SimpleNamespace(attending=attending, is_unconfirmed=False)
     for _ in range(5):
         link.tells()
-        late_ms = chance.choice((0, 40, 1000, float("inf")))
+        late_ms = rng.choice((0, 40, 1000, float("inf")))
         link.hears(late_ms)
         if end == "part":
             HostedRobot._part_from_robot(
@@ -196,19 +198,19 @@ def test_no_earlier_stop_confirms_the_newest_one(
 @pytest.mark.parametrize("seed", range(10))
 def test_the_outcome_of_a_stop_is_final_once_its_connection_has_ended(seed: int) -> None:
     """A cable may be pulled at any time: no page waits in vain."""
-    chance = Random(seed)
-    link = LateLink(chance)
+    rng = Random(seed)
+    link = LateLink(rng)
     attending = Attending(lambda: link.now_ms / 1000)
     hosted = SimpleNamespace(attending=attending, has_ended=False)
     for _ in range(3):
         link.tells()
-        link.hears(chance.choice((40, 200, float("inf"))))
+        link.hears(rng.choice((40, 200, float("inf"))))
         attending.latch()
-        for _ in range(chance.randrange(20)):
+        for _ in range(rng.randrange(20)):
             attending.attend(cast(RobotLink, link))
-    known = attending.last_stop
+    known_stop = attending.last_stop
     HostedRobot._end(cast(HostedRobot, hosted), "port_gone")
-    assert attending.last_stop == (CONFIRMED if known == CONFIRMED else SILENT)
+    assert attending.last_stop == (CONFIRMED if known_stop == CONFIRMED else SILENT)
 
 
 if __name__ == "__main__":

@@ -16,9 +16,9 @@ from tiniscript.studio.checking import check
 
 SCRIPT = Path(__file__).with_name("why_in_node.mjs")
 VALUES = {"DISTANCE": "12.3", "N": "4", "KEY_UP": "TRUE"}
-ARMS = "IF(DISTANCE < 10)\nB(1, 10)\nELSEIF(N > 3)\nF(1, 20)\nELSE\nF(1, 30)\nENDIF"
+IF_PROGRAM = "IF(DISTANCE < 10)\nB(1, 10)\nELSEIF(N > 3)\nF(1, 20)\nELSE\nF(1, 30)\nENDIF"
 DISTANCE, N = ["DISTANCE", "12.3"], ["N", "4"]
-ONE, TWO = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3", [N]]
+FIRST_CONDITION, SECOND_CONDITION = [1, "DISTANCE < 10", [DISTANCE]], [3, "N > 3", [N]]
 
 
 def explanations(*cases: tuple[str, str]) -> list[Any]:
@@ -29,23 +29,23 @@ def explanations(*cases: tuple[str, str]) -> list[Any]:
         assert program.image, text
         lines = text.split("\n")
         places = [list(place) for place in program.places]
-        at = next(
+        index = next(
             place[0]
             for place in places
             if lines[place[1] - 1][place[2] - 1 :].startswith(wanted_text)
         )
-        rows.append({"text": text, "places": places, "at": at, "values": VALUES})
+        rows.append({"text": text, "places": places, "at": index, "values": VALUES})
     return [json.loads(row) for row in in_node(SCRIPT, json.dumps(rows))]
 
 
 @pytest.mark.parametrize(
     ("text", "wanted_text", "values"),
     [
-        (ARMS, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # the sensor was read again
-        (ARMS, "F(1, 20)", [[*ONE, False], [*TWO, True]]),
-        (ARMS, "F(1, 30)", [[*ONE, False], [3, "N > 3", [], False]]),
-        (ARMS, "IF", [[*ONE, False]]),
-        (ARMS + "\nB(1, 40)", "B(1, 40)", []),
+        (IF_PROGRAM, "B(1, 10)", [[1, "DISTANCE < 10", [], True]]),  # the sensor was read again
+        (IF_PROGRAM, "F(1, 20)", [[*FIRST_CONDITION, False], [*SECOND_CONDITION, True]]),
+        (IF_PROGRAM, "F(1, 30)", [[*FIRST_CONDITION, False], [3, "N > 3", [], False]]),
+        (IF_PROGRAM, "IF", [[*FIRST_CONDITION, False]]),
+        (IF_PROGRAM + "\nB(1, 40)", "B(1, 40)", []),
         ("// IF(N > 1)\nW(1)", "W(1)", []),
         ("WHILE(MIN(N, 2) < 3)\nN = N + 1\nF(9, 50) UNTIL(DISTANCE < 15)\nEND_WHILE", "F(9",
          [[1, "MIN(N, 2) < 3", [N], True], [3, "DISTANCE < 15", [DISTANCE], True]]),

@@ -25,13 +25,13 @@ PARTS_SCRIPT = Path(__file__).with_name("world_parts_in_node.mjs")
 HISTORIES = 24
 
 
-def is_near(one: Any, other: Any) -> bool:
+def is_near(value: Any, other_value: Any) -> bool:
     """Return whether two values are equal, except for rounding."""
-    if isinstance(one, float | int) and not isinstance(one, bool):
-        return isinstance(other, float | int) and abs(one - other) < 0.002
-    if isinstance(one, tuple):
-        return len(one) == len(other) and all(map(is_near, one, other))
-    return bool(one == other)
+    if isinstance(value, float | int) and not isinstance(value, bool):
+        return isinstance(other_value, float | int) and abs(value - other_value) < 0.002
+    if isinstance(value, tuple):
+        return len(value) == len(other_value) and all(map(is_near, value, other_value))
+    return bool(value == other_value)
 
 
 def list_shipped_worlds() -> list[World]:
@@ -48,43 +48,43 @@ def test_the_text_of_a_form_is_the_same_world() -> None:
 
 
 def test_random_forms_keep_every_number() -> None:
-    chance = Random(16)
+    rng = Random(16)
 
     def number(low: float, high: float) -> float:
-        return round(chance.uniform(low, high), chance.randrange(4))
+        return round(rng.uniform(low, high), rng.randrange(4))
 
     def points() -> list[list[float]]:
-        return [[number(0, 200), number(0, 150)] for _ in range(chance.randint(2, 9))]
+        return [[number(0, 200), number(0, 150)] for _ in range(rng.randint(2, 9))]
 
     for _ in range(200):
         form = {
             "name": "own",
             "labels": {
-                language: chance.choice(['my "own"', "a\\b", "own", "ñandú 🤖"])
+                language: rng.choice(['my "own"', "a\\b", "own", "ñandú 🤖"])
                 for language in LANGUAGES
             },
             "width_cm": 200.5,
             "height_cm": 150,
-            "has_border": chance.random() < 0.5,
+            "has_border": rng.random() < 0.5,
             "ambient_percent": number(0, 100),
             "start": {"x_cm": number(0, 200), "y_cm": number(0, 150), "heading": number(-180, 180)},
-            "walls": [{"points": points()} for _ in range(chance.randrange(4))],
+            "walls": [{"points": points()} for _ in range(rng.randrange(4))],
             "boxes": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "length_cm": number(1, 60),
                        "width_cm": number(1, 60), "heading": number(-179, 179)}
-                      for _ in range(chance.randrange(4))],
+                      for _ in range(rng.randrange(4))],
             "lines": [{"points": points(), "width_cm": number(0.5, 9)}
-                      for _ in range(chance.randrange(3))],
+                      for _ in range(rng.randrange(3))],
             "lamps": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300)}
-                      for _ in range(chance.randrange(3))],
+                      for _ in range(rng.randrange(3))],
             "flags": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300),
-                       "rests": chance.random() < 0.5} for _ in range(chance.randrange(3))],
-            "seconds": chance.choice([0, number(1, 600)]),
+                       "rests": rng.random() < 0.5} for _ in range(rng.randrange(3))],
+            "seconds": rng.choice([0, number(1, 600)]),
             "rings": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "radius_cm": number(20, 90),
-                       "edge_cm": number(0, 9)} for _ in range(chance.randrange(3))],
+                       "edge_cm": number(0, 9)} for _ in range(rng.randrange(3))],
             "rivals": [{"x_cm": number(0, 200), "y_cm": number(0, 150),
                         "heading": number(-180, 180), "length_cm": number(5, 50),
                         "width_cm": number(5, 50), "speed_cm_s": number(1, 200),
-                        "power_percent": number(0, 100)} for _ in range(chance.randrange(4))],
+                        "power_percent": number(0, 100)} for _ in range(rng.randrange(4))],
         }  # fmt: skip
         assert is_near(as_tuples(form_of(read(toml_of(form), "own"))), as_tuples(form))
 
@@ -102,7 +102,7 @@ def open_world(data: bytes, name: str = "own.toml", language: str = "en") -> dic
 
 
 GOOD_WORLD = b"[floor]\nwidth_cm = 100\nheight_cm = 80\n[start]\nx_cm = 30\ny_cm = 30\n"
-HOSTILE = {
+HOSTILE_VALUES = {
     "nothing": (b"", "floor"),
     "no TOML": (b"SI|F(2, 80)", "Line 1"),
     "no UTF-8": (b"\xff\xfe[floor]", "UTF-8"),
@@ -116,9 +116,9 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("name", HOSTILE_VALUES)
 def test_a_file_that_is_not_a_world_is_refused_with_a_reason(name: str) -> None:
-    data, message = HOSTILE[name]
+    data, message = HOSTILE_VALUES[name]
     for language in ("en", "es"):
         answer = open_world(data, language=language)
         assert set(answer) == {"refused"} and answer["refused"]

@@ -9,8 +9,8 @@ import { chanceOf, compared, freshPage, later, made, passes, playsFetch, playsNa
 const [firstSeed, seedCount] = words.map(Number);
 const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
 const unhandled = [];
-process.on('unhandledRejection', (why) => unhandled.push(String(why?.stack ?? why)));
-process.on('uncaughtException', (why) => unhandled.push(String(why.stack)));
+process.on('unhandledRejection', (error) => unhandled.push(String(error?.stack ?? error)));
+process.on('uncaughtException', (error) => unhandled.push(String(error.stack)));
 Date.now = () => 0;
 globalThis.innerWidth = 1366;
 globalThis.CSS = { highlights: new Map() };
@@ -59,7 +59,7 @@ const START = { x_cm: 30, y_cm: 30, heading: 0 };
 const world = (name) => ({ name, labels: { en: name }, width_cm: 200, height_cm: 100, has_border: true, ambient_percent: 50, seconds: 0, start: START, walls: [], boxes: [], lines: [], lamps: [], flags: [], rings: [], rivals: [] });
 const LESSONS = [1, 2].map((k) => ({ name: `lesson${k}`, title: `L${k}`, block_title: `L${k}`, robot: ['tinibot', 'liner'][k - 1], worlds: 2, world: world(`lesson ${k}`) }));
 const linesOf = (text) => text.split('\n').map((line) => line.trim()).filter(Boolean);
-const textOf = ({ body }) => body.map((each) => `${each.text}\n`).join('');
+const textOf = ({ body }) => body.map((item) => `${item.text}\n`).join('');
 const formOf = (text) => ({ body: linesOf(text).map((line) => ({ text: line, kind: 'word', bodies: [] })), loose: [], size: 1 });
 
 /** What Python says of a program: a line with a `?` is a mistake, and so is a LIFT of another robot than a tinibot. */
@@ -159,7 +159,7 @@ async function opens(stores) {
     setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
     async makePicture() { return null; }
   }
-  const still = (name) => function made() { return new Proxy(this, { get: (_, what) => (what === 'then' ? undefined : () => name) }); };
+  const still = (name) => function made() { return new Proxy(this, { get: (_, property) => (property === 'then' ? undefined : () => name) }); };
   playsNavigator({ language: 'en-US' });
   playsFetch(async () => {
     await later(5);
@@ -209,23 +209,23 @@ async function opens(stores) {
 // -- what somebody does
 
 const LINES = ['F(1)', 'B(1)', 'R(1)', 'KEY_A', 'LIFT(1)', 'W(?)', 'BEEP(1)', '// robot'];
-const at = (id) => document.getElementById(id);
+const byId = (id) => document.getElementById(id);
 const press = (part, detail = 1) => part?.dispatchEvent(Object.assign(new Event('click', { bubbles: true, cancelable: true }), { detail, pointerType: 'mouse' }));
 const chooses = (id, value) => {
-  at(id).value = value;
-  at(id).dispatchEvent(new Event('change', { bubbles: true }));
+  byId(id).value = value;
+  byId(id).dispatchEvent(new Event('change', { bubbles: true }));
 };
 const isSeen = (part) => part.checkVisibility() && !part.disabled && isOpen(part);
 const BEHIND_START = ['main', '#home', '#robot_choice', '#bar_new', '#save', '#my_programs', '#other', '#run']; // as in style.css
 /** Not of another screen, side, view or window. */
 function isOpen(part) {
-  const { screen, view } = { ...document.documentElement.dataset, view: at('writing').dataset.view };
+  const { screen, view } = { ...document.documentElement.dataset, view: byId('writing').dataset.view };
   const window_ = document.querySelectorAll('dialog').find(({ open }) => open);
   if (window_ && !part.closest(`#${window_.id}`)) return false;
   const behind = [...screen === 'start' ? BEHIND_START : ['#start'], ...'phone' in document.documentElement.dataset ? [] : ['#bar'], ...view === 'text' ? ['#blocks', '#blocks_note'] : ['#editor'], ...window_ ? [] : ['dialog'], 'details'];
-  return !behind.some((each) => {
-    const place = part.closest(each);
-    return place && !(each === 'details' && place.open);
+  return !behind.some((item) => {
+    const place = part.closest(item);
+    return place && !(item === 'details' && place.open);
   });
 }
 const WORLDS = ['obstacles', 'free', 'line'];
@@ -234,70 +234,70 @@ const KEPT = ['runs_open', 'undo', 'redo']; // bring back what a tab has kept of
 
 /** Each is done, unless it cannot be: then it says so. */
 const ACTS = {
-  presses(chance, { isAnew }) {
-    const buttons = document.querySelectorAll('button').filter((each) => isSeen(each) && !NOT_PRESSED.includes(each.id) && !(isAnew && KEPT.includes(each.id)));
-    const button = chance.of(buttons);
-    press(button, chance() < 0.2 ? 0 : 1);
+  presses(random, { isAnew }) {
+    const buttons = document.querySelectorAll('button').filter((item) => isSeen(item) && !NOT_PRESSED.includes(item.id) && !(isAnew && KEPT.includes(item.id)));
+    const button = random.of(buttons);
+    press(button, random() < 0.2 ? 0 : 1);
     return button?.id || button?.textContent;
   },
-  drives(chance) {
-    const buttons = ['run', 'run', 'step', 'pause', 'stop', 'lesson_next', 'lesson_check'].map(at).filter(isSeen);
+  drives(random) {
+    const buttons = ['run', 'run', 'step', 'pause', 'stop', 'lesson_next', 'lesson_check'].map(byId).filter(isSeen);
     if (!buttons.length) return false;
-    const button = chance.of(buttons);
+    const button = random.of(buttons);
     press(button);
     return button.id;
   },
-  types(chance) {
+  types(random) {
     if (document.documentElement.dataset.screen === 'start') return false;
-    const text = Array.from({ length: chance.below(4) }, () => `${chance.of(LINES)}\n`).join('');
-    view.dispatch({ changes: { from: chance() < 0.5 ? 0 : view.state.doc.length, to: view.state.doc.length, insert: text } });
+    const text = Array.from({ length: random.below(4) }, () => `${random.of(LINES)}\n`).join('');
+    view.dispatch({ changes: { from: random() < 0.5 ? 0 : view.state.doc.length, to: view.state.doc.length, insert: text } });
   },
-  builds(chance, { seen }) {
+  builds(random, { seen }) {
     const { blocks } = seen;
-    if (!blocks || at('writing').dataset.view !== 'blocks' || document.documentElement.dataset.screen === 'start') return false;
-    blocks.form.body.push(...formOf(chance.of(LINES)).body);
+    if (!blocks || byId('writing').dataset.view !== 'blocks' || document.documentElement.dataset.screen === 'start') return false;
+    blocks.form.body.push(...formOf(random.of(LINES)).body);
     blocks.page.onChange();
   },
-  learns(chance) {
-    const ways = [...document.querySelectorAll('button').filter(({ textContent }) => textContent === 'Add it to the program'), at('start_lessons'), at('side_lessons'), at('lesson')].filter(isSeen);
+  learns(random) {
+    const ways = [...document.querySelectorAll('button').filter(({ textContent }) => textContent === 'Add it to the program'), byId('start_lessons'), byId('side_lessons'), byId('lesson')].filter(isSeen);
     if (!ways.length) return false;
-    const way = chance.of(ways);
+    const way = random.of(ways);
     if (way.id !== 'lesson') press(way);
-    else chooses('lesson', chance.of(['1', '2']));
+    else chooses('lesson', random.of(['1', '2']));
     return way.id || way.textContent;
   },
-  robot(chance) {
-    if (!isSeen(at('robot'))) return false;
-    chooses('robot', chance.of(['tinibot', 'liner']));
+  robot(random) {
+    if (!isSeen(byId('robot'))) return false;
+    chooses('robot', random.of(['tinibot', 'liner']));
     return 'robot';
   },
-  retypes(chance, tab) { // while a program that names its robot gets another one
-    if (!ACTS.robot(chance)) return false;
-    return ACTS.types(chance, tab) === false ? 'robot' : 'types';
+  retypes(random, tab) { // while a program that names its robot gets another one
+    if (!ACTS.robot(random)) return false;
+    return ACTS.types(random, tab) === false ? 'robot' : 'types';
   },
-  world: (chance) => isSeen(at('world')) && chooses('world', chance.of(WORLDS)),
-  speed: (chance) => isSeen(at('speed')) && chooses('speed', chance.of(['0.1', '1', '4'])),
-  level: (chance) => isSeen(at('level')) && chooses('level', chance.of(['few', 'usual', 'all'])),
-  lesson: (chance) => isSeen(at('lesson')) && chooses('lesson', chance.of(['1', '2'])),
-  points(chance, { pageState }) {
-    if (at('writing').dataset.view !== 'text' || !view.state.doc.length) return false;
+  world: (random) => isSeen(byId('world')) && chooses('world', random.of(WORLDS)),
+  speed: (random) => isSeen(byId('speed')) && chooses('speed', random.of(['0.1', '1', '4'])),
+  level: (random) => isSeen(byId('level')) && chooses('level', random.of(['few', 'usual', 'all'])),
+  lesson: (random) => isSeen(byId('lesson')) && chooses('lesson', random.of(['1', '2'])),
+  points(random, { pageState }) {
+    if (byId('writing').dataset.view !== 'text' || !view.state.doc.length) return false;
     const linesNow = () => pageState.breakpoints.value.map(({ line }) => line);
     const line = view.state.doc.lineAt(view.state.selection.main.head), before = linesNow();
     view.state.facet(codemirror.keymap).flat().find(({ key }) => key === 'F9').run(view);
     if (pageState.checkResult.value?.places.length) return; // those of the compiler are taken
-    const wanted = !/^\s*[^\s/]/.test(line.text) ? before : before.includes(line.number) ? before.filter((each) => each !== line.number) : [...before, line.number];
+    const wanted = !/^\s*[^\s/]/.test(line.text) ? before : before.includes(line.number) ? before.filter((item) => item !== line.number) : [...before, line.number];
     if (`${wanted.toSorted()}` !== `${linesNow().toSorted()}`) throw new Error(`in ${line.text}, which is not compiled, breakpoints are at ${linesNow()}, and not at ${wanted}`);
   },
-  key(chance, { isAnew }) {
+  key(random, { isAnew }) {
     const keys = [{ key: 'Escape' }, { key: 'f' }, ...isAnew ? [] : [{ key: 'z', ctrlKey: true }, { key: 'Z', ctrlKey: true, shiftKey: true }]];
-    at('editor').dispatchEvent(Object.assign(new Event('keydown', { bubbles: true, cancelable: true }), chance.of(keys)));
+    byId('editor').dispatchEvent(Object.assign(new Event('keydown', { bubbles: true, cancelable: true }), random.of(keys)));
   },
-  looks(chance) {
-    if (!isSeen(at('time_at'))) return false;
-    at('time_at').value = String(chance.below(2000));
-    at('time_at').dispatchEvent(new Event('input', { bubbles: true }));
+  looks(random) {
+    if (!isSeen(byId('time_at'))) return false;
+    byId('time_at').value = String(random.below(2000));
+    byId('time_at').dispatchEvent(new Event('input', { bubbles: true }));
   },
-  phone(chance, { phone }) {
+  phone(random, { phone }) {
     phone.matches = !phone.matches;
     phone.dispatchEvent(new Event('change'));
   },
@@ -306,29 +306,29 @@ const ACTS = {
     location.hash = '';
     dispatchEvent(new Event('popstate'));
   },
-  language: (chance) => isSeen(at('language')) && chooses('language', chance.of(['en', 'es'])),
-  draws(chance) {
-    if (!isSeen(at('arena'))) return false;
-    const point = (kind) => at('arena').dispatchEvent(Object.assign(new Event(kind, { bubbles: true, cancelable: true }), { isPrimary: true, button: 0, pointerId: 1, clientX: chance.below(200), clientY: chance.below(100) }));
-    for (const kind of ['pointerdown', 'pointermove', 'pointermove', chance.of(['pointerup', 'pointerup', 'pointercancel', 'pointermove'])]) point(kind);
+  language: (random) => isSeen(byId('language')) && chooses('language', random.of(['en', 'es'])),
+  draws(random) {
+    if (!isSeen(byId('arena'))) return false;
+    const point = (kind) => byId('arena').dispatchEvent(Object.assign(new Event(kind, { bubbles: true, cancelable: true }), { isPrimary: true, button: 0, pointerId: 1, clientX: random.below(200), clientY: random.below(100) }));
+    for (const kind of ['pointerdown', 'pointermove', 'pointermove', random.of(['pointerup', 'pointerup', 'pointercancel', 'pointermove'])]) point(kind);
   },
-  names(chance) {
-    if (!isSeen(at('program_name'))) return false;
-    at('program_name').value = chance.of(['', 'one', 'two']);
-    at('program_name').dispatchEvent(new Event('input', { bubbles: true }));
+  names(random) {
+    if (!isSeen(byId('program_name'))) return false;
+    byId('program_name').value = random.of(['', 'one', 'two']);
+    byId('program_name').dispatchEvent(new Event('input', { bubbles: true }));
   },
   shares() {
-    if (!isSeen(at('share'))) return false;
-    at('share').open = !at('share').open;
-    at('share').dispatchEvent(new Event('toggle'));
+    if (!isSeen(byId('share'))) return false;
+    byId('share').open = !byId('share').open;
+    byId('share').dispatchEvent(new Event('toggle'));
   },
   hides() {
     document.hidden = true;
     document.dispatchEvent(new Event('visibilitychange'));
     document.hidden = false;
   },
-  writes(chance) { // whoever presses in the text or the blocks
-    for (const kind of ['pointerenter', 'pointerdown', 'focusin', 'pointerup']) at('writing').dispatchEvent(Object.assign(new Event(kind, { bubbles: true }), { pointerType: chance.of(['mouse', 'touch']), buttons: 0 }));
+  writes(random) { // whoever presses in the text or the blocks
+    for (const kind of ['pointerenter', 'pointerdown', 'focusin', 'pointerup']) byId('writing').dispatchEvent(Object.assign(new Event(kind, { bubbles: true }), { pointerType: random.of(['mouse', 'touch']), buttons: 0 }));
   },
   waits: () => {},
 };
@@ -337,17 +337,17 @@ const ACTS = {
 async function beginsAnew(tab) {
   const { phone } = tab;
   if (phone.matches) ACTS.phone(null, { phone });
-  for (const each of document.querySelectorAll('dialog')) each.close();
-  press(at('view_text'), 0);
-  press(at('start_lessons'), 0);
+  for (const item of document.querySelectorAll('dialog')) item.close();
+  press(byId('view_text'), 0);
+  press(byId('start_lessons'), 0);
   await passes(1000);
   for (const number of ['1', '2', '1']) {
     chooses('lesson', number);
     await passes(1000);
   }
-  for (const id of ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new']) press(at(id), 0);
-  for (const id of ['words', 'why']) if (at(id).getAttribute('aria-pressed') === 'true') press(at(id), 0);
-  for (const [id, value] of [['language', 'en'], ['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) if (at(id).value !== value) chooses(id, value);
+  for (const id of ['stop', 'home', 'start_write', 'view_text', 'seen_arena', 'bar_new']) press(byId(id), 0);
+  for (const id of ['words', 'why']) if (byId(id).getAttribute('aria-pressed') === 'true') press(byId(id), 0);
+  for (const [id, value] of [['language', 'en'], ['robot', 'tinibot'], ['world', 'obstacles'], ['speed', '1']]) if (byId(id).value !== value) chooses(id, value);
   await passes(5000);
   Object.assign(tab, { isAnew: true, stays: null, isComing: false });
 }
@@ -387,7 +387,7 @@ function expects(tab) {
     if (['new', 'bar_new'].includes(did) && before.begins !== undefined && tab.seen.blocks.begins === before.begins) throw new Error(`after ${did} the blocks stand as those of before`);
     if (did === 'start_write' && dataset.half !== 'program') throw new Error('the program is not seen');
     if (['start_lessons', 'start_robot'].includes(did) && dataset.half !== 'robot') throw new Error('what was chosen is not seen');
-    if (did === 'Add it to the program' && keptWork().lesson !== LESSONS[at('lesson_page').dataset.lesson - 1].name) throw new Error(`a lesson's program is of ${keptWork().lesson || 'nobody'}`);
+    if (did === 'Add it to the program' && keptWork().lesson !== LESSONS[byId('lesson_page').dataset.lesson - 1].name) throw new Error(`a lesson's program is of ${keptWork().lesson || 'nobody'}`);
     const wasLeft = before.screen === 'program' && dataset.screen === 'start' && before.text.trim() !== '' && !tab.isShippedProgram(before.text);
     if (wasLeft && !tab.versions.loadVersions().some(tab.versions.sameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
     if (['world', 'bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
@@ -406,32 +406,32 @@ function checkStays({ stays }) {
 /** What has to be said and shown of the program, whoever has done what; nothing is under way. */
 function checksRest({ pageState, summaryOf, versions, countAllStars, seen }) {
   const { checkResult, virtualRun, robotName, programText, fault, breakpoints } = pageState;
-  const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) throw new Error(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
+  const assertSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
   const { phase, state, screen } = document.documentElement.dataset;
-  is(state, 'checked', 'the program');
+  assertSame(state, 'checked', 'the program');
   const lines = checkResult.value.findings.map(({ line }) => line);
-  is(at('status').textContent, summaryOf(checkResult.value), 'the status');
-  is(checkResult.value.image, checked(view.state.doc.toString(), robotName.value).image, 'the image');
-  is(at('messages').children.length, lines.length, 'the messages');
-  is(at('messages').querySelectorAll('.repair').length, checkResult.value.findings.filter((each) => each.may_repair).length, 'the fixes');
-  is(diagnosticLines(), lines, 'what is marked as wrong');
+  assertSame(byId('status').textContent, summaryOf(checkResult.value), 'the status');
+  assertSame(checkResult.value.image, checked(view.state.doc.toString(), robotName.value).image, 'the image');
+  assertSame(byId('messages').children.length, lines.length, 'the messages');
+  assertSame(byId('messages').querySelectorAll('.repair').length, checkResult.value.findings.filter((item) => item.may_repair).length, 'the fixes');
+  assertSame(diagnosticLines(), lines, 'what is marked as wrong');
   const running = virtualRun.value.ranges.map(({ line }) => line);
-  if (phase !== 'running') is(runningLines(), running, 'what is marked as running');
-  is(at('robot').value, robotName.value, 'the robot');
-  is(at('pause').disabled, !['running', 'paused'].includes(phase), 'Pause');
+  if (phase !== 'running') assertSame(runningLines(), running, 'what is marked as running');
+  assertSame(byId('robot').value, robotName.value, 'the robot');
+  assertSame(byId('pause').disabled, !['running', 'paused'].includes(phase), 'Pause');
   if (screen === 'start' && (['running', 'paused'].includes(phase) || 'full' in document.documentElement.dataset || 'big' in document.documentElement.dataset || keptWork().own)) throw new Error(`behind the start screen is ${JSON.stringify([document.documentElement.dataset, keptWork()])}`);
   const earlier = versions.loadVersions();
   if (screen === 'start') {
     const titles = earlier.map((version, k) => versions.versionTitle(version, earlier.length - k));
-    is(at('start_programs').querySelectorAll('strong').map(saidOf), titles.slice(0, 6), 'the programs at the start');
-    is([at('start_badge').hidden, /★ (\d+)/.exec(saidOf(at('start_badge')))?.[1]], [!countAllStars(), String(countAllStars())], 'the stars at the start');
+    assertSame(byId('start_programs').querySelectorAll('strong').map(saidOf), titles.slice(0, 6), 'the programs at the start');
+    assertSame([byId('start_badge').hidden, /★ (\d+)/.exec(saidOf(byId('start_badge')))?.[1]], [!countAllStars(), String(countAllStars())], 'the stars at the start');
   }
   const work = keptWork();
-  is([work.text, work.robot], [view.state.doc.toString(), robotName.value], 'what is kept');
-  is(programText.value, work.text, 'the program');
-  if (at('writing').dataset.view !== 'blocks' || screen === 'start' || phase === 'running') return;
-  is(textOf(seen.blocks.form), textOf(formOf(work.text)), 'the blocks');
-  is(seen.blocks.has, { robot: work.robot, level: at('level').value, findings: lines, fault: fault.value.sentence, running, points: breakpoints.value.map(({ line }) => line) }, 'what is at blocks');
+  assertSame([work.text, work.robot], [view.state.doc.toString(), robotName.value], 'what is kept');
+  assertSame(programText.value, work.text, 'the program');
+  if (byId('writing').dataset.view !== 'blocks' || screen === 'start' || phase === 'running') return;
+  assertSame(textOf(seen.blocks.form), textOf(formOf(work.text)), 'the blocks');
+  assertSame(seen.blocks.has, { robot: work.robot, level: byId('level').value, findings: lines, fault: fault.value.sentence, running, points: breakpoints.value.map(({ line }) => line) }, 'what is at blocks');
 }
 
 /** What is said of a program does not pass for what is said of a newer one, however long that takes. */
@@ -441,7 +441,7 @@ async function checksLate(tab) {
   tab.stays = null;
   view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(2)' } });
   await passes(2000);
-  if (at('status').textContent !== '…') throw new Error(`${at('status').textContent} is said, and it was of the text before`);
+  if (byId('status').textContent !== '…') throw new Error(`${byId('status').textContent} is said, and it was of the text before`);
   tab.python.late = () => 5;
   await passes(9000);
   checksRest(tab);
@@ -449,8 +449,8 @@ async function checksLate(tab) {
 
 /** All that is seen. */
 function seenIn({ seen }) {
-  const isText = at('writing').dataset.view === 'text';
-  const parts = document.querySelectorAll('[id]').filter((each) => !each.children.length || ['messages', 'values', 'versions', 'start_programs', 'world', 'robot', 'lesson'].includes(each.id)).filter((each) => each.id !== 'link_said' && each.checkVisibility() && isOpen(each));
+  const isText = byId('writing').dataset.view === 'text';
+  const parts = document.querySelectorAll('[id]').filter((item) => !item.children.length || ['messages', 'values', 'versions', 'start_programs', 'world', 'robot', 'lesson'].includes(item.id)).filter((item) => item.id !== 'link_said' && item.checkVisibility() && isOpen(item));
   const { dataset } = document.documentElement;
   return JSON.parse(JSON.stringify([
     Object.entries({ ...dataset, halt: '', link: '' }).sort(), document.querySelectorAll('dialog').filter(({ open }) => open).map(({ id }) => id), view.state.doc.toString(), diagnosticLines(), runningLines(), seen.arena.seen, !isText && seen.blocks && [seen.blocks.form, seen.blocks.has],
@@ -459,11 +459,11 @@ function seenIn({ seen }) {
 }
 
 const MOSTLY = ['presses', 'presses', 'drives', 'types', 'builds', 'presses', 'learns', 'retypes'];
-function acts(chance, tab, names = chance() < 0.7 ? MOSTLY : Object.keys(ACTS)) {
+function playActions(random, tab, names = random() < 0.7 ? MOSTLY : Object.keys(ACTS)) {
   for (;;) {
-    const name = chance.of(names);
+    const name = random.of(names);
     const check = expects(tab);
-    const found = ACTS[name](chance, tab);
+    const found = ACTS[name](random, tab);
     if (found === false) continue;
     const did = typeof found === 'string' ? found : name;
     check(did);
@@ -473,15 +473,15 @@ function acts(chance, tab, names = chance() < 0.7 ? MOSTLY : Object.keys(ACTS)) 
 
 async function playsSeed(seed) {
   location.hash = '';
-  const chance = chanceOf(seed + 1);
+  const random = chanceOf(seed + 1);
   const tab = await opens({});
-  const late = () => chance.below(chance.of([10, 10, 300]));
-  tab.python.late = late;
-  tab.python.verdict = () => chance.of(['', '', 'passed', 'failed', 'mistakes']);
+  const delay = () => random.below(random.of([10, 10, 300]));
+  tab.python.late = delay;
+  tab.python.verdict = () => random.of(['', '', 'passed', 'failed', 'mistakes']);
   const ends = [];
-  for (let k = 20 + chance.below(40); k > 0; k -= 1) {
-    ends.push(acts(chance, tab));
-    await passes(chance.of([0, chance.below(50), chance.below(800)]));
+  for (let k = 20 + random.below(40); k > 0; k -= 1) {
+    ends.push(playActions(random, tab));
+    await passes(random.of([0, random.below(50), random.below(800)]));
     checkStays(tab);
     if (k % 20) continue;
     tab.python.late = () => 5;
@@ -490,8 +490,8 @@ async function playsSeed(seed) {
     checksRest(tab);
     await checksLate(tab);
     tab.isComing = false;
-    tab.python.late = late;
-    acts(chance, tab, ['retypes', 'waits']);
+    tab.python.late = delay;
+    playActions(random, tab, ['retypes', 'waits']);
     await passes(1000);
     checkStays(tab);
   }
@@ -500,17 +500,17 @@ async function playsSeed(seed) {
   await beginsAnew(tab);
   const stores = Object.fromEntries(['localStorage', 'sessionStorage'].map((name) => [name, [...window[name]]]));
   await beginsAnew(tab); // as the other tab
-  const plays = async (each) => {
+  const plays = async (item) => {
     const same = chanceOf(seed + 1000);
-    each.python.runs = 0;
-    each.python.verdict = () => same.of(['', 'passed', 'failed', 'mistakes']);
-    const all = [['begins', seenIn(each)]];
+    item.python.runs = 0;
+    item.python.verdict = () => same.of(['', 'passed', 'failed', 'mistakes']);
+    const all = [['begins', seenIn(item)]];
     for (let k = 8; k > 0; k -= 1) {
-      const did = acts(same, each);
+      const did = playActions(same, item);
       const waited_ms = same.of([300, 2000, 6000]);
       await passes(waited_ms);
-      if (waited_ms > 1000) checksRest(each);
-      all.push([did, seenIn(each)]);
+      if (waited_ms > 1000) checksRest(item);
+      all.push([did, seenIn(item)]);
     }
     return all;
   };
@@ -526,7 +526,7 @@ async function playsSeed(seed) {
 try {
   for (let seed = firstSeed; seed < firstSeed + seedCount; seed += 1) await playsSeed(seed);
   process.exit(0);
-} catch (why) {
-  console.error(why);
+} catch (error) {
+  console.error(error);
   process.exit(1);
 }

@@ -3,7 +3,7 @@
 const { blocksOf, conditionsAt } = await import(`${process.argv[2]}/virtual/why.js`);
 
 for (const { text, places, at, values } of JSON.parse(process.argv[3])) {
-  const found = conditionsAt(text, places, at, (name) => values[name]);
+  const conditions = conditionsAt(text, places, at, (name) => values[name]);
   const [tasks, bodies] = [false, true].map((isBody) => blocksOf(text, places, /^(?:TASK|WHEN)\b/i).filter(({ has }) => has(at, isBody)).map(({ line }) => line));
-  console.log(JSON.stringify({ told: found.map(({ line, condition, values: as, is }) => [line, condition, as, is]), tasks, bodies }));
+  console.log(JSON.stringify({ told: conditions.map(({ line, condition, values: as, is }) => [line, condition, as, is]), tasks, bodies }));
 }

@@ -31,29 +31,29 @@ const fromPath = (points, place) => Math.min(...points.slice(1).map((end, k) => 
 }));
 
 function history(seed) {
-  const chance = chanceOf(seed + 1), acted = [];
-  const fails = (why) => { throw new Error(`seed ${seed}, after ${acted.slice(-8).join(', ')}: ${why}`); };
+  const random = chanceOf(seed + 1), acted = [];
+  const fails = (error) => { throw new Error(`seed ${seed}, after ${acted.slice(-8).join(', ')}: ${error}`); };
   const is = (found, wanted, what) => { if (JSON.stringify(found) !== JSON.stringify(wanted)) fails(`${what}: ${JSON.stringify(found)} in place of ${JSON.stringify(wanted)}`); };
   const near = (found, wanted, what, by = NEAR) => { if (!(Math.abs(found - wanted) <= by)) fails(`${what}: ${found} in place of ${wanted}`); };
-  let world = structuredClone(chance.of(WORLDS));
-  if (chance() < 0.2) { // one that is nearly full
-    for (const kind of KINDS) while (world[kind].length < (kind === 'rivals' ? WORLD_LIMITS.rivals : WORLD_LIMITS.parts) - 1) world = parts.withDrawnPart(world, kind, [[10 + chance.below(80), 10 + chance.below(80)]]);
-    world.lines[0].points = Array.from({ length: WORLD_LIMITS.points - chance.below(2) }, (_, k) => [k % 100, 10 + k % 7]);
+  let world = structuredClone(random.of(WORLDS));
+  if (random() < 0.2) { // one that is nearly full
+    for (const kind of KINDS) while (world[kind].length < (kind === 'rivals' ? WORLD_LIMITS.rivals : WORLD_LIMITS.parts) - 1) world = parts.withDrawnPart(world, kind, [[10 + random.below(80), 10 + random.below(80)]]);
+    world.lines[0].points = Array.from({ length: WORLD_LIMITS.points - random.below(2) }, (_, k) => [k % 100, 10 + k % 7]);
   }
-  if (chance() < 0.3) world.width_cm += 0.37; // as a file may have it
+  if (random() < 0.3) world.width_cm += 0.37; // as a file may have it
   world = frozen(world);
   const isOn = ([x, y], { width_cm, height_cm } = world) => x >= 0 && y >= 0 && x <= width_cm && y <= height_cm;
-  const some = () => (chance() < 0.3 ? chance.of([FLOOR, FLOOR, START]) : chance.of(parts.partsOf(world)));
-  const somewhere = () => [chance() * world.width_cm, chance() * world.height_cm];
+  const some = () => (random() < 0.3 ? random.of([FLOOR, FLOOR, START]) : random.of(parts.partsOf(world)));
+  const somewhere = () => [random() * world.width_cm, random() * world.height_cm];
   /** All but this part is as before. */
   const others = (changed, part, but = []) => {
-    for (const each of parts.partsOf(world)) if (each.kind !== 'floor' && !parts.isSamePart(each, part) && !but.includes(each.kind)) is(parts.valueOf(changed, each), parts.valueOf(world, each), `another ${each.kind}`);
+    for (const item of parts.partsOf(world)) if (item.kind !== 'floor' && !parts.isSamePart(item, part) && !but.includes(item.kind)) is(parts.valueOf(changed, item), parts.valueOf(world, item), `another ${item.kind}`);
     if (part.kind !== 'floor') for (const key of ['width_cm', 'height_cm', 'ambient_percent', 'seconds', 'has_border', 'name']) is(changed[key], world[key], key);
   };
-  const acts = {
+  const actions = {
     moves() {
-      const part = some(), before = parts.pointsOf(world, part), index = before.length > 1 && chance() < 0.5 ? chance.below(before.length) : -1;
-      const [right, up] = [chance.below(120) - 60, chance.of([0, chance.below(120) - 60])];
+      const part = some(), before = parts.pointsOf(world, part), index = before.length > 1 && random() < 0.5 ? random.below(before.length) : -1;
+      const [right, up] = [random.below(120) - 60, random.of([0, random.below(120) - 60])];
       const changed = parts.withMovedPart(world, part, right, up, index);
       if (part === FLOOR) is(changed, world, 'a floor that is moved');
       const after = parts.pointsOf(changed, part);
@@ -69,7 +69,7 @@ function history(seed) {
       return changed;
     },
     turns() {
-      const part = some(), degrees = chance.of([15, -15, 90, 370]), value = parts.valueOf(world, part), changed = parts.withTurnedPart(world, part, degrees);
+      const part = some(), degrees = random.of([15, -15, 90, 370]), value = parts.valueOf(world, part), changed = parts.withTurnedPart(world, part, degrees);
       const after = parts.valueOf(changed, part);
       others(changed, part);
       if ('heading' in value) near(norm(after.heading), norm(Math.round(norm(value.heading + degrees) * 10) / 10), 'the heading', 0.001);
@@ -107,7 +107,7 @@ function history(seed) {
     sets() {
       const part = some();
       if (!NUMBERS[part.kind].length) return world;
-      const [key, low, high] = chance.of(part === FLOOR ? NUMBERS.floor.slice(0, 1 + chance.below(4)) : NUMBERS[part.kind]), number = chance.of([low - 1, high + 1, low, high, chance() * 100, NaN, Infinity]);
+      const [key, low, high] = random.of(part === FLOOR ? NUMBERS.floor.slice(0, 1 + random.below(4)) : NUMBERS[part.kind]), number = random.of([low - 1, high + 1, low, high, random() * 100, NaN, Infinity]);
       const changed = parts.withNumber(world, part, key, number);
       if (!Number.isFinite(number)) {
         is(changed, world, 'what is no number');
@@ -121,7 +121,7 @@ function history(seed) {
       return changed;
     },
     chooses() {
-      const [kind, key] = chance.of(Object.entries(CHOICE_KEYS)), part = parts.partsOf(world).findLast((each) => each.kind === kind), isOnNow = chance() < 0.5;
+      const [kind, key] = random.of(Object.entries(CHOICE_KEYS)), part = parts.partsOf(world).findLast((item) => item.kind === kind), isOnNow = random() < 0.5;
       if (!part) return world;
       const changed = parts.withChoice(world, part, key, isOnNow);
       is(parts.valueOf(changed, part)[key], isOnNow, key);
@@ -129,8 +129,8 @@ function history(seed) {
       return changed;
     },
     draws() {
-      const kind = chance.of(KINDS), from = somewhere(), isTap = chance() < 0.3, length = chance.of([2, 10, 10, 300]), to = chance.of([somewhere(), somewhere(), [from[0], somewhere()[1]], [somewhere()[0], from[1]]]);
-      const track = isTap ? [from] : Array.from({ length }, (_, k) => [0, 1].map((axis) => from[axis] + (to[axis] - from[axis]) * k / (length - 1) + (k % (length - 1) ? chance.of([0, 0, chance() * 20 - 10]) : 0)).map((cm, axis) => Math.min([world.width_cm, world.height_cm][axis], Math.max(0, cm))));
+      const kind = random.of(KINDS), from = somewhere(), isTap = random() < 0.3, length = random.of([2, 10, 10, 300]), to = random.of([somewhere(), somewhere(), [from[0], somewhere()[1]], [somewhere()[0], from[1]]]);
+      const track = isTap ? [from] : Array.from({ length }, (_, k) => [0, 1].map((axis) => from[axis] + (to[axis] - from[axis]) * k / (length - 1) + (k % (length - 1) ? random.of([0, 0, random() * 20 - 10]) : 0)).map((cm, axis) => Math.min([world.width_cm, world.height_cm][axis], Math.max(0, cm))));
       const isFull = world[kind].length >= (kind === 'rivals' ? WORLD_LIMITS.rivals : WORLD_LIMITS.parts);
       const changed = parts.withDrawnPart(world, kind, track);
       is(changed === null, isFull, 'whether there is room');
@@ -152,7 +152,7 @@ function history(seed) {
       return changed;
     },
     grows() { // a point more
-      const part = chance() < 0.5 && world.lines.length ? { kind: 'lines', index: 0 } : some(), value = parts.valueOf(world, part), points = value.points ?? [], index = chance.below(points.length + 1) - 1;
+      const part = random() < 0.5 && world.lines.length ? { kind: 'lines', index: 0 } : some(), value = parts.valueOf(world, part), points = value.points ?? [], index = random.below(points.length + 1) - 1;
       const found = parts.withPoint(world, part, index);
       is(found !== null, points.length > 0 && points.length < WORLD_LIMITS.points, 'whether it can have one more');
       if (!found) return world;
@@ -167,7 +167,7 @@ function history(seed) {
       return found.world;
     },
     finds() {
-      const place = somewhere(), reach = chance.of([0, 3, 10]);
+      const place = somewhere(), reach = random.of([0, 3, 10]);
       const distance = (part) => {
         const value = parts.valueOf(world, part), middle = [value.x_cm, value.y_cm];
         if (part.kind === 'rings') return Math.max(value.radius_cm - value.edge_cm - far(middle, place), far(middle, place) - value.radius_cm);
@@ -178,12 +178,12 @@ function history(seed) {
         if (value.points) return fromPath(value.points, place) - (value.width_cm ?? 2) / 2;
         return far(middle, place) - ({ start: 9, rivals: value.width_cm / 2 }[part.kind] ?? 4);
       };
-      const all = parts.partsOf(world).filter((each) => each.kind !== 'floor').map((part) => [part, Math.max(0, distance(part))]).filter(([, cm]) => cm <= reach);
-      const wanted = all.reduce((best, each) => {
-        if (!best || each[1] < best[1] - 1e-9) return each;
-        if (each[1] > best[1] + 1e-9) return best;
-        const above = ABOVE.indexOf(each[0].kind) - ABOVE.indexOf(best[0].kind);
-        return above < 0 || (!above && each[0].index > best[0].index) ? each : best;
+      const all = parts.partsOf(world).filter((item) => item.kind !== 'floor').map((part) => [part, Math.max(0, distance(part))]).filter(([, cm]) => cm <= reach);
+      const wanted = all.reduce((best, item) => {
+        if (!best || item[1] < best[1] - 1e-9) return item;
+        if (item[1] > best[1] + 1e-9) return best;
+        const above = ABOVE.indexOf(item[0].kind) - ABOVE.indexOf(best[0].kind);
+        return above < 0 || (!above && item[0].index > best[0].index) ? item : best;
       }, null);
       is(parts.partAt(world, place, reach), wanted?.[0] ?? null, 'what is there');
       const points = parts.pointsOf(world, some());
@@ -194,9 +194,9 @@ function history(seed) {
     },
   };
   for (let k = 0; k < 80; k += 1) {
-    const act = chance.of([...Object.keys(acts), 'draws', 'draws', 'draws']);
+    const act = random.of([...Object.keys(actions), 'draws', 'draws', 'draws']);
     acted.push(act);
-    world = frozen(acts[act]());
+    world = frozen(actions[act]());
     is(parts.partsOf(world).length, 2 + KINDS.reduce((sum, kind) => sum + world[kind].length, 0), 'all of its parts');
   }
   is([parts.valueOf(world, FLOOR) === world, parts.valueOf(world, START)], [true, world.start], 'the floor and the start');

@@ -16,25 +16,25 @@ BUILDER = Path("/usr/share/arduino-builder")
 BOARDS = {"uno": "uno", "mega": "mega:cpu=atmega2560"}
 
 
-class Built(NamedTuple):
+class SketchBuild(NamedTuple):
     hex: Path
     log: str  # output of the builder, including warnings
 
 
-def firmware(board: str, own: Path, shared_path: Path) -> Built:
+def firmware(board: str, build_folder: Path, shared_path: Path) -> SketchBuild:
     """Return the sketch for a board, built once for all workers of a session."""
-    built = Built(shared_path / f"builder-{board}.hex", "")
+    built = SketchBuild(shared_path / f"builder-{board}.hex", "")
     log = built.hex.with_suffix(".log")
     if not log.exists():
-        build = _build(board, own)
-        mine = shared_path / f"builder-{board}.{os.getpid()}"
+        build = _build(board, build_folder)
+        own_path = shared_path / f"builder-{board}.{os.getpid()}"
         for text, target in ((build.hex.read_text(), built.hex), (build.log, log)):
-            mine.write_text(text, encoding="utf-8")
-            mine.replace(target)
+            own_path.write_text(text, encoding="utf-8")
+            own_path.replace(target)
     return built._replace(log=log.read_text(encoding="utf-8"))
 
 
-def _build(board: str, folder: Path) -> Built:
+def _build(board: str, folder: Path) -> SketchBuild:
     if not shutil.which("arduino-builder"):
         need("no arduino-builder on this computer")
     need(boards.missing())
@@ -54,4 +54,4 @@ def _build(board: str, folder: Path) -> Built:
         check=False,
     )  # fmt: skip
     assert completed.returncode == 0, completed.stdout[-4000:]
-    return Built(build / "vm_arduino.ino.hex", completed.stdout)
+    return SketchBuild(build / "vm_arduino.ino.hex", completed.stdout)

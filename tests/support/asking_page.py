@@ -21,21 +21,23 @@ class AskingPage:
         self.news: list[Json] = []
         self._number = 0
 
-    def asks(self, do: str, *asked: Json, connection: int = 1, **more: object) -> Json:
+    def asks(self, action: str, *requests: Json, connection: int = 1, **fields: object) -> Json:
         number = max((item["number"] for item in self.news), default=0)
-        request = {"do": do, "page": "me", "connection": connection, "port": self.port,
-                   "robot": "tinibot", "language": "en", "seen": number, "asked": list(asked),
-                   **more}  # fmt: skip
+        request = {"do": action, "page": "me", "connection": connection, "port": self.port,
+                   "robot": "tinibot", "language": "en", "seen": number, "asked": list(requests),
+                   **fields}  # fmt: skip
         answer = self.answer(request)
         self.news += [item for item in answer.get("news", ()) if item["number"] > number]
         return answer
 
-    def beats_until(self, is_so: Callable[[Json], object], what: str, **more: Any) -> None:
-        def looks() -> bool:
-            self.asks("beat", **more)
-            return any(is_so(item) for item in self.news)
+    def beats_until(
+        self, is_reached: Callable[[Json], object], description: str, **fields: Any
+    ) -> None:
+        def has_arrived() -> bool:
+            self.asks("beat", **fields)
+            return any(is_reached(item) for item in self.news)
 
-        until(looks, what)
+        until(has_arrived, description)
 
     def run(self, stops: int) -> Json:
         self._number += 1

@@ -25,7 +25,7 @@ CHARACTERISTICS = {
 }  # fmt: skip
 ADDRESS = "AA:BB:CC:DD:EE:01"
 NAME, ADDRESS_PORT = "ble://Tini 1", f"ble://{ADDRESS}"  # ports of the robot
-DRIVE = "SI|F(0.2, 80)"
+DRIVE_PROGRAM = "SI|F(0.2, 80)"
 DRIVE_ACTIONS = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
@@ -48,22 +48,22 @@ class Peripheral:
         self.mtu = mtu
         self.characteristics = CHARACTERISTICS[service]
         self.is_on = True
-        self.late = 0
-        self.fails_at = ""
+        self.late_rounds = 0
+        self.failing_stage = ""
         self.parts_after: int | None = None
         self.connections = 0
-        self.written: list[tuple[str, bytes]] = []  # kind and bytes of each write
+        self.writes: list[tuple[str, bytes]] = []  # kind and bytes of each write
 
     @property
     def received_data(self) -> bytes:
-        return b"".join(data for _, data in self.written)
+        return b"".join(data for _, data in self.writes)
 
     @property
     def is_over(self) -> bool:
         return self.parts_after is not None and len(self.received_data) >= self.parts_after
 
     def take(self, data: bytes, kind: str) -> None:
-        self.written.append((kind, data))
+        self.writes.append((kind, data))
 
     def begin(self) -> None:
         """Somebody wants to hear it."""
@@ -95,7 +95,7 @@ class BleRobot(Peripheral):
         super().__init__(name, address, service, mtu)
         self.robot = robot
         self.late_s = late_s
-        self.sent: list[bytes] = []
+        self.sent_packets: list[bytes] = []
         self._uart = os.open(robot.port, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         import tty
 
@@ -128,7 +128,7 @@ class BleRobot(Peripheral):
         if not data:  # the robot is gone
             self.loop.remove_reader(self._uart)
             return
-        self.sent.append(data)
+        self.sent_packets.append(data)
         if self.late_s:
             self.loop.call_later(self.late_s, self.tell, data)
         else:

@@ -47,10 +47,17 @@ def check_form(form: Form, text: str, kit: Kit, image: bytes) -> None:
 def touched_form(form: Form) -> Form:
     """Return blocks without knowledge of their former state."""
 
-    def of(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
+    def copy_blocks(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
         return tuple(
-            Block(block.kind, block.word, block.values, tuple(map(of, block.bodies)), block.note,
-                  block.is_apart) for block in blocks
-        )  # fmt: skip
+            Block(
+                block.kind,
+                block.word,
+                block.values,
+                tuple(map(copy_blocks, block.bodies)),
+                block.note,
+                block.is_apart,
+            )
+            for block in blocks
+        )
 
-    return form._replace(body=of(form.body))
+    return form._replace(body=copy_blocks(form.body))

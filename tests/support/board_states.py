@@ -9,11 +9,14 @@ from tests.support.edited_robots import TEXTS
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
 
-STEADY = 29.8  # ms after its release a button is surely up
-PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is certainly up again
-FORWARD, BACKWARD, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
-MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
-TURN = 250.0
+STEADY_MS = 29.8  # ms after its release a button is surely up
+PRESS_MS, START_MS = (
+    100.0,
+    200.0,
+)  # ms: when the button goes down, and when it is certainly up again
+FORWARD_MS, BACKWARD_MS, OFF_MS = 50.0, 150.0, 350.0  # ms after the start of MOVES
+MOVES_PROGRAM = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
+TURN_MS = 250.0
 
 
 def robot_with(motors: str) -> Robot:
@@ -24,10 +27,10 @@ def robot_with(motors: str) -> Robot:
     return read(text, "test")
 
 
-def bridge(driver: str, more: str = "") -> str:
+def bridge(driver: str, extra_toml: str = "") -> str:
     return (
         f'driver = "{driver}"\nleft_pwm = 5\nleft_forward = 7\nleft_backward = 8\n'
-        f"right_pwm = 6\nright_forward = 9\nright_backward = 10\n{more}"
+        f"right_pwm = 6\nright_forward = 9\nright_backward = 10\n{extra_toml}"
     )
 
 
@@ -74,18 +77,18 @@ def robot_with_driver(name: str) -> Robot:
     return robot_with(DRIVERS[name][0])
 
 
-def start_board(robot: Robot, text: str, more: str = "") -> Board:
-    board = Board(robot, text, more)
-    board.press(PRESS, START - STEADY)
+def start_board(robot: Robot, text: str, extra_toml: str = "") -> Board:
+    board = Board(robot, text, extra_toml)
+    board.press(PRESS_MS, START_MS - STEADY_MS)
     return board
 
 
 def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
     """A shipped robot on another board, or wired in another way."""
     text = re.sub(r'^chip *= *"\w+"', f'chip = "{chip}"', TEXTS[name], flags=re.M)
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new, 1)
+    for old_text, new_text in changes:
+        assert old_text in text
+        text = text.replace(old_text, new_text, 1)
     return read(text, name)
 
 
@@ -93,7 +96,7 @@ def pulses(board: Board, pin: int) -> list[tuple[float, float]]:
     """Return the start of each pulse in ms, and its length in us."""
     edges = board.edges(pin)
     pairs = zip(edges[::2], edges[1::2], strict=False)
-    return [(up / MS, (down - up) * 1e6 / HERTZ) for up, down in pairs]
+    return [(rise / MS, (down - rise) * 1e6 / HERTZ) for rise, down in pairs]
 
 
 STOPS = """

@@ -15,7 +15,9 @@ def button_events(cases: Iterable[tuple[int, int, Sequence[int]]]) -> list[Butto
     """Return the button's events in each case: the turn, the first look, and the edges."""
     button = SOURCES / "src" / "boards" / "button.cpp"
     program = compile_program([button, ROOT / "tests" / "button" / "main.cpp"], FLAGS)
-    lines = "\n".join(" ".join(map(str, (turn, first, *edges))) for turn, first, edges in cases)
+    lines = "\n".join(
+        " ".join(map(str, (turn, first_edge, *edges))) for turn, first_edge, edges in cases
+    )
     completed = subprocess.run(
         [program], input=lines + "\n", capture_output=True, text=True, check=True
     )

@@ -13,7 +13,13 @@ from tiniscript.link.messages import KEY_OWNER, OWNED
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
-SAVED, OTHER, MEMORY, TYPED, LINE = 80, 70, 60, 40, 30  # powers: which program it is that drives
+SAVED_POWER, OTHER_POWER, MEMORY_POWER, TYPED_POWER, LINE_POWER = (
+    80,
+    70,
+    60,
+    40,
+    30,
+)  # powers: which program it is that drives
 
 
 class SmallRobot(HostFirmware):
@@ -34,8 +40,8 @@ class Table:
         self.program = 0
         self.is_reset_down = False
 
-    def send(self, text: str, **how: bool) -> None:
-        send(self.robot, self.session, text, **how)
+    def send(self, text: str, **options: bool) -> None:
+        send(self.robot, self.session, text, **options)
 
     def upload_program(self, power: int, is_saved: bool = True) -> None:
         self.send(f"SB|F(600, {power})", saves=is_saved)
@@ -57,19 +63,19 @@ def empty(table: Table) -> None:
 
 
 def save_program(table: Table) -> None:
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
 
 
 def load_into_memory(table: Table) -> None:
-    table.upload_program(SAVED)
-    table.upload_program(MEMORY, is_saved=False)
+    table.upload_program(SAVED_POWER)
+    table.upload_program(MEMORY_POWER, is_saved=False)
 
 
-def typing_of(text: str, power: int = SAVED) -> Callable[[Table], None]:
+def typing_of(text: str, power: int = SAVED_POWER) -> Callable[[Table], None]:
     """Return a function that types; `power` is that of the program which the button then starts."""
 
     def enter(table: Table) -> None:
-        table.upload_program(SAVED)
+        table.upload_program(SAVED_POWER)
         table.quiet()
         type_text(table.robot, text)
         table.program = power
@@ -81,7 +87,7 @@ def live_line_of(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
     """Return a function that sends a live line from a computer, and continues."""
 
     def enter(table: Table) -> None:
-        table.upload_program(SAVED)
+        table.upload_program(SAVED_POWER)
         request = table.session.live(image_of(line).code)
         assert table.robot.until(table.session, request) == OK
         table.talk(milliseconds)
@@ -90,44 +96,44 @@ def live_line_of(line: str, milliseconds: int = 0) -> Callable[[Table], None]:
 
 
 def run_from_memory(table: Table) -> None:
-    table.upload_program(SAVED)
-    table.send(f"SI|F(600, {MEMORY})", saves=False)
-    table.program = MEMORY
+    table.upload_program(SAVED_POWER)
+    table.send(f"SI|F(600, {MEMORY_POWER})", saves=False)
+    table.program = MEMORY_POWER
 
 
 def run_saved(table: Table) -> None:
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
     assert table.robot.until(table.session, table.session.start()) == OK
 
 
 def enter_stopped(table: Table) -> None:
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
     table.session.stop(table.robot.now_ms)
     table.talk(300)
 
 
 def interrupt_upload(table: Table) -> None:
-    table.upload_program(SAVED)
-    request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER}); ' * 90}"))
+    table.upload_program(SAVED_POWER)
+    request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER_POWER}); ' * 90}"))
     while request.done_bytes < 60:
         table.talk(1)
     table.talks = None  # the rest never arrives, or is late
 
 
 def save_typed(table: Table) -> None:
-    table.send(f"SB|F(600, {SAVED})")
-    table.program = SAVED
+    table.send(f"SB|F(600, {SAVED_POWER})")
+    table.program = SAVED_POWER
 
 
 def undo_upload(table: Table) -> None:
-    table.upload_program(SAVED)
-    table.upload_program(OTHER)
+    table.upload_program(SAVED_POWER)
+    table.upload_program(OTHER_POWER)
     assert table.robot.until(table.session, table.session.undo()) == OK
-    table.program = SAVED
+    table.program = SAVED_POWER
 
 
 def store_trim(table: Table) -> None:
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
     table.session.trim(b"\0\0\1")
     table.talk(40)
 
@@ -135,7 +141,7 @@ def store_trim(table: Table) -> None:
 def begin_claim(table: Table) -> None:
     table.keys = Keys()
     table.session = table.talks = Session(1, 9600, KIT.fingerprint, keys=table.keys)
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
     table.session.claim(KEY_OWNER)
     table.talk(300)
 
@@ -152,7 +158,7 @@ def enter_owned(table: Table) -> None:
 
 
 def reset_down(table: Table) -> None:
-    table.upload_program(SAVED)
+    table.upload_program(SAVED_POWER)
     memory = table.robot.memory()
     table.robot = type(table.robot)(KIT, memory)
     table.talks = None
@@ -163,12 +169,12 @@ STATES: dict[str, Callable[[Table], None]] = {
     "holds no program": empty,
     "holds a saved program": save_program,
     "holds a program in memory only": load_into_memory,
-    "holds a program that was typed": typing_of(f"SB|F(600, {TYPED})\n", TYPED),
+    "holds a program that was typed": typing_of(f"SB|F(600, {TYPED_POWER})\n", TYPED_POWER),
     "is running a program in memory": run_from_memory,
     "is running the saved program": run_saved,
-    "is running a live line": live_line_of(f"SI|F(600, {LINE})"),
-    "is running text": typing_of(f"SI|F(600, {TYPED})\n"),
-    "has an open block of text": typing_of(f"SI|LOOP(2)\nF(600, {TYPED})\n"),
+    "is running a live line": live_line_of(f"SI|F(600, {LINE_POWER})"),
+    "is running text": typing_of(f"SI|F(600, {TYPED_POWER})\n"),
+    "has an open block of text": typing_of(f"SI|LOOP(2)\nF(600, {TYPED_POWER})\n"),
     "was stopped": enter_stopped,
     "has a fault": live_line_of("SI|X = 0; SHOW(5 / X)", 300),
     "is receiving an upload": interrupt_upload,

@@ -26,20 +26,20 @@ def each_seed(check: Callable[[int], object], options: Namespace) -> None:
     `check` returns the outcome, or None if that is always the same.
     """
     counts: Counter[str] = Counter()
-    begun_s = time.monotonic()
+    start_s = time.monotonic()
     for seed in range(options.seed, options.seed + options.count):
         try:
-            came = check(seed)
+            outcome = check(seed)
         except BaseException:
             print(f"seed {seed}", flush=True)
             raise
-        if came is not None:
-            counts[str(came)] += 1
-    print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - begun_s:.0f} s")
+        if outcome is not None:
+            counts[str(outcome)] += 1
+    print(f"{options.count}, nothing wrong: {dict(counts)}, {time.monotonic() - start_s:.0f} s")
 
 
-def failure_text(wrong: AssertionError) -> str:
+def failure_text(error: AssertionError) -> str:
     """Return the message of an assertion, or its place and code if it has none."""
-    frame = extract_tb(wrong.__traceback__)[-1]
+    frame = extract_tb(error.__traceback__)[-1]
     place = f"{Path(frame.filename).name}:{frame.lineno}: {frame.line}"
-    return f"{place}: {wrong}" if str(wrong) else place
+    return f"{place}: {error}" if str(error) else place

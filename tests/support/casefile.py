@@ -76,8 +76,8 @@ def read(path: Path) -> list[Case]:
                 fence, lines = language or "text", []
                 if fence in PARTS:
                     # a new program, or a disassembly that is not the program's, begins a new case
-                    starts = fence in ("tiniscript",) or not cases or fence in cases[-1].parts
-                    if starts or cases[-1].title.split(" #")[0] != title:
+                    starts_case = fence in ("tiniscript",) or not cases or fence in cases[-1].parts
+                    if starts_case or cases[-1].title.split(" #")[0] != title:
                         count += 1
                         name = title if count == 1 else f"{title} #{count}"
                         cases.append(Case(path, number, name, {}))
@@ -98,8 +98,8 @@ def read(path: Path) -> list[Case]:
 def _unfold(row: str) -> list[str]:
     """Return the rows that a row stands for."""
     if match := TIMES.fullmatch(row):
-        at, size = int(match[1], 16), len(bytes.fromhex(match[3]))
-        return [f"{at + k * size:04x}  {match[2]}" for k in range(int(match[4]))]
+        offset, size = int(match[1], 16), len(bytes.fromhex(match[3]))
+        return [f"{offset + k * size:04x}  {match[2]}" for k in range(int(match[4]))]
     return [row]
 
 
@@ -117,9 +117,9 @@ def _fold(text: str) -> str:
 
 def _split_by_message(case: Case, fence: str, text: str, end: int) -> Iterator[Case]:
     """Yield a case with its messages, and one for each row that names its subject."""
-    before, *titled = TITLE_LINE.split(text)
-    parts = [(case, before)] if before or not titled else []
-    if case.parts and titled and not before:
+    preamble, *titled = TITLE_LINE.split(text)
+    parts = [(case, preamble)] if preamble or not titled else []
+    if case.parts and titled and not preamble:
         yield case  # the case of the heading above, whose text is complete
     line = end - sum(block.count("\n") for block in titled) - len(titled) // 2
     for title, part_text in zip(titled[::2], titled[1::2], strict=True):
@@ -189,14 +189,16 @@ def accept(case: Case, part: str, actual: str) -> None:
     """Write `actual` where the case differs; git shows the changes."""
     rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
     # The current place of the case, which earlier accepts may have moved.
-    now = next(other for other in read(case.path) if other.title == case.title)
+    written_case = next(
+        written_case for written_case in read(case.path) if written_case.title == case.title
+    )
     if part == "refused":
-        rows[now.line - 1] = f"{actual.rstrip()}: {now.title}\n"
+        rows[written_case.line - 1] = f"{actual.rstrip()}: {written_case.title}\n"
     else:
-        start = now.line
+        start = written_case.line
         if rows[start - 1].startswith("```"):
             start = rows.index(f"```{part}\n", start - 1) + 1
-        while rows[start].startswith("//") and "refused" in now.parts:
+        while rows[start].startswith("//") and "refused" in written_case.parts:
             start += 1
-        rows[start : start + _fold(now.parts[part]).count("\n")] = [_fold(actual)]
+        rows[start : start + _fold(written_case.parts[part]).count("\n")] = [_fold(actual)]
     case.path.write_text("".join(rows), encoding="utf-8")

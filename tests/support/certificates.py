@@ -9,7 +9,8 @@ from pathlib import Path
 
 from tests.support.needs import need
 
-_COMMON = ("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256",
+_COMMON_OPTIONS = ("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt",
+    "ec_paramgen_curve:P-256",
            "-nodes", "-days", "2")  # fmt: skip
 
 
@@ -26,7 +27,7 @@ class Authority:
         need("" if shutil.which("openssl") else "needs openssl")
         self._folder, self._key = folder, folder / f"{name}.key"
         self.file = folder / f"{name}.pem"
-        _run(*_COMMON, "-keyout", self._key, "-out", self.file, "-subj", f"/CN={name}")
+        _run(*_COMMON_OPTIONS, "-keyout", self._key, "-out", self.file, "-subj", f"/CN={name}")
 
     @property
     def der(self) -> bytes:
@@ -38,12 +39,12 @@ class Authority:
         `is_chain`: it shows the authority's certificate after its own.
         """
         key, file = self._folder / f"{name}.key", self.sign(name)
-        _run(*_COMMON, "-CA", self.file, "-CAkey", self._key, "-keyout", key, "-out", file,
+        _run(*_COMMON_OPTIONS, "-CA", self.file, "-CAkey", self._key, "-keyout", key, "-out", file,
              "-subj", f"/CN={name}", "-addext", f"subjectAltName=DNS:{name},IP:127.0.0.1",
              "-addext", "basicConstraints=critical,CA:FALSE")  # fmt: skip
         if is_chain:
-            own = file.read_text(encoding="ascii")
-            file.write_text(own + self.file.read_text(encoding="ascii"), encoding="ascii")
+            acl_text = file.read_text(encoding="ascii")
+            file.write_text(acl_text + self.file.read_text(encoding="ascii"), encoding="ascii")
         return f"certfile {file}\nkeyfile {key}"
 
     def sign(self, name: str) -> Path:

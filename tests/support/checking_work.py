@@ -16,7 +16,7 @@ def count_calls(act: Callable[[], object]) -> int:
     """Return the number of calls of Python and C functions in an action."""
     calls = 0
 
-    def count(frame: FrameType, event: str, what: object) -> None:
+    def count(frame: FrameType, event: str, argument: object) -> None:
         nonlocal calls
         calls += event in ("call", "c_call")
 

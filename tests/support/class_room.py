@@ -22,14 +22,14 @@ class FakeRobot:
     has_ended: bool = False
     name: str = "TINI"
     leave_reason: str = ""
-    stopped: int = 0
+    stop_count: int = 0
     was_left: bool = False
     silent_s: float = 0.0
     is_half_made: bool = False
     witness: Callable[[list[Json]], object] | None = None
 
-    def leave(self, why: str) -> None:
-        self.leave_reason = why
+    def leave(self, reason: str) -> None:
+        self.leave_reason = reason
         self.has_ended = True
 
     @property
@@ -37,19 +37,19 @@ class FakeRobot:
         return self
 
     def latch(self) -> None:
-        self.stopped += 1
+        self.stop_count += 1
 
 
 class FakeHosting:
     """Records the requests that reach robots."""
 
     def __init__(self) -> None:
-        self.asked: list[Json] = []
+        self.requests: list[Json] = []
         self.robots: dict[str, FakeRobot] = {}
-        self.held: set[str] = set()  # ports that are being left
+        self.held_ports: set[str] = set()  # ports that are being left
 
     def answer(self, request: Json) -> Json:
-        self.asked.append(request)
+        self.requests.append(request)
         if request.get("do") == "connect":
             self.robots[request["page"]] = FakeRobot()
             return {}
@@ -59,7 +59,7 @@ class FakeHosting:
         return self.robots.get(page)
 
     def is_free(self, port: str) -> bool:
-        return port not in self.held
+        return port not in self.held_ports
 
 
 class Room:
@@ -69,25 +69,27 @@ class Room:
         self.now_s = 1000.0
         self.hosting = FakeHosting()
         ports = [f"port{k}" for k in range(robots)]
-        self.made = Classroom(self.hosting, ports, 60, lambda: self.now_s)  # type: ignore[arg-type]
+        self.classroom = Classroom(self.hosting, ports, 60, lambda: self.now_s)  # type: ignore[arg-type]
 
     def joins(self, name: str, address: str = PUPIL_ADDRESS) -> str:
-        answer = self.made.answer("", address, {"do": "join", "code": self.made.code, "name": name})
+        answer = self.classroom.answer(
+            "", address, {"do": "join", "code": self.classroom.code, "name": name}
+        )
         return str(answer["token"])
 
-    def checks_in(self, token: str, wants: bool | None = None, **more: Any) -> Json:
-        request = {"do": "here", **more} | ({} if wants is None else {"wants": wants})
-        return self.made.answer(token, PUPIL_ADDRESS, request)
+    def checks_in(self, token: str, wants_turn: bool | None = None, **fields: Any) -> Json:
+        request = {"do": "here", **fields} | ({} if wants_turn is None else {"wants": wants_turn})
+        return self.classroom.answer(token, PUPIL_ADDRESS, request)
 
     def connects(self, token: str) -> FakeRobot:
         assert (
-            self.made.answer(token, PUPIL_ADDRESS, {"do": "connect", "page": "x", "port": "y"})
+            self.classroom.answer(token, PUPIL_ADDRESS, {"do": "connect", "page": "x", "port": "y"})
             == {}
         )
-        return self.hosting.robots[self.hosting.asked[-1]["page"]]
+        return self.hosting.robots[self.hosting.requests[-1]["page"]]
 
-    def teaches(self, do: str, **more: Any) -> Json:
-        return self.made.teach({"do": do, **more})
+    def teaches(self, action: str, **fields: Any) -> Json:
+        return self.classroom.teach({"do": action, **fields})
 
     def number(self, name: str) -> int:
         return next(int(pupil["number"]) for pupil in self.teaches("class")["pupils"]

@@ -23,7 +23,7 @@ PROGRAM = "SI|F(5,80)"
 OBSTACLE = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
 FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
 # more than one frame, and of many short moves
-LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 54)) + "END_LOOP"
+LONG_PROGRAM = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 54)) + "END_LOOP"
 TSC = [sys.executable, "-m", "tiniscript"]
 
 
@@ -88,7 +88,7 @@ def process(*arguments: str | Path, data: bytes = b"") -> CommandResult:
 class Command:
     """A `tsc` that stays."""
 
-    begun: ClassVar[WeakSet[Command]] = WeakSet()
+    started_commands: ClassVar[WeakSet[Command]] = WeakSet()
 
     def __init__(
         self, *arguments: str, code: str = "", data: bytes = b"",
@@ -99,7 +99,7 @@ class Command:
             [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, env={**os.environ, **(env or {})},
         )  # fmt: skip
-        Command.begun.add(self)
+        Command.started_commands.add(self)
         if data:
             assert self.process.stdin
             self.process.stdin.write(data)
@@ -117,7 +117,7 @@ class Command:
     @classmethod
     def is_any_there(cls) -> bool:
         """Return whether a robot in real time is still running."""
-        return any(command.process.poll() is None for command in cls.begun)
+        return any(command.process.poll() is None for command in cls.started_commands)
 
     def signal(self, number: int) -> None:
         self.process.send_signal(number)

@@ -31,8 +31,8 @@ def have_kit() -> None:
         _put(built_path.read_bytes(), conformance.FOLDER / name)
 
 
-def _make(name: str, own: Path) -> None:
-    own.write_bytes(conformance.text_of(name).encode())
+def _make(name: str, path: Path) -> None:
+    path.write_bytes(conformance.text_of(name).encode())
 
 
 def _put(text: bytes, target: Path) -> None:

@@ -73,24 +73,28 @@ def compare_verdicts(
     machine: Process, codes: Sequence[bytes], sensors: int, actuators: int, needs: int = 0
 ) -> list[bytes]:
     """Assert that both machines agree on each code; return the accepted codes."""
-    theirs = machine.verdicts(codes, sensors, actuators, needs)
-    accepted = []
-    for code, (rule, offset) in zip(codes, theirs, strict=True):
-        ours = python_verdict(code, sensors, actuators, needs)
+    machine_verdicts = machine.verdicts(codes, sensors, actuators, needs)
+    accepted_codes = []
+    for code, (rule, offset) in zip(codes, machine_verdicts, strict=True):
+        verdict_in_python = python_verdict(code, sensors, actuators, needs)
         # The offset of accepted code is its length.
         verdict = (rule, offset if rule else 0)
-        assert ours == verdict, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {verdict}"
+        assert verdict_in_python == verdict, (
+            f"{code.hex(' ')} for {sensors}, {actuators}: {verdict_in_python}, not {verdict}"
+        )
         if not rule:
-            accepted.append(code)
-    return accepted
+            accepted_codes.append(code)
+    return accepted_codes
 
 
 def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str:
     """Assert that both machines run accepted code alike; return the ending."""
     image = image_for(code, kit)
-    ours, theirs = run_in_python(image, kit, senses), machine.run(image, kit, senses)
-    assert machine.agrees(theirs, ours, senses.max_ms), f"{code.hex(' ')}:\n{ours}\nnot\n{theirs}"
-    return theirs.trace.split()[-1]
+    python_run, machine_run = run_in_python(image, kit, senses), machine.run(image, kit, senses)
+    assert machine.agrees(machine_run, python_run, senses.max_ms), (
+        f"{code.hex(' ')}:\n{python_run}\nnot\n{machine_run}"
+    )
+    return machine_run.trace.split()[-1]
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -128,11 +132,11 @@ def run_late(
     """Return the trace of Python's machine where the tick after each wait comes so late."""
     robot = TracedRobot(kit, lists_of(kit, senses))
     machine = machine_of(unpack(image).code, robot, len(kit.readings), senses.seed)
-    for late in late_ms:
+    for delay_ms in late_ms:
         status = machine.tick(robot.now_ms, LATE_BUDGET)
         if status != WAITING or machine.wake_ms - robot.now_ms >= NEVER_MS:
             break
-        robot.now_ms = max(machine.wake_ms, robot.now_ms) + late
+        robot.now_ms = max(machine.wake_ms, robot.now_ms) + delay_ms
     return "".join(f"{event}\n" for event in robot.events)
 
 
@@ -203,10 +207,10 @@ def check_arithmetic(machine: Process, name: str, count: int) -> None:
     pairs += ROUNDED_TOO_LARGE
     pairs += [(any_number(rng), any_number(rng)) for _ in range(count - len(pairs))]
     code = BY_NAME[name].code
-    theirs = machine.results((code, a, b) for a, b in pairs)
-    for (a, b), result in zip(pairs, theirs, strict=True):
-        ours = python_result(name, a, b)
-        assert ours == result, f"{name} {a} {b}: {ours}, not {result}"
+    machine_results = machine.results((code, a, b) for a, b in pairs)
+    for (a, b), result in zip(pairs, machine_results, strict=True):
+        wanted_result = python_result(name, a, b)
+        assert wanted_result == result, f"{name} {a} {b}: {wanted_result}, not {result}"
 
 
 # -- tasks --------------------------------------------------------------------------------------
@@ -215,13 +219,13 @@ FAR_JUMP = f"A = 0;N = 0;IF(N > 0);{'SHOW(8);' * 140}ENDIF;"  # more than 256 by
 
 
 def some_task_programs(
-    first: int, count: int, text_before: str = ""
+    first_seed: int, count: int, text_before: str = ""
 ) -> Iterator[tuple[bytes, Senses]]:
     """Yield images of random programs with tasks, and the readings of their sensors.
 
     All that a program does lies after the code of the text `before`.
     """
-    for seed in range(first, first + count):
+    for seed in range(first_seed, first_seed + count):
         text, readings = task_program(random.Random(seed))
         yield compile_text(text_before + text, KIT).image, Senses(readings, TASK_MS, seed=seed + 1)
 
@@ -241,21 +245,21 @@ def check_task_codes(machine: Process, seed: int, count: int) -> None:
     assert {0, 21, 27, 32, 33, 35, 38, 40} <= rules, rules
 
 
-def check_task_programs(machine: Process, first: int, count: int) -> None:
-    for image, senses in some_task_programs(first, count):
+def check_task_programs(machine: Process, first_seed: int, count: int) -> None:
+    for image, senses in some_task_programs(first_seed, count):
         run = machine.run(image, KIT, senses)
-        assert machine.agrees(run, run_in_python(image, KIT, senses), senses.max_ms), first
+        assert machine.agrees(run, run_in_python(image, KIT, senses), senses.max_ms), first_seed
 
 
 class SlowRobot(TracedRobot):
     """A robot that is not ready each `not_ready`th time that it is asked."""
 
-    asked = 0
+    ask_count = 0
     not_ready = 0
 
     def is_ready(self) -> bool:
-        self.asked += 1
-        return not self.not_ready or self.asked % self.not_ready != 0
+        self.ask_count += 1
+        return not self.not_ready or self.ask_count % self.not_ready != 0
 
     def read(self, sensor: int) -> int | None:
         return super().read(sensor) if self.is_ready() else None
@@ -324,44 +328,44 @@ def check_way_codes(machine: Process, seed: int, count: int) -> None:
     """Check that verdicts agree whatever the image needs; accepted code without tasks runs
     alike.
     """
-    ends: Counter[str] = Counter()
+    count_by_end: Counter[str] = Counter()
     codes = way_codes(seed, count)
-    codes += [bytes(code) for code in ((ESCAPE,), *((ESCAPE, second) for second in range(256)))]
+    codes += [bytes(code) for code in ((ESCAPE,), *((ESCAPE, opcode) for opcode in range(256)))]
     pushed_bytes = simple("PUSH_NUM_2") * 2
-    codes += [pushed_bytes + bytes((ESCAPE, second)) for second in range(256)]
+    codes += [pushed_bytes + bytes((ESCAPE, opcode)) for opcode in range(256)]
     for needs in (0, TASKS, GO, ALL_NEEDS):
         accepted_bytes = compare_verdicts(machine, codes, *SIZES, needs)
         if needs != GO:
             continue
         for code in accepted_bytes:
-            ends[compare_runs(machine, code, WIDE_KIT, Senses({}, MAX_MS, MAX_STEPS))] += 1
-    assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(ends), ends
-    assert "BAD_CODE" not in ends
+            count_by_end[compare_runs(machine, code, WIDE_KIT, Senses({}, MAX_MS, MAX_STEPS))] += 1
+    assert {"DONE", "LIMIT", "NO_POWER", "OVERFLOW"} <= set(count_by_end), count_by_end
+    assert "BAD_CODE" not in count_by_end
 
 
-def check_way_programs(machine: Process, first: int, count: int) -> None:
+def check_way_programs(machine: Process, first_seed: int, count: int) -> None:
     """Random programs with ways, with tasks and without, run alike."""
-    ends: Counter[str] = Counter()
-    for image, kit, senses in some_way_programs(first, count):
+    count_by_end: Counter[str] = Counter()
+    for image, kit, senses in some_way_programs(first_seed, count):
         run = machine.run(image, kit, senses)
-        want = run_in_python(image, kit, senses)
-        assert machine.agrees(run, want, senses.max_ms), image.hex(" ")
-        ends[run.trace.split()[-1]] += 1
-    assert {"DONE", "LIMIT", "NO_POWER"} <= set(ends), ends
+        wanted_run = run_in_python(image, kit, senses)
+        assert machine.agrees(run, wanted_run, senses.max_ms), image.hex(" ")
+        count_by_end[run.trace.split()[-1]] += 1
+    assert {"DONE", "LIMIT", "NO_POWER"} <= set(count_by_end), count_by_end
 
 
-def some_way_programs(first: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
+def some_way_programs(first_seed: int, count: int) -> list[tuple[bytes, Kit, Senses]]:
     """Return images of random programs with moves by distance, every second one with tasks."""
     codes = []
-    for seed in range(first, first + count):
+    for seed in range(first_seed, first_seed + count):
         rng = random.Random(seed)
-        theirs, kit = KITS[seed // 2 % 2]
+        oracle_kit, kit = KITS[seed // 2 % 2]
         if seed % 2:
             text, readings = task_program(rng, ways=True)
             kit, max_ms = KIT, TASK_MS
         else:
-            text = programs.program(rng, theirs, ways=True)
-            readings, max_ms = programs.senses(rng, theirs), MAX_MS
+            text = programs.program(rng, oracle_kit, ways=True)
+            readings, max_ms = programs.senses(rng, oracle_kit), MAX_MS
         image = compile_text(text, kit).image
         codes.append((image, kit, Senses(readings, max_ms, 2000, seed + 1)))
     return codes
@@ -380,20 +384,20 @@ def python_refusal(data: bytes) -> int:
 
 def short_headers() -> Iterator[bytes]:
     """Yield images whose headers are too short by each number of bytes, and otherwise valid."""
-    whole = pack("SI", 0, b"")
+    header = pack("SI", 0, b"")
     for length in range(HEADER_BYTES):
-        yield with_checksum(whole[:5] + bytes([length]) + whole[6:])
+        yield with_checksum(header[:5] + bytes([length]) + header[6:])
 
 
 def check_images(machine: Process, seed: int, count: int) -> None:
     """Headers are refused for the same reasons, and each for some image."""
     images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX", *short_headers()]
-    theirs = machine.refusals(images)
-    for image, reason in zip(images, theirs, strict=True):
-        ours = python_refusal(image)
-        assert ours == reason, f"{image.hex(' ')}: {ours}, not {reason}"
+    machine_refusals = machine.refusals(images)
+    for image, reason in zip(images, machine_refusals, strict=True):
+        wanted_refusal = python_refusal(image)
+        assert wanted_refusal == reason, f"{image.hex(' ')}: {wanted_refusal}, not {reason}"
     headers = {number for name, (number, _) in REFUSALS.items() if name != "OTHER_KIT"}
-    assert {*theirs} == {0, *headers}
+    assert {*machine_refusals} == {0, *headers}
 
 
 def refusal_of(load: Callable[[], object]) -> str:
@@ -412,8 +416,12 @@ def check_whole_images(machine: Process, seed: int, count: int) -> None:
     refusals = set()
     for image, kit in images_of_programs(seed, count):
         for robot in (kit, changed_kit(rng, kit)):
-            ours = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
-            theirs = refusal_of(lambda data=image, kit=robot: machine.run(data, kit, senses))  # type: ignore[misc]
-            assert ours == theirs, f"{image.hex(' ')}: {ours!r}, not {theirs!r}"
-            refusals.add(ours.partition(" ")[2].partition(" ")[0])
+            wanted_refusal = refusal_of(lambda data=image, kit=robot: load_image(data, kit))  # type: ignore[misc]
+            machine_refusal = refusal_of(
+                lambda data=image, kit=robot: machine.run(data, kit, senses)  # type: ignore[misc]
+            )
+            assert wanted_refusal == machine_refusal, (
+                f"{image.hex(' ')}: {wanted_refusal!r}, not {machine_refusal!r}"
+            )
+            refusals.add(wanted_refusal.partition(" ")[2].partition(" ")[0])
     assert {"", "OTHER_KIT", "NO_SUCH_DEVICE", "OTHER_VERSION", "DAMAGED"} <= refusals, refusals

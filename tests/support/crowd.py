@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager
 
 HALF_A_REQUEST = b"POST /robots HTTP/1.1\r\nHost: "
 CONNECTIONS_PER_PROCESS = 100  # connections of a process: not more than wait for a listener at once
-CODE = """
+CONNECTING_CODE = """
 import contextlib, socket, sys
 host, port, source, count, says = sys.argv[1:]
 says = [bytes.fromhex(each) for each in says.split(",")]
@@ -34,16 +34,20 @@ sys.stdin.read()
 
 @contextmanager
 def crowd(
-    *ports: int, count: int = 1000, says: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
+    *ports: int, count: int = 1000, packets: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
     source: str = "",
 ) -> Iterator[None]:  # fmt: skip
     """Open so many connections to each port, which send one of `says` in turn."""
     with ExitStack() as stack:
         for port in ports:
-            for begin in range(0, count, CONNECTIONS_PER_PROCESS):
+            for start_index in range(0, count, CONNECTIONS_PER_PROCESS):
                 stack.enter_context(
                     _open_connections(
-                        port, min(CONNECTIONS_PER_PROCESS, count - begin), says, host, source
+                        port,
+                        min(CONNECTIONS_PER_PROCESS, count - start_index),
+                        packets,
+                        host,
+                        source,
                     )
                 )
         yield
@@ -51,10 +55,21 @@ def crowd(
 
 @contextmanager
 def _open_connections(
-    port: int, count: int, says: Sequence[bytes], host: str, source: str
+    port: int, count: int, packets_sent: Sequence[bytes], host: str, source: str
 ) -> Iterator[None]:
-    packets = ",".join(data.hex() for data in says)
-    words = [sys.executable, "-I", "-S", "-c", CODE, host, str(port), source, str(count), packets]
+    packets = ",".join(data.hex() for data in packets_sent)
+    words = [
+        sys.executable,
+        "-I",
+        "-S",
+        "-c",
+        CONNECTING_CODE,
+        host,
+        str(port),
+        source,
+        str(count),
+        packets,
+    ]
     with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout and process.stdout.readline() == b"here\n"

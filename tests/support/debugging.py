@@ -22,7 +22,7 @@ class Halt(NamedTuple):
     task: int
 
 
-class Debugged:
+class DebuggedRobot:
     """A robot that holds a program, and its computer."""
 
     def __init__(
@@ -41,9 +41,9 @@ class Debugged:
     def start(self, is_detached: bool = False) -> None:
         assert self.robot.until(self.session, self.session.start(is_detached)) == OK
 
-    def go(self, how: int = RESUME_GO) -> bool:
+    def go(self, mode: int = RESUME_GO) -> bool:
         """Go on; return whether it was halted."""
-        reply = self.robot.complete(self.session, self.session.resume(how))
+        reply = self.robot.complete(self.session, self.session.resume(mode))
         return bool(reply.was_halted)
 
     def step(self) -> bool:
@@ -55,18 +55,18 @@ class Debugged:
         self.events += events
         return events
 
-    def halt(self, limit_ms: int = 5000) -> Halt | None:
+    def halt(self, timeout_ms: int = 5000) -> Halt | None:
         """Wait for the next halt; None if the run ends first, or the time is over."""
         event = self.until(
-            lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), limit_ms
+            lambda event: event.name in ("HALTED", "DONE", "FAULT", "STOPPED"), timeout_ms
         )
         return Halt(event.offset, event.task) if isinstance(event, HaltedEvent) else None
 
-    def until(self, is_it: Callable[[Event], bool], limit_ms: int = 5000) -> Event | None:
-        end_ms = self.robot.now_ms + limit_ms
+    def until(self, matches: Callable[[Event], bool], timeout_ms: int = 5000) -> Event | None:
+        end_ms = self.robot.now_ms + timeout_ms
         event: Event | None = None
         while self.robot.now_ms < end_ms and event is None:
-            event = next(filter(is_it, self.talk(1)), None)
+            event = next(filter(matches, self.talk(1)), None)
         return event
 
     def is_halted(self) -> bool:
@@ -90,9 +90,9 @@ class Debugged:
         return list(iter_unpack("<BHI", reply.tasks))
 
 
-def debug(text: str, *places: int, robot: HostFirmware | None = None) -> Debugged:
+def debug(text: str, *places: int, robot: HostFirmware | None = None) -> DebuggedRobot:
     """Return a robot with a started program that has these breakpoints."""
-    session = Debugged(text, robot)
+    session = DebuggedRobot(text, robot)
     assert session.places(*places) == OK
     session.start()
     return session

@@ -21,9 +21,9 @@ def drawings_of(*wanted: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> l
         {"robot": robot_by_name[name], "state": state, "seen": robot_state}
         for name, state, robot_state in wanted
     ]
-    drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, given=json.dumps(requests))[0])
+    drawings: list[Drawing] = json.loads(in_node(DRAW_SCRIPT, input_text=json.dumps(requests))[0])
     return drawings
 
 
-def shapes(drawing: Drawing, how: str, color: str) -> list[list[float]]:
-    return [numbers for kind, numbers, fill in drawing if (kind, fill) == (how, color)]
+def shapes(drawing: Drawing, style: str, color: str) -> list[list[float]]:
+    return [numbers for kind, numbers, fill in drawing if (kind, fill) == (style, color)]

@@ -21,8 +21,8 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     """
     yes, show, end = simple("PUSH_TRUE"), simple("SHOW"), simple("RETURN")
     count = simple("LOOP8") + b"\x01"
-    for values, caught_at in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
-        yield yes * values, caught_at
+    for values, fault_step in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
+        yield yes * values, fault_step
     for name in ("TIME", "PUSH_FALSE", "PUSH_VAR_0", "PUSH_SENSOR_0", "PUSH_READ_0", "PUSH_NUM_1"):
         yield yes * STACK_VALUES + simple(name), STACK_VALUES
     for name in ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "PUSH8", "PUSH16", "PUSH32"):
@@ -38,22 +38,22 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield simple(name) + bytes(3), 0
     yield simple("SET_VAR_0"), 0
     yield yes + simple("MOTORS"), 1
-    for variable, caught_at in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
+    for variable, fault_step in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
         number = bytes([variable])
-        yield simple("SET_VAR8") + number + b"\x01", caught_at
-        yield simple("ADD_VAR8") + number + b"\x01", caught_at
-        yield simple("ADD_VAR") + b"\x00" + number, caught_at
-        yield simple("ADD_VAR") + number + b"\x00", caught_at
-        yield simple("PUSH_VAR") + number, caught_at
-        yield yes + simple("SET_VAR") + number, None if caught_at is None else 1
-        yield simple("INC_VAR") + number, caught_at
-        yield simple("DEC_VAR") + number, caught_at
-        yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught_at
-        yield simple("IF_VAR16_NE") + number + b"\x07\x00\x00", caught_at
-    for variable, caught_at in ((sensors - 1, None), (sensors, 0), (255, 0)):
+        yield simple("SET_VAR8") + number + b"\x01", fault_step
+        yield simple("ADD_VAR8") + number + b"\x01", fault_step
+        yield simple("ADD_VAR") + b"\x00" + number, fault_step
+        yield simple("ADD_VAR") + number + b"\x00", fault_step
+        yield simple("PUSH_VAR") + number, fault_step
+        yield yes + simple("SET_VAR") + number, None if fault_step is None else 1
+        yield simple("INC_VAR") + number, fault_step
+        yield simple("DEC_VAR") + number, fault_step
+        yield simple("IF_VAR8_NE") + number + b"\x07\x00", fault_step
+        yield simple("IF_VAR16_NE") + number + b"\x07\x00\x00", fault_step
+    for variable, fault_step in ((sensors - 1, None), (sensors, 0), (255, 0)):
         number = bytes([variable])
         for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
-            yield simple(name) + number, caught_at
+            yield simple(name) + number, fault_step
     # a distance that leads beyond all addresses of 16 bits, to the instruction itself
     yield jump("ELSE", True, 0xFFFD), 0
     for op in OPS:  # one-byte instructions that depend on a machine's features
@@ -63,18 +63,18 @@ def unverified_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     yield count * frames, None
     yield count * (frames + 1), 2 * frames
     yield simple("LOOP8") + b"\xc8" + end, 200  # a loop is closed as a call
-    close = jump("NEXT", False, 0)
-    yield count + close, None
-    yield close, 0
+    loop_end = jump("NEXT", False, 0)
+    yield count + loop_end, None
+    yield loop_end, 0
     yield jump("BREAK_LOOP", False, 0), 0
     calls = b"".join(jump("CALL", False, 0) for _ in range(frames + 1))
     yield calls[:-2], None
     yield calls, 2 * frames
     yield end, 0
-    for far in (False, True):
-        skip = jump("ELSE", far, 0)
+    for is_far in (False, True):
+        skip = jump("ELSE", is_far, 0)
         yield skip, None
-        yield jump("ELSE", far, 1), len(skip) + 1
+        yield jump("ELSE", is_far, 1), len(skip) + 1
     yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
     yield jump("AGAIN", True, 4), 0xFFFF
     # A cut instruction reads the bytes after the code.

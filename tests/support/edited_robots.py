@@ -10,7 +10,7 @@ FOLDER = Path(robots.__file__).parent
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
 
 
-def edit_profile(name: str, old: str, new: str) -> str:
+def edit_profile(name: str, old_text: str, new_text: str) -> str:
     """The text of a shipped profile with its first `old` replaced."""
-    assert old in TEXTS[name]
-    return TEXTS[name].replace(old, new, 1)
+    assert old_text in TEXTS[name]
+    return TEXTS[name].replace(old_text, new_text, 1)

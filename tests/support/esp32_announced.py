@@ -17,7 +17,7 @@ LOOK_S = 0.1
 PORT = 8473  # port that the firmware announces; robots on this computer use free ports
 
 
-class Announced:
+class AnnouncedNames:
     """Repeats what a robot announces until `close`."""
 
     def __init__(self, robot: Esp32PtyRobot) -> None:
@@ -29,7 +29,7 @@ class Announced:
         self._thread = threading.Thread(target=self._follow, daemon=True)
         self._thread.start()
 
-    def __enter__(self) -> Announced:
+    def __enter__(self) -> AnnouncedNames:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -38,26 +38,26 @@ class Announced:
         self._network.close()
 
     def _follow(self) -> None:
-        before: Any = None
+        last_state: Any = None
         while not self._is_over.wait(LOOK_S):
             radios, number = self._read_radios()
-            now = _info(radios, number) if radios.service else None
-            if now == before:
+            state = _info(radios, number) if radios.service else None
+            if state == last_state:
                 continue
-            if before is not None:
-                self._network.unregister_service(before)
-            if now is not None:
-                self._network.register_service(now)
-            before = now
+            if last_state is not None:
+                self._network.unregister_service(last_state)
+            if state is not None:
+                self._network.register_service(state)
+            last_state = state
 
     def _read_radios(self) -> tuple[Radios, int]:
         packets: list[tuple[Radios, int]] = []
 
-        def look(robot: HostFirmware) -> None:
+        def follow_radios(robot: HostFirmware) -> None:
             assert isinstance(robot, Esp32Robot)
             packets.append((radios(robot), port_of(robot)))
 
-        self._robot.ask(look)
+        self._robot.ask(follow_radios)
         return packets[0]
 
 

@@ -35,9 +35,9 @@ def connect_to_broker(
     return robot, owner
 
 
-def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 60_000) -> None:
-    for _ in range(limit_ms // 20):
-        if holds():
+def until(robot: Esp32Robot, is_reached: Callable[[], bool], timeout_ms: int = 60_000) -> None:
+    for _ in range(timeout_ms // 20):
+        if is_reached():
             return
         for _ in range(20):
             robot.step()
@@ -53,9 +53,11 @@ def broker_settings_of(robot: Esp32Robot, owner: Session) -> tuple[str, str, str
     return wifi.MODES[wifi_reply.mode], wifi.STATES[wifi_reply.state], wifi_reply.network.decode()
 
 
-def list_present_robots(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[RobotPresence]:
+def list_present_robots(
+    robot: Esp32Robot, broker: Broker, group: str = "aula"
+) -> list[RobotPresence]:
     robot.wait(20)
-    return at.list_robots(group)
+    return broker.list_robots(group)
 
 
 def motor_state(robot: Esp32Robot) -> str:

@@ -15,7 +15,7 @@ class Esp32PtyRobot(PtyRobot):
         """`seed` makes its id."""
         self.profile = robots.load(name)
         self.seed = seed
-        self._kept: Kept = EMPTY_MEMORY
+        self._kept_memory: Kept = EMPTY_MEMORY
         super().__init__(self.profile.kit)
 
     def hang(self, milliseconds: int) -> None:
@@ -35,11 +35,11 @@ class Esp32PtyRobot(PtyRobot):
             self._robot = self._make_robot(TASK_WATCHDOG)
 
     def _make_robot(self, reset: int = POWER_ON, seed: int = 0) -> HostFirmware:
-        return Esp32Robot(self.profile, self._kept, reset, seed or self.seed)
+        return Esp32Robot(self.profile, self._kept_memory, reset, seed or self.seed)
 
     def _take_power(self) -> None:
         if self._robot:
             assert isinstance(self._robot, Esp32Robot)
-            self._kept = self._robot.read_kept()
+            self._kept_memory = self._robot.read_kept()
             self._robot.close()
         self._robot = None

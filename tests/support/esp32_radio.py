@@ -22,19 +22,19 @@ class Client(Protocol):
     def receive(self, data: bytes, now_ms: int) -> None: ...
 
 
-class Bytes:
+class RawClient:
     """A client without a session: the bytes to send, and the received ones."""
 
     def __init__(self, line: bytes = b"") -> None:
         self.to_send = line
-        self.heard = b""
+        self.received = b""
 
     def poll(self, now_ms: int) -> bytes:
         data, self.to_send = self.to_send, b""
         return data
 
     def receive(self, data: bytes, now_ms: int) -> None:
-        self.heard += data
+        self.received += data
 
 
 class End(Protocol):
@@ -50,11 +50,11 @@ class End(Protocol):
 class LowEnergy:
     """A client of the Nordic UART service. `slow`: it takes one notification in so many looks."""
 
-    def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, slow: int = 1) -> None:
-        self.robot, self.mtu, self.slow = robot, mtu, slow
+    def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, look_interval: int = 1) -> None:
+        self.robot, self.mtu, self.look_interval = robot, mtu, look_interval
         self.lengths: list[int] = []
-        self._waiting: list[bytes] = []
-        self._looks = 0
+        self._notifications: list[bytes] = []
+        self._look_count = 0
         self._number = robot.radio("c")
         if mtu != LEAST_MTU:
             robot.radio("m", self._number + pack("<H", mtu))
@@ -68,9 +68,9 @@ class LowEnergy:
         self.robot.radio("s", self._number + bytes([has_subscribed]))
 
     def send(self, data: bytes) -> None:
-        most = self.mtu - 3
-        for k in range(0, len(data), most):
-            self.robot.radio("w", self._number + _text(data[k : k + most]))
+        max_bytes = self.mtu - 3
+        for k in range(0, len(data), max_bytes):
+            self.robot.radio("w", self._number + _text(data[k : k + max_bytes]))
 
     def take(self) -> bytes:
         answer = self.robot.radio("n", self._number)
@@ -78,11 +78,11 @@ class LowEnergy:
         for _ in range(count):
             data, answer = _split_first(answer)
             self.lengths.append(len(data))
-            self._waiting.append(data)
-        self._looks += 1
-        if self._looks % self.slow or not self._waiting:
+            self._notifications.append(data)
+        self._look_count += 1
+        if self._look_count % self.look_interval or not self._notifications:
             return b""
-        return self._waiting.pop(0)
+        return self._notifications.pop(0)
 
     def leave(self) -> None:
         self.robot.radio("d", self._number)
@@ -173,9 +173,9 @@ def set_network_in_reach(robot: Esp32Robot, name: str, password: str) -> None:
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
-def limit_accepted_bytes(robot: Esp32Robot, most: int) -> None:
+def limit_accepted_bytes(robot: Esp32Robot, max_bytes: int) -> None:
     """Limit the bytes that a client in a network accepts at once; 0 accepts none for now."""
-    robot.radio("t", pack("<H", most))
+    robot.radio("t", pack("<H", max_bytes))
 
 
 def announce_computer(robot: Esp32Robot, name: str, address: str, wait_ms: int = 0) -> None:
@@ -185,12 +185,15 @@ def announce_computer(robot: Esp32Robot, name: str, address: str, wait_ms: int =
 
 
 def talk(
-    robot: Esp32Robot, ends: Sequence[tuple[End | None, Client]], milliseconds: int, flags: int = 0
+    robot: Esp32Robot,
+    clients: Sequence[tuple[End | None, Client]],
+    milliseconds: int,
+    flags: int = 0,
 ) -> None:
     """Let all of them talk with the robot for a while; None is the end of the cable."""
     for _ in range(milliseconds):
         cable = b""
-        for end, client in ends:
+        for end, client in clients:
             data = client.poll(robot.now_ms)
             if end is None:
                 cable += data
@@ -198,7 +201,7 @@ def talk(
                 end.send(data)
         heard_bytes = robot.step(cable, flags, TICKS)
         flags = 0
-        for end, client in ends:
+        for end, client in clients:
             client.receive(heard_bytes if end is None else end.take(), robot.now_ms)
 
 

@@ -52,9 +52,9 @@ def join_network(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot
     return robot, owner
 
 
-def wifi_reply_of(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
-    request = who.wifi()
-    assert wait_for_outcome(robot, ends, request) == "OK"
+def wifi_reply_of(robot: Esp32Robot, clients: Ends, client: Session) -> WifiReply:
+    request = client.wifi()
+    assert wait_for_outcome(robot, clients, request) == "OK"
     assert request.outcome
     return request.outcome.values
 
@@ -69,8 +69,8 @@ def remote(robot: Esp32Robot, keys: Keys | None, nonce: int = 9) -> Session:
 
 
 def remote_with_wrong_key(robot: Esp32Robot, keys: Keys, nonce: int) -> Session:
-    wrong = Keys()
-    wrong.stored_keys = [
+    wrong_keys = Keys()
+    wrong_keys.stored_keys = [
         robot_key._replace(key=bytes([nonce + 99] * 16)) for robot_key in keys.stored_keys
     ]
-    return remote(robot, wrong, nonce)
+    return remote(robot, wrong_keys, nonce)

@@ -26,13 +26,13 @@ from _pytest.runner import runtestprotocol
 from tests.support.casefile import ROOT
 
 LIMIT_S = 60  # processor time
-TROUBLE = 2  # exit code of a child whose test was not run
-SKIPPED = 3  # outcome if a test lacks something on this computer
+TROUBLE_CODE = 2  # exit code of a child whose test was not run
+SKIPPED_CODE = 3  # outcome if a test lacks something on this computer
 PASSES, FAILS, SKIPS = "passes", "fails", "skips"
 Pair = tuple[CodeType, CodeType]
 
 
-class Try(NamedTuple):
+class TestTry(NamedTuple):
     """A file, its text with a mistake, and the test that is to notice it."""
 
     file: str
@@ -40,11 +40,11 @@ class Try(NamedTuple):
     test: str
 
 
-class Elsewhere(Exception):
+class NoFunctionFound(Exception):
     """Raised if the difference is in no function that can be found."""
 
 
-def list_outcomes(tries: Sequence[Try], folder: Path) -> list[str]:
+def list_outcomes(tries: Sequence[TestTry], folder: Path) -> list[str]:
     """Return for each whether its test FAILS, PASSES or SKIPS, or the reason why that is unknown.
 
     `folder` is a copy of the repository. In this run, the tests of Python, which are quick, must
@@ -63,7 +63,7 @@ def list_outcomes(tries: Sequence[Try], folder: Path) -> list[str]:
 class Plugin:
     """Runs the test of each try instead of all that are collected."""
 
-    def __init__(self, tries: Sequence[Try]) -> None:
+    def __init__(self, tries: Sequence[TestTry]) -> None:
         self.tries = tries
         self.answers: list[str] = []
 
@@ -79,56 +79,58 @@ class Plugin:
         return True
 
 
-def _run_try(tried_test: Try, items: Sequence[pytest.Item]) -> str:
+def _run_try(tried_test: TestTry, items: Sequence[pytest.Item]) -> str:
     path = ROOT / tried_test.file
     if path.suffix == ".py":
         try:
             return _run_in_child(items, _exchange(tried_test))
-        except Elsewhere as why:
-            return str(why)
-    right = path.read_bytes()
+        except NoFunctionFound as error:
+            return str(error)
+    original_data = path.read_bytes()
     path.write_text(tried_test.text, encoding="utf-8")
     try:
         return _run_in_child(items, lambda: None)
     finally:
-        path.write_bytes(right)
+        path.write_bytes(original_data)
 
 
-def _run_in_child(items: Sequence[pytest.Item], begin: Callable[[], None]) -> str:
+def _run_in_child(items: Sequence[pytest.Item], begin_try: Callable[[], None]) -> str:
     """Run tests after `begin`; an endless loop fails."""
     child = os.fork()
     if child == 0:
-        code = TROUBLE
+        code = TROUBLE_CODE
         try:
             os.setsid()
             resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
-            begin()
+            begin_try()
             rows = [runtestprotocol(item, log=False, nextitem=None) for item in items]
             reports = [test_report for row in rows for test_report in row]
             code = int(any(report.failed for report in reports if report.when == "call"))
             if not code and any(report.skipped for report in reports):
-                code = SKIPPED
+                code = SKIPPED_CODE
         finally:
             os._exit(code)
     _, status = os.waitpid(child, 0)
     with suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)  # also ends the processes of its tests
     code = os.waitstatus_to_exitcode(status)
-    assert code != TROUBLE
-    return {0: PASSES, SKIPPED: SKIPS}.get(code, FAILS)
+    assert code != TROUBLE_CODE
+    return {0: PASSES, SKIPPED_CODE: SKIPS}.get(code, FAILS)
 
 
-def _exchange(tried_test: Try) -> Callable[[], None]:
+def _exchange(tried_test: TestTry) -> Callable[[], None]:
     """Return a function that installs the mutant in the imported module."""
     name = tried_test.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
     module = importlib.import_module(name.removesuffix(".__init__"))
-    right = (ROOT / tried_test.file).read_text(encoding="utf-8")
+    original_text = (ROOT / tried_test.file).read_text(encoding="utf-8")
     function_by_code = {function.__code__: function for function in _functions(module, module)}
     pairs = list(
-        _pairs(*(compile(text, tried_test.file, "exec") for text in (right, tried_test.text)))
+        _pairs(
+            *(compile(text, tried_test.file, "exec") for text in (original_text, tried_test.text))
+        )
     )
     if not pairs or any(old_code not in function_by_code for old_code, _ in pairs):
-        raise Elsewhere("a function that differs is not found")
+        raise NoFunctionFound("a function that differs is not found")
 
     def exchange() -> None:
         for old_code, becomes in pairs:
@@ -139,11 +141,13 @@ def _exchange(tried_test: Try) -> Callable[[], None]:
 
 def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
     """Yield the functions that differ in the code of a module or a class, outermost ones."""
-    old, new = ([const for const in code.co_consts if isinstance(const, CodeType)]
-                for code in (old_code, becomes))  # fmt: skip
-    if _own_content(old_code) != _own_content(becomes) or len(old) != len(new):
-        raise Elsewhere("what differs is in no function")
-    for pair in zip(old, new, strict=True):
+    old_functions, new_functions = (
+        [const for const in code.co_consts if isinstance(const, CodeType)]
+        for code in (old_code, becomes)
+    )
+    if _own_content(old_code) != _own_content(becomes) or len(old_functions) != len(new_functions):
+        raise NoFunctionFound("what differs is in no function")
+    for pair in zip(old_functions, new_functions, strict=True):
         if pair[0] != pair[1]:
             if pair[0].co_flags & inspect.CO_OPTIMIZED:
                 yield pair
@@ -152,8 +156,8 @@ def _pairs(old_code: CodeType, becomes: CodeType) -> Iterator[Pair]:
 
 
 def _own_content(code: CodeType) -> tuple[object, ...]:
-    others = [const for const in code.co_consts if not isinstance(const, CodeType)]
-    return code.co_code, code.co_names, repr(others)
+    plain_constants = [const for const in code.co_consts if not isinstance(const, CodeType)]
+    return code.co_code, code.co_names, repr(plain_constants)
 
 
 def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[FunctionType]:
@@ -168,7 +172,7 @@ def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[Functio
 
 
 def main() -> int:
-    plugin = Plugin([Try(*values) for values in json.load(sys.stdin)])
+    plugin = Plugin([TestTry(*values) for values in json.load(sys.stdin)])
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # pytest's output goes to standard error
     tests = dict.fromkeys(tried_test.test for tried_test in plugin.tries)

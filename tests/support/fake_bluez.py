@@ -113,12 +113,12 @@ class Device(ServiceInterface):
 
     @dbus_method()
     async def Connect(self) -> _Nothing:  # noqa: N802
-        if self.peripheral.fails_at == "connect":
+        if self.peripheral.failing_stage == "connect":
             raise DBusError("org.bluez.Error.Failed", "le-connection-abort-by-remote")
         self.is_connected = True
         self.emit_properties_changed({"Connected": True})
         self.peripheral.connections += 1
-        if self.peripheral.fails_at == "services":
+        if self.peripheral.failing_stage == "services":
             self.part()
             return
         self._gatt = [f"{self.path}/service0010"]
@@ -183,7 +183,7 @@ class Characteristic(ServiceInterface):
 
     @dbus_method()
     def StartNotify(self) -> _Nothing:  # noqa: N802
-        if self.device.peripheral.fails_at == "notify":
+        if self.device.peripheral.failing_stage == "notify":
             self.device.part()
             return
         self.is_notifying = True
@@ -260,11 +260,11 @@ class FakeBluez:
             self.bus.export(ADAPTER, self.adapter)
         await self.bus.request_name("org.bluez")
 
-    def do(self, what: Callable[[], Any]) -> None:
+    def do(self, function: Callable[[], Any]) -> None:
         """Do something in the bus's thread."""
 
         async def work() -> None:
-            what()
+            function()
 
         asyncio.run_coroutine_threadsafe(work(), self.loop).result(STEP_S)
 
@@ -281,7 +281,7 @@ class FakeBluez:
             return
         self.adapter.rounds += 1
         for device in self.devices.values():
-            is_late = device.peripheral.late > self.adapter.rounds
+            is_late = device.peripheral.late_rounds > self.adapter.rounds
             if device.peripheral.is_on and not is_late and not device.is_connected:
                 device.advertise()
         self.loop.call_later(ADVERTISING_INTERVAL_S, self.advertise)

@@ -14,15 +14,15 @@ class FakeComputer(System):
     def __init__(self, root: Path, platform: str) -> None:
         super().__init__(root)
         self.platform = platform
-        self.listed: list[ListedPort] = []
+        self.listed_ports: list[ListedPort] = []
         self.outputs: dict[tuple[str, ...], str] = {}
         self.owners: dict[str, tuple[int, bool]] = {}
         self.group_numbers: set[int] = set()
         self.user_name = "somebody"
-        self.asked: list[tuple[str, ...]] = []
+        self.commands: list[tuple[str, ...]] = []
 
     def add_port(self, port: str, description: str = "") -> None:
-        self.listed.append(ListedPort(port, description))
+        self.listed_ports.append(ListedPort(port, description))
         self.owners.setdefault(port, (20, True))
 
     def write(self, path: str, text: str) -> None:
@@ -43,15 +43,15 @@ class FakeComputer(System):
         if tty:
             self.write(f"{part}/{tty}/dev", "188:0\n")
 
-    def program(self, number: int, name: str, opens: str = "") -> None:
+    def program(self, number: int, name: str, opened_port: str = "") -> None:
         self.write(f"/proc/{number}/comm", name + "\n")
-        if opens:
+        if opened_port:
             folder = self.root / f"proc/{number}/fd"
             folder.mkdir()
-            (folder / "3").symlink_to(opens)
+            (folder / "3").symlink_to(opened_port)
 
     def ports(self) -> list[ListedPort]:
-        return self.listed
+        return self.listed_ports
 
     def owner(self, path: str) -> Owner | None:
         return Owner(*self.owners[path]) if path in self.owners else None
@@ -63,5 +63,5 @@ class FakeComputer(System):
         return self.user_name
 
     def output(self, *words: str) -> str | None:
-        self.asked.append(words)
+        self.commands.append(words)
         return self.outputs.get(words)

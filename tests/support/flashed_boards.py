@@ -56,20 +56,24 @@ def tsc(package: Path, *words: str, **variables: str) -> CommandResult:
 
 def run_interrupted(ready_file: Path, *words: str, **variables: str) -> CommandResult:
     """Run a command, and press Ctrl-C as soon as a file has content; return the result."""
-    running = subprocess.Popen(
+    process = subprocess.Popen(
         command(*words), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
     )
     while not (ready_file.exists() and ready_file.read_text()):
-        assert running.poll() is None
-    running.send_signal(signal.SIGINT)
-    _, output = running.communicate(timeout=HANG_LIMIT_S)
-    return CommandResult(running.returncode, "", output)
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    _, output = process.communicate(timeout=HANG_LIMIT_S)
+    return CommandResult(process.returncode, "", output)
 
 
-def new_board(of: Bootloader) -> Uno:
+def new_board(loader: Bootloader) -> Uno:
     """Return a board as it comes: a bootloader, and no sketch worth the name."""
     uno = Uno(
-        build_uno("nothing"), board=of.board, bootloader=of.file, baud=of.baud, tells_sleep=False
+        build_uno("nothing"),
+        board=loader.board,
+        bootloader=loader.file,
+        baud=loader.baud,
+        tells_sleep=False,
     )
-    uno.go(speed=1.5 if of.board == "mega" else 1.0)  # a Mega is given its time to begin
+    uno.go(speed=1.5 if loader.board == "mega" else 1.0)  # a Mega is given its time to begin
     return uno

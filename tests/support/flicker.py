@@ -16,7 +16,7 @@ class Flicker:
         self.has_two = discs_of(discs).has_two_channels
         self.period_ms = 1000 / hertz
         self.edges = robot.wheels.edges
-        self.shown = 0
+        self.shown_count = 0
         self.next_ms: float = robot.now_ms
         robot.wheels.edges = self.flickering  # type: ignore[method-assign]
 
@@ -26,6 +26,6 @@ class Flicker:
             self.next_ms = now_ms + self.period_ms
         while self.next_ms <= now_ms:
             self.next_ms += self.period_ms
-            self.wheel.counted_edges += -1 if self.has_two and self.shown % 2 else 1
-            self.shown += 1
+            self.wheel.counted_edges += -1 if self.has_two and self.shown_count % 2 else 1
+            self.shown_count += 1
         return self.edges(now_ms)

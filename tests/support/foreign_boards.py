@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tests.support.simulated_ends import Nobody
+from tests.support.simulated_ends import UnpoweredEnd
 
 ROM = (
     b"ets Jul 29 2019 12:21:46\r\n\r\n"
@@ -108,33 +108,33 @@ RECORDINGS: Mapping[str, Recording] = {
 }  # fmt: skip
 
 
-class Board(Nobody):
+class Board(UnpoweredEnd):
     """A board that starts when its port is opened, and takes `boot_ms` for that.
 
     `starts` is its output then, repeated every `again_ms`.
     """
 
-    starts = b""
+    start_bytes = b""
     boot_ms = 300
-    again_ms = 0
+    repeat_ms = 0
 
     def __init__(self, baud: int) -> None:
         super().__init__(baud)
-        self._since_ms = 0
+        self._elapsed_ms = 0
         self._line = b""
 
     def restart(self) -> None:
-        self._since_ms = 0
+        self._elapsed_ms = 0
         self._line = b""
 
     def answer(self, data: bytes) -> bytes:
-        self._since_ms += 1
-        if self._since_ms < self.boot_ms:
+        self._elapsed_ms += 1
+        if self._elapsed_ms < self.boot_ms:
             return b""
-        if self._since_ms == self.boot_ms:
-            return self.starts
-        if self.again_ms and (self._since_ms - self.boot_ms) % self.again_ms == 0:
-            return self.starts
+        if self._elapsed_ms == self.boot_ms:
+            return self.start_bytes
+        if self.repeat_ms and (self._elapsed_ms - self.boot_ms) % self.repeat_ms == 0:
+            return self.start_bytes
         return b"".join(self.take(byte) for byte in data)
 
     def take(self, byte: int) -> bytes:
@@ -145,7 +145,7 @@ class Board(Nobody):
 class FirmataBoard(Board):
     """Answers 0xF9, and the question for its name, outside of a sysex or as one."""
 
-    starts, boot_ms = FIRMATA, 2200  # its lamp first blinks the version
+    start_bytes, boot_ms = FIRMATA, 2200  # its lamp first blinks the version
     _sysex: bytes | None = None
 
     def take(self, byte: int) -> bytes:
@@ -163,15 +163,15 @@ class FirmataBoard(Board):
 class MbotBoard(Board):
     """Answers 0xFF 0x55, a length, and so many bytes."""
 
-    starts, boot_ms = MBOT_START, 1300
+    start_bytes, boot_ms = MBOT_START, 1300
 
     def take(self, byte: int) -> bytes:
         self._line += bytes([byte])
-        at = self._line.find(b"\xff\x55")
-        if at < 0:
+        offset = self._line.find(b"\xff\x55")
+        if offset < 0:
             self._line = self._line[-1:]
             return b""
-        frame = self._line[at:]
+        frame = self._line[offset:]
         if len(frame) < 3 or len(frame) < 3 + frame[2]:
             return b""
         self._line = b""
@@ -183,7 +183,7 @@ class MbotBoard(Board):
 class SnekBoard(Board):
     """Says each printable character again, and prompts; returns Ctrl-T at once."""
 
-    starts, boot_ms = SNEK, 100
+    start_bytes, boot_ms = SNEK, 100
 
     def take(self, byte: int) -> bytes:
         if byte == 0x14:
@@ -196,7 +196,7 @@ class SnekBoard(Board):
 class PythonBoard(Board):
     """A MicroPython at its prompt: Ctrl-A leads to the raw prompt, Ctrl-B back."""
 
-    starts, boot_ms = ROM + MICROPYTHON, 400
+    start_bytes, boot_ms = ROM + MICROPYTHON, 400
     _is_raw = False
 
     def take(self, byte: int) -> bytes:
@@ -228,7 +228,7 @@ class SilentPython(PythonBoard):
 class AtBoard(Board):
     """Espressif's AT firmware: it says a command again, and then does it."""
 
-    starts = ROM + b"\r\nready\r\n"
+    start_bytes = ROM + b"\r\nready\r\n"
 
     def take(self, byte: int) -> bytes:
         self._line += bytes([byte])
@@ -242,21 +242,21 @@ class AtBoard(Board):
 
 
 class Esp32Board(Board):
-    starts, boot_ms = ROM, 20
+    start_bytes, boot_ms = ROM, 20
 
 
 class BrownoutBoard(Board):
-    starts, boot_ms, again_ms = BROWNOUT, 20, 700
+    start_bytes, boot_ms, repeat_ms = BROWNOUT, 20, 700
 
 
 class DownloadBoard(Board):
-    starts, boot_ms = C3_DOWNLOAD, 20
+    start_bytes, boot_ms = C3_DOWNLOAD, 20
 
 
 class EmptyBoard(Board):
     """A board without a program, which its watchdog restarts repeatedly."""
 
-    starts, boot_ms, again_ms = EMPTY_FLASH, 20, 300
+    start_bytes, boot_ms, repeat_ms = EMPTY_FLASH, 20, 300
 
 
 class EchoSketch(Board):
@@ -271,7 +271,7 @@ class EchoSketch(Board):
 class LineEchoSketch(Board):
     """Prints the received text after a second of silence: `You said: …`."""
 
-    starts, boot_ms = b"Ready\r\n", 100
+    start_bytes, boot_ms = b"Ready\r\n", 100
     _quiet_ms = 0
 
     def answer(self, data: bytes) -> bytes:

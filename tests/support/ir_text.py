@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tiniscript.base.fixed_point import as_text
 from tiniscript.semantics.ir import Body, Expression, If, Loop, Move, Program, While, values_of
 
-SHOWN = ("direction", "unit", "sensor", "actuator", "variable", "procedure", "reads")
+SHOWN_FIELDS = ("direction", "unit", "sensor", "actuator", "variable", "procedure", "reads")
 
 
 def expression_text(expression: Expression) -> str:
@@ -30,10 +30,10 @@ def program_text(program: Program) -> str:
     for procedure in (procedure for procedure in program.procedures if procedure.is_called):
         lines += [f"DEF {procedure.name}", *_body_lines(procedure.body, "  ")]
     for task in program.tasks:
-        look = "TASK"
+        task_head = "TASK"
         if task.until is not None:
-            look = f"WHEN {task.until.reads} {expression_text(task.until.condition)}"
-        lines += [look, *_body_lines(task.body, "  ")]
+            task_head = f"WHEN {task.until.reads} {expression_text(task.until.condition)}"
+        lines += [task_head, *_body_lines(task.body, "  ")]
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 
 
@@ -47,12 +47,12 @@ def _body_lines(body: Body, indent: str) -> Iterator[str]:
                 words.append("FOREVER")
             elif name in values:
                 words.append(expression_text(value))
-            elif name in SHOWN:
+            elif name in SHOWN_FIELDS:
                 words.append(str(value))
         yield indent + " ".join(words)
         if isinstance(statement, Move) and statement.until is not None:
-            reads, condition = statement.until
-            yield f"{indent}  until {reads} {expression_text(condition)}"
+            reading, condition = statement.until
+            yield f"{indent}  until {reading} {expression_text(condition)}"
         if isinstance(statement, If):
             for arm in statement.arms:
                 yield f"{indent}  arm {arm.reads} {expression_text(arm.condition)}"

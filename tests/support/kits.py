@@ -7,16 +7,16 @@ from tests.oracle import programs
 from tiniscript.base.kit import NUMBER, YES_NO, Device, Kit
 
 
-def _devices(theirs: tuple[oracle.Device, ...]) -> tuple[Device, ...]:
+def _devices(oracle_devices: tuple[oracle.Device, ...]) -> tuple[Device, ...]:
     return tuple(
         Device(device.name, YES_NO if device.is_yes_no else NUMBER, "", device.low, device.high)
-        for device in theirs
+        for device in oracle_devices
     )
 
 
-def _kit(theirs: oracle.Kit) -> Kit:
-    devices = _devices(theirs.sensors), _devices(theirs.actuators)
-    return Kit(*devices, theirs.speed, theirs.turn)
+def _kit(oracle_kit: oracle.Kit) -> Kit:
+    devices = _devices(oracle_kit.sensors), _devices(oracle_kit.actuators)
+    return Kit(*devices, oracle_kit.speed, oracle_kit.turn)
 
 
 KITS = [(kit, _kit(kit)) for kit in (oracle.PAPER_KIT, programs.WIDE_KIT)]

@@ -30,15 +30,15 @@ class AnsweringRobot:
     """
 
     def __init__(
-        self, takes: Callable[[int, int, bytes], tuple[int, int] | None],
+        self, take_data: Callable[[int, int, bytes], tuple[int, int] | None],
         largest: int = LARGE_FRAME, window: int = LARGE_WINDOW, baud: int = BAUD,
     ) -> None:  # fmt: skip
-        self.takes = takes
+        self.take_data = take_data
         self.session = Session(3, baud, KIT)
         self.largest, self.window = largest, window
-        self.waiting: list[Frame] = []  # frames not answered yet
+        self.waiting_frames: list[Frame] = []  # frames not answered yet
         self.data: list[tuple[int, int, int]] = []  # numbers, offsets, bytes of DATA that came
-        self.most_waiting = self.longest = 0
+        self.most_waiting = self.longest_bytes = 0
         self.has_commit = False
         self.now_ms = 0
 
@@ -49,7 +49,7 @@ class AnsweringRobot:
             for packet in self.session.poll(self.now_ms).split(b"\0"):
                 frame = decode_frame(packet) if packet else None
                 if frame is not None:
-                    self.longest = max(self.longest, len(packet))
+                    self.longest_bytes = max(self.longest_bytes, len(packet))
                     due.append((self.now_ms + late_ms, frame))
             self.most_waiting = max(self.most_waiting, len(due))
             while due and due[0][0] <= self.now_ms:
@@ -71,7 +71,7 @@ class AnsweringRobot:
         elif frame.number == DATA:
             (offset,) = struct.unpack("<H", frame.payload[:2])
             self.data.append((frame.seq, offset, len(frame.payload) - 2))
-            progress = self.takes(len(self.data), offset, frame.payload[2:])
+            progress = self.take_data(len(self.data), offset, frame.payload[2:])
             payload = None if progress is None else struct.pack("<BH", *progress)
         elif frame.number == BY_NAME["COMMIT"].number:
             self.has_commit = True
@@ -87,12 +87,12 @@ class InOrderReceiver:
     def __init__(
         self, lost_numbers: tuple[int, ...] = (), unanswered_numbers: tuple[int, ...] = ()
     ) -> None:
-        self.lost, self.unanswered = lost_numbers, unanswered_numbers
+        self.lost_numbers, self.unanswered_numbers = lost_numbers, unanswered_numbers
         self.received = b""
 
     def __call__(self, number: int, offset: int, data: bytes) -> tuple[int, int] | None:
-        if number in self.lost:
+        if number in self.lost_numbers:
             return None
         if offset == len(self.received):
             self.received += data
-        return None if number in self.unanswered else (OK, len(self.received))
+        return None if number in self.unanswered_numbers else (OK, len(self.received))

@@ -49,7 +49,7 @@ from tiniscript.link.statuses import name_of
 STEP_MS = 10
 KIT = 0x231B
 SHOWN_BYTES = 24  # bytes shown of a longer packet
-OF_PACKETS = re.compile("[>=]|wait |held ")
+PACKET_ROW = re.compile("[>=]|wait |held ")
 KINDS = ("link", "packets", "computer packets", "robot packets")
 
 
@@ -83,7 +83,7 @@ def _read(path: Path) -> list[LinkCase]:
             fence = "" if fence else row[3:].strip() or "text"
             if fence in KINDS:
                 cases.append(LinkCase(path, number, fence, title, []))
-        elif fence in KINDS[1:] and not OF_PACKETS.match(row):
+        elif fence in KINDS[1:] and not PACKET_ROW.match(row):
             if not cases[-1].rows:
                 cases.pop()  # the case of the heading above, which has no code
             cases.append(LinkCase(path, number, fence, row, []))
@@ -104,12 +104,12 @@ def names_of(path: Path) -> dict[str, list[str]]:
 
 def accept(case: LinkCase, rows: list[str]) -> None:
     """Write the results into the case if they differ; git shows the changes."""
-    now = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
-    old = case.path.read_text(encoding="utf-8").splitlines()
-    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{OF_PACKETS.pattern})").match
-    end = next(k for k in range(now.line, len(old)) if is_over(old[k]))
-    old[now.line : end] = shorten(rows, names_of(case.path))
-    case.path.write_text("\n".join(old) + "\n", encoding="utf-8")
+    written_case = next(link_case for link_case in _read(case.path) if link_case[2:] == case[2:])
+    old_lines = case.path.read_text(encoding="utf-8").splitlines()
+    is_over = re.compile(r"```" if case.kind == "link" else rf"(?!{PACKET_ROW.pattern})").match
+    end = next(k for k in range(written_case.line, len(old_lines)) if is_over(old_lines[k]))
+    old_lines[written_case.line : end] = shorten(rows, names_of(case.path))
+    case.path.write_text("\n".join(old_lines) + "\n", encoding="utf-8")
 
 
 def shorten(rows: list[str], named_mapping: Mapping[str, list[str]]) -> list[str]:
@@ -148,7 +148,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
     played_rows = []
     now_ms = 0
     is_late = False
-    lost = {">": 0, "<": 0}
+    losses_by_side = {">": 0, "<": 0}
     for row in rows:
         words = row.split()
         if not words or words[0].isdigit():
@@ -160,7 +160,7 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
         elif words[0] == "robot":
             robot.happens(words[1:])
         elif words[0] == "lose":
-            lost[words[1]] += 1
+            losses_by_side[words[1]] += 1
             continue
         elif words[0] == "late":
             is_late = True
@@ -170,9 +170,9 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
             steps = int(words[1]) // STEP_MS
         for _ in range(steps):
             data = computer.poll(now_ms)
-            mark = _mark(">", data, lost)
+            mark = _mark(">", data, losses_by_side)
             step = robot.step(now_ms, b"" if mark == ">x" else data, is_late)
-            reply_mark = _mark("<", step.sent, lost)
+            reply_mark = _mark("<", step.sent, losses_by_side)
             computer.receive(b"" if reply_mark == "<x" else step.sent, now_ms)
             if data:
                 played_rows += wire_rows(now_ms, mark, data)
@@ -185,9 +185,9 @@ def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
     return played_rows
 
 
-def _mark(side: str, data: bytes, lost: dict[str, int]) -> str:
-    if data and lost[side]:
-        lost[side] -= 1
+def _mark(side: str, data: bytes, losses_by_side: dict[str, int]) -> str:
+    if data and losses_by_side[side]:
+        losses_by_side[side] -= 1
         return side + "x"
     return side
 
@@ -239,8 +239,8 @@ def frame_text(frame: Frame) -> str:
 def format_value(value: int | bytes) -> str:
     if isinstance(value, int):
         return str(value)
-    short = value[:SHOWN_BYTES].hex() + ("..." if len(value) > SHOWN_BYTES else "")
-    return short or "-"
+    shown_hex = value[:SHOWN_BYTES].hex() + ("..." if len(value) > SHOWN_BYTES else "")
+    return shown_hex or "-"
 
 
 class SessionSide:
@@ -248,7 +248,7 @@ class SessionSide:
 
     def __init__(self) -> None:
         self.session = Session(nonce=0x01020304, kit=KIT)
-        self.pending: list[PendingRequest[Any]] = []
+        self.pending_requests: list[PendingRequest[Any]] = []
         self.now_ms = 0
 
     def ask(self, words: list[str]) -> None:
@@ -274,7 +274,7 @@ class SessionSide:
         }
         values = {name: int(value, 0) for name, value in flags.items() if value.isdecimal()}
         ask = actions.get(words[0]) or partial(getattr(session, words[0]), **values)
-        self.pending.append(ask())
+        self.pending_requests.append(ask())
 
     def poll(self, now_ms: int) -> bytes:
         self.now_ms = now_ms
@@ -286,7 +286,7 @@ class SessionSide:
     def outcome_rows(self) -> list[str]:
         rows = [_row("tells " + event.name, event_fields(event)) for event in self.session.events()]
         for request in [
-            pending_request for pending_request in self.pending if pending_request.outcome
+            pending_request for pending_request in self.pending_requests if pending_request.outcome
         ]:
             assert request.outcome
             name = {-1: "LOST", -2: "CANCELLED"}.get(request.outcome.status)
@@ -294,7 +294,7 @@ class SessionSide:
             detail = f" {request.outcome.detail}" if request.outcome.detail else ""
             values = request.outcome.values._asdict() if request.outcome.status == OK else {}
             rows.append(_row(f"outcome {name}{detail}", values))
-            self.pending.remove(request)
+            self.pending_requests.remove(request)
         return rows
 
 
@@ -352,7 +352,7 @@ def computer_of(case: LinkCase) -> HandSender | SessionSide:
 
 def has_session(case: LinkCase) -> bool:
     rows = [row.split()[:2] for row in case.rows]
-    return not any(["host", what] in rows for what in ("sends", "bytes", "types"))
+    return not any(["host", kind] in rows for kind in ("sends", "bytes", "types"))
 
 
 class CppSide:
@@ -374,7 +374,7 @@ class CppSide:
         return self.cpp.step(now_ms, data, is_late)
 
 
-class Written:
+class WrittenSide:
     """Either half, as the rows of a case say it."""
 
     def __init__(self, rows: list[str]) -> None:
@@ -438,25 +438,25 @@ def packets_of(
     most_bytes, window = (LARGE_PACKET, LARGE_WINDOW) if is_large else (SMALL_PACKET, 1)
     receiver = Receiver(most_bytes, window)
     rows = []
-    left = 0
+    bytes_left = 0
     for now_ms, byte in stream:
-        if left:
-            left -= 1
-            if not left:
+        if bytes_left:
+            bytes_left -= 1
+            if not bytes_left:
                 receiver.take()
         if receiver.put(byte, now_ms):
             rows.append("stop")
         packet = receiver.packet
-        if packet is None or left:
+        if packet is None or bytes_left:
             continue
         row = f"{'text' if packet.is_text else 'frame'} {packet.length} {packet.data.hex(' ')}"
         if not packet.is_text:
             row += " damaged" if decode_frame(packet.data) is None else " whole"
         rows.append(row)
-        left = held_ms + 1
+        bytes_left = held_ms + 1
         if not held_ms:
             receiver.take()
-            left = 0
+            bytes_left = 0
     assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))
                <= most_bytes for row in rows if row[0] in "ft")  # fmt: skip
     return [

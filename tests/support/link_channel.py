@@ -23,33 +23,37 @@ LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # numbers of moves for a large ro
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
 
 
-def lose_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + data[at + 1 :]
+def lose_byte(data: bytes, offset: int, rng: random.Random) -> bytes:
+    return data[:offset] + data[offset + 1 :]
 
 
-def change_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + bytes([data[at] ^ draw.randrange(1, 256)]) + data[at + 1 :]
+def change_byte(data: bytes, offset: int, rng: random.Random) -> bytes:
+    return data[:offset] + bytes([data[offset] ^ rng.randrange(1, 256)]) + data[offset + 1 :]
 
 
-def double_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[: at + 1] + data[at:]
+def double_byte(data: bytes, offset: int, rng: random.Random) -> bytes:
+    return data[: offset + 1] + data[offset:]
 
 
-def swap_bytes(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + data[at : at + 2][::-1] + data[at + 2 :]
+def swap_bytes(data: bytes, offset: int, rng: random.Random) -> bytes:
+    return data[:offset] + data[offset : offset + 2][::-1] + data[offset + 2 :]
 
 
-def insert_byte(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + bytes([draw.randrange(256)]) + data[at:]
+def insert_byte(data: bytes, offset: int, rng: random.Random) -> bytes:
+    return data[:offset] + bytes([rng.randrange(256)]) + data[offset:]
 
 
-def cut(data: bytes, at: int, draw: random.Random) -> bytes:
-    return data[:at] + data[at + draw.randrange(1, 20) :]
+def cut(data: bytes, offset: int, rng: random.Random) -> bytes:
+    return data[:offset] + data[offset + rng.randrange(1, 20) :]
 
 
-def with_module_text(data: bytes, at: int, draw: random.Random) -> bytes:
+def with_module_text(data: bytes, offset: int, rng: random.Random) -> bytes:
     """Return the data with text inserted by radio modules."""
-    return data[:at] + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n")) + data[at:]
+    return (
+        data[:offset]
+        + rng.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n"))
+        + data[offset:]
+    )
 
 
 DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
@@ -57,20 +61,20 @@ DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
 )  # fmt: skip
 
 
-def damage_frame(data: bytes, draw: random.Random) -> bytes:
+def damage_frame(data: bytes, rng: random.Random) -> bytes:
     """Return the bytes of a frame with one to three damages."""
-    for _ in range(draw.choice((1, 1, 2, 3))):
+    for _ in range(rng.choice((1, 1, 2, 3))):
         if data:
-            data = draw.choice(DAMAGES)(data, draw.randrange(len(data)), draw)
+            data = rng.choice(DAMAGES)(data, rng.randrange(len(data)), rng)
     return data
 
 
 class Radio:
     """One direction of a radio: bytes arrive later, in order, with losses and damage."""
 
-    def __init__(self, draw: random.Random, baud: int, faults: float) -> None:
-        self.draw, self.byte_ms, self.faults = draw, 10_000 / baud, faults
-        self.shuffles = 0.0  # probability that a frame is doubled or overtakes the previous one
+    def __init__(self, rng: random.Random, baud: int, faults: float) -> None:
+        self.rng, self.byte_ms, self.faults = rng, 10_000 / baud, faults
+        self.shuffle_rate = 0.0  # probability that a frame is doubled or overtakes the previous one
         self.is_split = False  # into pieces of PIECE_BYTES, with a pause before some of them
         self.is_out = False
         self._queue: deque[tuple[float, int]] = deque()
@@ -79,32 +83,30 @@ class Radio:
     def send(self, data: bytes, now_ms: int) -> None:
         if self.is_out:
             return
-        if self.shuffles:
+        if self.shuffle_rate:
             data = self.shuffle(data)
-        at = 0
-        while at < len(data):
-            if self.draw.random() < self.faults:
-                data = self.draw.choice(DAMAGES)(data, at, self.draw)
-            at += 1
-        late_ms = self.draw.uniform(15, 40) + (self.draw.random() < 0.02) * self.draw.uniform(
-            200, 600
-        )
+        offset = 0
+        while offset < len(data):
+            if self.rng.random() < self.faults:
+                data = self.rng.choice(DAMAGES)(data, offset, self.rng)
+            offset += 1
+        late_ms = self.rng.uniform(15, 40) + (self.rng.random() < 0.02) * self.rng.uniform(200, 600)
         self._last_ms = max(self._last_ms, now_ms + late_ms)
-        for at, byte in enumerate(data):
-            if self.is_split and at % PIECE_BYTES == 0 and self.draw.random() < 0.2:
-                self._last_ms += self.draw.choice(PAUSES_MS)
+        for offset, byte in enumerate(data):
+            if self.is_split and offset % PIECE_BYTES == 0 and self.rng.random() < 0.2:
+                self._last_ms += self.rng.choice(PAUSES_MS)
             self._last_ms += self.byte_ms
             self._queue.append((self._last_ms, byte))
 
     def shuffle(self, data: bytes) -> bytes:
         frames = re.findall(rb"\0*[^\0]*\0?", data)
-        for at in range(len(frames) - 1, -1, -1):
-            if self.draw.random() >= self.shuffles:
+        for index in range(len(frames) - 1, -1, -1):
+            if self.rng.random() >= self.shuffle_rate:
                 continue
-            if self.draw.random() < 0.5:
-                frames.insert(at, frames[at])
+            if self.rng.random() < 0.5:
+                frames.insert(index, frames[index])
             else:
-                frames[at : at + 2] = frames[at : at + 2][::-1]
+                frames[index : index + 2] = frames[index : index + 2][::-1]
         return b"".join(frames)
 
     def take_arrived(self, now_ms: int) -> bytes:
@@ -120,28 +122,28 @@ class World:
     STEP_MS = 5
     is_split = False
 
-    def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
-        self.cpp, self.draw, self.drops = cpp, draw, drops
-        baud = draw.choice((9600, 9600, 57600, 115200))
-        self.to_robot = Radio(draw, baud, faults)
-        self.to_computer = Radio(draw, baud, faults)
+    def __init__(self, cpp: CppLink, rng: random.Random, faults: float, drop_rate: float) -> None:
+        self.cpp, self.rng, self.drop_rate = cpp, rng, drop_rate
+        baud = rng.choice((9600, 9600, 57600, 115200))
+        self.to_robot = Radio(rng, baud, faults)
+        self.to_computer = Radio(rng, baud, faults)
         self.now_ms = 0
-        self.session = Session(draw.getrandbits(32), baud, KIT)
+        self.session = Session(rng.getrandbits(32), baud, KIT)
         self.did: list[str] = []
         self._out_until = 0
         self.line = 240 if cpp.is_large else 54  # bytes of code of a live line
-        cpp.begin(room=8192 if cpp.is_large else 389, kit=KIT, epoch=draw.randrange(256))
+        cpp.begin(room=8192 if cpp.is_large else 389, kit=KIT, epoch=rng.randrange(256))
 
     def reconnect(self) -> None:
         """Another session with the same robot."""
-        self.session = Session(self.draw.getrandbits(32), 9600, KIT)
+        self.session = Session(self.rng.getrandbits(32), 9600, KIT)
 
     def run(self, request: PendingRequest[Any] | None, most_ms: int = 600_000) -> None:
         """Let time pass until the request is over."""
         end_ms = self.now_ms + most_ms
         while self.now_ms < end_ms and (request is None or request.outcome is None):
-            if self.draw.random() < self.drops:
-                self._out_until = self.now_ms + self.draw.randrange(100, 3000)
+            if self.rng.random() < self.drop_rate:
+                self._out_until = self.now_ms + self.rng.randrange(100, 3000)
             self.to_robot.is_out = self.to_computer.is_out = self.now_ms < self._out_until
             self.disturb()
             data = self.session.poll(self.now_ms)
@@ -165,51 +167,55 @@ class World:
         """Let others hear the data."""
 
 
-def program(draw: random.Random, is_large: bool = False) -> bytes:
+def program(rng: random.Random, is_large: bool = False) -> bytes:
     """Return code that no other program of the test has: moves of random times and powers."""
     move = BY_NAME["MOVE8_F"].code
-    count = draw.choice((1, 3, 12, 18, 19, 40, 129, *(LARGE_COUNTS if is_large else ())))
-    return b"".join(bytes((move, draw.randrange(256), draw.randrange(101))) for _ in range(count))
+    count = rng.choice((1, 3, 12, 18, 19, 40, 129, *(LARGE_COUNTS if is_large else ())))
+    return b"".join(bytes((move, rng.randrange(256), rng.randrange(101))) for _ in range(count))
 
 
 def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     """Upload a program over another one, then send lines and stop; return how the upload went."""
-    draw = random.Random(seed)
-    faults = draw.choice((0, 0.001, 0.01))
-    world = world_of(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
-    old = pack("SI", 0, program(draw, cpp.is_large))
+    rng = random.Random(seed)
+    faults = rng.choice((0, 0.001, 0.01))
+    world = world_of(cpp, rng, faults, drop_rate=rng.choice((0, 0.0002, 0.002)))
+    old_image = pack("SI", 0, program(rng, cpp.is_large))
     world.to_robot.faults = world.to_computer.faults = 0
-    drops, world.drops = world.drops, 0
-    first = world.session.upload(unpack(old), runs=False)
-    world.run(first)
-    assert first.outcome and first.outcome.status == 0 and cpp.fetch_image() == old
+    drop_rate, world.drop_rate = world.drop_rate, 0
+    old_upload = world.session.upload(unpack(old_image), runs=False)
+    world.run(old_upload)
+    assert old_upload.outcome and old_upload.outcome.status == 0 and cpp.fetch_image() == old_image
     world.to_robot.faults = world.to_computer.faults = faults
     world.to_robot.is_split = world.to_computer.is_split = world.is_split
-    world.drops = drops
+    world.drop_rate = drop_rate
     if cpp.is_large:
-        world.to_robot.shuffles = world.to_computer.shuffles = draw.choice((0, 0, 0.02, 0.2))
+        world.to_robot.shuffle_rate = world.to_computer.shuffle_rate = rng.choice((0, 0, 0.02, 0.2))
 
-    new = pack("SI", 0, program(draw, cpp.is_large))
+    new_image = pack("SI", 0, program(rng, cpp.is_large))
     world.reconnect()
-    request = world.session.upload(unpack(new))
+    request = world.session.upload(unpack(new_image))
     world.run(request)
     assert request.outcome, f"seed {seed}: an upload has no end"
     status = request.outcome.status
     is_done = status == 0
     if is_done:
-        assert cpp.fetch_image() == new, (
+        assert cpp.fetch_image() == new_image, (
             f"seed {seed}: the upload says done, the robot has another one"
         )
-    assert cpp.fetch_image() in (old, new), f"seed {seed}: neither the old program nor the new one"
-    names = [f"TAKE {unpack(image).checksum:08x}" for image in (new, old)]
+    assert cpp.fetch_image() in (old_image, new_image), (
+        f"seed {seed}: neither the old program nor the new one"
+    )
+    names = [f"TAKE {unpack(image).checksum:08x}" for image in (new_image, old_image)]
     assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
-    starts = sum(row.startswith("START") for row in world.did)
-    assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"
+    start_count = sum(row.startswith("START") for row in world.did)
+    assert start_count == 1 if is_done else start_count <= 1, (
+        f"seed {seed}: started {start_count} times"
+    )
 
     # Each line runs at most once, and exactly once if the computer confirms it.
     lines = []
     for _ in range(4):
-        code = program(draw, cpp.is_large)[: world.line]
+        code = program(rng, cpp.is_large)[: world.line]
         request = world.session.live(code)
         world.run(request)
         assert request.outcome
@@ -221,13 +227,15 @@ def run_upload_scenario(cpp: CppLink, seed: int, world_of: type[World] = World) 
         assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
 
     # After a stop, no program starts, whatever is still under way.
-    request = world.session.live(program(draw)[: world.line])
-    world.run(None, draw.randrange(0, 200))
+    request = world.session.live(program(rng)[: world.line])
+    world.run(None, rng.randrange(0, 200))
     count_before = len(world.did)
     world.session.stop(world.now_ms)
     world.run(None, 300)
-    since = world.did[count_before:]
-    if "PINS OFF" in since:
-        rest = since[since.index("PINS OFF") :]
-        assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"
+    new_actions = world.did[count_before:]
+    if "PINS OFF" in new_actions:
+        last_actions = new_actions[new_actions.index("PINS OFF") :]
+        assert not any(row.startswith("START") for row in last_actions), (
+            f"seed {seed}: {last_actions}"
+        )
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)

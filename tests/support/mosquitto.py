@@ -18,18 +18,20 @@ from tiniscript.link import wifi
 from tiniscript.link.transports.broker import Access, Broker, BrokerPort
 
 PROGRAM = shutil.which("mosquitto") or next(iter(Path("/usr/sbin").glob("mosquitto")), None)
-LOCAL = bytes((127, 0, 0, 1))
+LOCAL_ADDRESS = bytes((127, 0, 0, 1))
 STEP_S = 0.0005  # one millisecond of the chip; the broker runs in real time
 
 
 class Mosquitto:
     """A broker. With `password`, it admits only `user`."""
 
-    def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
+    def __init__(
+        self, folder: Path, user: str = "", password: str = "", extra_lines: str = ""
+    ) -> None:
         need("" if PROGRAM else "needs the broker mosquitto")
         assert PROGRAM
         self.clients: list[Broker] = []
-        lines = ["persistence false", f"user {_user_name()}", more]
+        lines = ["persistence false", f"user {_user_name()}", extra_lines]
         if user:
             passwords = folder / "passwords"
             passwords.touch(mode=0o600)
@@ -75,7 +77,9 @@ class Mosquitto:
     def settings(
         self, group: str = "aula", user: str = "", password: str = ""
     ) -> wifi.BrokerSettings:
-        return wifi.BrokerSettings(LOCAL, self.port, group, user.encode(), password.encode())
+        return wifi.BrokerSettings(
+            LOCAL_ADDRESS, self.port, group, user.encode(), password.encode()
+        )
 
     def connect_client(self, access: Access | None = None) -> Broker:
         """Return a connection of its own, until `part`."""
@@ -91,8 +95,8 @@ class Mosquitto:
 class AtBroker:
     """A robot's client at a broker, as an `End` of `esp32_radio`."""
 
-    def __init__(self, robot: Esp32Robot, at: Broker, group: str = "aula") -> None:
-        self.port: BrokerPort = at.port_of(group, f"{ID:08x}")
+    def __init__(self, robot: Esp32Robot, broker: Broker, group: str = "aula") -> None:
+        self.port: BrokerPort = broker.port_of(group, f"{ID:08x}")
         self.has_ended = False
 
     def send(self, data: bytes) -> None:

@@ -7,10 +7,10 @@ import os
 IS_CI = bool(os.environ.get("CI"))
 
 
-def need(why: str) -> None:
+def need(reason: str) -> None:
     """Skip a test where something is missing; in CI that is a failure."""
-    if why:
-        assert not IS_CI, why
+    if reason:
+        assert not IS_CI, reason
         import pytest  # imported late, because the tools that build the tests also ask
 
-        pytest.skip(why.strip().replace("\n", "; "))
+        pytest.skip(reason.strip().replace("\n", "; "))

@@ -16,7 +16,7 @@ RESENT_S = 0.2  # time before TCP resends a packet
 class Network:
     """Passes connections on to a TCP port of this computer; `port` is its own."""
 
-    most = 4096  # bytes of a piece
+    max_bytes = 4096  # bytes of a piece
 
     def __init__(self, target: int) -> None:
         self._target = target
@@ -50,12 +50,14 @@ class Network:
                 for end in (client, server):
                     end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                     self._ends.append(end)
-                for ends in ((client, server, False), (server, client, True)):
-                    threading.Thread(target=self._pass, args=(*ends, number), daemon=True).start()
+                for direction in ((client, server, False), (server, client, True)):
+                    threading.Thread(
+                        target=self._pass, args=(*direction, number), daemon=True
+                    ).start()
 
     def _pass(self, source: socket.socket, sink: socket.socket, is_back: bool, number: int) -> None:
         with contextlib.suppress(OSError):
-            while data := source.recv(self.most):
+            while data := source.recv(self.max_bytes):
                 going_on = self.pass_on(data, is_back, number)
                 if going_on is None:
                     break
@@ -69,15 +71,15 @@ class BadNetwork(Network):
     """Each piece is `late_s` on its way, one of `every` much longer; some are lost."""
 
     def __init__(
-        self, target: int, late_s: float = 0.02, every: int = 10, lost: float = 0.0
+        self, target: int, late_s: float = 0.02, resend_interval: int = 10, loss_rate: float = 0.0
     ) -> None:
-        self.late_s, self.every, self.lost = late_s, every, lost
-        self._chance = random.Random(1)
+        self.late_s, self.resend_interval, self.loss_rate = late_s, resend_interval, loss_rate
+        self._rng = random.Random(1)
         super().__init__(target)
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes:
-        time.sleep(self.late_s + RESENT_S * (self._chance.randrange(self.every) == 0))
-        return b"" if self._chance.random() < self.lost else data
+        time.sleep(self.late_s + RESENT_S * (self._rng.randrange(self.resend_interval) == 0))
+        return b"" if self._rng.random() < self.loss_rate else data
 
 
 class CuttingNetwork(Network):
@@ -85,10 +87,10 @@ class CuttingNetwork(Network):
     `bytes_left[0]` bytes of it, the second after `bytes_left[1]`; later ones stay.
     """
 
-    most = 7
+    max_bytes = 7
 
-    def __init__(self, target: int, left: Sequence[int]) -> None:
-        self.bytes_left = list(left)
+    def __init__(self, target: int, piece_sizes: Sequence[int]) -> None:
+        self.bytes_left = list(piece_sizes)
         super().__init__(target)
 
     def pass_on(self, data: bytes, is_back: bool, number: int) -> bytes | None:

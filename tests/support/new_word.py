@@ -13,7 +13,7 @@ from tiniscript.base.languages import FOLDER
 from tiniscript.base.words import HERTZ, POWER, ROLES, SECONDS, Argument, Role, Word
 
 HORN = Word("HORN", ROLES["fixed"], expansion="BEEP(0.5, 440)")
-SAID = {"en": "honks", "es": "toca la bocina"}
+WORD_TEXTS = {"en": "honks", "es": "toca la bocina"}
 TIMES = Argument("n", "", 1000, 9000, "3")
 WIGGLE = Word("WIGGLE", ROLES["fixed"], (TIMES,), "LOOP(N);L(0.2, 60);R(0.2, 60);END_LOOP")
 # Values of its own kind, one of which is needed twice, so that it goes into a variable.
@@ -30,7 +30,7 @@ CHEEP = Word("CHEEP", Role("cheep", is_instruction=True), (SECONDS, HERTZ))
 def with_texts(folder: Path) -> Path:
     """Return a copy of the languages that describe the word."""
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("*.texts"))
-    for language, text in SAID.items():
+    for language, text in WORD_TEXTS.items():
         with (folder / language / "studio.toml").open("a", encoding="utf-8") as file:
             for word in (HORN, SHAKE, LAMP):
                 file.write(f'"block/{word.text}" = "{{{word.text}}} {text}"\n')

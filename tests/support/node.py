@@ -19,16 +19,21 @@ from tools.builds.page_texts import page_texts
 from tools.builds.studio import find_tools
 
 
-def in_node(script: Path, *words: str, given: str = "") -> list[str]:
+def in_node(script: Path, *words: str, input_text: str = "") -> list[str]:
     """Run a script with the folder of the page's sources and these words; return the lines that it
     prints. It reads `given` on its standard input."""
     try:
         node = find_tools().node
-    except CannotMake as why:
-        need(str(why))
+    except CannotMake as error:
+        need(str(error))
     command = [*node, str(script), str(SOURCES / "src"), *words]
     result = subprocess.run(
-        command, input=given, capture_output=True, text=True, timeout=2 * HANG_LIMIT_S, check=False
+        command,
+        input=input_text,
+        capture_output=True,
+        text=True,
+        timeout=2 * HANG_LIMIT_S,
+        check=False,
     )
     assert result.returncode == 0, result.stderr
     return result.stdout.splitlines()

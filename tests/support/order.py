@@ -14,7 +14,7 @@ import pytest
 
 PAGES = "tests/studio/test_page"
 # The slowest tests apart from pages: builds, emulated chips, processes and real clocks.
-LONG = (
+LONG_FILES = (
     "tests/flash/test_platformio.py",
     "tests/lessons/test_other_shapes.py",
     "tests/project/test_mutation.py",
@@ -57,15 +57,15 @@ def spread_names(names: Sequence[str], count: int) -> list[int]:
     half = (count + 1) // 2
     parts: list[list[int]] = [[] for _ in range(count)]
     pages = [name for name in files if name.startswith(PAGES)]
-    others = [name for name in LONG if name in files]
-    for part_names, where in ((pages, parts[:half]), (others, parts[half:])):
+    other_names = [name for name in LONG_FILES if name in files]
+    for part_names, target_parts in ((pages, parts[:half]), (other_names, parts[half:])):
         for k, name in enumerate(part_names):
-            where[k % len(where)] += files.pop(name)
+            target_parts[k % len(target_parts)] += files.pop(name)
     quick = [k for row in files.values() for k in row]
-    left = len(names)
-    for at, part in enumerate(parts):
-        size = max(len(part), left // (count - at))
-        left -= size
+    names_left = len(names)
+    for index, part in enumerate(parts):
+        size = max(len(part), names_left // (count - index))
+        names_left -= size
         room = size - len(part)
         part += quick[:room]
         del quick[:room]

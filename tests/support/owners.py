@@ -20,15 +20,15 @@ KIT = robots.load("tinibot").kit
 BUTTON_PRESSED, BUTTON_RELEASED, BUTTON_HELD = 1, 2, 32
 FOREVER = "SI|F(200, 40)"
 # Requests that anyone may send to a claimed robot.
-OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
+UNSEALED_REQUESTS = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
 
 
 class Keys(KeyRing):
     """A `KeyRing` in memory. Keys are numbered, so each run has the same."""
 
-    def __init__(self, first: int = 1) -> None:
+    def __init__(self, first_number: int = 1) -> None:
         self.stored_keys: list[RobotKey] = []
-        self.next_number = first
+        self.next_number = first_number
         self.is_full = False
         self.id_by_place: dict[str, int] = {}
         self.accepted_ids: set[int] = set()
@@ -58,16 +58,16 @@ class Keys(KeyRing):
         return key
 
 
-WITHOUT_SEALS = ("tiniscript_without_seals",)
+NO_SEALS_DEFINES = ("tiniscript_without_seals",)
 
 
-@pytest.fixture(autouse=True, params=[(), WITHOUT_SEALS], ids=["seals", "no seals"])
+@pytest.fixture(autouse=True, params=[(), NO_SEALS_DEFINES], ids=["seals", "no seals"])
 def robots_of_both_kinds(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """The tests of a file that imports this are done with robots that seal, and with others."""
-    monkeypatch.setattr(Owned, "DEFINES", request.param)
+    monkeypatch.setattr(OwnedRobot, "DEFINES", request.param)
 
 
-class Owned:
+class OwnedRobot:
     """A robot and one computer after the other."""
 
     DEFINES: tuple[str, ...] = ()
@@ -84,7 +84,7 @@ class Owned:
 
     @property
     def seals(self) -> bool:
-        return self.DEFINES != WITHOUT_SEALS
+        return self.DEFINES != NO_SEALS_DEFINES
 
     def session(self, keys: Keys | None = None, nonce: int = 1, place: str = "") -> Session:
         return Session(nonce, 115200, KIT.fingerprint, keys=keys, place=place)
@@ -146,13 +146,13 @@ class Owned:
         return self.outcome(session, session.upload(image_of(FOREVER), saves=False))
 
 
-def owner_of(table: Owned, session: Session) -> str:
+def owner_of(table: OwnedRobot, session: Session) -> str:
     assert table.outcome(session, session.hello()) == "OK"
     assert session.robot
     return ownership_of(session.robot)
 
 
-def state_of(table: Owned, session: Session) -> int:
+def state_of(table: OwnedRobot, session: Session) -> int:
     return table.robot.complete(session, session.status()).state
 
 
@@ -165,5 +165,5 @@ def grants_key_request(sent_bytes: bytes) -> bool:
     if message.name == "AUTHENTICATE":  # a challenge is for anybody
         is_open = len(frame.payload) == 1 + 2 + 8
     else:
-        is_open = message.name in OPEN_TO_ALL or message.number >= FIRST_EVENT
+        is_open = message.name in UNSEALED_REQUESTS or message.number >= FIRST_EVENT
     return frame.payload[0] == 0 and not is_open

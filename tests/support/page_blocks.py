@@ -86,7 +86,8 @@ def meet(a: dict[str, float], b: dict[str, float]) -> bool:
 
 
 # Opens one group after the other: the kinds of the blocks that can be dragged out.
-OFFERED = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].flatMap((row) => {
+OFFERED_SCRIPT = """() =>
+  [...document.querySelectorAll('.blocklyToolboxCategory')].flatMap((row) => {
   const { x, y, width, height } = row.getBoundingClientRect();
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
   const press = () => ['pointerdown', 'pointerup'].forEach((type) =>
@@ -101,4 +102,4 @@ OFFERED = """() => [...document.querySelectorAll('.blocklyToolboxCategory')].fla
 
 def list_offered_blocks(page: Page) -> set[str]:
     wait_for_blocks(page)
-    return set(page.evaluate(OFFERED))
+    return set(page.evaluate(OFFERED_SCRIPT))

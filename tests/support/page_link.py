@@ -85,8 +85,8 @@ def page(first: tuple[Pages, Page], robot: PtyRobot) -> Iterator[Page]:
         "click"
     )  # seen or not: it may just have left
     current_page.locator("html:not([data-robot=connected])").wait_for(state="attached")
-    wrong, pages.wrong[:] = pages.wrong[:], []
-    assert not wrong
+    errors, pages.errors[:] = pages.errors[:], []
+    assert not errors
 
 
 def upload_until_it_runs(page: Page) -> None:

@@ -22,12 +22,12 @@ def unfold(page: Page) -> None:
     page.locator("#programs[data-shared]:not([data-shared=asked])").wait_for()
 
 
-def share(page: Page, how: str = "link") -> str:
+def share(page: Page, kind: str = "link") -> str:
     """Open the window if necessary, and return the shared link."""
     if not page.locator("#programs").is_visible():
         page.click("#my_programs")
     unfold(page)
-    page.click(f"#share_{how}")
+    page.click(f"#share_{kind}")
     page.locator("#programs:not([data-shared=asked])").wait_for()
     return str(page.input_value("#shared"))
 
@@ -39,8 +39,8 @@ def list_programs(page: Page) -> list[str]:
 
 def pack(content: bytes) -> str:
     compress = zlib.compressobj(9, zlib.DEFLATED, -15)
-    whole = compress.compress(content) + compress.flush()
-    return base64.urlsafe_b64encode(whole).decode().rstrip("=")
+    compressed_data = compress.compress(content) + compress.flush()
+    return base64.urlsafe_b64encode(compressed_data).decode().rstrip("=")
 
 
 def as_json(content: Any) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 SCREENS = ((1366, 768), (1024, 600), (390, 844), (844, 390))
 # Clickable elements, and whether another one or the edge of the screen cuts them.
-LOOK = """() => {
+LOOK_SCRIPT = """() => {
   const found = [];
   const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #views_of_run > *, #controls > *, #editor, #link_ways > *, #link_drive > *, #lesson_controls > *, #lesson_said, #lesson_page, #arena, #world_tools > :not(span), #world_numbers > *')]
     .filter((e) => e.checkVisibility() && (e.textContent || e.value || e.id === 'arena' || e.querySelector('svg')))

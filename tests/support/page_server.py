@@ -28,12 +28,12 @@ def serves(served: Served) -> Iterator[Served]:
 
 
 def ask(
-    own: str, path: str = "/", method: str = "GET", body: bytes | None = None,
+    host: str, path: str = "/", method: str = "GET", body: bytes | None = None,
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
     """Ask the server at `own`, a host and its port. A header with the value None is left out."""
     given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
-    connection = HTTPConnection(own, timeout=HANG_LIMIT_S)
+    connection = HTTPConnection(host, timeout=HANG_LIMIT_S)
     try:
         connection.request(method, path, body, given_headers)
         response = connection.getresponse()
@@ -43,15 +43,15 @@ def ask(
 
 
 def post(
-    own: str, token: str, body: bytes, path: str = serving.ROBOTS_PATH,
+    host: str, token: str, body: bytes, path: str = serving.ROBOTS_PATH,
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[int, bytes]:  # fmt: skip
     """Post as the page at `own` does, but for some headers; return the status and the answer."""
     given_fields = {
-        "Host": own,
-        "Origin": f"http://{own}",
+        "Host": host,
+        "Origin": f"http://{host}",
         serving.TOKEN_HEADER: token,
         **(headers or {}),
     }
-    response, data = ask(own, path, "POST", body, given_fields)
+    response, data = ask(host, path, "POST", body, given_fields)
     return response.status, data

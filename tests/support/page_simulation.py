@@ -16,10 +16,10 @@ def trace_of(simulation: Simulation) -> list[str]:
 
 
 def started_simulation(
-    text: str, at: Iterable[int] = (), is_held: bool = False, robot: str = "tinibot"
+    text: str, held_parts: Iterable[int] = (), is_held: bool = False, robot: str = "tinibot"
 ) -> Simulation:
     """Return a simulation of a program with breakpoints in front of those parts of its text."""
     result = check(text.encode(), robot, "en")
     parts = tuple(place.offset for place in result.places)
-    marks = Marks(parts, tuple(parts[k] for k in at), len(result.variables), is_held)
+    marks = Marks(parts, tuple(parts[k] for k in held_parts), len(result.variables), is_held)
     return Simulation(robot, worlds.load("obstacles"), result.image, marks)

@@ -36,11 +36,11 @@ def screen_position(page: Page, place: Place, floor: Place = (220, 200)) -> Plac
     )
 
 
-def drag(page: Page, way: Sequence[Place]) -> None:
+def drag(page: Page, places: Sequence[Place]) -> None:
     """Go along a way on the floor with the mouse down."""
-    page.mouse.move(*screen_position(page, way[0]))
+    page.mouse.move(*screen_position(page, places[0]))
     page.mouse.down()
-    for place in way[1:]:
+    for place in places[1:]:
         page.mouse.move(*screen_position(page, place), steps=4)
     page.mouse.up()
 

@@ -61,25 +61,25 @@ def shared_folder(factory: pytest.TempPathFactory) -> Path:
 
 
 def build_changed_sketch(
-    folder: Path, name: str, old: str, new: str, environment: str = "uno"
+    folder: Path, name: str, old_text: str, new_text: str, environment: str = "uno"
 ) -> Path:
     """Return the sketch with a change in a file of `src/`, built in a folder."""
     project = copy_sketch(folder)
     file = project / "src" / name
     text = file.read_text(encoding="utf-8")
-    assert text.count(old) == 1, f"{name} has another {old!r} now"
+    assert text.count(old_text) == 1, f"{name} has another {old_text!r} now"
     file.unlink()
-    file.write_text(text.replace(old, new), encoding="utf-8")
+    file.write_text(text.replace(old_text, new_text), encoding="utf-8")
     pio(project, "run", "-e", environment).gives(0)
     return project / ".pio" / "build" / environment / "firmware.elf"
 
 
-def firmware(board: str, own: Path, shared_path: Path) -> Path:
+def firmware(board: str, build_folder: Path, shared_path: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
 
-    def make(path: Path) -> None:
-        project = copy_sketch(own)
+    def build_elf(path: Path) -> None:
+        project = copy_sketch(build_folder)
         pio(project, "run", "-e", board).gives(0)
         shutil.copy(project / ".pio" / "build" / board / "firmware.elf", path)
 
-    return make_once(shared_path / f"{board}.elf", make)
+    return make_once(shared_path / f"{board}.elf", build_elf)

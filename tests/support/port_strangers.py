@@ -43,34 +43,36 @@ STRANGE_LINES = (
 )
 
 
-def mutate_data(chance: Random) -> bytes:
+def mutate_data(rng: Random) -> bytes:
     """Return something strange that is a little otherwise."""
-    data = bytearray(chance.choice(STRANGE_LINES)[:1200] or b"{")
-    for _ in range(chance.randrange(1, 6)):
-        at = chance.randrange(len(data))
-        kind = chance.randrange(4)
+    data = bytearray(rng.choice(STRANGE_LINES)[:1200] or b"{")
+    for _ in range(rng.randrange(1, 6)):
+        offset = rng.randrange(len(data))
+        kind = rng.randrange(4)
         if kind == 0:
-            data[at] = chance.randrange(256)
+            data[offset] = rng.randrange(256)
         elif kind == 1:
-            data[at:at] = chance.choice((b'"', b"\\ud8", b"\n", b"\0", b"{", b"[", b"\xff", b"1e9"))
+            data[offset:offset] = rng.choice(
+                (b'"', b"\\ud8", b"\n", b"\0", b"{", b"[", b"\xff", b"1e9")
+            )
         elif kind == 2:
-            del data[at : at + chance.randrange(20)]
+            del data[offset : offset + rng.randrange(20)]
         else:
-            data += chance.choice(STRANGE_LINES)[:200]
+            data += rng.choice(STRANGE_LINES)[:200]
         data = data or bytearray(b"{")
     return bytes(data)
 
 
-def send_and_leave(registration: Registration, data: bytes, chance: Random) -> None:
+def send_and_leave(registration: Registration, data: bytes, rng: Random) -> None:
     """Say something in one or more pieces, and leave in one of several ways."""
     with (
         socket.create_connection((protocol.HOST, registration.number), 10) as peer,
         suppress(OSError),
     ):
-        cut = chance.randrange(len(data) + 1)
-        for piece in (data[:cut], data[cut:]) if chance.random() < 0.3 else (data,):
+        split = rng.randrange(len(data) + 1)
+        for piece in (data[:split], data[split:]) if rng.random() < 0.3 else (data,):
             peer.sendall(piece)
-        if chance.random() < 0.5:
+        if rng.random() < 0.5:
             peer.shutdown(socket.SHUT_WR)
             reply = peer.recv(1000)
             assert reply == b"", "a stranger is answered"
@@ -78,9 +80,9 @@ def send_and_leave(registration: Registration, data: bytes, chance: Random) -> N
 
 def say_all(port: str, seed: int, count: int) -> None:
     """Send everything strange, and so many variations."""
-    chance, registration = Random(seed), registration_of(port)
-    for data in (*STRANGE_LINES, *(mutate_data(chance) for _ in range(count))):
-        send_and_leave(registration, data, chance)
+    rng, registration = Random(seed), registration_of(port)
+    for data in (*STRANGE_LINES, *(mutate_data(rng) for _ in range(count))):
+        send_and_leave(registration, data, rng)
 
 
 def registration_of(port: str) -> Registration:

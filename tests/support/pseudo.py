@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 _ACCENTS = str.maketrans("aeinouAEINOU", "äéîñöûÄÉÎÑÖÛ")
-_KEPT = re.compile(r"(\{[^}]*\}|%[\d%])")  # gaps, and places of values
+_KEPT_PARTS = re.compile(r"(\{[^}]*\}|%[\d%])")  # gaps, and places of values
 _WORD = "lóñg"
 
 
@@ -16,7 +16,7 @@ def pseudo(content: Any) -> Any:
         return {key: pseudo(value) if key else value for key, value in content.items()}
     if isinstance(content, list):
         return [pseudo(value) for value in content]
-    parts = _KEPT.split(content)
+    parts = _KEPT_PARTS.split(content)
     text = "".join(part if k % 2 else part.translate(_ACCENTS) for k, part in enumerate(parts))
     size = sum(map(len, parts[::2]))
     if not re.search(r"[A-Za-z]{2}", "".join(parts[::2])):

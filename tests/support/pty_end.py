@@ -52,12 +52,12 @@ class PtyEnd(PtyPort):
 
     def _baud(self) -> int:
         """Return the speed that the computer has set."""
-        return _SPEEDS.get(termios.tcgetattr(self.ours)[5], 0) or self.end.baud
+        return _SPEEDS.get(termios.tcgetattr(self.our_end)[5], 0) or self.end.baud
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
         reply = b""
         with self._lock:
-            self.heard += data
+            self.received += data
             for _ in range(milliseconds):
                 speed = self.end.baud  # an answer has the speed of before the command
                 answer = self.end.step(garble(data, self._baud(), speed))
@@ -69,9 +69,9 @@ class PtyEnd(PtyPort):
         next_s = time.monotonic()
         while not self._is_over:
             next_s = max(next_s + 0.001, time.monotonic() - LARGEST_LAG_S)
-            ready, _, _ = select.select([self.ours], [], [], 0)
+            ready_ends, _, _ = select.select([self.our_end], [], [], 0)
             if self.simulated is None:
-                reply = self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
+                reply = self.pass_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
                 if reply:
-                    os.write(self.ours, reply)
+                    os.write(self.our_end, reply)
             time.sleep(max(0.0, next_s - time.monotonic()))

@@ -39,10 +39,10 @@ class PtyRobot(PtyPort):
         self.kit = kit
         self.bytes_per_ms = bytes_per_ms
         self.off_after: int | None = None  # bytes after which its battery is empty
-        self._new = self._memory = memory
+        self._new_memory = self._memory = memory
         self._robot: HostFirmware | None = self._make_robot()
         self._flags: list[int] = []  # button events, one for each of the next steps
-        self._there, self._back = b"", b""  # bytes on their way
+        self._to_robot, self._to_computer = b"", b""  # bytes on their way
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -75,12 +75,12 @@ class PtyRobot(PtyPort):
 
     def say(self, data: bytes) -> None:
         """Write data to the port in the robot's place."""
-        os.write(self.ours, data)
+        os.write(self.our_end, data)
 
-    def ask(self, what: Callable[[HostFirmware], object]) -> None:
+    def ask(self, function: Callable[[HostFirmware], object]) -> None:
         with self._lock:
             assert self._robot
-            what(self._robot)
+            function(self._robot)
 
     def push(self) -> None:
         """Push the button, and let it go."""
@@ -119,7 +119,7 @@ class PtyRobot(PtyPort):
         """Switch it off and on; its memory returns to its initial content."""
         with self._lock:
             self._take_power()
-            self.off_after, self._memory = None, self._new
+            self.off_after, self._memory = None, self._new_memory
             self._robot = self._make_robot()
 
     def pull(self) -> None:
@@ -134,18 +134,18 @@ class PtyRobot(PtyPort):
         if self._robot:
             self._robot.close()
 
-    def until(self, is_so: Callable[[], bool], what: str) -> None:
+    def until(self, is_reached: Callable[[], bool], description: str) -> None:
         """Wait until something is so."""
-        waiting.until(is_so, what)
+        waiting.until(is_reached, description)
 
-    def stands_after_ms(self, began_ms: int) -> int:
+    def stands_after_ms(self, start_ms: int) -> int:
         """Wait until the motors are off; return how long that took of the robot's own time.
 
         It goes on like the time of the wall, and no further than this computer has come.
         """
         self.until(lambda: not self.moves, "it stands")
         off_actions = [line for line in self.timed_actions if line.split(" ", 1)[1] == "MOTORS 0 0"]
-        return int(off_actions[-1].split()[0]) - began_ms
+        return int(off_actions[-1].split()[0]) - start_ms
 
     def _make_robot(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
         """Return a robot that starts with its stored memory."""
@@ -158,33 +158,38 @@ class PtyRobot(PtyPort):
         self._robot = None
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
-        most = self.bytes_per_ms * milliseconds
+        max_bytes = self.bytes_per_ms * milliseconds
         with self._lock:
-            self._there += data
+            self._to_robot += data
             while milliseconds > 0:
-                is_idle = not (self._there or self._flags)
+                is_idle = not (self._to_robot or self._flags)
                 stride = milliseconds if is_idle else 1
                 milliseconds -= stride
-                data = self._through_noise(self._there[: self.bytes_per_ms])
-                self._there = self._there[self.bytes_per_ms :]
-                self.heard += data
+                data = self._through_noise(self._to_robot[: self.bytes_per_ms])
+                self._to_robot = self._to_robot[self.bytes_per_ms :]
+                self.received += data
                 if self.off_after is not None and data:
                     self.off_after -= len(data)
                     if self.off_after <= 0:
                         self._take_power()
                 flags = self._flags.pop(0) if self._flags else 0
                 if self._robot and is_idle:
-                    self._back += self._robot.wait(stride)
+                    self._to_computer += self._robot.wait(stride)
                 elif self._robot:
-                    self._back += self._robot.step(data, flags)
-            sent_bytes, self._back = self._back[:most], self._back[most:]
+                    self._to_computer += self._robot.step(data, flags)
+            sent_bytes, self._to_computer = (
+                self._to_computer[:max_bytes],
+                self._to_computer[max_bytes:],
+            )
             return self._through_noise(sent_bytes)
 
     def _run(self) -> None:
         last_s = time.monotonic()
         while not self._is_over:
-            is_busy = self._there or self._back or self._flags
-            ready, _, _ = select.select([self.ours], [], [], (1 if is_busy else STRIDE_MS) / 1000)
+            is_busy = self._to_robot or self._to_computer or self._flags
+            ready_ends, _, _ = select.select(
+                [self.our_end], [], [], (1 if is_busy else STRIDE_MS) / 1000
+            )
             passed_ms = int((time.monotonic() - last_s) * 1000)
             if self.simulated or not passed_ms:
                 time.sleep(0.001)
@@ -192,9 +197,9 @@ class PtyRobot(PtyPort):
                 continue
             last_s += passed_ms / 1000
             sent_bytes = self.pass_ms(min(passed_ms, LARGEST_LAG_MS) - 1)
-            sent_bytes += self.pass_ms(1, os.read(self.ours, 4096) if ready else b"")
+            sent_bytes += self.pass_ms(1, os.read(self.our_end, 4096) if ready_ends else b"")
             if sent_bytes:
-                os.write(self.ours, sent_bytes)
+                os.write(self.our_end, sent_bytes)
 
 
 def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> CommandResult:

@@ -15,17 +15,17 @@ from tiniscript.link.frames import Frame, encode_frame
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.session import Session
 
-SHORT, LONG = "SI|F(60, 40)", "SI|" + "F(0.1, 30); B(0.1, 20);" * 30
+SHORT_PROGRAM, LONG_PROGRAM = "SI|F(60, 40)", "SI|" + "F(0.1, 30); B(0.1, 20);" * 30
 STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 Ask = Callable[[Session], PendingRequest[Any]]
 ACTING_REQUESTS: list[Ask] = [
-    lambda session: session.live(image_of(SHORT).code),
-    lambda session: session.upload(image_of(SHORT), saves=False),
-    lambda session: session.upload(image_of(LONG)),
+    lambda session: session.live(image_of(SHORT_PROGRAM).code),
+    lambda session: session.upload(image_of(SHORT_PROGRAM), saves=False),
+    lambda session: session.upload(image_of(LONG_PROGRAM)),
     lambda session: session.start(),
     lambda session: session.start(is_detached=True),
 ]
-OTHERS: list[Ask] = [
+OTHER_REQUESTS: list[Ask] = [
     lambda session: session.status(),
     lambda session: session.ping(),
     lambda session: session.hello(),
@@ -38,7 +38,7 @@ STOPS: dict[str, Callable[[HostFirmware, Session], bytes]] = {
     "the button": lambda robot, session: robot.step(flags=1) + robot.step(flags=2),
     "the cable": lambda robot, session: robot.step(flags=8) + robot.step(bytes(4)),
 }
-OWN = "its own"
+OWN_STOP = "its own"
 
 
 class Losses(NamedTuple):
@@ -48,7 +48,7 @@ class Losses(NamedTuple):
     to_session: float
 
 
-NOTHING = Losses(0, 0)
+NO_LOSSES = Losses(0, 0)
 
 
 class Wire:
@@ -59,18 +59,18 @@ class Wire:
     def __init__(self, rng: random.Random) -> None:
         self.robot, self.session = switched_on(), computer()
         self.rng = rng
-        self.loses = NOTHING
+        self.losses = NO_LOSSES
         self.late_ms = rng.choice((0, 0, 4, 20))
         self.under_way: deque[bytes] = deque()
 
     def turn(self, sent_bytes: bytes = b"") -> None:
         data = self.session.poll(self.robot.now_ms)
-        if self.rng.random() < self.loses.to_robot:
+        if self.rng.random() < self.losses.to_robot:
             data = b""
         self.under_way.append(data)
         is_late = len(self.under_way) <= self.late_ms
         sent_bytes += self.robot.step(b"" if is_late else self.under_way.popleft())
-        if self.rng.random() >= self.loses.to_session:
+        if self.rng.random() >= self.losses.to_session:
             self.session.receive(sent_bytes, self.robot.now_ms)
 
     def turns(self, count: int) -> None:

@@ -19,11 +19,12 @@ from tiniscript.base.limits import TASKS
 from tiniscript.bytecode.image import HEADER_BYTES, pack, with_checksum
 from tiniscript.bytecode.opcodes import BY_NAME, UNO_OPS, Op
 
-_NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,
+_EDGE_NUMBERS = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340,
+    46_341,
          65_535, 65_536, 1_465_431, 1_465_432, 2_147_483, 2_147_484, 10**6, 10**7, 5 * 10**7,
          10**8, 10**9, 2**30, 2**31 - 1001, 2**31 - 1000, 2**31 - 501, 2**31 - 500, 2**31 - 499,
          2**31 - 2, 2**31 - 1)  # fmt: skip
-EDGES = sorted({*_NEAR, *(-value for value in _NEAR), -(2**31)})
+EDGES = sorted({*_EDGE_NUMBERS, *(-value for value in _EDGE_NUMBERS), -(2**31)})
 
 
 def any_number(rng: random.Random) -> int:
@@ -57,9 +58,9 @@ def likely_code(rng: random.Random) -> bytes:
     """Return a sequence of instructions with a valid stack and a random structure."""
     code = b""
     depth = 0
-    few = rng.sample(UNO_OPS, rng.randint(3, 12))
+    common_ops = rng.sample(UNO_OPS, rng.randint(3, 12))
     for _ in range(rng.randrange(1, 14)):
-        op = rng.choice(few if rng.random() < 0.8 else UNO_OPS)
+        op = rng.choice(common_ops if rng.random() < 0.8 else UNO_OPS)
         while depth < op.pops:
             if rng.random() < 0.8:
                 code += bytes((BY_NAME["PUSH8"].code, rng.randrange(256)))
@@ -78,7 +79,7 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
     code = b""
     for _ in range(rng.randrange(4)):
         inner = nested_code(rng, levels - 1) if levels else likely_code(rng)[:8]
-        far = rng.random() < 0.3
+        is_far = rng.random() < 0.3
         kind = rng.randrange(8)
         answer, branch = (
             simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))),
@@ -87,37 +88,37 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
         slip = rng.choice((0, 0, 0, 0, 0, 0, 1, -1, 2, 65_530))
         if kind == 0:
             code += simple("FOREVER") + inner
-            code += jump("AGAIN", far, len(inner) + (3 if far else 2) + slip)
+            code += jump("AGAIN", is_far, len(inner) + (3 if is_far else 2) + slip)
         elif kind == 1:
-            close = jump("NEXT", far, len(inner) + (3 if far else 2) + slip)
+            close = jump("NEXT", is_far, len(inner) + (3 if is_far else 2) + slip)
             times = bytes((BY_NAME["PUSH8"].code, rng.randrange(3)))
             counted_bytes = times + jump("LOOP", rng.random() < 0.5, len(inner + close) + slip)
             code += rng.choice((simple("LOOP8") + b"\x02", counted_bytes)) + inner + close
         elif kind == 2:
-            body = inner + jump("BREAK_LOOP", far, slip + 3 if far else slip + 2)
-            close = jump("NEXT", far, len(body) + (3 if far else 2))
+            body = inner + jump("BREAK_LOOP", is_far, slip + 3 if is_far else slip + 2)
+            close = jump("NEXT", is_far, len(body) + (3 if is_far else 2))
             code += simple("LOOP8") + b"\x03" + body + close
         elif kind == 3:
-            code += answer + jump(branch, far, len(inner) + slip) + inner
+            code += answer + jump(branch, is_far, len(inner) + slip) + inner
         elif kind == 4:
-            other = likely_code(rng)[:6]
-            skip = jump("ELSE", far, len(other) + slip)
-            code += answer + jump(branch, far, len(inner) + len(skip)) + inner
-            code += skip + other
+            else_code = likely_code(rng)[:6]
+            skip = jump("ELSE", is_far, len(else_code) + slip)
+            code += answer + jump(branch, is_far, len(inner) + len(skip)) + inner
+            code += skip + else_code
         elif kind == 5:
             end = inner + simple("RETURN")
-            code += jump("DEF", far, len(end) + slip) + end
-            code += jump("CALL", far, len(end) + (3 if far else 2) + rng.choice((0, 0, slip)))
+            code += jump("DEF", is_far, len(end) + slip) + end
+            code += jump("CALL", is_far, len(end) + (3 if is_far else 2) + rng.choice((0, 0, slip)))
         elif kind == 6:
             code += simple("WATCH_FOREVER_WAIT") + bytes((BY_NAME["PUSH_READ"].code, 0))
             compared_bytes = bytes((BY_NAME["PUSH8"].code, 5)) + simple("LT") + simple("UNTIL")
             code += rng.choice((compared_bytes, simple("UNTIL8_LT") + b"\x05"))
             code += simple("UNTIL") if slip == 1 else b""
         else:
-            inner = jump("BREAK", far, len(inner) + (3 if far else 2)) + inner
-            loop_end = jump("AGAIN", far, len(inner) + (3 if far else 2))
+            inner = jump("BREAK", is_far, len(inner) + (3 if is_far else 2)) + inner
+            loop_end = jump("AGAIN", is_far, len(inner) + (3 if is_far else 2))
             code += rng.choice(
-                (simple("FOREVER"), jump("WHILE", far, len(inner + loop_end) + slip))
+                (simple("FOREVER"), jump("WHILE", is_far, len(inner + loop_end) + slip))
             )
             code += inner + loop_end
     return code
@@ -126,8 +127,8 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
 def deep_code(rng: random.Random) -> bytes:
     """Return one thing in itself or in a row, about as often as a machine remembers."""
     kind = rng.randrange(8)
-    usual = 15, 16, 17
-    often = rng.choice({1: (16, 31, 32, 33), 5: (6, 7, 8), 6: (3, 4, 5)}.get(kind, usual))
+    usual_counts = 15, 16, 17
+    often = rng.choice({1: (16, 31, 32, 33), 5: (6, 7, 8), 6: (3, 4, 5)}.get(kind, usual_counts))
     yes = simple("PUSH_TRUE")
     code = simple("STOP") if rng.random() < 0.9 else b""
     if kind == 0:
@@ -164,8 +165,8 @@ def deep_code(rng: random.Random) -> bytes:
         for depth in range(rng.choice((10, 11, 12, 13))):
             body = simple("LOOP8") + b"\x01" + body + jump("NEXT", False, 4 + 4 * depth)
             # the call lies further after the procedure with each loop around it
-            at = body.index(BY_NAME["CALL"].code)
-            body = body[: at + 1] + bytes([ways + at + 2]) + body[at + 2 :]
+            offset = body.index(BY_NAME["CALL"].code)
+            body = body[: offset + 1] + bytes([ways + offset + 2]) + body[offset + 2 :]
         code += body
     else:
         end = simple("RETURN")
@@ -192,20 +193,26 @@ def task_code(rng: random.Random) -> bytes:
         inner = loop(inner, 1)
     if rng.random() < 0.3:
         inner += nested_code(rng, 1)
-    look = simple("PUSH_TRUE") + simple("LOOK")
+    look_code = simple("PUSH_TRUE") + simple("LOOK")
     if rng.random() < 0.2:
-        look = b"\x05" + simple("PUSH_READ") + b"\x00" + simple("LT") + simple("LOOK")
-        look = simple("PUSH8") + look if rng.random() < 0.7 else look
+        look_code = b"\x05" + simple("PUSH_READ") + b"\x00" + simple("LT") + simple("LOOK")
+        look_code = simple("PUSH8") + look_code if rng.random() < 0.7 else look_code
     kind = rng.choice(("TASK", "WHEN"))
-    body = (look if kind == "WHEN" else b"") + inner + simple(f"END_{kind}")
+    body = (look_code if kind == "WHEN" else b"") + inner + simple(f"END_{kind}")
     if rng.random() < 0.15:
-        body = rng.choice((
-            inner + simple("END_TASK"), look + inner + simple("END_WHEN"), look + inner,
-            inner + simple("RETURN"), look + look + simple("END_WHEN"), simple("UNTIL") + body,
-        ))  # fmt: skip
+        body = rng.choice(
+            (
+                inner + simple("END_TASK"),
+                look_code + inner + simple("END_WHEN"),
+                look_code + inner,
+                inner + simple("RETURN"),
+                look_code + look_code + simple("END_WHEN"),
+                simple("UNTIL") + body,
+            )
+        )
     slip = rng.choice((0, 0, 0, 0, 0, 0, 0, 1, -1, 65_000))
-    far = (len(body) + slip) % 65_536
-    return bytes([BY_NAME[kind].code]) + far.to_bytes(2, "little") + body
+    body_length = (len(body) + slip) % 65_536
+    return bytes([BY_NAME[kind].code]) + body_length.to_bytes(2, "little") + body
 
 
 def expression(rng: random.Random) -> bytes:
@@ -228,8 +235,8 @@ def branches(rng: random.Random) -> bytes:
     body = simple("STOP")
     for _ in range(6):
         op = rng.choice([op for op in UNO_OPS if op.control_role == "if"])
-        near = rng.choice((0, 1, 2, 9, 200))
-        code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
+        loop_count = rng.choice((0, 1, 2, 9, 200))
+        code += simple("PUSH16") + loop_count.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
         *variable, compared_operand_kind, _ = [
             None,
             None,
@@ -241,7 +248,7 @@ def branches(rng: random.Random) -> bytes:
             is_variable = variable != [None]
             code += b"" if is_variable else simple("PUSH_VAR_1")
             code += bytes([op.code, 1] if is_variable else [op.code])
-            number = near + rng.choice((-1, 0, 0, 1))
+            number = loop_count + rng.choice((-1, 0, 0, 1))
             size = compared_operand_kind.size
             code += (number & ((1 << 8 * size) - 1)).to_bytes(size, "little")
         code += len(body).to_bytes(op.operands[-1].kind.size, "little") + body
@@ -256,26 +263,28 @@ def simple(name: str) -> bytes:
     return bytes([BY_NAME[name].code])
 
 
-def jump(name: str, far: bool, distance: int) -> bytes:
-    size = 2 if far else 1
-    return simple(name + "_FAR" * far) + (distance & ((1 << 8 * size) - 1)).to_bytes(size, "little")
+def jump(name: str, is_far: bool, distance: int) -> bytes:
+    size = 2 if is_far else 1
+    return simple(name + "_FAR" * is_far) + (distance & ((1 << 8 * size) - 1)).to_bytes(
+        size, "little"
+    )
 
 
-def mutate_code(rng: random.Random, code: bytes, other: bytes) -> bytes:
+def mutate_code(rng: random.Random, code: bytes, other_code: bytes) -> bytes:
     data = bytearray(code)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        at = rng.randrange(len(data) + 1)
+        offset = rng.randrange(len(data) + 1)
         kind = rng.randrange(7)
         if kind == 0:
-            data[at:at] = bytes([rng.randrange(256)])
+            data[offset:offset] = bytes([rng.randrange(256)])
         elif kind == 1:
-            del data[at : at + rng.choice((1, 1, 2, 3))]
+            del data[offset : offset + rng.choice((1, 1, 2, 3))]
         elif kind == 2:
-            data[at:] = other[rng.randrange(len(other) + 1) :]
-        elif at < len(data):
+            data[offset:] = other_code[rng.randrange(len(other_code) + 1) :]
+        elif offset < len(data):
             delta = rng.choice((1, 255, 2, 254))
-            choices = (rng.randrange(256), rng.choice(UNO_OPS).code, (data[at] + delta) % 256)
-            data[at] = rng.choice(choices)
+            choices = (rng.randrange(256), rng.choice(UNO_OPS).code, (data[offset] + delta) % 256)
+            data[offset] = rng.choice(choices)
     return bytes(data)
 
 
@@ -330,8 +339,8 @@ def random_images(seed: int, count: int) -> Iterator[bytes]:
     rng = random.Random(seed)
     for _ in range(count):
         start, code = rng.choice(("SI", "SB", "PING")), rng.randbytes(rng.randrange(9))
-        later = rng.randbytes(rng.choice((0, 0, 1, 7, 240)))
-        yield changed_image(rng, pack(start, rng.choice((0, 1, 0x1234)), code, later))
+        later_bytes = rng.randbytes(rng.choice((0, 0, 1, 7, 240)))
+        yield changed_image(rng, pack(start, rng.choice((0, 1, 0x1234)), code, later_bytes))
 
 
 def images_of_programs(seed: int, count: int) -> Iterator[tuple[bytes, Kit]]:
@@ -345,24 +354,24 @@ def images_of_programs(seed: int, count: int) -> Iterator[tuple[bytes, Kit]]:
 def changed_kit(rng: random.Random, kit: Kit) -> Kit:
     """Return a kit with one device that is another one, is missing, or has come."""
     sensors = list(kit.sensors)
-    at = rng.randrange(len(sensors))
+    index = rng.randrange(len(sensors))
     change = rng.randrange(4)
     if change == 0:
-        sensors[at] = sensors[at]._replace(unit=sensors[at].unit + "x")
+        sensors[index] = sensors[index]._replace(unit=sensors[index].unit + "x")
     elif change == 1:
-        sensors[at] = sensors[at]._replace(low=sensors[at].low - 1)
+        sensors[index] = sensors[index]._replace(low=sensors[index].low - 1)
     elif change == 2:
-        del sensors[at]
+        del sensors[index]
     else:
-        sensors.append(sensors[at]._replace(name="ANOTHER"))
+        sensors.append(sensors[index]._replace(name="ANOTHER"))
     return kit._replace(sensors=tuple(sensors))
 
 
 def changed_image(rng: random.Random, data: bytes) -> bytes:
     image = bytearray(data)
     for _ in range(rng.choice((0, 1, 1, 2))):
-        at = rng.randrange(min(len(image), HEADER_BYTES))
-        image[at] = rng.choice((0, 1, 2, 3, HEADER_BYTES, 127, 128, 255))
+        offset = rng.randrange(min(len(image), HEADER_BYTES))
+        image[offset] = rng.choice((0, 1, 2, 3, HEADER_BYTES, 127, 128, 255))
     if rng.random() < 0.3:
         del image[rng.randrange(len(image) + 1) :]
     elif rng.random() < 0.2:

@@ -21,9 +21,9 @@ class RandomProgram(NamedTuple):
     text: str
     kit: Kit
     senses: Senses
-    want: str
-    short: Compilation
-    plain: Compilation  # the program without optimization
+    wanted_trace: str
+    short_compilation: Compilation
+    plain_compilation: Compilation  # the program without optimization
 
 
 def random_program(seed: int) -> RandomProgram:
@@ -31,8 +31,8 @@ def random_program(seed: int) -> RandomProgram:
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.program(rng, oracle_kit)
     readings = programs.senses(rng, oracle_kit)
-    want = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
+    wanted_run = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
-    short = compile_text(text, kit)
-    plain = compile_text(text, kit, optimize=False)
-    return RandomProgram(seed, text, kit, senses, want, short, plain)
+    short_compilation = compile_text(text, kit)
+    plain_compilation = compile_text(text, kit, optimize=False)
+    return RandomProgram(seed, text, kit, senses, wanted_run, short_compilation, plain_compilation)

@@ -60,11 +60,11 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
     robot.
     """
     answer = reader_of(kit, room).read(data)
-    right = is_right(data, kit)
-    if right and CONTROL_CHARACTER.search(data):  # on a wire such characters are noise
+    is_accepted = is_right(data, kit)
+    if is_accepted and CONTROL_CHARACTER.search(data):  # on a wire such characters are noise
         assert not answer.is_program, f"{answer}\n{data!r}"
         return None
-    if right and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
+    if is_accepted and UNREAD_WORDS & {token.text for token in scan(decode(data)).tokens}:
         # a word with fixed values is right where `line_of` writes it out
         problems = (
             "FULL",
@@ -73,14 +73,14 @@ def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | Non
         )
         assert answer.problem in problems, f"{answer}\n{data!r}"
         return None
-    if right and lacks_values(data, kit):
+    if is_accepted and lacks_values(data, kit):
         assert answer.problem in PROBLEMS_WITHOUT_VALUES, f"{answer}\n{data!r}"
         return None
-    if right:
+    if is_accepted:
         check_code(data, kit, answer, room)
     if answer.problem == "FULL":
         return None
-    if answer.is_program != right:
+    if answer.is_program != is_accepted:
         assert answer.is_program and takes_more(data, kit), f"{answer}\n{data!r}"
     if answer.is_program:
         verify(answer.code, len(kit.readings), len(kit.actuators))
@@ -100,18 +100,18 @@ def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
     memory."""
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None
-    plain = plain_code(compilation.program)
+    plain_program = plain_code(compilation.program)
     model = Model(scan(compilation.source.text).tokens, kit, SENSOR_BYTES)
     model.program()
-    fits = (
-        plain.short_length <= CODE_BYTES
+    is_accepted = (
+        plain_program.short_length <= CODE_BYTES
         and model.most_bytes <= room
         and model.extra_bracket_span is None
     )
-    if fits and all(
+    if is_accepted and all(
         len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compilation.source.text)
     ):
-        assert answer.code == plain.code, f"{answer} {model.most_bytes}\n{data!r}"
+        assert answer.code == plain_program.code, f"{answer} {model.most_bytes}\n{data!r}"
     else:
         assert answer.problem == "FULL", f"{answer} {model.most_bytes}\n{data!r}"
 
@@ -142,11 +142,13 @@ def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
     assert answer.is_program, f"{answer}\n{data.decode()}"
     compilation = compile_text(decode(data), kit)
     assert compilation.program is not None and compilation.program.start == answer.start
-    actual, want = (trace(code, kit, senses) for code in (answer.code, compilation.code))
-    if any(lines[-1].endswith("LIMIT") for lines in (actual, want)):
-        least = min(len(actual), len(want)) - 1  # the meaning does not include where a run was cut
-        actual, want = actual[:least], want[:least]
-    assert actual == want, data.decode()
+    actual, wanted_trace = (trace(code, kit, senses) for code in (answer.code, compilation.code))
+    if any(lines[-1].endswith("LIMIT") for lines in (actual, wanted_trace)):
+        common_length = (
+            min(len(actual), len(wanted_trace)) - 1
+        )  # the meaning does not include where a run was cut
+        actual, wanted_trace = actual[:common_length], wanted_trace[:common_length]
+    assert actual == wanted_trace, data.decode()
 
 
 def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:
@@ -160,9 +162,13 @@ def damage_text(rng: random.Random, data: bytes) -> bytes:
     """Return a text with one byte changed, lost or added, now and then."""
     if not data or rng.random() < 0.6:
         return data
-    at = rng.randrange(len(data))
+    offset = rng.randrange(len(data))
     byte = bytes((rng.choice((rng.randrange(256), *b"\x00\xc2\xa0\xe2\x80\x93~09AZ_.<>/=-\r\n")),))
-    return data[:at] + rng.choice((byte, b"", byte + data[at : at + 1])) + data[at + 1 :]
+    return (
+        data[:offset]
+        + rng.choice((byte, b"", byte + data[offset : offset + 1]))
+        + data[offset + 1 :]
+    )
 
 
 def soup(seed: int) -> tuple[Kit, bytes]:

@@ -13,4 +13,4 @@ def remote_readings(held_state: RemoteState) -> tuple[int, ...]:
     )
 
 
-RELEASED = remote_readings(NOTHING_PRESSED)
+RELEASED_READINGS = remote_readings(NOTHING_PRESSED)

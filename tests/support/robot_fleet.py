@@ -48,7 +48,7 @@ class Pupil(PtyPort):
             return self._pass_ms(milliseconds, data)
 
     def _pass_ms(self, milliseconds: int, data: bytes) -> bytes:
-        self.heard += data
+        self.received += data
         if self.deaf_after is not None:
             data = data[: self.deaf_after]
             self.deaf_after -= len(data)
@@ -85,24 +85,24 @@ class RobotFleet:
         for pupil in self.pupils:
             pupil.close()
 
-    def until(self, is_so: Callable[[], bool], what: str) -> None:
+    def until(self, is_reached: Callable[[], bool], description: str) -> None:
         """Wait until something is so."""
-        waiting.until(is_so, what)
+        waiting.until(is_reached, description)
 
     def _run(self) -> None:
-        by_end = {pupil.ours: pupil for pupil in self.pupils}
+        by_end = {pupil.our_end: pupil for pupil in self.pupils}
         lasts = dict.fromkeys(by_end, time.monotonic())
         while not self._is_over:
-            ready, _, _ = select.select(list(by_end), [], [], STEP_MS / 2000)
+            ready_ends, _, _ = select.select(list(by_end), [], [], STEP_MS / 2000)
             now_s = time.monotonic()
             for end, pupil in by_end.items():
                 passed_ms = int((now_s - lasts[end]) * 1000)
-                if passed_ms < (1 if end in ready else STEP_MS):
+                if passed_ms < (1 if end in ready_ends else STEP_MS):
                     continue
                 lasts[end] += passed_ms / 1000
                 if pupil.simulated is not None:
                     continue
-                data = os.read(end, 4096) if end in ready else b""
+                data = os.read(end, 4096) if end in ready_ends else b""
                 sent_bytes = pupil.pass_ms(min(passed_ms, 5 * STEP_MS), data)
                 if sent_bytes and select.select([], [end], [], 0)[1]:
                     os.write(end, sent_bytes)

@@ -27,24 +27,26 @@ def boot(name: str = "tinibot32", major: int = 2) -> Esp32Robot:
 
 
 def wait_for_outcome(
-    robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms: int = 5000
+    robot: Esp32Robot, clients: Ends, request: PendingRequest[Any], timeout_ms: int = 5000
 ) -> str:
     """Let all talk until a request is over; return its result."""
-    for _ in range(limit_ms):
+    for _ in range(timeout_ms):
         if request.outcome is not None:
             status = request.outcome.status
             return STATUS_NAMES.get(status, str(status))
-        talk(robot, ends, 1)
+        talk(robot, clients, 1)
     raise AssertionError("the request is not over")
 
 
-def claim_robot(robot: Esp32Robot, ends: Ends, who: Session, kind: int = 0) -> None:
+def claim_robot(robot: Esp32Robot, clients: Ends, session: Session, kind: int = 0) -> None:
     """Claim a robot for a session, and hold its button."""
-    claim = who.claim(kind)
+    claim = session.claim(kind)
     for milliseconds, flags in ((300, 0), (2500, 1), (800, 2)):
-        talk(robot, ends, milliseconds, flags)
+        talk(robot, clients, milliseconds, flags)
     assert claim.outcome and claim.outcome.status == 0
 
 
-def upload_text(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY_PROGRAM) -> str:
-    return wait_for_outcome(robot, ends, who.upload(image_of(text), saves=False))
+def upload_text(
+    robot: Esp32Robot, clients: Ends, session: Session, text: str = AWAY_PROGRAM
+) -> str:
+    return wait_for_outcome(robot, clients, session.upload(image_of(text), saves=False))

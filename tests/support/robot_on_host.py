@@ -30,8 +30,8 @@ def computer(nonce: int = 1) -> Session:
     return Session(nonce, 9600, KIT.fingerprint)
 
 
-def send(robot: HostFirmware, session: Session, text: str, **how: bool) -> None:
-    assert robot.until(session, session.upload(image_of(text), **how)) == OK
+def send(robot: HostFirmware, session: Session, text: str, **options: bool) -> None:
+    assert robot.until(session, session.upload(image_of(text), **options)) == OK
 
 
 T = TypeVar("T")
@@ -46,12 +46,12 @@ def fetch_image(robot: HostFirmware, session: Session) -> bytes:
     return robot.complete(session, session.fetch()).image
 
 
-def wait_until_saved(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
+def wait_until_saved(robot: HostFirmware, session: Session, timeout_ms: int = 10_000) -> int:
     """Wait until the robot says that its program is saved; return how long that took."""
-    begun_ms = robot.now_ms
-    while robot.now_ms < begun_ms + limit_ms:
+    start_ms = robot.now_ms
+    while robot.now_ms < start_ms + timeout_ms:
         if robot.complete(session, session.status()).saved == SAVED_STORED:
-            return robot.now_ms - begun_ms
+            return robot.now_ms - start_ms
         robot.talk(session, 50)
     raise AssertionError("the program is not saved")
 

@@ -45,8 +45,8 @@ def computer(uno: Uno, nonce: int = 1) -> Wired:
     return Wired(uno, Session(nonce, BAUD, KIT.fingerprint))
 
 
-def send(wired_uno: Wired, text: str, **how: bool) -> None:
-    assert wired_uno.until(wired_uno.session.upload(image_of(text), **how)) == OK
+def send(wired_uno: Wired, text: str, **options: bool) -> None:
+    assert wired_uno.until(wired_uno.session.upload(image_of(text), **options)) == OK
 
 
 def read_saved_state(wired_uno: Wired) -> int:

@@ -17,15 +17,15 @@ def go_through(
     test: Callable[[Row], None], rows: Iterable[Row], name: Callable[[Row], str] = repr
 ) -> None:
     """Test each row, and report each failing one: like `each_row`, for rows made at run time."""
-    wrong: dict[str, Exception] = {}
+    errors: dict[str, Exception] = {}
     for row in rows:
         try:
             test(row)
-        except Exception as why:  # any exception, so that the other rows run too
-            wrong[name(row)] = why
-    if wrong:
-        failures = (f"{row}: {type(why).__name__}: {why}" for row, why in wrong.items())
-        raise AssertionError("\n\n".join(failures)) from next(iter(wrong.values()))
+        except Exception as error:  # any exception, so that the other rows run too
+            errors[name(row)] = error
+    if errors:
+        failures = (f"{row}: {type(error).__name__}: {error}" for row, error in errors.items())
+        raise AssertionError("\n\n".join(failures)) from next(iter(errors.values()))
 
 
 def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
@@ -43,19 +43,21 @@ def each_row(names: str, rows: Iterable[Any]) -> Callable[[Test], Test]:
     def parametrize(test: Test) -> Test:
         @functools.wraps(test)
         def whole(**arguments: Any) -> None:
-            def one(row: Any) -> None:
+            def check_row(row: Any) -> None:
                 test(**arguments, **dict(zip(wanted_texts, row.values, strict=True)))
 
-            go_through(one, sets, lambda row: str(row.id or repr(row.values)))
+            go_through(check_row, sets, lambda row: str(row.id or repr(row.values)))
 
         signature = inspect.signature(test)
-        left = [
+        parameters = [
             parameter
             for name, parameter in signature.parameters.items()
             if name not in wanted_texts
         ]
-        assert len(left) == len(signature.parameters) - len(wanted_texts), f"it takes no {names}"
-        whole.__signature__ = signature.replace(parameters=left)  # type: ignore[attr-defined]
+        assert len(parameters) == len(signature.parameters) - len(wanted_texts), (
+            f"it takes no {names}"
+        )
+        whole.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
         return whole
 
     return parametrize

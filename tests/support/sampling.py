@@ -28,7 +28,7 @@ import pytest
 from tests.support.casefile import ROOT
 
 MARK = "sampled"
-LONG = "long"
+LONG_MARK = "long"
 Row = TypeVar("Row")
 
 
@@ -49,32 +49,34 @@ def leave_out(config: pytest.Config, items: list[pytest.Item]) -> None:
             tests[mark.kwargs["of"]][""].append(item)
         elif mark is not None:
             tests[item.nodeid.partition("[")[0]][_others(item, mark.args)].append(item)
-    left_out = _long_left_out(config, items) | _files_left_out(config, items)
+    omitted_items = _long_left_out(config, items) | _files_left_out(config, items)
     for name, groups in tests.items():
         together = _mark(next(iter(groups.values()))).kwargs.get("draw", "")
-        draw = random.Random(f"{seed(config)} {together or name}")
-        turn = draw.randrange(1000)
-        for rows in draw.sample(list(groups.values()), len(groups)):
+        rng = random.Random(f"{seed(config)} {together or name}")
+        turn = rng.randrange(1000)
+        for rows in rng.sample(list(groups.values()), len(groups)):
             turn += not together
             chosen_items = {
                 rows[(turn + k) % len(rows)] for k in range(_mark(rows).kwargs.get("keep", 1))
             }
-            left_out |= set(rows) - chosen_items
-    if left_out:
-        items[:] = [item for item in items if item not in left_out]
-        config.hook.pytest_deselected(items=list(left_out))
+            omitted_items |= set(rows) - chosen_items
+    if omitted_items:
+        items[:] = [item for item in items if item not in omitted_items]
+        config.hook.pytest_deselected(items=list(omitted_items))
 
 
 def _long_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
     """Return the long tests that this run leaves out, of files that the user did not name."""
     named_paths = _list_named_files(config)
     long_tests = [
-        item for item in items if item.get_closest_marker(LONG) and item.path not in named_paths
+        item
+        for item in items
+        if item.get_closest_marker(LONG_MARK) and item.path not in named_paths
     ]
     if not config.getoption("--tenth"):
         return set(long_tests)
-    draw = random.Random(f"{seed(config)} {LONG}")
-    return set(draw.sample(long_tests, len(long_tests) * 9 // 10))
+    rng = random.Random(f"{seed(config)} {LONG_MARK}")
+    return set(rng.sample(long_tests, len(long_tests) * 9 // 10))
 
 
 def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pytest.Item]:
@@ -83,14 +85,16 @@ def _files_left_out(config: pytest.Config, items: list[pytest.Item]) -> set[pyte
     for item in items:
         for mark in item.iter_markers(MARK):
             if "files" in mark.kwargs:
-                same = files[mark.kwargs["files"], mark.kwargs["keep"]]
-                same.setdefault(item.path, []).append(item)
-    left_out: set[pytest.Item] = set()
-    for (name, keep), same in files.items():
-        draw = random.Random(f"{seed(config)} {name}")
-        for path in draw.sample(sorted(same), len(same))[keep:]:
-            left_out |= set(same[path] if path not in _list_named_files(config) else ())
-    return left_out
+                items_by_path = files[mark.kwargs["files"], mark.kwargs["keep"]]
+                items_by_path.setdefault(item.path, []).append(item)
+    omitted_items: set[pytest.Item] = set()
+    for (name, keep), items_by_path in files.items():
+        rng = random.Random(f"{seed(config)} {name}")
+        for path in rng.sample(sorted(items_by_path), len(items_by_path))[keep:]:
+            omitted_items |= set(
+                items_by_path[path] if path not in _list_named_files(config) else ()
+            )
+    return omitted_items
 
 
 def _list_named_files(config: pytest.Config) -> set[Path]:
@@ -108,12 +112,12 @@ def _mark(rows: list[pytest.Item]) -> pytest.Mark:
 
 
 def sample_of(
-    config: pytest.Config, draw: str, rows: Sequence[Row], keep: int = 1
+    config: pytest.Config, sample_name: str, rows: Sequence[Row], keep: int = 1
 ) -> Sequence[Row]:
     """Return a sample of the rows that one test iterates over, in their order."""
     if config.getoption("--whole") or is_narrowed(config):
         return rows
-    kept_indexes = random.Random(f"{seed(config)} {draw}").sample(range(len(rows)), keep)
+    kept_indexes = random.Random(f"{seed(config)} {sample_name}").sample(range(len(rows)), keep)
     return [rows[k] for k in sorted(kept_indexes)]
 
 

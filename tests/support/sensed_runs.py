@@ -10,7 +10,7 @@ from struct import pack
 from typing import NamedTuple
 
 from tests.machines.host_firmware import TICKS
-from tests.support.debugging import Debugged
+from tests.support.debugging import DebuggedRobot
 from tests.support.robot_on_host import KIT
 from tests.support.shown_in_loops import TimedAction, largest_difference_ms
 from tiniscript.link.outcomes import Event
@@ -36,10 +36,10 @@ def sensed_run(
     text: str, seed: int, is_told: bool, byte_ticks: int, most_ms: int = 30
 ) -> SensedRun:
     """Run a program while its sensors' readings change, with or without reporting them."""
-    robot = Debugged(text)
+    robot = DebuggedRobot(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
     rng, readings = random.Random(seed), [[0] for _ in KIT.sensors]
-    first = len(robot.robot.did)
+    first_row = len(robot.robot.did)
     robot.start()
     robot.robot.ask(b"P", bytes([byte_ticks]))
     events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
@@ -49,11 +49,15 @@ def sensed_run(
         values = [row[-1] for row in readings]
         robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
         events += robot.talk(rng.randint(1, most_ms))
-    rows = (line.split(" ", 1) for line in robot.robot.did[first:])
-    return SensedRun([(float(ms), what) for ms, what in rows], events, readings)
+    rows = (line.split(" ", 1) for line in robot.robot.did[first_row:])
+    return SensedRun([(float(ms), action) for ms, action in rows], events, readings)
 
 
 def is_steady(text: str, seed: int) -> bool:
     """Return whether a program acts at the same times on a line that is 5 % slower or faster."""
-    usual, *others = (sensed_run(text, seed, False, BYTE_TICKS + more).did for more in (0, -1, 1))
-    return all(largest_difference_ms(usual, other) <= LARGEST_DELAY_MS for other in others)
+    usual_run, *other_runs = (
+        sensed_run(text, seed, False, BYTE_TICKS + tick_shift).did for tick_shift in (0, -1, 1)
+    )
+    return all(
+        largest_difference_ms(usual_run, other_run) <= LARGEST_DELAY_MS for other_run in other_runs
+    )

@@ -13,7 +13,7 @@ from tiniscript.link.sharing.server import Server
 KIT = robots.load("tinibot").kit
 
 
-class Shared:
+class SharedLine:
     """A line of this process that is shared."""
 
     def __enter__(self) -> tuple[PtyRobot, Registration]:

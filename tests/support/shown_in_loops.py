@@ -49,11 +49,13 @@ def _check(rng: random.Random) -> str:
     return rng.choice((f"{rng.choice(SENSORS)} < 0", f"{rng.choice(SENSORS)} >= 0"))
 
 
-def largest_difference_ms(one: list[TimedAction], other: list[TimedAction]) -> float:
+def largest_difference_ms(actions: list[TimedAction], other_actions: list[TimedAction]) -> float:
     """Return the largest time difference of two runs while both last: `inf` if their actions
     differ.
     """
-    both = list(zip(one, other, strict=False))
-    if any(one[1] != other[1] for one, other in both):
+    action_pairs = list(zip(actions, other_actions, strict=False))
+    if any(action[1] != other_action[1] for action, other_action in action_pairs):
         return inf
-    return max((abs(one[0] - other[0]) for one, other in both), default=0)
+    return max(
+        (abs(action[0] - other_action[0]) for action, other_action in action_pairs), default=0
+    )

@@ -31,7 +31,7 @@ def state(name: str) -> int:
     return [state_name for state_name, _ in STATES].index(name)
 
 
-class Nobody:
+class UnpoweredEnd:
     """An end without a device: a board without power."""
 
     def __init__(self, baud: int = 9600) -> None:
@@ -52,12 +52,12 @@ class Nobody:
         pass
 
 
-class Echo(Nobody):
+class Echo(UnpoweredEnd):
     def answer(self, data: bytes) -> bytes:
         return data
 
 
-class Sketch(Nobody):
+class Sketch(UnpoweredEnd):
     """Another sketch, which prints a line in each 200 ms."""
 
     line = b"Distance: 34 cm\r\n"
@@ -66,14 +66,14 @@ class Sketch(Nobody):
         return self.line if self.now_ms % 200 == 0 else b""
 
 
-class Babble(Nobody):
+class BabblingEnd(UnpoweredEnd):
     """Bytes that are meaningless at any speed."""
 
     def answer(self, data: bytes) -> bytes:
         return bytes((0x81, 0xFF, 0x9D, 0x80, 0xC3)) if self.now_ms % 20 == 0 else b""
 
 
-class Board(Nobody):
+class Board(UnpoweredEnd):
     """A board with a bootloader: it answers for `open_ms` after a restart, or always.
 
     The device on it is silent. A bootloader has its own speed.
@@ -85,21 +85,21 @@ class Board(Nobody):
     ) -> None:  # fmt: skip
         super().__init__(baud)
         self.greeting, self.reply, self.open_ms = greeting, reply, open_ms
-        self._since_ms = 10**9
+        self._elapsed_ms = 10**9
 
     def step(self, data: bytes) -> bytes:
-        self._since_ms += 1
+        self._elapsed_ms += 1
         return super().step(data)
 
     def answer(self, data: bytes) -> bytes:
-        is_open = self.open_ms is None or self._since_ms < self.open_ms
+        is_open = self.open_ms is None or self._elapsed_ms < self.open_ms
         return self.reply if is_open and self.greeting in data else b""
 
     def restart(self) -> None:
-        self._since_ms = 0
+        self._elapsed_ms = 0
 
 
-class Firmware(Nobody):
+class Firmware(UnpoweredEnd):
     """The robot's half of the link, as far as the doctor asks; `values` are fields of its replies.
 
     `restarts_ms`: it restarts so often, with the cause `resets`. It does not answer requests whose
@@ -128,7 +128,7 @@ class Firmware(Nobody):
         self.deaf = 0
         self.hears_badly = False
         self.dies_after: int | None = None
-        self.refuses: tuple[int, int] | None = None  # HELLO: a status and its detail
+        self.hello_refusal: tuple[int, int] | None = None  # HELLO: a status and its detail
         self.epoch = 7
         self.trim: dict[str, int | bytes] | None = None  # an older robot has none
         self.requests: list[int] = []
@@ -160,8 +160,8 @@ class Firmware(Nobody):
             return b""
         message = BY_NUMBER[frame.number]
         payload = bytes([OK])
-        if message.name == "HELLO" and self.refuses is not None:
-            payload = bytes([self.refuses[0]]) + self.refuses[1].to_bytes(2, "little")
+        if message.name == "HELLO" and self.hello_refusal is not None:
+            payload = bytes([self.hello_refusal[0]]) + self.hello_refusal[1].to_bytes(2, "little")
         elif message.name in ("HELLO", "STATUS", "PING"):
             known_values = {**self.hello, **self.counts}
             payload += encode_payload(

@@ -22,7 +22,7 @@ class SimulatedModule:
     name, pin = "", "1234"
     ends_lines = True
     answers: Sequence[tuple[str, str]] = ()
-    otherwise = ""  # answer to any other command
+    default_answer = ""  # answer to any other command
     bauds: Mapping[str, int] = {}  # none, because a speed is its own name
     is_quick = False  # a new speed counts at once
 
@@ -72,7 +72,7 @@ class SimulatedModule:
             match = re.fullmatch(pattern, command, re.DOTALL)
             if match and self._keeps(**match.groupdict()):
                 return answer.format(end=self)
-        return self.otherwise
+        return self.default_answer
 
     def _keeps(
         self, name: str | None = None, pin: str = "", speed: str = "", reset: str = ""
@@ -110,7 +110,7 @@ class Hc05(SimulatedModule):
         (r"AT\+PSWD=(?P<pin>.+)", "OK\r\n"),  # whatever it is
         (r"AT\+UART=(?P<speed>\d+),0,0", "OK\r\n"),
     )
-    otherwise = "ERROR:(0)\r\n"
+    default_answer = "ERROR:(0)\r\n"
 
     def __init__(self, data_baud: int = 9600) -> None:
         super().__init__(38400)
@@ -157,7 +157,7 @@ class Hc06New(SimulatedModule):
         (r'AT\+PSWD:"(?P<pin>\d{4})"', "OK\r\n"),
         (r"AT\+UART=(?P<speed>\d+),0,0", "OK\r\n"),
     )
-    otherwise = "ERROR:(0)\r\n"
+    default_answer = "ERROR:(0)\r\n"
 
 
 class Hm10(SimulatedModule):
@@ -196,7 +196,7 @@ class Cc41(SimulatedModule):
         (r"AT\+PIN(?P<pin>\d{6})", "+PIN={end.pin}\r\nOK\r\n"),
         (r"AT\+BAUD(?P<speed>\d)", "+BAUD={end.number}\r\nOK\r\n"),
     )
-    otherwise = "ERROR=101\r\n"
+    default_answer = "ERROR=101\r\n"
 
 
 class Bt05(Cc41):

@@ -33,13 +33,13 @@ class PtyPort:
         import pty
         import tty
 
-        self.ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)
-        self.port = os.ttyname(self._theirs)
+        self.our_end, self._device_end = pty.openpty()
+        tty.setraw(self._device_end)
+        self.port = os.ttyname(self._device_end)
         self.simulated: SimulatedPort | None = None
-        self.heard = b""  # all data received by the port
+        self.received = b""  # all data received by the port
         self.damages = 0  # one of this many bytes is damaged; 0 means none
-        self._passed = 0  # bytes, through the noise
+        self._passed_count = 0  # bytes, through the noise
         self._lock = threading.Lock()
 
     def pass_ms(self, milliseconds: int, data: bytes = b"") -> bytes:
@@ -47,15 +47,15 @@ class PtyPort:
         raise NotImplementedError
 
     def _through_noise(self, data: bytes) -> bytes:
-        noisy = bytearray(data)
-        for k in range(len(noisy)):
-            self._passed += 1
-            if self.damages and self._passed % self.damages == 0:
-                noisy[k] ^= 0x24
-        return bytes(noisy)
+        noisy_data = bytearray(data)
+        for k in range(len(noisy_data)):
+            self._passed_count += 1
+            if self.damages and self._passed_count % self.damages == 0:
+                noisy_data[k] ^= 0x24
+        return bytes(noisy_data)
 
     def _close(self) -> None:
-        for end in (self.ours, self._theirs):
+        for end in (self.our_end, self._device_end):
             os.close(end)
 
 
@@ -66,30 +66,32 @@ class SimulatedPort:
         self._end, self._device = end, device
         self.timeout: float = device.timeout
         self._now_ms = int(time.monotonic() * 1000)
-        self._there, self._back = b"", b""
+        self._to_device, self._from_device = b"", b""
         end.simulated = self
 
     def now_ms(self) -> int:
         return self._now_ms
 
     def write(self, data: bytes) -> None:
-        self._there += data
+        self._to_device += data
 
     def read(self, size: int = 1) -> bytes:
         left_ms = int(self.timeout * 1000)
-        self._back += self._device.read(self._device.in_waiting)  # another process writes there
-        while not self._back and left_ms > 0:
+        self._from_device += self._device.read(
+            self._device.in_waiting
+        )  # another process writes there
+        while not self._from_device and left_ms > 0:
             stride = min(left_ms, STRIDE_MS)
-            data, self._there = self._there, b""
-            self._back += self._end.pass_ms(stride, data)
+            data, self._to_device = self._to_device, b""
+            self._from_device += self._end.pass_ms(stride, data)
             self._now_ms += stride
             left_ms -= stride
-        taken_bytes, self._back = self._back[:size], self._back[size:]
+        taken_bytes, self._from_device = self._from_device[:size], self._from_device[size:]
         return taken_bytes
 
     @property
     def in_waiting(self) -> int:
-        return len(self._back)
+        return len(self._from_device)
 
     @property
     def baudrate(self) -> int:
@@ -100,7 +102,7 @@ class SimulatedPort:
         self._device.baudrate = baud
 
     def reset_input_buffer(self) -> None:
-        self._back = b""
+        self._from_device = b""
 
     def close(self) -> None:
         self._device.close()
@@ -108,22 +110,22 @@ class SimulatedPort:
 
 
 @contextmanager
-def simulate(*ends: PtyPort) -> Iterator[None]:
+def simulate(*pty_ports: PtyPort) -> Iterator[None]:
     """Within it, ports opened by this process use the time of their other end."""
     actual = serial_transport._open
-    by_port = {end.port: end for end in ends}
+    by_port = {end.port: end for end in pty_ports}
 
     def open_port(port: str, baud: int) -> serial.SerialBase | SimulatedPort:
         device = actual(port, baud)
         return SimulatedPort(by_port[port], device) if port in by_port else device
 
     def now_s() -> float:
-        port = ends[0].simulated
+        port = pty_ports[0].simulated
         return port.now_ms() / 1000 if port else time.monotonic()
 
     with ExitStack() as stack:
         stack.enter_context(mock.patch.object(serial_transport, "_open", open_port))
-        if len(ends) == 1:
+        if len(pty_ports) == 1:
             for module in (recorder, run_monitor):
                 stack.enter_context(mock.patch.object(module, "monotonic", now_s))
             stack.enter_context(mock.patch.object(examination, "perf_counter", now_s))

@@ -32,16 +32,16 @@ class SimulatedWire(Wire):
         self.baud = baud
         self.now_ms = 0
         self.restarts = 0
-        self.sent: list[tuple[int, bytes]] = []  # each with its speed
+        self.sent_pieces: list[tuple[int, bytes]] = []  # each with its speed
         self.is_gone = False
-        self._there = b""
-        self._back = b""
+        self._to_device = b""
+        self._from_device = b""
 
     def send(self, data: bytes) -> None:
         if self.is_gone:
             raise OSError("gone")
-        self.sent.append((self.baud, data))
-        self._there += garble(data, self.baud, self._speed())
+        self.sent_pieces.append((self.baud, data))
+        self._to_device += garble(data, self.baud, self._speed())
 
     def receive(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
         if self.is_gone:
@@ -56,7 +56,7 @@ class SimulatedWire(Wire):
     def _step(self) -> bytes:
         self.now_ms += 1
         speed = self._speed()  # an answer has the speed of before the command
-        data, self._there = self._there, b""
+        data, self._to_device = self._to_device, b""
         return garble(self.end.step(data), speed, self.baud)
 
     def _speed(self) -> int:

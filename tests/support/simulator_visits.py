@@ -20,9 +20,9 @@ def visit(simulator: Simulator) -> socket.socket:
     return connection
 
 
-def until(simulator: Simulator, is_so: Callable[[], bool]) -> None:
+def until(simulator: Simulator, is_reached: Callable[[], bool]) -> None:
     for _ in range(TURNS):
-        if is_so():
+        if is_reached():
             return
         simulator.turn(0.01)
     raise AssertionError("it does not come to that")

@@ -32,11 +32,11 @@ def approaching_obstacle(seed: int, samples: int) -> tuple[list[float], list[flo
     """Return the distance of an obstacle that approaches at 50 cm/s at each ping, and the
     echoes.
     """
-    draw = random.Random(seed)
+    rng = random.Random(seed)
     true = [max(20.0, 160 - STEP_CM * number) for number in range(samples)]
     heard_cm = list(true)
-    for begin in range(0, samples, SAMPLES_PER_WRONG_ONE):
-        heard_cm[begin + draw.randrange(SAMPLES_PER_WRONG_ONE)] = draw.choice(
+    for start_index in range(0, samples, SAMPLES_PER_WRONG_ONE):
+        heard_cm[start_index + rng.randrange(SAMPLES_PER_WRONG_ONE)] = rng.choice(
             [2, 5, 40, 90, 250, 400]
         )
     return true, heard_cm

@@ -140,10 +140,12 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 
 
 @contextmanager
-def browser(playwright: Playwright, *more: str, is_whole: bool = False) -> Iterator[Browser]:
+def browser(
+    playwright: Playwright, *more_options: str, is_whole: bool = False
+) -> Iterator[Browser]:
     """A browser; the complete one is the one that people have. `more` are options of it."""
     path, options = (chromium(), BROWSER_OPTIONS) if is_whole else (headless(), OPTIONS)
-    browser = playwright.chromium.launch(executable_path=path, args=[*options, *more])
+    browser = playwright.chromium.launch(executable_path=path, args=[*options, *more_options])
     try:
         yield browser
     finally:
@@ -174,7 +176,7 @@ class Pages:
         self.patience_s = patience_s
         self.address = address
         self.entrance = entrance or (lambda: address)
-        self.wrong: list[str] = []
+        self.errors: list[str] = []
         self._browser = browser
         self._contexts: list[BrowserContext] = []
         self._to_leave: list[BrowserContext] = []
@@ -189,10 +191,10 @@ class Pages:
 
     def another(self, page: Page) -> Page:
         """Open another tab of the same visitor."""
-        other: Page = page.context.new_page()
-        self.watch(other)
-        enter(other, self.entrance())
-        return other
+        new_page: Page = page.context.new_page()
+        self.watch(new_page)
+        enter(new_page, self.entrance())
+        return new_page
 
     def blank(self, *, is_alone: bool = False, **options: Any) -> Page:
         """Return a tab of a new visitor, without an open page.
@@ -235,20 +237,20 @@ class Pages:
         return self._contexts[-1]
 
     def _lend_context(self) -> BrowserContext:
-        left = _LEFT_CONTEXTS.setdefault(self._browser, [])
-        if left:
-            context = left.pop()
+        left_contexts = _LEFT_CONTEXTS.setdefault(self._browser, [])
+        if left_contexts:
+            context = left_contexts.pop()
         else:
             context = self._own({})
             self._contexts.remove(context)
-            still = context.new_page()
-            still.goto(self.address + STILL_FILE)
-            still.evaluate(HOLDING_SCRIPT)
+            still_page = context.new_page()
+            still_page.goto(self.address + STILL_FILE)
+            still_page.evaluate(HOLDING_SCRIPT)
         self._to_leave.append(context)
         return context
 
     def watch(self, page: Page) -> None:
-        page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.on(
             "console",
             lambda console_message: self._note_message(console_message.type, console_message.text),
@@ -260,22 +262,22 @@ class Pages:
             context.close()
         for context in self._to_leave:
             context.remove_listener("request", self._note_request)
-            still, *others = context.pages
-            for page in others:
+            still_page, *other_pages = context.pages
+            for page in other_pages:
                 page.close()
-            session = context.new_cdp_session(still)
-            whole = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
-            session.send("Storage.clearDataForOrigin", whole)
+            session = context.new_cdp_session(still_page)
+            clear_options = {"origin": self.address.rstrip("/"), "storageTypes": "all"}
+            session.send("Storage.clearDataForOrigin", clear_options)
             session.detach()
             _LEFT_CONTEXTS[self._browser].append(context)
 
     def _note_message(self, kind: str, text: str) -> None:
         if kind in ("error", "warning") and "blocked by Playwright" not in text:
-            self.wrong.append(text)
+            self.errors.append(text)
 
     def _note_request(self, request: Request) -> None:
         if not request.url.startswith((self.address, "data:", "blob:")):
-            self.wrong.append(request.url)
+            self.errors.append(request.url)
 
 
 def enter(page: Page, address: str) -> None:
@@ -319,10 +321,10 @@ def begin_anew(page: Page) -> None:
 SETTLED_SCRIPT = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
-def finger(page: Page, way: Sequence[tuple[float, float]]) -> None:
+def finger(page: Page, points: Sequence[tuple[float, float]]) -> None:
     """Go along a way on the screen with a finger."""
     session = page.context.new_cdp_session(page)
-    for k, (x, y) in enumerate(way):
+    for k, (x, y) in enumerate(points):
         kind = "touchMove" if k else "touchStart"
         touch = {"type": kind, "touchPoints": [{"x": x, "y": y}]}
         session.send("Input.dispatchTouchEvent", touch)
@@ -355,11 +357,11 @@ def wait_for_phase(page: Page, phase: str) -> None:
     page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
 
 
-def wait_for(page: Page, is_so: Callable[[], object], what: str) -> None:
+def wait_for(page: Page, is_reached: Callable[[], object], description: str) -> None:
     """Wait until something is so that a page tells of while it is waited for."""
     end_s = monotonic() + HANG_LIMIT_S
-    while not is_so():
-        assert monotonic() < end_s, f"not after {HANG_LIMIT_S} s: {what}"
+    while not is_reached():
+        assert monotonic() < end_s, f"not after {HANG_LIMIT_S} s: {description}"
         page.wait_for_timeout(20)
 
 

@@ -19,7 +19,7 @@ from tests.support import studio
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Playwright
 
-LISTED = "/dev/ttyS0"
+LISTED_PORT = "/dev/ttyS0"
 SCRIPT = """#!/bin/sh
 exec unshare -m sh -ec '
 mount --bind "$ROBOT_PORT" /dev/ttyS0
@@ -36,11 +36,11 @@ def missing() -> str:
     """Return the reason why there is no such browser here, or ""."""
     if not hasattr(os, "geteuid") or os.geteuid() != 0:
         return "a mount namespace takes root"
-    if not Path(LISTED).is_char_device():
-        return f"there is no {LISTED}"
+    if not Path(LISTED_PORT).is_char_device():
+        return f"there is no {LISTED_PORT}"
     if shutil.which("unshare") is None:
         return "there is no unshare"
-    completed = subprocess.run(["unshare", "-m", "mount", "--bind", "/dev/null", LISTED],
+    completed = subprocess.run(["unshare", "-m", "mount", "--bind", "/dev/null", LISTED_PORT],
                            capture_output=True, text=True)  # fmt: skip
     return completed.stderr.strip() if completed.returncode else ""
 

@@ -26,24 +26,26 @@ def compare_task_program(
     With the `needs` of a way, it has some.
     """
     rng = random.Random(seed)
-    both: list[Compilation] = []
-    while not both or unpack(both[0].image).needs & needs != needs:
+    compilations: list[Compilation] = []
+    while not compilations or unpack(compilations[0].image).needs & needs != needs:
         text, senses = task_program(rng, ways=needs != 0)
-        both = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
+        compilations = [compile_text(text, KIT, optimize=optimize) for optimize in (True, False)]
         try:
-            want = run(text, PAPER_KIT, senses, MAX_MS)
+            wanted_trace = run(text, PAPER_KIT, senses, MAX_MS)
         except Mistake:  # DEFs that are called too deep in all tasks together
-            assert not any(compilation.is_right for compilation in both), f"seed {seed}:\n{text}"
-            both = []
+            assert not any(compilation.is_right for compilation in compilations), (
+                f"seed {seed}:\n{text}"
+            )
+            compilations = []
             continue
-        assert all(compilation.is_right for compilation in both), f"seed {seed}:\n{text}"
+        assert all(compilation.is_right for compilation in compilations), f"seed {seed}:\n{text}"
     for image in dict.fromkeys(
-        compilation.image for compilation in both
+        compilation.image for compilation in compilations
     ):  # often they are the same
         for machine in machines:
             actual = machine(image, KIT, Senses(senses, MAX_MS))
-            assert actual == want, f"seed {seed}, {image.hex()}:\n{text}"
-    laid_out = format_source(Source(text))
-    assert compile_text(laid_out, KIT).image == both[0].image, f"seed {seed}"
-    assert format_source(Source(laid_out)) == laid_out, f"seed {seed}"
-    return want.split()[-1]
+            assert actual == wanted_trace, f"seed {seed}, {image.hex()}:\n{text}"
+    formatted_text = format_source(Source(text))
+    assert compile_text(formatted_text, KIT).image == compilations[0].image, f"seed {seed}"
+    assert format_source(Source(formatted_text)) == formatted_text, f"seed {seed}"
+    return wanted_trace.split()[-1]

@@ -45,26 +45,26 @@ class Terminal:
         output: Path | None = None, env: Mapping[str, str] | None = None, types: bool = True,
     ) -> None:  # fmt: skip
         """Start the command; with `types`, standard input is the terminal, otherwise empty."""
-        self._ours, theirs = pty.openpty()
-        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
-        modes = termios.tcgetattr(theirs)
+        self._our_end, device_end = pty.openpty()
+        fcntl.ioctl(device_end, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+        modes = termios.tcgetattr(device_end)
         modes[3] |= termios.NOFLSH  # without NOFLSH, Ctrl-C may drop later output
-        termios.tcsetattr(theirs, termios.TCSANOW, modes)
+        termios.tcsetattr(device_end, termios.TCSANOW, modes)
         variables = {
             name: value for name, value in os.environ.items() if name not in HIDDEN_VARIABLES
         }
-        with output.open("wb") if output else nullcontext(theirs) as out:
+        with output.open("wb") if output else nullcontext(device_end) as out:
             self.process = subprocess.Popen(
-                [*command, *map(str, words)], stdin=theirs if types else subprocess.DEVNULL,
-                stdout=out, stderr=theirs,
+                [*command, *map(str, words)], stdin=device_end if types else subprocess.DEVNULL,
+                stdout=out, stderr=device_end,
                 env={**variables, "TERM": "xterm-256color", **(env or {})},
                 start_new_session=True, preexec_fn=_take_terminal,
             )  # fmt: skip
-        os.close(theirs)
+        os.close(device_end)
         self.screen = pyte.HistoryScreen(*size, history=100_000)
-        self.written = b""
+        self.output_bytes = b""
         self._stream = pyte.ByteStream(self.screen)
-        self._unseen = b""
+        self._unread = b""
         self._is_over = False
         self._read: Queue[bytes] = Queue()
         self._reader = Thread(target=self._read_on, daemon=True)
@@ -76,8 +76,10 @@ class Terminal:
     def whole(self) -> list[str]:
         """Return the lines with those that have scrolled away."""
         columns = range(self.screen.columns)
-        gone = ["".join(line[k].data for k in columns) for line in self.screen.history.top]
-        return [*(line.rstrip() for line in gone), *self.lines()]
+        scrolled_lines = [
+            "".join(line[k].data for k in columns) for line in self.screen.history.top
+        ]
+        return [*(line.rstrip() for line in scrolled_lines), *self.lines()]
 
     def until(self, pattern: str) -> re.Match[str]:
         """Wait until something is to be seen."""
@@ -90,7 +92,7 @@ class Terminal:
             assert monotonic() < end_s, f"it draws on without {pattern}: {self.lines()}"
 
     def type(self, keys: str) -> None:
-        os.write(self._ours, keys.encode())
+        os.write(self._our_end, keys.encode())
 
     def interrupt(self) -> None:
         """Act like Ctrl-C on the terminal of a shell."""
@@ -101,16 +103,16 @@ class Terminal:
         while self.take():
             pass
         self._reader.join()
-        os.close(self._ours)
+        os.close(self._our_end)
         return self.process.wait(HANG_LIMIT_S)
 
     def take(self) -> bool:
         """Draw a small part of the output, so that brief displays are not missed."""
-        if not self._unseen and not self._is_over:
-            self._unseen = self._read.get(timeout=HANG_LIMIT_S)
-            self._is_over = not self._unseen
-            self.written += self._unseen
-        part, self._unseen = self._unseen[:CHUNK_BYTES], self._unseen[CHUNK_BYTES:]
+        if not self._unread and not self._is_over:
+            self._unread = self._read.get(timeout=HANG_LIMIT_S)
+            self._is_over = not self._unread
+            self.output_bytes += self._unread
+        part, self._unread = self._unread[:CHUNK_BYTES], self._unread[CHUNK_BYTES:]
         self._stream.feed(part)
         return bool(part)
 
@@ -118,7 +120,7 @@ class Terminal:
         """Read at once, because a writer to a full terminal blocks."""
         part = b"begun"
         while part:
-            part = rest_of(self._ours)
+            part = rest_of(self._our_end)
             self._read.put(part)
 
 

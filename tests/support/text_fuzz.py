@@ -13,8 +13,8 @@ from tests.support.text_robot import robot_with_program
 from tiniscript.base.words import WORDS
 
 TURNS = 25
-SAVING = b"// Still saving. Send it again."
-MISTAKE = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped|It had a fault)")
+SAVING_MESSAGE = b"// Still saving. Send it again."
+MISTAKE_PATTERN = re.compile(rb"// (\d+: |Too late|Bytes were lost|It was stopped|It had a fault)")
 LINE = b"SI|M(13,17);W(9)\n"
 LINES = ("SI|F(1,50)\n", "F(9,50)\r", "SB|R(1,30)\r\n", "S\n", "STOP", "s", "HELP\n", "PING|\n",
          "SI|LOOP(FOREVER);\n", "END_LOOP\n", "LOOP(2)\n", "  STOP\n", "IF(DISTANCE<10)\n",
@@ -24,7 +24,7 @@ LINES = ("SI|F(1,50)\n", "F(9,50)\r", "SB|R(1,30)\r\n", "S\n", "STOP", "s", "HEL
          )  # fmt: skip
 TOKENS = (*WORDS, "X", "DISTANCE", *"0123456789();,|=<>+-*/%~_. \t\r\n", "//", "é", "\ufeff")
 FRAMES = ("SI|F(1,80)", "SB|L(1,40)", "SI|LOOP(FOREVER);SHOW(1);END_LOOP", "SI|X=0;X=1/X")
-LONG = "SI|" + "F(0.1,80);B(0.1,60);" * 12
+LONG_PROGRAM = "SI|" + "F(0.1,80);B(0.1,60);" * 12
 
 
 class Fuzz:
@@ -91,8 +91,8 @@ class Fuzz:
     def line(self) -> None:
         data = "".join(self.rng.choices(LINES, k=self.rng.randrange(1, 5))).encode()
         if self.rng.random() < 0.3:
-            at = self.rng.randrange(len(data))
-            data = data[:at] + self.rng.randbytes(self.rng.randrange(2)) + data[at + 1 :]
+            offset = self.rng.randrange(len(data))
+            data = data[:offset] + self.rng.randbytes(self.rng.randrange(2)) + data[offset + 1 :]
         if self.rng.random() < 0.8:
             self.type(data)
         else:
@@ -104,18 +104,20 @@ class Fuzz:
     def frames(self) -> None:
         session, rng = self.session, self.rng
         image = image_of(rng.choice(FRAMES))
-        asks: tuple[Callable[[], object], ...] = (
+        line_makers: tuple[Callable[[], object], ...] = (
             session.hello, session.ping, session.status, session.clear, session.start,
             session.fetch, lambda: session.live(image.code), lambda: session.name(b"A"),
             lambda: session.upload(image, saves=rng.random() < 0.5),
-            lambda: session.upload(image_of(LONG)),
+            lambda: session.upload(image_of(LONG_PROGRAM)),
         )  # fmt: skip
-        rng.choice(asks)()
+        rng.choice(line_makers)()
         for _ in range(rng.choice((2, 10, 60, 300))):
             data = session.poll(self.robot.now_ms)
             if data and rng.random() < 0.1:
-                at = rng.randrange(len(data))
-                data = data[:at] + rng.choice((b"", b"\n", b"S\n", b"\0\0\0")) + data[at + 1 :]
+                offset = rng.randrange(len(data))
+                data = (
+                    data[:offset] + rng.choice((b"", b"\n", b"S\n", b"\0\0\0")) + data[offset + 1 :]
+                )
             session.receive(self.step(data), self.robot.now_ms)
 
     def zeros(self) -> None:
@@ -130,9 +132,10 @@ class Fuzz:
         self.step(flags=2)
 
     def turn(self) -> None:
-        acts = (self.bytes_, self.line, self.line, self.line, self.tokens, self.frames, self.frames,
+        actions = (self.bytes_, self.line, self.line, self.line, self.tokens, self.frames,
+            self.frames,
                 self.zeros, self.silence, self.silence, self.button)  # fmt: skip
-        self.rng.choice(acts)()
+        self.rng.choice(actions)()
 
     # -- the invariants afterwards ----------------------------------------------------------------
 
@@ -150,8 +153,8 @@ class Fuzz:
             is_taken = any(line.startswith(b"// OK") for line in lines)
             if is_taken and self.moving():
                 return
-            if SAVING not in lines:
-                is_open = is_taken or any(MISTAKE.match(line) for line in lines)
+            if SAVING_MESSAGE not in lines:
+                is_open = is_taken or any(MISTAKE_PATTERN.match(line) for line in lines)
                 assert is_open and not was_open, answers
                 was_open = True
                 self.wait(1050)  # `moving` has stopped it

@@ -24,8 +24,8 @@ def check_line(text: str, kit: Kit) -> None:
     assert re.fullmatch(r"[ -}]*~[0-9A-F]{8}", line), line
     assert "//" not in line and "  " not in line
     assert line == line.upper()
-    longest = re.sub(r"\w+", expanded_word, text)
-    assert len(line) <= len(longest.encode()) + len("SI|~00000000")
+    longest_text = re.sub(r"\w+", expanded_word, text)
+    assert len(line) <= len(longest_text.encode()) + len("SI|~00000000")
     compiled_line = compile_text(line, kit)
     assert compiled_line.is_right and compiled_line.image == compilation.image, line
     assert compilation.program is not None and compiled_line.program is not None
@@ -34,10 +34,10 @@ def check_line(text: str, kit: Kit) -> None:
     text_codes, line_codes = (
         sorted(
             diagnostic.code.number
-            for diagnostic in one.diagnostics
+            for diagnostic in result.diagnostics
             if diagnostic.code not in (codes.IN_A_NOTE, codes.EMPTY_BLOCK)
         )
-        for one in (compilation, compiled_line)
+        for result in (compilation, compiled_line)
     )
     assert text_codes == line_codes
     assert line_of(Source(line)) == line

@@ -7,7 +7,7 @@ import re
 from tiniscript.base.words import WORDS
 from tiniscript.lessons import catalogue
 
-CODE = re.compile("`([^`]*)`")
+CODE_PATTERN = re.compile("`([^`]*)`")
 LINES = {"en": r"\blines?\b", "es": r"\bl[ií]neas?\b", "pt": r"\blinhas?\b"}
 WRITING_WORDS = {"en": r"\b(writ\w+|wrote)\b", "es": r"\bescri\w+", "pt": r"\bescr[ei]\w+"}
 END_WORD = re.compile(r"\bEND\w*")
@@ -18,7 +18,7 @@ CAPITAL_WORDS = re.compile(r"\b[A-Z][A-Z_]*\b")
 
 def text_only_words(sentences: str, language: str, *, is_line_on_floor: bool = False) -> list[str]:
     """Return the words of a block sentence that only exist in text, apart from code."""
-    prose = CODE.sub("``", sentences)
+    prose = CODE_PATTERN.sub("``", sentences)
     patterns = [WRITING_WORDS[language], *([] if is_line_on_floor else [LINES[language]])]
     words = [match[0] for pattern in patterns for match in re.finditer(pattern, prose, re.I)]
     words += [match[0] for pattern in (END_WORD, TEXT_SIGNS) for match in pattern.finditer(prose)]

@@ -7,7 +7,11 @@ from tests.support.robot_on_host import computer, send, switched_on, wait_until_
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.session import Session
 
-SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # actions of the program in `holding`
+HOLDING_ACTIONS = [
+    "MOTORS -60 -60",
+    "MOTORS 0 0",
+    "FINISHED",
+]  # actions of the program in `holding`
 LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
 SAVED_MEMORY = 1
 

@@ -31,6 +31,6 @@ def gap_names(code: str) -> set[str]:
 
     Of several texts, only the last one must be fillable: it is used if no other can be.
     """
-    both = "".join(list(rendering._templates(f"{code}/{part}", lang))[-1]
+    template = "".join(list(rendering._templates(f"{code}/{part}", lang))[-1]
                    for part in ("message", "try") for lang in LANGUAGES)  # fmt: skip
-    return set(re.findall(r"\{@?(\w+)\}", both))
+    return set(re.findall(r"\{@?(\w+)\}", template))

@@ -10,21 +10,21 @@ if TYPE_CHECKING:
 
 
 def tear_requests(
-    page: Page, what: str, tear: Callable[[Route], None], times: int = 1
+    page: Page, verb: str, tear: Callable[[Route], None], times: int = 1
 ) -> list[str]:
     """Tear this many requests that contain `what`; return the list of those."""
-    torn: list[str] = []
+    torn_requests: list[str] = []
 
     def handle(route: Route) -> None:
         data = route.request.post_data or ""
-        if f'"do":"{what}"' not in data or len(torn) >= times:
+        if f'"do":"{verb}"' not in data or len(torn_requests) >= times:
             route.continue_()
             return
-        torn.append(data)
+        torn_requests.append(data)
         tear(route)
 
     page.route("**/robots", handle)
-    return torn
+    return torn_requests
 
 
 def lose_answer(route: Route) -> None:

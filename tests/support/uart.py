@@ -17,17 +17,17 @@ def at_speed(data: bytes, sent_baud: int, heard_baud: int) -> bytes:
         len(levels) * heard_baud
     )  # times on the line in units of 1 / (sent * heard) s; a bit takes `heard`
     slowed_bytes = bytearray()
-    at = 0
+    tick = 0
     while True:
-        while at < length and levels[at // heard_baud]:  # skips to the next falling edge
-            at = (at // heard_baud + 1) * heard_baud
-        if at >= length:
+        while tick < length and levels[tick // heard_baud]:  # skips to the next falling edge
+            tick = (tick // heard_baud + 1) * heard_baud
+        if tick >= length:
             return bytes(slowed_bytes)
         samples = []
         for bit in range(9):
-            place = at + sent_baud + bit * sent_baud + sent_baud // 2
+            place = tick + sent_baud + bit * sent_baud + sent_baud // 2
             samples.append(levels[place // heard_baud] if place < length else 1)
         slowed_bytes.append(sum(level << bit for bit, level in enumerate(samples[:8])))
-        at += sent_baud * 9 + sent_baud // 2
-        while at < length and not levels[at // heard_baud]:  # a break
-            at = (at // heard_baud + 1) * heard_baud
+        tick += sent_baud * 9 + sent_baud // 2
+        while tick < length and not levels[tick // heard_baud]:  # a break
+            tick = (tick // heard_baud + 1) * heard_baud

@@ -22,7 +22,7 @@ FIRST_READING_MS = 85  # extra tolerance for the first reading of the run
 LAST_MESSAGE_MS = 200  # time at the end in which SHOW and DONE may be on the wire
 
 
-class Setting(NamedTuple):
+class MotorSetting(NamedTuple):
     """The powers of the motors from a time on, in percent."""
 
     ms: float
@@ -34,18 +34,18 @@ def program(text: str) -> Case:
     return Case(Path(__file__), 0, text, {"tiniscript": text, "senses": "DISTANCE = 60"})
 
 
-def motor_settings(uno: Uno, since: int) -> list[Setting]:
+def motor_settings(uno: Uno, start_cycle: int) -> list[MotorSetting]:
     """Return the settings of the motor pins since a cycle."""
     changes = [
         change
         for name in MOTORS
         for change in uno.pins.history(name)
-        if change.cycle > since
+        if change.cycle > start_cycle
     ]  # fmt: skip
     settings = []
     for cycle in sorted({change.cycle for change in changes}):
         powers = (power(uno, side, cycle) for side in ("left", "right"))
-        settings.append(Setting((cycle - since) / CYCLES_PER_MS, *powers))
+        settings.append(MotorSetting((cycle - start_cycle) / CYCLES_PER_MS, *powers))
     return lasting(settings)
 
 
@@ -58,27 +58,27 @@ def power(uno: Uno, side: str, cycle: int) -> int:
     return round(-level / 2.55 if is_backward else level / 2.55)
 
 
-def parsed_trace(trace: str) -> tuple[list[Setting], list[float]]:
+def parsed_trace(trace: str) -> tuple[list[MotorSetting], list[float]]:
     """Return the motors and the times of readings that a trace has; its end turns them off."""
     rows = [line.split() for line in trace.splitlines()]
     settings = [
-        Setting(float(row[0]), int(row[2]), int(row[3])) for row in rows if row[1] == "MOTORS"
+        MotorSetting(float(row[0]), int(row[2]), int(row[3])) for row in rows if row[1] == "MOTORS"
     ]
     end_ms = float(rows[-1][0])
     if rows[-1][1] == "DONE":
-        settings.append(Setting(end_ms, 0, 0))
+        settings.append(MotorSetting(end_ms, 0, 0))
     return lasting(settings), [float(row[0]) for row in rows if row[1] == "READ"]
 
 
-def lasting(settings: list[Setting]) -> list[Setting]:
+def lasting(settings: list[MotorSetting]) -> list[MotorSetting]:
     """Return the settings that are different from the one before, and last; the last one does."""
     settings = [
-        setting for before, setting in pairwise([Setting(-1.0, 101, 0), *settings])
-        if before[1:] != setting[1:]
+        setting for earlier_setting, setting in pairwise([MotorSetting(-1.0, 101, 0), *settings])
+        if earlier_setting[1:] != setting[1:]
     ]  # fmt: skip
-    ends = [setting.ms for setting in settings[1:]] + [float("inf")]
-    lasting_settings = [Setting(-1.0, 0, 0)]
-    for setting, end_ms in zip(settings, ends[: len(settings)], strict=True):
+    end_times_ms = [setting.ms for setting in settings[1:]] + [float("inf")]
+    lasting_settings = [MotorSetting(-1.0, 0, 0)]
+    for setting, end_ms in zip(settings, end_times_ms[: len(settings)], strict=True):
         if end_ms - setting.ms >= SHORT_MS and setting[1:] != lasting_settings[-1][1:]:
             lasting_settings.append(setting)
     return lasting_settings[1:]
@@ -89,9 +89,9 @@ def simulate_pings(distances: list[float]) -> list[float]:
     that jumps.
     """
     heard_cm = distances[:1] * 3
-    for before, now in pairwise(distances):
-        is_far = abs(now - before) > max(3, before / 5)
-        heard_cm += [now] * (1 + is_far)
+    for last_distance, distance in pairwise(distances):
+        is_far = abs(distance - last_distance) > max(3, last_distance / 5)
+        heard_cm += [distance] * (1 + is_far)
     return heard_cm
 
 
@@ -99,7 +99,7 @@ def check_pins(case: Case, uno: Uno) -> None:
     robot, senses = robot_and_senses(case)
     image = unpack(compile_case(case).image)
     trace = MACHINES["python"](compile_case(case).image, robot.kit, senses)
-    expected, reads = parsed_trace(trace)
+    expected, reading_times = parsed_trace(trace)
     end_ms = float(trace.splitlines()[-1].split()[0])
     is_over = not trace.endswith("LIMIT\n")
     distances = [value / 1000 for value in senses.readings.get("DISTANCE", [0])]
@@ -113,16 +113,16 @@ def check_pins(case: Case, uno: Uno) -> None:
         return
     heard_count = len(uno.received_bytes)
     assert wired_uno.until(wired_uno.session.upload(image, is_detached=True)) == OK
-    began = last_zero(uno, heard_count)
+    start_count = last_zero(uno, heard_count)
     if image.start == "SB":
         wired_uno.run(300)
-        assert motor_settings(uno, began) == []
+        assert motor_settings(uno, start_count) == []
         uno.press("button", 60)
-        began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
+        start_count = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
     triggers = 0
     distances = simulate_pings(distances)
-    last_ms = end_ms + FIRST_READING_MS + READING_MS * len(reads) + LAST_MESSAGE_MS
-    while (uno.cycle - began) / CYCLES_PER_MS < last_ms:
+    last_ms = end_ms + FIRST_READING_MS + READING_MS * len(reading_times) + LAST_MESSAGE_MS
+    while (uno.cycle - start_count) / CYCLES_PER_MS < last_ms:
         wired_uno.run(2)
         pulses = [
             pin_change for pin_change in uno.pins.history("trigger") if pin_change.state == "high"
@@ -131,15 +131,17 @@ def check_pins(case: Case, uno: Uno) -> None:
             triggers = len(pulses)
             wired_uno.run(PING_MS)
             uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
-    settings = motor_settings(uno, began)
+    settings = motor_settings(uno, start_count)
     events = wired_uno.session.events()
     if not is_over:
         settings = [setting for setting in settings if setting.ms < end_ms]
         expected = [setting for setting in expected if setting.ms < end_ms]
     assert [setting[1:] for setting in settings] == [setting[1:] for setting in expected]
     for pins, line in zip(settings, expected, strict=True):
-        before = sum(read_ms <= line.ms for read_ms in reads)
-        late_ms = OFF_MS + READING_MS * before + (FIRST_READING_MS - READING_MS) * bool(before)
+        read_count = sum(read_ms <= line.ms for read_ms in reading_times)
+        late_ms = (
+            OFF_MS + READING_MS * read_count + (FIRST_READING_MS - READING_MS) * bool(read_count)
+        )
         assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
     if is_over:
         lines = [line.split(" ", 1)[1] for line in trace.splitlines()]
@@ -150,9 +152,9 @@ def check_pins(case: Case, uno: Uno) -> None:
         ]
 
 
-def last_zero(uno: Uno, since: int) -> int:
+def last_zero(uno: Uno, start_count: int) -> int:
     """Return the time of the last frame from which a movement started."""
-    heard_bytes = uno.received_bytes[since:]
+    heard_bytes = uno.received_bytes[start_count:]
     drive_cycles = [
         change.cycle
         for name in MOTORS

@@ -25,7 +25,7 @@ ENVIRONMENT = "uno_tinibot2"  # environment in vm_arduino/platformio.ini
 FULL_PWM = 255  # PWM value of 100 %
 
 
-class Driven(Wired):
+class DrivenUno(Wired):
     """An Uno on an endless floor, whose motors have `motors` percent of their speed."""
 
     def __init__(
@@ -36,18 +36,18 @@ class Driven(Wired):
         uno = Uno(firmware, baud=board.baud, resets_on_open=False, tells_sleep=False)
         super().__init__(uno, Session(seed, board.baud, ROBOT.kit.fingerprint))
         self._motors = motors
-        self._driving = Driving(ROBOT.body, (), Pose(0, 0, 0))
+        self._simulation = Driving(ROBOT.body, (), Pose(0, 0, 0))
         self.wheels = Wheels(
             ROBOT.body,
             board.discs,
             discs_of(board.discs).has_two_channels,
             rough,
             seed,
-            self._driving.set_motors,
+            self._simulation.set_motors,
         )
         self._discs = [f"D{board.discs.pins[side]}" for side in ("left", "right")]
         self._levels = [False, False]
-        self._noticed = 0  # events of the board
+        self._noticed_count = 0  # events of the board
         self._pins: dict[str, Event] = {}  # last event of each pin
         for name in self._discs:
             uno.drive(name, False)
@@ -56,13 +56,13 @@ class Driven(Wired):
     @property
     def pose(self) -> Pose:
         self.wheels.go_on(self.now_ms)
-        return self._driving.advance_to(self.now_ms)
+        return self._simulation.advance_to(self.now_ms)
 
     def run(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
             super().run(1)
-            for event in self.uno.events[self._noticed :]:
-                self._noticed += 1
+            for event in self.uno.events[self._noticed_count :]:
+                self._noticed_count += 1
                 if event.kind == "pin":
                     self._pins[event["pin"]] = event
             left, right = self._motors
@@ -82,15 +82,15 @@ class Driven(Wired):
         is_backward = self._pins[f"D{pins[f'{side}_backward']}"]["is"] == "high"
         return (-level if is_backward else level) * 100 / FULL_PWM
 
-    def drive(self, text: str, limit_ms: int = 20_000) -> str:
+    def drive(self, text: str, timeout_ms: int = 20_000) -> str:
         """Run a program to its end and a little longer; return the cause of its end."""
         image = image_of(text, ROBOT.kit)
         assert self.until(self.session.hello()) == OK
         assert self.until(self.session.upload(image)) == OK
-        for _ in range(limit_ms // 10):
+        for _ in range(timeout_ms // 10):
             self.run(10)
             for event in self.session.events():
                 if event.name in ("DONE", "FAULT"):
                     self.run(500)
                     return event.name
-        raise AssertionError(f"not over after {limit_ms} ms")
+        raise AssertionError(f"not over after {timeout_ms} ms")

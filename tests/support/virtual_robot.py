@@ -34,9 +34,9 @@ def robot_in(
 
 def trace(events: Sequence[Event]) -> list[str]:
     """Return a robot's actions in its last run, in the form of `tsc run`."""
-    starts = [k for k, event in enumerate(events) if event.kind == "START"]
-    began_ms = events[starts[-1]].time_ms
-    return [f"{event.time_ms - began_ms} {event.text}" for event in events[starts[-1] + 1 :]]
+    start_indexes = [k for k, event in enumerate(events) if event.kind == "START"]
+    start_ms = events[start_indexes[-1]].time_ms
+    return [f"{event.time_ms - start_ms} {event.text}" for event in events[start_indexes[-1] + 1 :]]
 
 
 class Talk(Computer):

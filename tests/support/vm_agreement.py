@@ -5,17 +5,17 @@ from __future__ import annotations
 from tests.support.random_programs import MAX_MS
 
 
-def are_equivalent(want: str, actual: str) -> bool:
+def are_equivalent(wanted_trace: str, actual: str) -> bool:
     """Return whether two traces are equivalent; the place of a cut by `max-steps` does not
     count.
     """
-    if want == actual:
+    if wanted_trace == actual:
         return True
-    ours, theirs = actual.splitlines(), want.splitlines()
-    if not any(_is_cut(lines[-1]) for lines in (ours, theirs)):
+    actual_lines, wanted_lines = actual.splitlines(), wanted_trace.splitlines()
+    if not any(_is_cut(lines[-1]) for lines in (actual_lines, wanted_lines)):
         return False
-    shorter = min(len(ours), len(theirs)) - 1
-    return ours[:shorter] == theirs[:shorter]
+    shorter = min(len(actual_lines), len(wanted_lines)) - 1
+    return actual_lines[:shorter] == wanted_lines[:shorter]
 
 
 def _is_cut(line: str) -> bool:

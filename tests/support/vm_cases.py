@@ -15,5 +15,5 @@ def having(*parts: str) -> list[pytest.ParameterSet]:
 
 def disassemblies_alone() -> list[pytest.ParameterSet]:
     """Return the disassemblies of no program."""
-    alone = [case for case in CASES if "tiniscript" not in case.parts and "bytecode" in case.parts]
-    return [pytest.param(case, id=case.id) for case in alone]
+    cases = [case for case in CASES if "tiniscript" not in case.parts and "bytecode" in case.parts]
+    return [pytest.param(case, id=case.id) for case in cases]

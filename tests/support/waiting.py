@@ -9,11 +9,13 @@ from pathlib import Path
 HANG_LIMIT_S = 120.0
 
 
-def until(is_so: Callable[[], bool], what: str, timeout_s: float = HANG_LIMIT_S) -> None:
+def until(
+    is_reached: Callable[[], bool], description: str, timeout_s: float = HANG_LIMIT_S
+) -> None:
     """Wait until something is so."""
     end_s = time.monotonic() + timeout_s
-    while not is_so():
-        assert time.monotonic() < end_s, f"not after {timeout_s} s: {what}"
+    while not is_reached():
+        assert time.monotonic() < end_s, f"not after {timeout_s} s: {description}"
         time.sleep(0.01)
 
 

@@ -10,7 +10,7 @@ from tiniscript.together.page import Page
 
 def apply_edits(page: Page, operations: Iterable[Operation]) -> bool:
     page.leave()
-    was_done = page.apply(operations)
+    is_done = page.apply(operations)
     page.leave()
     page._show(page.caret)
-    return was_done
+    return is_done

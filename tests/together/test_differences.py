@@ -15,7 +15,7 @@ from tiniscript.together.layout import Unparsed, parse_tree, text_of
 from tiniscript.together.operations import apply_change
 
 BASE = "SI|F(1, 80)\nR(0.5, 60)\nB(2, 40)  // back\n\n// again\nW(1)\nS\n"
-SEVEN = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
+SEVEN_MOVES = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
 LOOP = "LOOP(2)\nB(1,1)\nEND_LOOP\n"
 # An action of a person: texts before and after, the operations (or `*`), and the number of
 # unchanged instructions.
@@ -34,7 +34,7 @@ CASES = [
     ("an empty line", BASE, BASE.replace("R(", "\nR("), "replace", 6),
     ("laid out anew", BASE,
      "si | f(1,80);r( .5, 60 );b(2,40) // back\n\n\n//again\n   w(1)\ns", "", 6),
-    ("cut and paste", SEVEN, "F(1,1)\nF(5,5)\nF(6,6)\nF(7,7)\nF(2,2)\nF(3,3)\nF(4,4)\n",
+    ("cut and paste", SEVEN_MOVES, "F(1,1)\nF(5,5)\nF(6,6)\nF(7,7)\nF(2,2)\nF(3,3)\nF(4,4)\n",
      "move 3", 7),
     ("a block moved", f"F(1,1)\n{LOOP}F(2,2)\nF(3,3)\n", f"F(1,1)\nF(2,2)\nF(3,3)\n{LOOP}",
      "move 1", 5),
@@ -82,81 +82,85 @@ def test_equal_parts_are_kept(
     what: str, before: str, after: str, wanted_operations: str, stay: int
 ) -> None:
     numbers, new_numbers = count(1), count(1)
-    old = parse_tree(before, lambda: f"o.{next(numbers)}")
-    operations = find_operations(old, after, lambda: f"n.{next(new_numbers)}")
-    new = apply_change(old, Change("n:1", tuple(operations))).tree
-    assert new.shape() == parse_tree(after).shape()
+    old_tree = parse_tree(before, lambda: f"o.{next(numbers)}")
+    operations = find_operations(old_tree, after, lambda: f"n.{next(new_numbers)}")
+    new_tree = apply_change(old_tree, Change("n:1", tuple(operations))).tree
+    assert new_tree.shape() == parse_tree(after).shape()
     assert wanted_operations in ("*", describe(operations))
-    assert sum(id.startswith("o.") for id in new.subtree_ids()) == stay
+    assert sum(id.startswith("o.") for id in new_tree.subtree_ids()) == stay
 
 
-def program(chance: Random, size: int, depth: int = 0) -> list[str]:
+def program(rng: Random, size: int, depth: int = 0) -> list[str]:
     rows: list[str] = []
     for _ in range(size):
-        kind, k = chance.random(), chance.randint(2, 9)
-        inner = [] if depth > 3 else program(chance, chance.randint(0, 3), depth + 1)
+        kind, k = rng.random(), rng.randint(2, 9)
+        inner = [] if depth > 3 else program(rng, rng.randint(0, 3), depth + 1)
         if kind < 0.55 or depth > 3:
-            rows.append(f"{chance.choice('FBLR')}({k}, {chance.randint(1, 9)}0)")
+            rows.append(f"{rng.choice('FBLR')}({k}, {rng.randint(1, 9)}0)")
         elif kind < 0.65:
-            rows.append(f"// {chance.choice(('a', 'b', 'go on', 'turn'))}")
+            rows.append(f"// {rng.choice(('a', 'b', 'go on', 'turn'))}")
         elif kind < 0.75:
-            rows.append(chance.choice(("S", f"X = {k}")))
+            rows.append(rng.choice(("S", f"X = {k}")))
         elif kind < 0.85:
             rows += [f"LOOP({k})", *inner, "END_LOOP"]
         elif kind < 0.95:
             rows += [f"IF(X < {k})", *inner]
-            if chance.random() < 0.4:
-                rows += [f"ELSEIF(X > {k})", *program(chance, 1, depth + 1)]
-            if chance.random() < 0.5:
-                rows += ["ELSE", *program(chance, 1, depth + 1)]
+            if rng.random() < 0.4:
+                rows += [f"ELSEIF(X > {k})", *program(rng, 1, depth + 1)]
+            if rng.random() < 0.5:
+                rows += ["ELSE", *program(rng, 1, depth + 1)]
             rows.append("ENDIF")
         elif depth == 0:
             rows += ["TASK", *inner, "END_TASK"]
-        if chance.random() < 0.1:
+        if rng.random() < 0.1:
             rows.append("")
     return rows
 
 
-def edit_rows(chance: Random, rows: list[str]) -> list[str]:
-    new = rows[:]
-    for _ in range(chance.randint(1, 4)):
-        kind, i = chance.random(), chance.randrange(len(new) + 1)
+def edit_rows(rng: Random, rows: list[str]) -> list[str]:
+    new_rows = rows[:]
+    for _ in range(rng.randint(1, 4)):
+        kind, i = rng.random(), rng.randrange(len(new_rows) + 1)
         if kind < 0.3:
-            new[i:i] = program(chance, chance.randint(1, 2), 1)
+            new_rows[i:i] = program(rng, rng.randint(1, 2), 1)
         elif kind < 0.5:
-            del new[i : i + chance.randint(1, 4)]
+            del new_rows[i : i + rng.randint(1, 4)]
         elif kind < 0.7:
-            cut = new[i : i + chance.randint(1, 6)]
-            del new[i : i + len(cut)]
-            k = chance.randrange(len(new) + 1)
-            new[k:k] = cut
+            cut_rows = new_rows[i : i + rng.randint(1, 6)]
+            del new_rows[i : i + len(cut_rows)]
+            k = rng.randrange(len(new_rows) + 1)
+            new_rows[k:k] = cut_rows
         elif kind < 0.85:
-            new.insert(min(len(new), i + chance.randint(0, 5)), "END_LOOP")
-            new.insert(i, "LOOP(7)")
-        elif i < len(new):
-            new[i] = new[i].replace("(", "(1", 1)
-    return new
+            new_rows.insert(min(len(new_rows), i + rng.randint(0, 5)), "END_LOOP")
+            new_rows.insert(i, "LOOP(7)")
+        elif i < len(new_rows):
+            new_rows[i] = new_rows[i].replace("(", "(1", 1)
+    return new_rows
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_operations_produce_the_new_program_and_are_undone(seed: int) -> None:
-    chance, tried = Random(seed), Counter[str]()
+    rng, tried = Random(seed), Counter[str]()
     while sum(tried.values()) < PROGRAMS:
-        before = program(chance, chance.randint(0, 20))
-        after = edit_rows(chance, before) if chance.random() < 0.8 else program(chance, 12)
+        tree_before = program(rng, rng.randint(0, 20))
+        new_rows = edit_rows(rng, tree_before) if rng.random() < 0.8 else program(rng, 12)
         numbers, new_numbers = count(1), count(1)
         try:
-            old = parse_tree("\n".join(before), lambda: f"o.{next(numbers)}")  # noqa: B023
-            new = parse_tree("\n".join(after))
+            old_tree = parse_tree("\n".join(tree_before), lambda: f"o.{next(numbers)}")  # noqa: B023
+            new_tree = parse_tree("\n".join(new_rows))
         except Unparsed:
             continue
-        operations = find_operations(old, "\n".join(after), lambda: f"n.{next(new_numbers)}")  # noqa: B023
+        operations = find_operations(
+            old_tree,
+            "\n".join(new_rows),
+            lambda: f"n.{next(new_numbers)}",  # noqa: B023
+        )
         assert [operation_of(data_of(operation)) for operation in operations] == operations
-        outcome = apply_change(old, Change("n:1", tuple(operations)))
-        assert outcome.tree.shape() == new.shape()
-        assert text_of(outcome.tree) == text_of(new)
+        outcome = apply_change(old_tree, Change("n:1", tuple(operations)))
+        assert outcome.tree.shape() == new_tree.shape()
+        assert text_of(outcome.tree) == text_of(new_tree)
         restored = apply_change(outcome.tree, Change("n:2", outcome.inverse)).tree
-        assert text_of(restored) == text_of(old)
-        assert restored.subtree_ids() == old.subtree_ids()
+        assert text_of(restored) == text_of(old_tree)
+        assert restored.subtree_ids() == old_tree.subtree_ids()
         tried.update(type(operation).__name__ for operation in operations or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

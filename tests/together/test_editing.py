@@ -39,7 +39,7 @@ class Editor:
 
     def begin(self, stored_data: Json | None) -> None:
         """Join the group, with the page's stored data from before a reload."""
-        self.at, self.is_hot = 0, False
+        self.column, self.is_hot = 0, False
         self.keys: list[str] = []  # that are to be pressed
         self.news: list[Json] = []
         self.python: tuple[Any, Any] = (None, None)
@@ -62,85 +62,88 @@ class Editor:
         units = self.text.encode("utf-16-le")
         for start, end, put in reversed(changes):
             data = put.encode("utf-16-le")
-            caret = len(self.text[: self.at].encode("utf-16-le")) // 2
-            is_first = self.at == 0 or self.text[self.at - 1] == "\n"  # of its line
+            caret = len(self.text[: self.column].encode("utf-16-le")) // 2
+            is_first = self.column == 0 or self.text[self.column - 1] == "\n"  # of its line
             if caret > end or (caret == end and (start < end or is_first)):
                 caret += len(data) // 2 - (end - start)
             elif caret > start:
                 caret = start
             units = units[: 2 * start] + data + units[2 * end :]
             self.text = units.decode("utf-16-le")
-            self.at = len(units[: 2 * caret].decode("utf-16-le", "ignore"))
+            self.column = len(units[: 2 * caret].decode("utf-16-le", "ignore"))
 
     @property
     def line(self) -> int:
-        return self.text.count("\n", 0, self.at)
+        return self.text.count("\n", 0, self.column)
 
     def step(self) -> Json:
-        request = {"do": "group_step", "from": self.shown["version"], "caret": self.line,
+        request = {"do": "group_step", "from": self.shown_answer["version"], "caret": self.line,
                    "hot": self.is_hot, "news": self.news}  # fmt: skip
         return self.ask(request)
 
     def take(self, answer: Json) -> None:
-        self.news, self.shown = [], answer
+        self.news, self.shown_answer = [], answer
         self.change(answer["changes"])
 
     def hears(self) -> None:
         """Send pending changes, and receive news."""
-        self.program.submit(list(map(change_of, self.shown["pending"])))
-        name = self.shown["kept"]["name"]
-        news = self.program.news(name, self.shown["since"], self.shown["epoch"])
+        self.program.submit(list(map(change_of, self.shown_answer["pending"])))
+        name = self.shown_answer["kept"]["name"]
+        news = self.program.news(name, self.shown_answer["since"], self.shown_answer["epoch"])
         self.news.append(json.loads(json.dumps(news)))
 
-    def types(self, chance: Random) -> bool:
+    def types(self, rng: Random) -> bool:
         """Press a key: of an instruction below a line, of a loose one, or any; return whether a
         line is finished.
         """
-        if not self.keys and chance.random() < 0.7:
-            end = self.text.find("\n", chance.randint(0, len(self.text)))
+        if not self.keys and rng.random() < 0.7:
+            end = self.text.find("\n", rng.randint(0, len(self.text)))
             self.goes_to(end if end >= 0 else len(self.text))
-            self.keys = list(f"\n{chance.choice(('F', 'b', 'L'))}({chance.randint(1, 99)}, 50)")
-            self.keys += ["\n"] * (chance.random() < 0.5)
-            if chance.random() < 0.2:
+            self.keys = list(f"\n{rng.choice(('F', 'b', 'L'))}({rng.randint(1, 99)}, 50)")
+            self.keys += ["\n"] * (rng.random() < 0.5)
+            if rng.random() < 0.2:
                 self.goes_to(len(self.text))
-                self.keys = list(f"\n/// F({chance.randint(1, 99)}, 50)")
-        key, line = self.keys.pop(0) if self.keys else chance.choice(KEYS), self.line
+                self.keys = list(f"\n/// F({rng.randint(1, 99)}, 50)")
+        key, line = self.keys.pop(0) if self.keys else rng.choice(KEYS), self.line
         if key == BACKSPACE:
-            self.text, self.at = (
-                self.text[: max(0, self.at - 1)] + self.text[self.at :],
-                self.at - 1,
+            self.text, self.column = (
+                self.text[: max(0, self.column - 1)] + self.text[self.column :],
+                self.column - 1,
             )
-            self.at = max(0, self.at)
+            self.column = max(0, self.column)
         else:
-            self.text, self.at = self.text[: self.at] + key + self.text[self.at :], self.at + 1
+            self.text, self.column = (
+                self.text[: self.column] + key + self.text[self.column :],
+                self.column + 1,
+            )
         was_hot, self.is_hot = self.is_hot, True
         return self.line != line and was_hot
 
     def goes_to(self, at: int) -> None:
-        line, self.at = self.line, at
+        line, self.column = self.line, at
         self.is_hot = self.is_hot and self.line == line
 
 
 @pytest.mark.sampled("seed", keep=2)
 @pytest.mark.parametrize("seed", range(6))
 def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
-    chance, ids = Random(seed), count(1)
+    rng, ids = Random(seed), count(1)
     program = SharedProgram(parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e")
     editors = [Editor(name, program) for name in ("m1", "m2")]
     assert {editor.text for editor in editors} == {FIRST_PROGRAM}
     reloads = draft_count = 0
     for _ in range(TURNS):
-        editor = chance.choice(editors)
-        for _ in range(chance.randint(1, 6)):
-            if editor.types(chance):
+        editor = rng.choice(editors)
+        for _ in range(rng.randint(1, 6)):
+            if editor.types(rng):
                 editor.take(editor.step())
-        if chance.random() < 0.3:
-            editor.goes_to(chance.randint(0, len(editor.text)))
-        if chance.random() < 0.5:
+        if rng.random() < 0.3:
+            editor.goes_to(rng.randint(0, len(editor.text)))
+        if rng.random() < 0.5:
             editor.hears()
         answer = editor.step()
-        if chance.random() < 0.3:  # typing there changes something, so it is void
-            editor.types(chance)
+        if rng.random() < 0.3:  # typing there changes something, so it is void
+            editor.types(rng)
             answer = editor.step()
         row = editor.text.split("\n")[editor.line]
         editor.take(answer)
@@ -153,15 +156,15 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
         draft_count += len(drafts)
         if editor.is_hot:  # no one else edits the line being typed
             assert editor.text.split("\n")[editor.line] == row
-        if chance.random() < 0.1:
-            loose = editor.loose
+        if rng.random() < 0.1:
+            loose_before = editor.loose
             editor.begin(answer["kept"])
-            assert editor.loose[len(editor.loose) - len(loose) :] == loose
-            reloads += bool(loose)
+            assert editor.loose[len(editor.loose) - len(loose_before) :] == loose_before
+            reloads += bool(loose_before)
     for editor in editors:
         editor.is_hot = False
         editor.take(editor.step())
-    while any(editor.shown["pending"] or editor.shown["since"] != program.number
+    while any(editor.shown_answer["pending"] or editor.shown_answer["since"] != program.number
               for editor in editors):  # fmt: skip
         for editor in editors:
             editor.hears()
@@ -176,10 +179,10 @@ def test_editors_that_hear_late_end_with_the_same_text(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_changes_turn_the_old_text_into_the_new(seed: int) -> None:
-    chance = Random(seed)
+    rng = Random(seed)
     rows = ["F(1, 80);", "f(1,80)", "", "  B(2, 40);", "// \U0001f916 a", "// b \x0b c", "W(1)"]
-    old, new = ("\n".join(chance.choices(rows, k=chance.randint(0, 8))) for _ in range(2))
-    units = old.encode("utf-16-le")
-    for start, end, put in reversed(page_together.changes(old, new)):
+    old_text, new_text = ("\n".join(rng.choices(rows, k=rng.randint(0, 8))) for _ in range(2))
+    units = old_text.encode("utf-16-le")
+    for start, end, put in reversed(page_together.changes(old_text, new_text)):
         units = units[: 2 * start] + put.encode("utf-16-le") + units[2 * end :]
-    assert units.decode("utf-16-le") == new
+    assert units.decode("utf-16-le") == new_text

@@ -27,7 +27,7 @@ MOST_REFUSED = 0.01
 def history(seed: int, deeds: int, pages: int) -> World:
     """Play so many deeds; all that must be true is asserted."""
     world = World(pages, seed)
-    chance, change_count = world.chance, 0
+    rng, change_count = world.rng, 0
 
     def act(name: str) -> None:
         nonlocal change_count
@@ -38,28 +38,28 @@ def history(seed: int, deeds: int, pages: int) -> World:
             if change_count % EDITS_PER_COMPARISON == 0:
                 world.check()
         drafts = len(pupil.page.drafts)
-        if drafts > 2 or (drafts and not pupil.stages and chance.random() < 0.1):
+        if drafts > 2 or (drafts and not pupil.stages and rng.random() < 0.1):
             pupil.drops()
-        world.at(chance.uniform(0.5, 5), act, name)
+        world.schedule(rng.uniform(0.5, 5), act, name)
 
     def make_trouble(name: str) -> None:
-        if chance.random() < 0.6:
-            world.off_until_s[name] = world.now_s + chance.uniform(5, 60)
+        if rng.random() < 0.6:
+            world.off_until_s[name] = world.now_s + rng.uniform(5, 60)
             world.counts["breaks"] += 1
         else:
             world.reload(name)
             world.counts["reloads"] += 1
-        world.at(chance.uniform(20, 200), make_trouble, name)
+        world.schedule(rng.uniform(20, 200), make_trouble, name)
 
     def crash() -> None:
         world.crash()
-        world.at(chance.uniform(100, 900), crash)
+        world.schedule(rng.uniform(100, 900), crash)
 
     for name in world.pupils:
-        world.at(chance.uniform(0, 3), act, name)
-        world.at(chance.uniform(20, 200), make_trouble, name)
+        world.schedule(rng.uniform(0, 3), act, name)
+        world.schedule(rng.uniform(20, 200), make_trouble, name)
         world.ask(name, 0)
-    world.at(chance.uniform(30, 300), crash)
+    world.schedule(rng.uniform(30, 300), crash)
     world.run(lambda: change_count >= deeds)
     world.settle()
     world.check()
@@ -71,29 +71,29 @@ def history(seed: int, deeds: int, pages: int) -> World:
 
 def lesson(seed: int, pages: int, lesson_s: float = LESSON_S) -> World:
     """Play pupils of a class who each make a change every three seconds, within a few lines."""
-    world = World(pages, seed, lambda chance: chance.uniform(0.03, 0.12), 0.0, 0.05, spread=0.0)
-    chance = world.chance
+    world = World(pages, seed, lambda rng: rng.uniform(0.03, 0.12), 0.0, 0.05, spread=0.0)
+    rng = world.rng
 
     def act(name: str) -> None:
         pupil = world.pupils[name]
         is_typing = bool(pupil.stages)
         if not is_typing:
             lines = max(1, len(pupil.page.lines))
-            pupil.focus = max(0.0, min(lines - 1.0, chance.gauss(0.4 * lines, 3.0))) / lines
+            pupil.focus = max(0.0, min(lines - 1.0, rng.gauss(0.4 * lines, 3.0))) / lines
         if is_typing:
             while pupil.stages:
                 pupil.types()
-        elif chance.random() < 0.35:
+        elif rng.random() < 0.35:
             pupil.does_by_blocks()
         else:
             pupil.types()
         if pupil.page.drafts and not pupil.stages:
             pupil.page.give_up()
-        pause_s = chance.gauss(1.5, 0.5) if pupil.stages or is_typing else chance.gauss(3.0, 1.0)
-        world.at(max(0.5, pause_s), act, name)
+        pause_s = rng.gauss(1.5, 0.5) if pupil.stages or is_typing else rng.gauss(3.0, 1.0)
+        world.schedule(max(0.5, pause_s), act, name)
 
     for name in world.pupils:
-        world.at(chance.uniform(0, 3), act, name)
+        world.schedule(rng.uniform(0, 3), act, name)
         world.ask(name, 0)
     world.run(lambda: world.now_s > lesson_s)
     world.settle()
@@ -120,26 +120,30 @@ def _counts(worlds: list[World]) -> tuple[int, int]:
     change_count = sum(
         pupil.page.change_count for world in worlds for pupil in world.pupils.values()
     )
-    return change_count, sum(sum(world.why.values()) for world in worlds)
+    return change_count, sum(sum(world.refusals_by_reason.values()) for world in worlds)
 
 
 def _print_counts(worlds: list[World]) -> None:
     change_count, refused_count = _counts(worlds)
     unseen = sum(world.replaced_unseen for world in worlds)
-    why = sum((world.why for world in worlds), Counter[str]())
-    happened = sum((world.counts for world in worlds), Counter[str]())
+    refusals = sum((world.refusals_by_reason for world in worlds), Counter[str]())
+    action_counts = sum((world.counts for world in worlds), Counter[str]())
     percent = 100 * refused_count / change_count
-    print(f"{change_count} changes, refused {refused_count} ({percent:.2f} %) {dict(why)}, "
-          f"values replaced that their page had not seen: {unseen}")  # fmt: skip
-    print(dict(happened))
+    print(
+        f"{change_count} changes, refused {refused_count} ({percent:.2f} %) {dict(refusals)}, "
+        f"values replaced that their page had not seen: {unseen}"
+    )
+    print(dict(action_counts))
 
 
 if __name__ == "__main__":
-    given = make_options(10_000, 0, "lessons")
-    if given.lessons:
+    options = make_options(10_000, 0, "lessons")
+    if options.lessons:
         for pages in (2, 3, 4):
-            _print_counts([lesson(seed, pages, 600) for seed in range(given.seed, given.seed + 3)])
+            _print_counts(
+                [lesson(seed, pages, 600) for seed in range(options.seed, options.seed + 3)]
+            )
     else:
         per_part = 1000
-        _print_counts([history(given.seed + k, min(per_part, given.count - k * per_part), 4)
-                       for k in range(-(-given.count // per_part))])  # fmt: skip
+        _print_counts([history(options.seed + k, min(per_part, options.count - k * per_part), 4)
+                       for k in range(-(-options.count // per_part))])  # fmt: skip

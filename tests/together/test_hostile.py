@@ -50,39 +50,37 @@ NEEDED_FIELDS = {
     "insert": ("at", "nodes"), "delete": ("ids",), "move": ("ids", "at"), "wrap": ("ids", "node"),
     "unwrap": ("id",), "replace": ("id", "text"), "no": (),
 }  # fmt: skip
-FIELDS = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
+FIELD_NAMES = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
 
 
-def an_operation(chance: Random) -> Any:
-    operation: Any = {"do": chance.choice(list(NEEDED_FIELDS))}
+def an_operation(rng: Random) -> Any:
+    operation: Any = {"do": rng.choice(list(NEEDED_FIELDS))}
     for field in NEEDED_FIELDS[operation["do"]]:
-        operation[field] = chance.choice(LIKELY_VALUES[field])
-    for field in FIELDS:
-        if chance.random() < 0.07:
-            operation[field] = chance.choice(VALUES)
+        operation[field] = rng.choice(LIKELY_VALUES[field])
+    for field in FIELD_NAMES:
+        if rng.random() < 0.07:
+            operation[field] = rng.choice(VALUES)
     return operation
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_no_change_spoils_the_program(seed: int) -> None:
-    chance, ids = Random(seed), count(1)
+    rng, ids = Random(seed), count(1)
     rows: list[Any] = []
     program = SharedProgram(parse_tree(TEXT, lambda: f"i.{next(ids)}"), "e", rows.append)
     page = Page.of("z", program.news("z", -1, ""))
-    came: Counter[str] = Counter()
+    refusals: Counter[str] = Counter()
     for k in range(1, MESSAGE_COUNT + 1):
-        operation = an_operation(chance)
+        operation = an_operation(rng)
         uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
-        sent_data = json.loads(
-            json.dumps({"uid": uid, "ops": [operation] * chance.choice((1, 1, 3))})
-        )
+        sent_data = json.loads(json.dumps({"uid": uid, "ops": [operation] * rng.choice((1, 1, 3))}))
         try:
             change = change_of(sent_data)
         except Refused as refusal:
-            came[refusal.reason] += 1
+            refusals[refusal.reason] += 1
             continue
         program.submit([change])
-        came[str(rows[-1].get("refused", "taken"))] += 1
+        refusals[str(rows[-1].get("refused", "taken"))] += 1
         if k % 10 == 0:
             tree = program.tree
             assert parse_tree(text_of(tree)).shape() == tree.shape()
@@ -90,8 +88,8 @@ def test_no_change_spoils_the_program(seed: int) -> None:
             assert tree_of(json.loads(json.dumps(tree.snapshot()))).checksum() == tree.checksum()
             page.receive(json.loads(json.dumps(program.news("z", page.number, "e"))))
             assert not page.is_astray
-    assert came["taken"] > MESSAGE_COUNT / 50
-    assert came[BAD] > MESSAGE_COUNT / 50
+    assert refusals["taken"] > MESSAGE_COUNT / 50
+    assert refusals[BAD] > MESSAGE_COUNT / 50
 
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)
@@ -102,9 +100,9 @@ def test_an_invalid_change_is_refused(value: Any) -> None:
         if data not in ({"uid": "m:1", "ops": []}, {"uid": "a:1", "ops": []}):
             with pytest.raises(Refused):
                 change_of(data)
-    for whole in (value, {"tree": value}, {"tree": {"id": "root"}, "gone": value}):
+    for tree_data in (value, {"tree": value}, {"tree": {"id": "root"}, "gone": value}):
         with pytest.raises(Refused):
-            tree_of(whole)
+            tree_of(tree_data)
 
 
 def test_deep_and_long_programs_are_refused() -> None:
@@ -118,7 +116,7 @@ def test_deep_and_long_programs_are_refused() -> None:
         insert = {"do": "insert", "at": ["root", "start"], "nodes": nodes}
         program.submit([change_of({"uid": f"m:{k}", "ops": [insert]})])
     assert len(text_of(program.tree)) <= 20_000
-    assert {why for _, why in program.refusals_by_page["m"]} == {UNPARSED, TOO_LONG}
+    assert {reason for _, reason in program.refusals_by_page["m"]} == {UNPARSED, TOO_LONG}
 
 
 def test_the_number_of_remembered_deletions_is_limited() -> None:

@@ -36,35 +36,35 @@ def change_program(program: SharedProgram, value: int, page: str = "a") -> bool:
     return program.submit([Change(uid, (operation,))])
 
 
-def are_same(one: SharedProgram, other: SharedProgram) -> bool:
-    return (one.number, one.last_count_by_page, one.refusals_by_page, one.tree.checksum()) == (
-        other.number, other.last_count_by_page, other.refusals_by_page, other.tree.checksum()
+def are_same(a: SharedProgram, b: SharedProgram) -> bool:
+    return (a.number, a.last_count_by_page, a.refusals_by_page, a.tree.checksum()) == (
+        b.number, b.last_count_by_page, b.refusals_by_page, b.tree.checksum()
     )  # fmt: skip
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_a_program_is_restored_from_a_truncated_journal(tmp_path: Path, seed: int) -> None:
     """All announced changes are there; a row that a crash has cut off was never announced."""
-    path, chance = tmp_path / "journal", Random(seed)
+    path, rng = tmp_path / "journal", Random(seed)
     journal, program = begin_journal(path)
     sizes = [path.stat().st_size]
     states = [(program.number, dict(program.last_count_by_page))]
     for k in range(12):
-        change_program(program, chance.choice((0, 1000 + k)), chance.choice("ab"))
+        change_program(program, rng.choice((0, 1000 + k)), rng.choice("ab"))
         sizes.append(path.stat().st_size)
         states.append((program.number, dict(program.last_count_by_page)))
     journal.close()
-    cut = chance.randint(sizes[0], sizes[-1])
-    os.truncate(path, cut)
-    resumed = Journal(path).resume("e2")
-    assert resumed is not None
-    last = max(k for k, size in enumerate(sizes) if size <= cut)
-    assert (resumed.number, resumed.last_count_by_page) == states[last]
-    assert resumed.epoch == "e2"
-    change_program(resumed, 2000)
-    whole = Journal(path).resume("e3")
-    assert whole is not None
-    assert are_same(whole, resumed)
+    journal_size = rng.randint(sizes[0], sizes[-1])
+    os.truncate(path, journal_size)
+    resumed_program = Journal(path).resume("e2")
+    assert resumed_program is not None
+    state_index = max(k for k, size in enumerate(sizes) if size <= journal_size)
+    assert (resumed_program.number, resumed_program.last_count_by_page) == states[state_index]
+    assert resumed_program.epoch == "e2"
+    change_program(resumed_program, 2000)
+    whole_program = Journal(path).resume("e3")
+    assert whole_program is not None
+    assert are_same(whole_program, resumed_program)
 
 
 def test_the_row_is_written_before_the_answer(tmp_path: Path) -> None:
@@ -72,9 +72,9 @@ def test_the_row_is_written_before_the_answer(tmp_path: Path) -> None:
     _, program = begin_journal(path)
     for value in (5, 0, 6):
         change_program(program, value)
-        resumed = Journal(path).resume("e2")
-        assert resumed is not None
-        assert are_same(resumed, program)
+        resumed_program = Journal(path).resume("e2")
+        assert resumed_program is not None
+        assert are_same(resumed_program, program)
 
 
 @pytest.mark.parametrize("says_so", ["write", "in part", "fsync"])
@@ -101,50 +101,50 @@ def test_with_a_full_disk_the_lesson_continues_and_the_journal_catches_up(
         assert journal.is_incomplete
     assert change_program(program, 8)
     assert not journal.is_incomplete
-    resumed = Journal(path).resume("e2")
-    assert resumed is not None
-    assert (resumed.number, text_of(resumed.tree)) == (2, text_of(program.tree))
+    resumed_program = Journal(path).resume("e2")
+    assert resumed_program is not None
+    assert (resumed_program.number, text_of(resumed_program.tree)) == (2, text_of(program.tree))
 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_a_crash_on_a_bad_disk_loses_no_readable_data(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
-    path, chance, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
+    path, rng, is_full, kept_number = tmp_path / "journal", Random(seed), False, 0
     journal, program = begin_journal(path)
     monkeypatch.setattr(journals, "MOST_BYTES", 2000)
 
-    def look() -> None:
+    def stop_saving() -> None:
         reopened = Journal(path)
-        resumed = reopened.resume("e2")
+        resumed_program = reopened.resume("e2")
         reopened.close()
-        assert resumed is not None and resumed.number >= kept_number
+        assert resumed_program is not None and resumed_program.number >= kept_number
 
     def checked_call(call: Callable[..., Any]) -> Callable[..., Any]:
-        def write_before(*arguments: Any, **more: Any) -> Any:
-            look()
+        def write_before(*arguments: Any, **keywords: Any) -> Any:
+            stop_saving()
             if is_full:
                 raise OSError(errno.ENOSPC, "full")
-            return call(*arguments, **more)
+            return call(*arguments, **keywords)
 
         return write_before
 
     monkeypatch.setattr(os, "write", checked_call(os.write))
     monkeypatch.setattr(journals, "replace", checked_call(files.replace))
     for value in range(1, 40):
-        is_full = chance.random() < (0.8 if is_full else 0.2)
+        is_full = rng.random() < (0.8 if is_full else 0.2)
         assert change_program(program, value)
         kept_number = kept_number if journal.is_incomplete else program.number
-        look()
-        if chance.random() < 0.2:  # it crashes, and resumes with the stored data
+        stop_saving()
+        if rng.random() < 0.2:  # it crashes, and resumes with the stored data
             journal.close()
             journal = Journal(path)
-            if chance.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
-                path.write_bytes(chance.randbytes(chance.randrange(3000)))  # it is damaged
+            if rng.random() < 0.5 and path.with_name(path.name + OLD_ENDING).exists():
+                path.write_bytes(rng.randbytes(rng.randrange(3000)))  # it is damaged
                 kept_number = 0
-            resumed = journal.resume(f"e{value}")
-            assert resumed is not None
-            program = resumed
+            resumed_program = journal.resume(f"e{value}")
+            assert resumed_program is not None
+            program = resumed_program
             kept_number = max(kept_number, program.number)
     is_full = False
     assert change_program(program, 99) and not journal.is_incomplete
@@ -160,9 +160,9 @@ def test_an_overlong_journal_is_rotated(tmp_path: Path, monkeypatch: pytest.Monk
         change_program(program, value)
         assert path.stat().st_size < 6000
     assert path.with_name(path.name + OLD_ENDING).exists()
-    resumed = Journal(path).resume("e2")
-    assert resumed is not None
-    assert resumed.tree.checksum() == program.tree.checksum()
+    resumed_program = Journal(path).resume("e2")
+    assert resumed_program is not None
+    assert resumed_program.tree.checksum() == program.tree.checksum()
 
 
 @pytest.mark.parametrize(
@@ -195,6 +195,6 @@ def test_recent_history_is_in_memory_and_the_rest_in_the_journal(tmp_path: Path)
     assert program.taken_changes[-1].number == 99
     rows = [json.loads(row) for row in path.read_text().splitlines()]
     assert [row["n"] for row in rows if "uid" in row] == list(range(1, 100))
-    late = program.news("z", 3, "e1")  # a page absent for longer gets the whole program
-    assert late["whole"] == program.tree.snapshot() and "changes" not in late
+    late_news = program.news("z", 3, "e1")  # a page absent for longer gets the whole program
+    assert late_news["whole"] == program.tree.snapshot() and "changes" not in late_news
     assert len(program.news("z", 95, "e1")["changes"]) == 4

@@ -43,7 +43,7 @@ L(1, 60)
 """
 
 
-class Two:
+class PagePair:
     """Ana and Luz edit one program; what Ana does reaches the computer first."""
 
     def __init__(self, text: str = TEXT) -> None:
@@ -77,109 +77,109 @@ class Two:
         node = Subtree(page.new_id(), text)
         assert apply_edits(page, [Insert(Place(container, previous), (node,))])
 
-    def types(self, page: Page, old: str, new: str, is_hot: bool = False) -> None:
+    def types(self, page: Page, old_text: str, new_text: str, is_hot: bool = False) -> None:
         """Change part of a line, and leave it unless it `is_hot`."""
-        [k] = [k for k, row in enumerate(page.lines) if old in row]
+        [k] = [k for k, row in enumerate(page.lines) if old_text in row]
         rows = page.lines[:]
-        rows[k] = rows[k].replace(old, new)
+        rows[k] = rows[k].replace(old_text, new_text)
         page.type(rows, k, is_hot)
         page.flush()
 
 
 @pytest.fixture
-def two() -> Two:
-    return Two()
+def pair() -> PagePair:
+    return PagePair()
 
 
-def test_a_delete_spares_changes_unseen_by_its_author(two: Two) -> None:
-    loop = two.find("LOOP(3)")
-    two.inserts(two.ana, loop, two.find("B(1, 40)"))
-    apply_edits(two.luz, [Delete(tuple(two.luz.view.subtree_ids(loop)))])
-    assert "LOOP(3); B(1, 40); BEEP(1, 440);" in two.meet()
-    assert two.luz.refusals[-1][1] == HAS_NEW
-    assert "  BEEP(1, 440);" in two.luz.lines
+def test_a_delete_spares_changes_unseen_by_its_author(pair: PagePair) -> None:
+    loop = pair.find("LOOP(3)")
+    pair.inserts(pair.ana, loop, pair.find("B(1, 40)"))
+    apply_edits(pair.luz, [Delete(tuple(pair.luz.view.subtree_ids(loop)))])
+    assert "LOOP(3); B(1, 40); BEEP(1, 440);" in pair.meet()
+    assert pair.luz.refusals[-1][1] == HAS_NEW
+    assert "  BEEP(1, 440);" in pair.luz.lines
 
 
-def test_a_branch_is_deleted_with_all_its_contents_or_not_at_all(two: Two) -> None:
-    two.inserts(two.ana, two.find("IF(X < 1)"), two.find("ELSE"))
-    rows = [row for row in two.luz.lines if "ELSE" not in row and "W(1)" not in row]
-    two.luz.type(rows, 0)
-    two.luz.flush()
-    assert "ELSE; BEEP(1, 440); W(1)" in two.meet()
-    assert two.luz.refusals[-1][1] == HAS_NEW
+def test_a_branch_is_deleted_with_all_its_contents_or_not_at_all(pair: PagePair) -> None:
+    pair.inserts(pair.ana, pair.find("IF(X < 1)"), pair.find("ELSE"))
+    rows = [row for row in pair.luz.lines if "ELSE" not in row and "W(1)" not in row]
+    pair.luz.type(rows, 0)
+    pair.luz.flush()
+    assert "ELSE; BEEP(1, 440); W(1)" in pair.meet()
+    assert pair.luz.refusals[-1][1] == HAS_NEW
 
 
-def test_a_new_block_encloses_instructions_inserted_meanwhile(two: Two) -> None:
-    first, last = two.find("B(1, 40)"), two.find("R(1, 40)")
-    two.inserts(two.ana, two.find("LOOP(3)"), first)
-    apply_edits(two.luz, [Wrap((first, last), Subtree(two.luz.new_id(), "WHILE(X < 2)"))])
-    assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in two.meet()
+def test_a_new_block_encloses_instructions_inserted_meanwhile(pair: PagePair) -> None:
+    first_id, last_id = pair.find("B(1, 40)"), pair.find("R(1, 40)")
+    pair.inserts(pair.ana, pair.find("LOOP(3)"), first_id)
+    apply_edits(pair.luz, [Wrap((first_id, last_id), Subtree(pair.luz.new_id(), "WHILE(X < 2)"))])
+    assert "WHILE(X < 2); B(1, 40); BEEP(1, 440); R(1, 40); END_WHILE;" in pair.meet()
 
 
-def test_a_place_whose_neighbour_was_deleted_is_kept(two: Two) -> None:
-    apply_edits(two.ana, [Delete((two.find("R(1, 40)"),))])
-    two.inserts(two.luz, two.find("LOOP(3)"), two.find("R(1, 40)"))
-    assert "B(1, 40); BEEP(1, 440); END_LOOP" in two.meet()
+def test_a_place_whose_neighbour_was_deleted_is_kept(pair: PagePair) -> None:
+    apply_edits(pair.ana, [Delete((pair.find("R(1, 40)"),))])
+    pair.inserts(pair.luz, pair.find("LOOP(3)"), pair.find("R(1, 40)"))
+    assert "B(1, 40); BEEP(1, 440); END_LOOP" in pair.meet()
 
 
-def test_the_first_place_of_a_removed_block_is_kept(two: Two) -> None:
-    apply_edits(two.ana, [Unwrap(two.find("LOOP(3)"))])
-    two.inserts(two.luz, two.find("LOOP(3)"), "")
-    assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in two.meet()
+def test_the_first_place_of_a_removed_block_is_kept(pair: PagePair) -> None:
+    apply_edits(pair.ana, [Unwrap(pair.find("LOOP(3)"))])
+    pair.inserts(pair.luz, pair.find("LOOP(3)"), "")
+    assert "F(1, 80); BEEP(1, 440); B(1, 40); R(1, 40); IF" in pair.meet()
 
 
-def test_two_blocks_moved_into_each_other_form_no_cycle(two: Two) -> None:
-    loop, branch = two.find("LOOP(3)"), two.find("IF(X < 1)")
-    apply_edits(two.ana, [Move((loop,), Place(branch, ""))])
-    apply_edits(two.luz, [Move((branch,), Place(loop, ""))])
-    assert "IF(X < 1); LOOP(3)" in two.meet()
-    assert two.luz.refusals[-1][1] == CIRCLE
+def test_two_blocks_moved_into_each_other_form_no_cycle(pair: PagePair) -> None:
+    loop, branch = pair.find("LOOP(3)"), pair.find("IF(X < 1)")
+    apply_edits(pair.ana, [Move((loop,), Place(branch, ""))])
+    apply_edits(pair.luz, [Move((branch,), Place(loop, ""))])
+    assert "IF(X < 1); LOOP(3)" in pair.meet()
+    assert pair.luz.refusals[-1][1] == CIRCLE
 
 
-def test_the_later_of_two_values_wins_and_undo_restores_the_other(two: Two) -> None:
-    two.types(two.ana, "F(1, 80)", "F(2, 80)")
-    two.types(two.luz, "F(1, 80)", "F(1, 99)")
-    assert "F(1, 99)" in two.meet()
-    assert any("F(2, 80)" in str(change) for change in two.program.taken_changes)
-    assert not two.ana.undo()  # her text is gone
-    assert two.luz.undo()
-    assert "F(2, 80)" in two.meet()
-    assert two.ana.undo()  # now it is
-    assert "F(1, 80)" in two.meet()
+def test_the_later_of_two_values_wins_and_undo_restores_the_other(pair: PagePair) -> None:
+    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.types(pair.luz, "F(1, 80)", "F(1, 99)")
+    assert "F(1, 99)" in pair.meet()
+    assert any("F(2, 80)" in str(change) for change in pair.program.taken_changes)
+    assert not pair.ana.undo()  # her text is gone
+    assert pair.luz.undo()
+    assert "F(2, 80)" in pair.meet()
+    assert pair.ana.undo()  # now it is
+    assert "F(1, 80)" in pair.meet()
 
 
-def test_an_undo_after_another_pupils_change_is_refused(two: Two) -> None:
-    two.types(two.luz, "F(1, 80)", "F(1, 99)")
-    two.meet()
-    two.types(two.ana, "F(1, 99)", "F(5, 99)")
-    assert two.luz.undo()
-    assert "F(5, 99)" in two.meet()
-    assert two.luz.refusals[-1][1] == CHANGED
+def test_an_undo_after_another_pupils_change_is_refused(pair: PagePair) -> None:
+    pair.types(pair.luz, "F(1, 80)", "F(1, 99)")
+    pair.meet()
+    pair.types(pair.ana, "F(1, 99)", "F(5, 99)")
+    assert pair.luz.undo()
+    assert "F(5, 99)" in pair.meet()
+    assert pair.luz.refusals[-1][1] == CHANGED
 
 
-def test_undo_restores_deleted_blocks_with_their_ids(two: Two) -> None:
-    loop = two.find("LOOP(3)")
-    before = text_of(two.program.tree)
-    apply_edits(two.ana, [Delete(tuple(two.ana.view.subtree_ids(loop)))])
-    two.meet()
-    assert two.ana.undo()
-    two.meet()
-    assert text_of(two.program.tree) == before
-    assert loop in two.program.tree
+def test_undo_restores_deleted_blocks_with_their_ids(pair: PagePair) -> None:
+    loop = pair.find("LOOP(3)")
+    text_before = text_of(pair.program.tree)
+    apply_edits(pair.ana, [Delete(tuple(pair.ana.view.subtree_ids(loop)))])
+    pair.meet()
+    assert pair.ana.undo()
+    pair.meet()
+    assert text_of(pair.program.tree) == text_before
+    assert loop in pair.program.tree
 
 
-def test_a_line_cut_and_pasted_by_two_exists_once(two: Two) -> None:
-    for page in (two.ana, two.luz):
+def test_a_line_cut_and_pasted_by_two_exists_once(pair: PagePair) -> None:
+    for page in (pair.ana, pair.luz):
         page.type([row for row in page.lines if "L(1, 60)" not in row], 0)
         page.flush()
-    for page, k in ((two.ana, 1), (two.luz, 3)):
+    for page, k in ((pair.ana, 1), (pair.luz, 3)):
         page.type([*page.lines[:k], "L(1, 60)", *page.lines[k:]], 0)
         page.flush()
-    assert two.meet().count("L(1, 60)") == 1
+    assert pair.meet().count("L(1, 60)") == 1
 
 
 def test_a_page_makes_no_change_that_leaves_no_program() -> None:
-    two = Two("DEF TURN\nR(1, 40)\nEND_DEF\nLOOP(2)\nTURN\nEND_LOOP\n")
+    two = PagePair("DEF TURN\nR(1, 40)\nEND_DEF\nLOOP(2)\nTURN\nEND_LOOP\n")
     page, turn = two.ana, two.find("TURN")
     assert not apply_edits(page, [Move((two.find("DEF TURN"),), Place(two.find("LOOP(2)"), ""))])
     for text in ("S; S", "END_LOOP", "s", "S // note", "LOOP(2)", ""):
@@ -187,139 +187,141 @@ def test_a_page_makes_no_change_that_leaves_no_program() -> None:
     assert not page.pending_changes
 
 
-def test_a_line_being_typed_is_deleted_only_with_its_instruction(two: Two) -> None:
-    two.types(two.ana, "B(1, 40);", "B(1, 4", is_hot=True)
-    assert not two.ana.pending_changes
-    apply_edits(two.luz, [Move((two.find("B(1, 40)"),), Place(ROOT, two.find("L(1, 60)")))])
-    two.sends(two.luz)
-    two.hears(two.ana)
-    assert two.ana.lines[-1] == "  B(1, 4"
-    assert two.ana.caret == len(two.ana.lines) - 1
-    apply_edits(two.luz, [Delete((two.find("B(1, 40)"),))])
-    two.sends(two.luz)
-    two.hears(two.ana)
-    assert two.ana.lines[-1] == "  B(1, 4"
-    two.ana.type([*two.ana.lines[:-1], "B(1, 45)"], len(two.ana.lines) - 1)
-    two.ana.flush()
-    assert two.meet().endswith("L(1, 60); B(1, 45);")
-    assert "i.3" in two.program.tree  # the same instruction
+def test_a_line_being_typed_is_deleted_only_with_its_instruction(
+    pair: PagePair,
+) -> None:
+    pair.types(pair.ana, "B(1, 40);", "B(1, 4", is_hot=True)
+    assert not pair.ana.pending_changes
+    apply_edits(pair.luz, [Move((pair.find("B(1, 40)"),), Place(ROOT, pair.find("L(1, 60)")))])
+    pair.sends(pair.luz)
+    pair.hears(pair.ana)
+    assert pair.ana.lines[-1] == "  B(1, 4"
+    assert pair.ana.caret == len(pair.ana.lines) - 1
+    apply_edits(pair.luz, [Delete((pair.find("B(1, 40)"),))])
+    pair.sends(pair.luz)
+    pair.hears(pair.ana)
+    assert pair.ana.lines[-1] == "  B(1, 4"
+    pair.ana.type([*pair.ana.lines[:-1], "B(1, 45)"], len(pair.ana.lines) - 1)
+    pair.ana.flush()
+    assert pair.meet().endswith("L(1, 60); B(1, 45);")
+    assert "i.3" in pair.program.tree  # the same instruction
 
 
-def test_a_half_typed_value_is_not_a_change_even_if_it_parses(two: Two) -> None:
+def test_a_half_typed_value_is_not_a_change_even_if_it_parses(pair: PagePair) -> None:
     for shown in ("L(1, 6);", "L(1, 9);", "L(1, 95);"):
-        old = next(row for row in two.ana.lines if "L(1" in row)
-        two.types(two.ana, old, shown, is_hot=True)
-    assert "L(1, 60)" in two.meet()
-    two.ana.leave()
-    assert "L(1, 95)" in two.meet()
-    assert sum("L(1, 9" in str(change) for change in two.program.taken_changes) == 1
+        old_row = next(row for row in pair.ana.lines if "L(1" in row)
+        pair.types(pair.ana, old_row, shown, is_hot=True)
+    assert "L(1, 60)" in pair.meet()
+    pair.ana.leave()
+    assert "L(1, 95)" in pair.meet()
+    assert sum("L(1, 9" in str(change) for change in pair.program.taken_changes) == 1
 
 
-def test_only_the_last_of_successively_typed_lines_waits(two: Two) -> None:
-    k = two.ana.lines.index("L(1, 60);")
+def test_only_the_last_of_successively_typed_lines_waits(pair: PagePair) -> None:
+    k = pair.ana.lines.index("L(1, 60);")
     for row in ("W(2)", "f(3,70)", "LOOP(2)", "BEEP(1, 440)", "END_LOOP"):
-        rows = two.ana.lines[:]
+        rows = pair.ana.lines[:]
         rows[k:k] = [row] if rows[k] else []
         rows[k] = row
-        two.ana.type([*rows[: k + 1], "", *rows[k + 1 :]], k + 1, True)
-        two.ana.flush()
-        k = two.ana.caret
-        assert two.ana.lines[k] == ""
-        assert len(two.ana.drafts) == 1 + (row in ("LOOP(2)", "BEEP(1, 440)"))
-    two.sends(two.ana)
-    two.hears(two.luz)
+        pair.ana.type([*rows[: k + 1], "", *rows[k + 1 :]], k + 1, True)
+        pair.ana.flush()
+        k = pair.ana.caret
+        assert pair.ana.lines[k] == ""
+        assert len(pair.ana.drafts) == 1 + (row in ("LOOP(2)", "BEEP(1, 440)"))
+    pair.sends(pair.ana)
+    pair.hears(pair.luz)
     assert "W(2); F(3, 70); LOOP(2); BEEP(1, 440); END_LOOP; L(1, 60);" in " ".join(
-        " ".join(two.luz.lines).split()
+        " ".join(pair.luz.lines).split()
     )
-    two.ana.leave()
-    two.meet()
-    assert two.luz.lines[-3:] == ["END_LOOP;", "", "L(1, 60);"]  # the empty line is there for all
+    pair.ana.leave()
+    pair.meet()
+    assert pair.luz.lines[-3:] == ["END_LOOP;", "", "L(1, 60);"]  # the empty line is there for all
 
 
-def test_a_value_typed_into_what_was_deleted_is_a_draft_again(two: Two) -> None:
-    apply_edits(two.luz, [Delete((two.find("R(1, 40)"),))])
-    two.types(two.ana, "R(1, 40)", "R(2, 40)")
-    for page in (two.luz, two.ana) * 2:
-        two.sends(page)
-    assert "R(2, 40)" in two.ana.lines
-    assert "R(2, 40)" not in two.meet()
-    rows = [row + " " if row == "R(2, 40)" else row for row in two.ana.lines]
-    two.ana.type(rows, 3)  # wanted all the same
-    two.ana.leave()
-    assert "B(1, 40); R(2, 40); END_LOOP" in two.meet()
-    assert "i.4" in two.program.tree
+def test_a_value_typed_into_what_was_deleted_is_a_draft_again(pair: PagePair) -> None:
+    apply_edits(pair.luz, [Delete((pair.find("R(1, 40)"),))])
+    pair.types(pair.ana, "R(1, 40)", "R(2, 40)")
+    for page in (pair.luz, pair.ana) * 2:
+        pair.sends(page)
+    assert "R(2, 40)" in pair.ana.lines
+    assert "R(2, 40)" not in pair.meet()
+    rows = [row + " " if row == "R(2, 40)" else row for row in pair.ana.lines]
+    pair.ana.type(rows, 3)  # wanted all the same
+    pair.ana.leave()
+    assert "B(1, 40); R(2, 40); END_LOOP" in pair.meet()
+    assert "i.4" in pair.program.tree
 
 
-def test_a_reloaded_page_continues(two: Two) -> None:
-    two.types(two.ana, "F(1, 80)", "F(2, 80)")
-    two.types(two.ana, "W(1);", "W(9)", is_hot=True)
-    stored_data = json.loads(json.dumps(two.ana.store_data()))
-    two.types(two.luz, "L(1, 60)", "L(3, 60)")
-    two.sends(two.luz)
-    two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
-    assert two.ana.lines[two.ana.caret] == "  W(9)"
-    two.ana.leave()  # no one has continued that line
-    assert "F(2, 80)" in two.meet()
-    assert "W(1)" in two.meet()
-    assert "L(3, 60)" in " ".join(two.ana.lines)
-    two.types(two.ana, "W(9)", "W(95)")
-    assert "W(95)" in two.meet()
+def test_a_reloaded_page_continues(pair: PagePair) -> None:
+    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.types(pair.ana, "W(1);", "W(9)", is_hot=True)
+    stored_data = json.loads(json.dumps(pair.ana.store_data()))
+    pair.types(pair.luz, "L(1, 60)", "L(3, 60)")
+    pair.sends(pair.luz)
+    pair.ana = Page.of("a", pair.program.news("a", -1, ""), stored_data)
+    assert pair.ana.lines[pair.ana.caret] == "  W(9)"
+    pair.ana.leave()  # no one has continued that line
+    assert "F(2, 80)" in pair.meet()
+    assert "W(1)" in pair.meet()
+    assert "L(3, 60)" in " ".join(pair.ana.lines)
+    pair.types(pair.ana, "W(9)", "W(95)")
+    assert "W(95)" in pair.meet()
 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_undone_changes_can_be_redone_after_a_reload(seed: int) -> None:
     """The reload comes before the computer has heard of the undo."""
-    chance, two = Random(seed), Two()
-    for k in range(chance.randint(1, 3)):
+    rng, two = Random(seed), PagePair()
+    for k in range(rng.randint(1, 3)):
         two.types(two.ana, f"F({k + 1}, 80)" if k else "F(1, 80)", f"F({k + 2}, 80)")
         two.sends(two.ana)
-    last = k + 2
+    last_value = k + 2
     assert two.ana.undo()
-    for _ in range(chance.randint(1, 2)):
-        kept = json.loads(json.dumps(two.ana.store_data()))
-        two.ana = Page.of("a", two.program.news("a", -1, ""), kept)
-    assert f"F({last - 1}, 80)" in two.meet()
+    for _ in range(rng.randint(1, 2)):
+        stored_data = json.loads(json.dumps(two.ana.store_data()))
+        two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
+    assert f"F({last_value - 1}, 80)" in two.meet()
     assert not two.ana.undo()
     assert two.ana.redo()
-    assert f"F({last}, 80)" in two.meet()
+    assert f"F({last_value}, 80)" in two.meet()
 
 
-def test_a_renamed_page_loses_and_duplicates_nothing(two: Two) -> None:
-    two.inserts(two.ana, ROOT, two.find("L(1, 60)"))
-    two.program.submit(two.ana.pending_changes)  # and the answer is lost
-    two.types(two.ana, "F(1, 80)", "F(2, 80)")
+def test_a_renamed_page_loses_and_duplicates_nothing(pair: PagePair) -> None:
+    pair.inserts(pair.ana, ROOT, pair.find("L(1, 60)"))
+    pair.program.submit(pair.ana.pending_changes)  # and the answer is lost
+    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
     for time_s, name in enumerate("zyx", 2):
-        stored_data = json.loads(json.dumps(two.ana.store_data()))
-        two.ana = Page.of(name, two.program.news(name, -1, ""), stored_data)
-        two.types(two.ana, f"L({time_s - 1}, 60)", f"L({time_s}, 60)")  # before the rest is sent
-        two.types(two.ana, f"W({time_s - 1})", f"W({time_s})")
-    assert two.meet().count("BEEP(1, 440)") == 1
-    assert all(change in two.meet() for change in ("F(2, 80)", "L(4, 60)", "W(4)"))
+        stored_data = json.loads(json.dumps(pair.ana.store_data()))
+        pair.ana = Page.of(name, pair.program.news(name, -1, ""), stored_data)
+        pair.types(pair.ana, f"L({time_s - 1}, 60)", f"L({time_s}, 60)")  # before the rest is sent
+        pair.types(pair.ana, f"W({time_s - 1})", f"W({time_s})")
+    assert pair.meet().count("BEEP(1, 440)") == 1
+    assert all(change in pair.meet() for change in ("F(2, 80)", "L(4, 60)", "W(4)"))
 
 
-def test_a_copy_of_a_page_is_independent(two: Two) -> None:
-    before: list[Any] = [two.ana.lines[:], data(two.ana)]
-    copy = two.ana.copy()
-    two.types(two.ana, "F(1, 80)", "F(2, 80)")
-    two.types(two.ana, "W(1);", "W(", is_hot=True)
-    assert [copy.lines, data(copy)] == before
-    two.ana = copy
-    two.types(two.ana, "F(1, 80)", "F(3, 80)")
-    assert "F(3, 80)" in two.meet()
+def test_a_copy_of_a_page_is_independent(pair: PagePair) -> None:
+    data_before: list[Any] = [pair.ana.lines[:], data(pair.ana)]
+    copy = pair.ana.copy()
+    pair.types(pair.ana, "F(1, 80)", "F(2, 80)")
+    pair.types(pair.ana, "W(1);", "W(", is_hot=True)
+    assert [copy.lines, data(copy)] == data_before
+    pair.ana = copy
+    pair.types(pair.ana, "F(1, 80)", "F(3, 80)")
+    assert "F(3, 80)" in pair.meet()
 
 
 FLAT_PROGRAM = "SI|S\n" + "".join(f"F({number}, 80)\n" for number in range(1, 6))
 
 
-def edits(page: Page, chance: Random) -> None:
+def edits(page: Page, rng: Random) -> None:
     """Put a line in, take one out or change one, as somebody types it."""
     rows = page.lines[:]
-    k = chance.randrange(1, len(rows))
-    line = f"{chance.choice('FBLR')}({chance.randrange(1, 99)}, 40);"
-    if len(rows) > 4 and chance.random() < 0.4:
+    k = rng.randrange(1, len(rows))
+    line = f"{rng.choice('FBLR')}({rng.randrange(1, 99)}, 40);"
+    if len(rows) > 4 and rng.random() < 0.4:
         del rows[k]
     else:
-        rows[k : k + chance.randrange(2)] = [line]
+        rows[k : k + rng.randrange(2)] = [line]
     page.type(rows, min(k, len(rows) - 1))
     page.leave()
 
@@ -328,7 +330,7 @@ def program_of(page: Page) -> list[str]:
     return [row.rstrip(";") for row in page.lines]
 
 
-def exchange(two: Two, message: str) -> None:
+def exchange(two: PagePair, message: str) -> None:
     """Send what Ana has changed, send it and lose the answer, or receive what is new."""
     if message == "send":
         two.sends(two.ana)
@@ -341,25 +343,30 @@ def exchange(two: Two, message: str) -> None:
 def list_shown_pages(seed: int, makes_copies: bool) -> list[Any]:
     """Return what Ana's page shows after each step, with a copy in its place each time, or as it
     is. Nothing hears of what is changed on the old page then."""
-    chance, other_chance, two = Random(seed), Random(seed), Two(FLAT_PROGRAM)
-    seen = list[Any]()
+    rng, other_rng, two = Random(seed), Random(seed), PagePair(FLAT_PROGRAM)
+    results = list[Any]()
     for _ in range(40):
         if makes_copies:
-            before, two.ana = two.ana, two.ana.copy()
-            for do in (before.undo, before.redo, partial(edits, before, other_chance), before.undo):
-                do()
-        match chance.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
+            old_page, two.ana = two.ana, two.ana.copy()
+            for function in (
+                old_page.undo,
+                old_page.redo,
+                partial(edits, old_page, other_rng),
+                old_page.undo,
+            ):
+                function()
+        match rng.choice(("edit", "edit", "luz", "undo", "redo", "send", "lose", "hear")):
             case "edit":
-                edits(two.ana, chance)
+                edits(two.ana, rng)
             case "luz":
-                edits(two.luz, chance)
+                edits(two.luz, rng)
                 two.sends(two.luz)
             case "undo" | "redo" as does_back:
-                seen.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
+                results.append(two.ana.undo() if does_back == "undo" else two.ana.redo())
             case message:
                 exchange(two, message)
-        seen.append([two.ana.lines[:], data(two.ana)])
-    return [*seen, two.meet()]
+        results.append([two.ana.lines[:], data(two.ana)])
+    return [*results, two.meet()]
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -371,64 +378,64 @@ def test_a_copy_continues_like_the_page_without_its_messages(seed: int) -> None:
 def test_text_typed_before_and_after_a_reload_is_in_the_program(seed: int) -> None:
     """Whichever messages were sent, received or lost then, no text is refused, lost or
     duplicated."""
-    chance, two = Random(seed), Two(FLAT_PROGRAM)
+    rng, two = Random(seed), PagePair(FLAT_PROGRAM)
     for _ in range(60):
-        typed = program_of(two.ana)
-        match chance.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
+        typed_text = program_of(two.ana)
+        match rng.choice(("edit", "edit", "send", "lose", "hear", "reload", "reload")):
             case "edit":
-                edits(two.ana, chance)
+                edits(two.ana, rng)
                 continue
             case "reload":
                 stored_data = json.loads(json.dumps(two.ana.store_data()))
                 two.ana = Page.of("a", two.program.news("a", -1, ""), stored_data)
             case message:
                 exchange(two, message)
-        assert program_of(two.ana) == typed
-    typed = program_of(two.ana)
+        assert program_of(two.ana) == typed_text
+    typed_text = program_of(two.ana)
     two.meet()
-    assert program_of(two.luz) == program_of(two.ana) == typed and not two.ana.refusals
+    assert program_of(two.luz) == program_of(two.ana) == typed_text and not two.ana.refusals
 
 
 def data(page: Page) -> Any:
     return [page.store_data(), list(map(data_of_change, page.pending_changes))]
 
 
-def test_a_page_with_a_different_tree_requests_the_whole_program(two: Two) -> None:
-    two.ana.base.node_by_id[two.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
-    two.hears(two.ana)
-    assert two.ana.is_astray
-    two.ana.receive(two.program.news("a", -1, two.ana.epoch))
-    assert not two.ana.is_astray
-    assert "SI|F(1, 80);" in two.ana.lines
+def test_a_page_with_a_different_tree_requests_the_whole_program(pair: PagePair) -> None:
+    pair.ana.base.node_by_id[pair.find("F(1, 80)")].text = "F(9, 80)"  # whatever the cause
+    pair.hears(pair.ana)
+    assert pair.ana.is_astray
+    pair.ana.receive(pair.program.news("a", -1, pair.ana.epoch))
+    assert not pair.ana.is_astray
+    assert "SI|F(1, 80);" in pair.ana.lines
 
 
-def test_a_redo_reverts_an_undo_until_the_next_change(two: Two) -> None:
-    two.types(two.ana, "B(1, 40)", "B(9, 40)")
-    two.types(two.luz, "R(1, 40)", "R(5, 40)")
-    before = two.meet()
-    assert not two.ana.redo()
+def test_a_redo_reverts_an_undo_until_the_next_change(pair: PagePair) -> None:
+    pair.types(pair.ana, "B(1, 40)", "B(9, 40)")
+    pair.types(pair.luz, "R(1, 40)", "R(5, 40)")
+    text_before = pair.meet()
+    assert not pair.ana.redo()
     for _ in range(2):
-        assert two.ana.undo()
-        assert "B(1, 40)" in two.meet()
-        assert two.ana.redo()
-        assert two.meet() == before
-    assert two.ana.undo()
-    two.meet()
-    two.types(two.ana, "L(1, 60)", "L(2, 60)")
-    two.meet()
-    assert not two.ana.redo()
+        assert pair.ana.undo()
+        assert "B(1, 40)" in pair.meet()
+        assert pair.ana.redo()
+        assert pair.meet() == text_before
+    assert pair.ana.undo()
+    pair.meet()
+    pair.types(pair.ana, "L(1, 60)", "L(2, 60)")
+    pair.meet()
+    assert not pair.ana.redo()
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_as_many_redos_as_undos_restore_everything(seed: int) -> None:
-    chance, two = Random(seed), Two(FLAT_PROGRAM)
+    rng, two = Random(seed), PagePair(FLAT_PROGRAM)
     texts = [two.meet()]
     for number in range(1, 6):
         two.types(two.ana, f"F({number}, 80)", f"F({number}1, 80)")
         texts.append(two.meet())
     for _ in range(4):
-        count_back = chance.randrange(1, 5)
-        for done in range(count_back):
-            assert two.ana.undo() and two.meet() == texts[-2 - done]
-        for done in reversed(range(count_back)):
-            assert two.ana.redo() and two.meet() == texts[-1 - done]
+        count_back = rng.randrange(1, 5)
+        for redo_count in range(count_back):
+            assert two.ana.undo() and two.meet() == texts[-2 - redo_count]
+        for redo_count in reversed(range(count_back)):
+            assert two.ana.redo() and two.meet() == texts[-1 - redo_count]

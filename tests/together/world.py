@@ -65,42 +65,44 @@ class World:
 
     def __init__(
         self, pages: int, seed: int, delay: Callable[[Random], float] = lambda r: r.uniform(0, 5),
-        lost: float = 0.05, asks_s: float = REQUEST_INTERVAL_S, spread: float = 0.5,
+        loss_rate: float = 0.05, asks_s: float = REQUEST_INTERVAL_S, spread: float = 0.5,
     ) -> None:  # fmt: skip
-        self.chance = Random(seed)
+        self.rng = Random(seed)
         self.now_s = 0.0
         self.counts: Counter[str] = Counter()
-        self.why: Counter[str] = Counter()  # changes were refused
+        self.refusals_by_reason: Counter[str] = Counter()
         self.replaced_unseen = 0
         self._queue: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
         self._order = count()
-        self._delay, self._lost, self._asks_s = delay, lost, asks_s
+        self._delay, self._loss_rate, self._asks_s = delay, loss_rate, asks_s
         ids, numbers = count(1), count(200_000)
         self._rows: list[Json] = []  # the journal
-        self.all_taken: list[TakenChange] = []
+        self.taken_changes: list[TakenChange] = []
         self.program = SharedProgram(
             parse_tree(FIRST_PROGRAM, lambda: f"i.{next(ids)}"), "e0", self._keep
         )
         self._snapshot = self._send_and_parse(self.program.snapshot())
-        self.first = set(self.program.tree.node_by_id)
+        self.first_ids = set(self.program.tree.node_by_id)
         tree = self.program.tree
-        self.typed = {text for id in self.first for text in (tree[id].text, tree[id].note)}
+        self.typed_texts = {
+            text for id in self.first_ids for text in (tree[id].text, tree[id].note)
+        }
         names = "abcd"[:pages]
         self.pupils = {
-            name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.chance, numbers,
-                        self.typed, self.counts, spread)
+            name: Pupil(Page.of(name, self.program.news(name, -1, "")), self.rng, numbers,
+                        self.typed_texts, self.counts, spread)
             for name in names
         }  # fmt: skip
         self.off_until_s = dict.fromkeys(names, 0.0)
         self.turn = dict.fromkeys(names, 0)
 
-    def at(self, after_s: float, do: Callable[..., None], *what: Any) -> None:
-        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), do, what))
+    def schedule(self, after_s: float, function: Callable[..., None], *arguments: Any) -> None:
+        heapq.heappush(self._queue, (self.now_s + after_s, next(self._order), function, arguments))
 
     def run(self, is_over: Callable[[], bool]) -> None:
         while self._queue and not is_over():
-            self.now_s, _, do, what = heapq.heappop(self._queue)
-            do(*what)
+            self.now_s, _, function, arguments = heapq.heappop(self._queue)
+            function(*arguments)
 
     def _send_and_parse(self, data: Json) -> Json:
         copy: Json = json.loads(json.dumps(data))
@@ -117,46 +119,59 @@ class World:
             return
         page = self.pupils[name].page
         if self.now_s < self.off_until_s[name]:
-            self.at(0.5, self.ask, name, turn)
+            self.schedule(0.5, self.ask, name, turn)
             return
-        self.at(RETRY_S, self._ask_again, name, turn)
-        if self.chance.random() >= self._lost:
+        self.schedule(RETRY_S, self._ask_again, name, turn)
+        if self.rng.random() >= self._loss_rate:
             sent_data = self._send_and_parse(
                 {"sent": [data_of_change(change) for change in page.pending_changes]}
             )
-            since = -1 if page.is_astray else page.number
-            self.at(self._delay(self.chance), self._reach, name, turn, sent_data, since, page.epoch)
+            seen_number = -1 if page.is_astray else page.number
+            self.schedule(
+                self._delay(self.rng),
+                self._reach,
+                name,
+                turn,
+                sent_data,
+                seen_number,
+                page.epoch,
+            )
 
     def _ask_again(self, name: str, turn: int) -> None:
         if turn == self.turn[name]:
             self.turn[name] += 1
             self.ask(name, self.turn[name])
 
-    def _reach(self, name: str, turn: int, sent_data: Json, since: int, epoch: str) -> None:
+    def _reach(self, name: str, turn: int, sent_data: Json, seen_number: int, epoch: str) -> None:
         self.submit(sent_data["sent"])
-        news = self._send_and_parse(self.program.news(name, since, epoch))
-        if self.chance.random() >= self._lost and self.now_s >= self.off_until_s[name]:
-            self.at(self._delay(self.chance), self._arrive, name, turn, news)
+        news = self._send_and_parse(self.program.news(name, seen_number, epoch))
+        if self.rng.random() >= self._loss_rate and self.now_s >= self.off_until_s[name]:
+            self.schedule(self._delay(self.rng), self._arrive, name, turn, news)
 
     def submit(self, sent_data: Sequence[Json]) -> None:
         for row in sent_data:
             change, program = change_of(row), self.program
             page, _ = page_and_count(change.uid)
-            decided, before = program.last_count_by_page.get(page, 0), program.tree
+            decided, tree_before = program.last_count_by_page.get(page, 0), program.tree
             if program.submit([change]):
-                self.all_taken.append(program.taken_changes[-1])
-                self._count_unseen(before, page, change.seen_number)
+                self.taken_changes.append(program.taken_changes[-1])
+                self._count_unseen(tree_before, page, change.seen_number)
             elif program.last_count_by_page.get(page, 0) > decided:
-                self.why[program.refusals_by_page[page][-1][1]] += 1
+                self.refusals_by_reason[program.refusals_by_page[page][-1][1]] += 1
 
-    def _count_unseen(self, before: Tree, page: str, since: int) -> None:
+    def _count_unseen(self, tree_before: Tree, page: str, seen_number: int) -> None:
         """Count values of others that this page had not seen and has replaced."""
-        for operation in self.all_taken[-1].operations:
-            if isinstance(operation, Replace) and operation.id in before:
-                by = before[operation.id].mark(operation.fields[0][0])
-                self.replaced_unseen += bool(by) and page_and_count(by)[0] != page and any(
-                    change.uid == by and change.number > since for change in self.all_taken[-50:]
-                )  # fmt: skip
+        for operation in self.taken_changes[-1].operations:
+            if isinstance(operation, Replace) and operation.id in tree_before:
+                by = tree_before[operation.id].mark(operation.fields[0][0])
+                self.replaced_unseen += (
+                    bool(by)
+                    and page_and_count(by)[0] != page
+                    and any(
+                        change.uid == by and change.number > seen_number
+                        for change in self.taken_changes[-50:]
+                    )
+                )
 
     def _arrive(self, name: str, turn: int, news: Json) -> None:
         if self.now_s < self.off_until_s[name]:
@@ -166,7 +181,7 @@ class World:
         self.counts["astray"] += page.is_astray and page.epoch == self.program.epoch
         if turn == self.turn[name]:
             self.turn[name] += 1
-            self.at(self._asks_s, self.ask, name, self.turn[name])
+            self.schedule(self._asks_s, self.ask, name, self.turn[name])
 
     def reload(self, name: str) -> None:
         """The page is reloaded; it has the data stored in its browser."""
@@ -180,13 +195,13 @@ class World:
 
     def crash(self) -> None:
         """The class's computer goes on from its journal."""
-        before = self.program
+        old_program = self.program
         self.program = program_of(self._snapshot, self._keep)
         self.program.replay(self._rows)
-        assert self.program.tree.checksum() == before.tree.checksum()
+        assert self.program.tree.checksum() == old_program.tree.checksum()
         assert (self.program.number, self.program.last_count_by_page) == (
-            before.number,
-            before.last_count_by_page,
+            old_program.number,
+            old_program.last_count_by_page,
         )
         self.counts["crashes"] += 1
         self.program.epoch = f"e{self.counts['crashes']}"
@@ -203,8 +218,8 @@ class World:
                 self.submit(
                     self._send_and_parse({"": list(map(data_of_change, page.pending_changes))})[""]
                 )
-                since = -1 if page.is_astray else page.number
-                page.receive(self._send_and_parse(self.program.news(name, since, page.epoch)))
+                seen_number = -1 if page.is_astray else page.number
+                page.receive(self._send_and_parse(self.program.news(name, seen_number, page.epoch)))
                 page.give_up()  # changes refused just now
 
     def check(self) -> None:
@@ -217,15 +232,19 @@ class World:
         assert parse_tree(text).shape() == tree.shape()
         # The page's own blocks form the same program.
         round_tripped = format_blocks(read_blocks(text, KIT)).text
-        one, other = (
+        result, other_result = (
             compile_text(_with_x_set(text), KIT),
             compile_text(_with_x_set(round_tripped), KIT),
         )
-        assert one.image and one.image == other.image, (text, round_tripped, one.diagnostics)
+        assert result.image and result.image == other_result.image, (
+            text,
+            round_tripped,
+            result.diagnostics,
+        )
         # No two pupils' values were mixed; no node is there twice.
         for node in tree.node_by_id.values():
-            assert node.text in self.typed or node.id in (ROOT, START), node.text
-            assert not node.note or node.note in self.typed, node.note
+            assert node.text in self.typed_texts or node.id in (ROOT, START), node.text
+            assert not node.note or node.note in self.typed_texts, node.note
         ids = tree.subtree_ids()
         assert len(ids) == len(set(ids)) == len(tree.node_by_id)
         numbered = Counter(tree[id].text for id in ids if re.search("[0-9]", tree[id].text))
@@ -234,11 +253,11 @@ class World:
 
     def _check_instructions(self, tree: Tree, text: str, body: Sequence[Instruction]) -> None:
         """Each node is one instruction of the AST, in order, with the text that it has."""
-        own = [tree[id] for id in tree.subtree_ids()[1:] if id != START]
-        own = [node for node in own if node.kind in (INSTRUCTION, BLOCK)]
+        nodes = [tree[id] for id in tree.subtree_ids()[1:] if id != START]
+        nodes = [node for node in nodes if node.kind in (INSTRUCTION, BLOCK)]
         walked = list(_walk(body))
-        assert len(own) == len(walked), text
-        for node, (instruction, kind) in zip(own, walked, strict=True):
+        assert len(nodes) == len(walked), text
+        for node, (instruction, kind) in zip(nodes, walked, strict=True):
             assert node.kind == kind
             if kind == INSTRUCTION and not isinstance(instruction, Break):
                 span = instruction.span
@@ -254,15 +273,15 @@ class World:
 
     def check_nothing_is_lost(self) -> None:
         """Every node is still there unless a delete or an unwrap removed it."""
-        alive = set(self.first)
-        for change in self.all_taken:
+        alive_ids = set(self.first_ids)
+        for change in self.taken_changes:
             for operation in change.operations:
-                alive |= _list_added_ids(operation)
+                alive_ids |= _list_added_ids(operation)
                 if isinstance(operation, Delete):
-                    alive -= set(operation.ids)
+                    alive_ids -= set(operation.ids)
                 elif isinstance(operation, Unwrap):
-                    alive.discard(operation.id)
-        assert alive == set(self.program.tree.node_by_id)
+                    alive_ids.discard(operation.id)
+        assert alive_ids == set(self.program.tree.node_by_id)
 
 
 def _list_added_ids(operation: Operation) -> set[str]:

@@ -31,9 +31,12 @@ BATCHES = 160  # batches of the tests, of which a commit runs one; a campaign ru
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
     """Check that a machine agrees with the oracle."""
-    for how, image in (("", program.short.image), (", plain", program.plain.image)):
+    for how, image in (
+        ("", program.short_compilation.image),
+        (", plain", program.plain_compilation.image),
+    ):
         trace = machine(image, program.kit, program.senses)
-        assert are_equivalent(program.want, trace), (
+        assert are_equivalent(program.wanted_trace, trace), (
             f"{name}, seed {program.seed}{how}:\n{program.text}"
         )
 

@@ -258,7 +258,7 @@ def test_assembly_and_its_cpp_twin_agree(chip: str, first: int) -> None:
 def test_hard_programs_with_tasks(chip: str, name: str) -> None:
     program = avr_tasks.PROGRAMS[name]
     image = compile_text(program.text, cpp_checks.KIT).image
-    for not_ready, late_ms, begin_ms, max_ms in program.how:
+    for not_ready, late_ms, begin_ms, max_ms in program.runs:
         senses = Senses(program.readings, max_ms)
         pace = Pace(every_ms=late_ms + 1)
         run = avr.run_on(chip, image, cpp_checks.KIT, senses, not_ready, pace, begin_ms)

@@ -13,7 +13,7 @@ from statistics import median
 from typing import NamedTuple
 
 from tests.machines.board import BUILT_IN_PROGRAM, Board, build_sketch
-from tests.support.board_states import START, STEADY
+from tests.support.board_states import START_MS, STEADY_MS
 from tests.support.sonar import (
     US_PER_CM,
     approaching_obstacle,
@@ -59,7 +59,7 @@ def board_of(text: str, is_trusting: bool) -> Board:
         own_image = compile_text(text, robot.kit).image
         offset = elf.index(built_in_image)
         board.elf = elf[:offset] + own_image + b"\0" * 4 + elf[offset + len(own_image) + 4 :]
-    board.press(100, START - STEADY)
+    board.press(100, START_MS - STEADY_MS)
     return board
 
 
@@ -69,7 +69,7 @@ def look_at_wall(seed: int, is_trusting: bool) -> WrongReadings:
     trigger, echo = sonar_pins(board.robot)
     board.watch(trigger)
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in heard_distances])
-    ping_times_ms = ping_starts_ms(board.run_for(START + 2900), trigger)
+    ping_times_ms = ping_starts_ms(board.run_for(START_MS + 2900), trigger)
     readings = driven_ms(board, 1)
     wrong_count = 0
     for ms in readings:
@@ -91,7 +91,7 @@ def lateness_ms(distance_at: Callable[[float], float], phase: float, is_trusting
     phase_ms = phase * PING_INTERVAL_MS
     distances_cm = [distance_at(number * PING_INTERVAL_MS + phase_ms) for number in range(60)]
     board.echoes(trigger, echo, [cm * US_PER_CM for cm in distances_cm])
-    first_ping_ms = ping_starts_ms(board.run_for(START + 1500), trigger)[0]
+    first_ping_ms = ping_starts_ms(board.run_for(START_MS + 1500), trigger)[0]
     near_ms = next(ms for ms in range(1500) if distance_at(ms + phase_ms) < NEAR_CM)
     known_ms = next(ms for ms in driven_ms(board, 1) if board.motors(ms)[0] == NEAR_PWM)
     return known_ms - first_ping_ms - near_ms

@@ -23,7 +23,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.support.uno_with_discs import ENVIRONMENT, Driven
+from tests.support.uno_with_discs import ENVIRONMENT, DrivenUno
 from tests.support.virtual_robot import Talk, floor
 from tiniscript import robots
 from tiniscript.link.trim import Pace, Trim
@@ -111,7 +111,7 @@ def wanted_quantile(values: Sequence[float]) -> float:
 def offset_of_uno(firmware: Path, seed: int, slip: float) -> tuple[float, float, float]:
     """Return the error of an Uno's firmware, on its simulated chip."""
     motors = (FAST_PERCENT, SLOW_PERCENT) if seed % 2 else (SLOW_PERCENT, FAST_PERCENT)
-    robot = Driven(firmware, seed, motors, Roughness(slip))
+    robot = DrivenUno(firmware, seed, motors, Roughness(slip))
     with robot.uno:
         robot.drive(GO_PROGRAM)
         pose_after = robot.pose

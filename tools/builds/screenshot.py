@@ -142,8 +142,8 @@ def take(language: str, scene: str, target: Path) -> None:
             studio.write(page, PROGRAM)
         SHOTS_OF_SCENE.get(scene, _take_single)(page, scene, take_shot)
         pages.close()
-    if pages.wrong:
-        raise SystemExit(f"the page said {pages.wrong[0]}")
+    if pages.errors:
+        raise SystemExit(f"the page said {pages.errors[0]}")
     metadata = PngInfo()
     visible_lines = sorted(
         {row.strip() for word in words for row in word.splitlines() if row.strip()}

@@ -450,7 +450,7 @@ def random_program_runs() -> Iterator[Run]:
     """Return programs at random, at the usual times and at others."""
     for seed in RANDOM_PROGRAMS:
         program = random_program(seed)
-        image = program.short.image
+        image = program.short_compilation.image
         run = Run(f"programs: {seed}", program.kit, image, program.senses, text=program.text)
         yield run
         if takes_time(run):
