@@ -83,7 +83,7 @@ def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) ->
         assert any(arrow in line for line in picture_rows for arrow in sketch.ARROWS)
         assert any("⠀" < c <= "⣿" for line in picture_rows for c in line)
         assert row(drawn_lines, "DISTANCE") == ["DISTANCE", "50", "cm", "distance", "sensor"]
-        assert row(drawn_lines, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
+        assert row(drawn_lines, "time") == ["time", "4", "s", "hit", "the", "limit"]
         assert row(drawn_lines, "left motor")[2] == "0"
 
 

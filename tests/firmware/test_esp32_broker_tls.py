@@ -185,7 +185,7 @@ def test_only_the_brokers_own_certificate_is_accepted_without_its_authority(
 ) -> None:
     """The certificate is signed by an unknown authority. Its name and date still count."""
     authority = Authority(tmp_path)
-    own_room = Room(brokers(more=authority.rules(NAME, is_chain)), authority)
+    own_room = Room(brokers(extra_rules=authority.rules(NAME, is_chain)), authority)
     authority.rules("other.aula")
     trust, other_trust = (der(authority.sign(name)) for name in (NAME, "other.aula"))
     robot, owner = join_network(Keys())
@@ -204,7 +204,7 @@ def test_a_broker_that_dies_ends_the_run_over_tls(
     tmp_path: Path, brokers: Callable[..., Mosquitto]
 ) -> None:
     authority, keys = Authority(tmp_path), Keys()
-    own_room = Room(brokers(more=authority.rules(NAME)), authority)
+    own_room = Room(brokers(extra_rules=authority.rules(NAME)), authority)
     robot, _ = connect_to_broker(own_room.broker, keys, own_room.settings())
     owner = remote(robot, keys)
     clients: Ends = [(AtBroker(robot, own_room.connect()), owner)]

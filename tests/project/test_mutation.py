@@ -10,7 +10,7 @@ import pytest
 from tests.project.known_mutants import KNOWN, Known
 from tests.support import exchanged
 from tests.support.casefile import ROOT
-from tests.support.exchanged import TestTry
+from tests.support.exchanged import MutantTrial
 from tests.support.needs import need
 from tools import mutation
 from tools.mutation import MODULES, Copy, Module, Mutant, equivalent_mutants, mutants
@@ -43,12 +43,12 @@ def test_equivalent_mutants_match_existing_code() -> None:
         assert old_code in {line.strip() for line in lines}, f"{file}: {old_code}"
 
 
-def make_try(known_mutant: Known) -> TestTry:
+def make_try(known_mutant: Known) -> MutantTrial:
     text = (ROOT / known_mutant.file).read_text(encoding="utf-8")
     assert text.count(known_mutant.original) == 1, (
         f"{known_mutant.missing}: the code has changed: find it again"
     )
-    return TestTry(
+    return MutantTrial(
         known_mutant.file,
         text.replace(known_mutant.original, known_mutant.becomes),
         known_mutant.test,

@@ -32,7 +32,7 @@ PASSES, FAILS, SKIPS = "passes", "fails", "skips"
 Pair = tuple[CodeType, CodeType]
 
 
-class TestTry(NamedTuple):
+class MutantTrial(NamedTuple):
     """A file, its text with a mistake, and the test that is to notice it."""
 
     file: str
@@ -44,7 +44,7 @@ class NoFunctionFound(Exception):
     """Raised if the difference is in no function that can be found."""
 
 
-def list_outcomes(tries: Sequence[TestTry], folder: Path) -> list[str]:
+def list_outcomes(tries: Sequence[MutantTrial], folder: Path) -> list[str]:
     """Return for each whether its test FAILS, PASSES or SKIPS, or the reason why that is unknown.
 
     `folder` is a copy of the repository. In this run, the tests of Python, which are quick, must
@@ -63,7 +63,7 @@ def list_outcomes(tries: Sequence[TestTry], folder: Path) -> list[str]:
 class Plugin:
     """Runs the test of each try instead of all that are collected."""
 
-    def __init__(self, tries: Sequence[TestTry]) -> None:
+    def __init__(self, tries: Sequence[MutantTrial]) -> None:
         self.tries = tries
         self.answers: list[str] = []
 
@@ -79,7 +79,7 @@ class Plugin:
         return True
 
 
-def _run_try(tried_test: TestTry, items: Sequence[pytest.Item]) -> str:
+def _run_try(tried_test: MutantTrial, items: Sequence[pytest.Item]) -> str:
     path = ROOT / tried_test.file
     if path.suffix == ".py":
         try:
@@ -118,7 +118,7 @@ def _run_in_child(items: Sequence[pytest.Item], begin_try: Callable[[], None]) -
     return {0: PASSES, SKIPPED_CODE: SKIPS}.get(code, FAILS)
 
 
-def _exchange(tried_test: TestTry) -> Callable[[], None]:
+def _exchange(tried_test: MutantTrial) -> Callable[[], None]:
     """Return a function that installs the mutant in the imported module."""
     name = tried_test.file.removeprefix("compiler/").removesuffix(".py").replace("/", ".")
     module = importlib.import_module(name.removesuffix(".__init__"))
@@ -172,7 +172,7 @@ def _functions(owner: ModuleType | type, module: ModuleType) -> Iterator[Functio
 
 
 def main() -> int:
-    plugin = Plugin([TestTry(*values) for values in json.load(sys.stdin)])
+    plugin = Plugin([MutantTrial(*values) for values in json.load(sys.stdin)])
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # pytest's output goes to standard error
     tests = dict.fromkeys(tried_test.test for tried_test in plugin.tries)

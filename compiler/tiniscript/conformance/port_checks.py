@@ -177,7 +177,7 @@ def _run_events(robot: WireRobot, seconds: float) -> tuple[str, ...]:
         if event.name == "SHOW":
             rows.append(f"SHOW {event.number('value')} {event.number('is_yes_no')}")
         elif event.name == "FAULT":
-            rows.append(f"FAULT {event.number('fault')} {event.number('at')}")
+            rows.append(f"FAULT {event.number('fault')} {event.number('offset')}")
         else:
             rows.append(event.name)
     return tuple(rows)

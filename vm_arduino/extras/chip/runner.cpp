@@ -137,7 +137,7 @@ void answer_run(Request request, bool is_verified, const Pace& pace) {
     return;
   }
   const uint32_t steps = run(image, limits);
-  end("RAN", machine.at(), steps);
+  end("RAN", machine.offset(), steps);
 }
 
 void answer_run_at_pace(Request request) {

@@ -149,7 +149,7 @@ tini_exported("tick") void module_tick() {
 tini_exported("fault") uint32_t module_fault() { return static_cast<uint32_t>(machine.fault()); }
 
 // Where the instruction that runs, or has faulted, begins.
-tini_exported("at") uint32_t module_at() { return machine.at(); }
+tini_exported("at") uint32_t module_at() { return machine.offset(); }
 
 // Where the SHOW is whose value the host gets.
 tini_exported("shown_at") uint32_t module_shown_at() { return machine.shown_at(); }

@@ -81,7 +81,7 @@ void Breakpoints::exchange(uint16_t length) {
 // The current task is in the statement before which it halts.
 void Breakpoints::enter(const Machine& machine) {
   FoundStatement found;
-  find_statement(code_, machine.length(), machine.at(), &found);
+  find_statement(code_, machine.length(), machine.offset(), &found);
   if (found.returns) found.statement.target = machine.return_place();
   in_statement_[machine.turn()] = found.statement;
   is_in_some_ = true;
@@ -114,7 +114,7 @@ bool Breakpoints::take_out(Machine* machine, Status status, bool may_halt) {
     note_left(*machine);
     return false;
   }
-  const uint16_t at = machine->at();
+  const uint16_t at = machine->offset();
   const uint8_t task = machine->turn();
   Statement& its = in_statement_[task];
   const bool is_new = its.begin != at;
@@ -139,7 +139,7 @@ bool Breakpoints::take_out(Machine* machine, Status status, bool may_halt) {
 void Breakpoints::go_on(const Machine& machine, bool is_step) {
   if (!is_halted_) return;
   is_halted_ = false;
-  passed_ = machine.at();
+  passed_ = machine.offset();
   is_stepping_ = is_step;
   stepper_ = machine.turn();
 }

@@ -61,7 +61,7 @@ void go_on() {
     link.done();
   } else if (status == Status::kFault) {
     end_run(State::kFaulted);
-    fault(static_cast<uint8_t>(machine.fault()), machine.at());
+    fault(static_cast<uint8_t>(machine.fault()), machine.offset());
     link.faulted();
   } else if (!link.is_attached() && now_ms - machine.task().started_ms >= board_max_run_ms()) {
     abort_run(LinkFault::kMaxRun);
@@ -133,7 +133,7 @@ void end_run(State state, bool is_done) {
 void stop_run(uint8_t number) {
   const bool was_running = is_running();
   end_run(number != 0 ? State::kFaulted : State::kStopped);
-  if (was_running && number != 0) fault(number, machine.at());
+  if (was_running && number != 0) fault(number, machine.offset());
 }
 
 void forget_start() { is_start_due = false; }
@@ -181,7 +181,7 @@ void firmware_on_disconnect() {
 
 MachineOfRun& machine_of_run() { return machine; }
 
-uint16_t port_run_at() { return machine.at(); }
+uint16_t port_run_at() { return machine.offset(); }
 
 uint16_t port_shown_at() { return machine.shown_at(); }
 
@@ -198,7 +198,7 @@ bool firmware_runs(Place* place) {
   } else {
     place->program = image_checksum(image, length < most ? length : most);
   }
-  place->at = machine.at();
+  place->at = machine.offset();
   return true;
 }
 

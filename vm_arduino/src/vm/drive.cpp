@@ -171,7 +171,7 @@ bool Drive::continues_way() {
     end_move();
     return false;
   }
-  at_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own later
+  offset_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own later
   return goes_on(static_cast<Fault>(going));
 }
 

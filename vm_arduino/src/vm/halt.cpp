@@ -9,7 +9,7 @@ void Machine::resume() {
   if (status_ != Status::kHalted) return;
   fault_ = Fault::kNone;
   status_ = Status::kRunning;
-  task_.pc = at_;
+  task_.pc = offset_;
   task_.depth = 0;
 }
 

@@ -83,7 +83,7 @@ tini_always_inline InnerLoop::InnerLoop(Machine* machine, uint8_t budget)
       left_(budget) {}
 
 tini_always_inline void InnerLoop::end() {
-  machine_.at_ = offset(at_);
+  machine_.offset_ = offset(at_);
   machine_.left_ = left_;
   machine_.task_.pc = offset(next_);
   machine_.task_.depth = static_cast<uint8_t>(top_ - machine_.task_.stack);
@@ -154,8 +154,8 @@ tini_always_inline bool InnerLoop::stay() {
 tini_always_inline bool InnerLoop::act(uint8_t code, uint8_t pops, uint8_t size) {
   int32_t* const top = top_ - 1;
   if (!pop(pops)) return false;
-  machine_.at_ = offset(at_);
-  machine_.task_.pc = static_cast<uint16_t>(machine_.at_ + size);
+  machine_.offset_ = offset(at_);
+  machine_.task_.pc = static_cast<uint16_t>(machine_.offset_ + size);
   const bool goes_on = machine_.act(code, at_, top);
   next_ = machine_.code_ + machine_.task_.pc;
   return goes_on;

@@ -23,7 +23,7 @@ void Machine::check_layout() {
   lies_at(status_, 0);
   lies_at(fault_, tini_fault_at);
   lies_at(sensors_, tini_sensors_at);
-  lies_at(at_, tini_at_at);
+  lies_at(offset_, tini_at_at);
   lies_at(left_, tini_left_at);
   lies_at(length_, tini_length_at);
   lies_at(code_, tini_code_at);

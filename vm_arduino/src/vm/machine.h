@@ -51,7 +51,7 @@ class Machine : public Scheduler {
   Fault fault() const { return fault_; }
 
   // The begin of the instruction that runs or has faulted.
-  uint16_t at() const { return at_; }
+  uint16_t offset() const { return offset_; }
 
   // For breakpoints: `halt.cpp`, where kHasBreakpoints.
 
@@ -96,7 +96,7 @@ class Machine : public Scheduler {
 
   // Whether it has faulted at a kTrap.
   bool is_trapped() const {
-    return kHasBreakpoints && fault_ == Fault::kBadCode && at_ < length_ && code_[at_] == kTrap;
+    return kHasBreakpoints && fault_ == Fault::kBadCode && offset_ < length_ && code_[offset_] == kTrap;
   }
 
   // Whether a move that the robot measures has failed before an instruction runs.

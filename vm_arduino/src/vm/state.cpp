@@ -15,7 +15,7 @@ bool Execution::pause() {
 }
 
 bool Execution::stay() {
-  task_.pc = at_;
+  task_.pc = offset_;
   return false;
 }
 

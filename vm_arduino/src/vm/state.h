@@ -177,7 +177,7 @@ class Execution {
   Status status_;
   Fault fault_;
   uint8_t sensors_;
-  uint16_t at_;
+  uint16_t offset_;
   uint8_t left_;
   uint16_t length_;
   const uint8_t* code_;

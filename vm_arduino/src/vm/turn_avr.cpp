@@ -17,7 +17,7 @@ bool Machine::run_turn() {
     execute(1);
     if (left_ != 0 || fault_ != Fault::kNone || status_ == Status::kDone) break;
     budget--;
-    if (code_[at_] < static_cast<uint8_t>(Op::kCall) && !go_back()) break;
+    if (code_[offset_] < static_cast<uint8_t>(Op::kCall) && !go_back()) break;
     is_cut_short = budget == 0 || Flag<Bit::kEvent>();
     if (is_cut_short) break;
   }

@@ -176,6 +176,7 @@ export class Views {
     if (!this.#blocks) return;
     if (!this.#isStale()) {
       this.#markBlocks(); // it has come back
+      if (!this.isBusy && this.#isTouched) this.#blocksChanged(); // and what was done to them had failed to
       return;
     }
     this.#showState();
@@ -352,7 +353,7 @@ export class Views {
       return;
     }
     this.#changeCount = 0;
-    if (this.#isStale()) this.#refreshBlocks(true);
+    if (this.#isStale()) this.#refreshBlocks(!this.#page.editor.hasFocus);
     else this.#showState();
   }
 
@@ -434,8 +435,10 @@ export class Views {
 
   /** In a group: what was done to blocks is in the text before others are made of it, and Python has that text. */
   async #settle() {
-    await this.#waitForHand();
-    await this.#sending;
+    do {
+      await this.#waitForHand();
+      await this.#sending;
+    } while (this.isBusy);
     if (this.#isTouched) {
       this.#changeCount ||= 1; // Blockly reports it a moment later
       await this.#sendBlocks();

@@ -97,7 +97,7 @@ class TiniPlayer {
 
   // The fault that has ended the last program, or kNone, and where it was.
   tiniscript::Fault fault() const { return fault_; }
-  uint16_t fault_at() const { return machine_.at(); }
+  uint16_t fault_at() const { return machine_.offset(); }
 
   // Where the SHOW is whose value `show` gets now.
   uint16_t shown_at() const { return machine_.shown_at(); }
