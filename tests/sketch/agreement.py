@@ -295,11 +295,13 @@ def example(seed: int, robot: Robot) -> Example | None:
     counts = {"LIGHT_R": rng.randint(0, 1023), "LIGHT_L": rng.randint(0, 1023),
               "TEMPERATURE": rng.randint(20, 360), "LINE": rng.choice((100, 900)),
               "TOUCH": rng.randint(0, 1)}  # fmt: skip
-    celsius = -50_000 + counts["TEMPERATURE"] * 488 + (counts["TEMPERATURE"] * 776 + 511) // 1023
+    millicelsius = (
+        -50_000 + counts["TEMPERATURE"] * 488 + (counts["TEMPERATURE"] * 776 + 511) // 1023
+    )
     senses: dict[str, Sequence[int]] = {
         "LIGHT_R": [counts["LIGHT_R"] * ONE],
         "LIGHT_L": [counts["LIGHT_L"] * ONE],
-        "TEMPERATURE": [max(-40_000, min(125_000, celsius))],
+        "TEMPERATURE": [max(-40_000, min(125_000, millicelsius))],
         "DISTANCE": [400_000],
         "TOUCH": [counts["TOUCH"]],
         "LINE": [int(counts["LINE"] > 600)],

@@ -98,7 +98,7 @@ NOISE_BYTES = 2  # noise of both discs
 MOST_BREAKPOINTS = 4
 VARIABLE_BYTES, TASK_BYTES = 4, 7  # bytes of one variable, and of one task
 VARIABLES_BYTES = 13 * VARIABLE_BYTES  # variables in one frame
-TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
+ALL_TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
 UNTOLD = 0x80  # flag in READING's sensor: earlier readings were not sent
 SHOW_PLACE_BYTES = 3  # bytes of a SHOW's place: its run, and its instruction (16 bits)
 COUNTER_BYTES = 4
@@ -312,7 +312,7 @@ MESSAGES = (
              "Continues a halted program; `how` says how far."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
              "Asks for the variables of the running program, starting with the variable `first`: 32 bits each."),
-    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 offset:u16 tasks:rest=0..{TASKS_BYTES}",
+    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 offset:u16 tasks:rest=0..{ALL_TASKS_BYTES}",
              "Asks for the tasks of the running program, and where each of them is."),
     _message(29, "TELL_READINGS", True, "is_on:u8", "",
              "Sets whether the robot sends READING to this session."),

@@ -243,20 +243,20 @@ def report_unused_variables(context: LintContext) -> None:
 
 def report_unused_readings(context: LintContext) -> None:
     """`SI|DISTANCE`, if nothing asks for the distance: it is measured, and nobody sees it."""
-    sensors_asked = ir.referenced_numbers("SENSOR", context.statements)
+    referenced_sensors = ir.referenced_numbers("SENSOR", context.statements)
     for statement in context.statements:
-        if isinstance(statement, ir.Read) and statement.sensor not in sensors_asked:
-            sensors_asked.add(statement.sensor)  # reported once
+        if isinstance(statement, ir.Read) and statement.sensor not in referenced_sensors:
+            referenced_sensors.add(statement.sensor)  # reported once
             name = context.kit.readings[statement.sensor].name
             context.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 
 def report_unused_defs(context: LintContext) -> None:
-    numbers_called = {
+    called_numbers = {
         statement.procedure for statement in context.statements if isinstance(statement, ir.Call)
     }
     for number, procedure in enumerate(context.program.procedures):
-        if number not in numbers_called:
+        if number not in called_numbers:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
             values = {"name": procedure.name}
             if procedure.values:
