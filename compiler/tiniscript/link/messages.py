@@ -154,7 +154,7 @@ FEATURES = (
     (OWNERS, "OWNERS", "The robot knows owners."),
     (OWNED, "OWNED", "It has an owner."),
     (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
-    (YOURS, "YOURS", "This session has shown a key of the robot."),
+    (YOURS, "YOURS", "This session has authenticated with a key of the robot."),
     (BY_TEACHER, "BY_TEACHER", "That key was the teacher's."),
     (
         SEALS,
@@ -294,7 +294,7 @@ MESSAGES = (
     _message(16, "CLAIM", True, f"kind:u8 key:rest=0..{KEY_BYTES}", "",
              "Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
     _message(17, "AUTHENTICATE", True, f"kind:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
-             "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
+             "Without a tag, it asks for a challenge. With a tag, it proves possession of a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,
              "Brings back the previous program. The running program ends; no program starts."),
