@@ -97,7 +97,7 @@ def parts_of(firmware: Path) -> dict[str, Counter[str]]:
 
 
 def turns_cycles(task_count: int) -> int:
-    """Return the cycles of the machine while each task runs `TURN_COUNT` rounds of an empty loop."""
+    """Return the cycles of the machine while each task runs `TURN_COUNT` empty rounds."""
     text = f"TASK;LOOP({TURN_COUNT});END_LOOP;END_TASK;" * task_count + "W(1.2)"
     code = image_of(text, ROBOT.kit).code
     return run_on_chip(code, (), JUMP_BUDGET, WITH_TASKS)[1]

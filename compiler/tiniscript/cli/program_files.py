@@ -32,15 +32,15 @@ def are_several(names: Sequence[str]) -> bool:
 
 def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
-    paths_seen: set[str] = set()
+    seen_paths: set[str] = set()
     for name in names:
         paths = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
         if not paths:
             raise CommandError(2, "no_programs", file=inputs.printable_name(name))
         for path in paths:
             real_path = os.path.realpath(path)
-            if real_path not in paths_seen:
-                paths_seen.add(real_path)
+            if real_path not in seen_paths:
+                seen_paths.add(real_path)
                 yield read(path)
 
 

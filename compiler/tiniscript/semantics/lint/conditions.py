@@ -250,8 +250,8 @@ class _Conditions:
             for k, device in enumerate(self._kit.readings)
             if device.name == sensor_of_variable[name]
         )
-        terms_used = self._context.variables.terms_used_in(outermost)
-        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & terms_used:
+        used_terms = self._context.variables.terms_used_in(outermost)
+        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used_terms:
             return  # it is shown together with the current measurement, or the rounds depend on it
         fix = f"SHOW({sensor_of_variable[name]})"
         self._context.report(

@@ -228,11 +228,11 @@ def _leading_instructions(statements: Sequence[ir.Statement], source: Source) ->
 
 def report_unused_variables(context: LintContext) -> None:
     program = context.program
-    variables_used = ir.referenced_numbers("VARIABLE", context.statements)
+    used_variables = ir.referenced_numbers("VARIABLE", context.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
     for statement in context.statements:
-        if isinstance(statement, ir.Assign) and statement.variable not in variables_used:
-            variables_used.add(statement.variable)  # reported once
+        if isinstance(statement, ir.Assign) and statement.variable not in used_variables:
+            used_variables.add(statement.variable)  # reported once
             name = program.variables[statement.variable]
             device = name if lexicon_meaning(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
