@@ -675,8 +675,8 @@ class Usage:
             number if k in positions else value for k, value in enumerate(values)
         )
         low = as_text(word.arguments[positions[0]].low)
-        value_texts = {"low": low, "high": as_text(word.arguments[positions[0]].high)}
-        return value_texts | {
+        bounds = {"low": low, "high": as_text(word.arguments[positions[0]].high)}
+        return bounds | {
             "greatest" if bound_word == "MAX" else "slow": f"{word.text}({values_text})"
         }
 
