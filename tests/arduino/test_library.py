@@ -11,7 +11,7 @@ import pytest
 
 from tests.machines import board as boards
 from tests.machines import sketch_board
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.conformance_kit import have_kit
 from tests.support.needs import need
 from tests.support.platformio import shared_folder
@@ -151,10 +151,10 @@ def test_the_link_of_an_example_conforms(
     program = elf(built_library, "Link", "uno", shared_folder(tmp_path_factory))
     with Uno(program, baud=115_200, tells_sleep=False) as uno:
         uno.go()
-        result = process("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
+        result = run_subprocess("doctor", "--conform", "--port", uno.pty, "--baud", "115200")
         assert result.code == 0, result.out + result.err
-        result = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
-                       "--no-save")  # fmt: skip
+        result = run_subprocess("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty,
+                                "--baud", "115200", "--no-save")  # fmt: skip
         assert "1 + 1 2" in result.out, result.out + result.err
 
 

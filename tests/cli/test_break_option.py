@@ -307,8 +307,8 @@ def test_lines_that_halt_do_the_same_as_without_halts(halts: str, pty_robot: Pty
     halt_rows = (
         on(pty_robot, "live", "-", "--break", halts, data=data).gives(0, "").out.splitlines()
     )
-    is_told = [line for line in halt_rows if not line.startswith(("Halted", "  "))]
-    assert is_told == lines_alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (
+    shown_lines = [line for line in halt_rows if not line.startswith(("Halted", "  "))]
+    assert shown_lines == lines_alone and ("Halted before line 1: SHOW(X)" in halt_rows) is (
         halts == "1"
     )
 

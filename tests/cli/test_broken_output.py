@@ -93,7 +93,7 @@ def test_a_save_is_finished_before_the_stop(pty_robot: PtyRobot) -> None:
     words = ["upload", "-e", f"SI|LOOP(FOREVER);{moves}SHOW(1);END_LOOP", "--port", pty_robot.port]
     code, err = after_lines(1, *words)
     assert code == EXIT_OF_CLOSED_PIPE and err.count("\n") == 1 and "stopped the robot" in err
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     on(pty_robot, "show").gives(0, out="SHOW")
 
 

@@ -12,7 +12,7 @@ import pytest
 from tests.machines.esp32 import HAS_TLS
 from tests.support.certificates import Authority, der
 from tests.support.claimed_robots import claim_with_button
-from tests.support.command import process, run_in_process
+from tests.support.command import run_in_process, run_subprocess
 from tests.support.esp32_near import NETWORK, PASSWORD, put_network_in_reach
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto
@@ -118,9 +118,9 @@ def test_a_computer_trusts_the_brokers_own_certificate_regardless_of_its_signer(
             (NAME, ("--trust", tmp_path / "none"), strange),
             (NAME, (), strange),
         ):
-            result = process("class", "--broker", f"{name}:{broker.port}", "--tls", *trust)
+            result = run_subprocess("class", "--broker", f"{name}:{broker.port}", "--tls", *trust)
             assert result.code == 3 and expected in result.err, (name, trust, result.err)
-        result = process("class", "--broker", f"{NAME}:{broker.port}")
+        result = run_subprocess("class", "--broker", f"{NAME}:{broker.port}")
         assert result.code == 3, "without TLS it is no broker"
     finally:
         broker.kill()

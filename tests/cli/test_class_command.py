@@ -19,7 +19,7 @@ from typing import cast
 import pytest
 
 from tests.support.claimed_robots import become_another_computer, claim_with_button
-from tests.support.command import FOREVER, Command, CommandResult, process, run_in_process
+from tests.support.command import FOREVER, Command, CommandResult, run_in_process, run_subprocess
 from tests.support.esp32_near import (
     DRIVE_ACTIONS,
     DRIVE_PROGRAM,
@@ -99,7 +99,7 @@ def broker(tmp_path: Path) -> Iterator[Mosquitto]:
 
 
 def tsc(room: Class, *words: str) -> CommandResult:
-    result = process("class", *words, *room.access, data=SECRET + b"\n")
+    result = run_subprocess("class", *words, *room.access, data=SECRET + b"\n")
     assert SECRET.decode() not in result.out + result.err
     return result
 
@@ -149,10 +149,10 @@ def test_computers_without_a_key_can_watch_and_stop(
     all_drive(room)
     become_another_computer(monkeypatch, tmp_path)
     for data in (b"wrong\n", b"\n", b""):
-        result = process("class", *room.access, data=data)
+        result = run_subprocess("class", *room.access, data=data)
         assert result.code in (2, 3) and result.out == "" and "assword" in result.err, data
-    process("class", *room.place_options).gives(3, "refuses this computer")
-    assert "no deja entrar" in process("class", *room.place_options, "--lang", "es").err
+    run_subprocess("class", *room.place_options).gives(3, "refuses this computer")
+    assert "no deja entrar" in run_subprocess("class", *room.place_options, "--lang", "es").err
     tsc(room, "list").gives(0)
     result = tsc(room, "upload", "-e", DRIVE_PROGRAM).gives(3)
     assert result.out.count("has an owner") == 2
@@ -352,7 +352,7 @@ def test_a_missing_broker_and_an_empty_class_are_reported(broker: Mosquitto) -> 
     for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
         stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
     stranger._client.publish("last", b"", qos=1).wait_for_publish(HANG_LIMIT_S)
-    result = process("class", *broker_option).gives(3)
+    result = run_subprocess("class", *broker_option).gives(3)
     assert not set(result.out + result.err) & set("\x1b\x9b\r")
     assert "is no longer connected to the broker: it is" in result.out
 
@@ -408,11 +408,15 @@ def test_a_large_retained_message_is_named_and_a_stop_is_reported_as_sent(
     place_options = ["--broker", f"127.0.0.1:{broker.port}", "--class", "3b"]
     retain_message(broker.connect_client(), f"{ROOT}/3b/big", bytes(5000))
     named_texts = ("bytes under tiniscript/3b/big", "no robot of the class 3b")
-    result = process("class", "list", *place_options).gives(3, *named_texts)
+    result = run_subprocess("class", "list", *place_options).gives(3, *named_texts)
     assert "no answer of a broker" not in result.err
-    process("class", "stop", *place_options).gives(3, "the stop for all robots", *named_texts)
+    run_subprocess("class", "stop", *place_options).gives(
+        3, "the stop for all robots", *named_texts
+    )
     retain_message(broker.connect_client(), f"{ROOT}/3b/0badcafe", b"-ANA")
-    process("class", "stop", *place_options, "--lang", "es").gives(3, "llegó al broker", "3b/big")
+    run_subprocess("class", "stop", *place_options, "--lang", "es").gives(
+        3, "llegó al broker", "3b/big"
+    )
 
 
 @sampled

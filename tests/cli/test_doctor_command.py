@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import foreign_boards as boards
-from tests.support.command import FOREVER, Command, Tsc, process, run_in_process
+from tests.support.command import FOREVER, Command, Tsc, run_in_process, run_subprocess
 from tests.support.pty_end import PtyEnd
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.simulated_ends import Firmware
@@ -96,7 +96,7 @@ def test_a_restart_while_driving_is_reported(pty_robot: PtyRobot) -> None:
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
     heard_count = len(pty_robot.received)
     pty_robot.until(lambda: len(pty_robot.received) > heard_count + 200, "it is watched")
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     result = command.wait_for_result().gives(3)
     (finding,) = (finding for finding in json.loads(result.out)["findings"] if finding["is_wrong"])
     assert (finding["cause"], finding["is_sure"]) == ("motors_restart", False)
@@ -110,7 +110,7 @@ def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> No
     pty_robot.until(lambda: registry.find_registration(pty_robot.port) is not None, "it is watched")
     assert pty_robot.moves
     # The wait is part of the doctor's time.
-    assert process("stop", "--port", pty_robot.port).code == 0
+    assert run_subprocess("stop", "--port", pty_robot.port).code == 0
     assert not pty_robot.moves
     command.signal(signal.SIGINT)
     command.wait_for_result().gives(2)

@@ -10,7 +10,7 @@ import pytest
 from tests.machines.esp32 import Esp32Robot
 from tests.machines.host_firmware import HostFirmware
 from tests.support.claimed_robots import become_another_computer, claim_with_button
-from tests.support.command import FOREVER, LONG_PROGRAM, Command, process, run_in_process
+from tests.support.command import FOREVER, LONG_PROGRAM, Command, run_in_process, run_subprocess
 from tests.support.esp32_announced import AnnouncedNames
 from tests.support.esp32_near import (
     DRIVE_ACTIONS,
@@ -167,7 +167,7 @@ def test_a_program_runs_over_a_bad_network(robot_in_network: Esp32PtyRobot, tmp_
     assert run_in_process("show", "-o", robot_file, "--port", place).code == 0
     assert compiled_file.read_bytes() == robot_file.read_bytes()
     command = start_endless_upload(robot_in_network, place)
-    assert process("stop", "--port", place).code == 0
+    assert run_subprocess("stop", "--port", place).code == 0
     assert not robot_in_network.moves
     command.wait_for_result()
     command = start_endless_upload(robot_in_network, place)
@@ -200,10 +200,10 @@ def test_a_robot_is_found_and_driven_by_its_name(
     monkeypatch.setattr("serial.tools.list_ports.comports", list)  # asking one takes ten seconds
     with AnnouncedNames(robot_in_network):
         for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
-            assert process("doctor", "--identify", "--port", place).code == 0
+            assert run_subprocess("doctor", "--identify", "--port", place).code == 0
         robot_in_network.until(is_listed, "it is listed")  # a busy computer misses data after 2 s
         command = start_endless_upload(robot_in_network, PLACE)
-        assert process("stop", "--port", PLACE).code == 0
+        assert run_subprocess("stop", "--port", PLACE).code == 0
         assert not robot_in_network.moves
         command.wait_for_result()
         assert on(robot_in_network, "set", "wifi", "--forget").code == 0

@@ -78,9 +78,9 @@ def test_the_terminal_shows_the_last_picture_below_all_printed_lines(seed: int) 
         lines_above += [text_above] if text_above else []
         terminal.draw(lines, text_above)
         expected = [*lines_above, *(text.plain for text in lines)]
-        lines_shown = terminal.all_lines()
-        assert lines_shown[: len(expected)] == expected
-        assert not any(lines_shown[len(expected) :])
+        shown_lines = terminal.all_lines()
+        assert shown_lines[: len(expected)] == expected
+        assert not any(shown_lines[len(expected) :])
 
 
 def test_unchanged_parts_are_not_rewritten() -> None:

@@ -289,15 +289,15 @@ def test_a_missing_fleet_and_wrong_use_are_reported(monkeypatch: pytest.MonkeyPa
 def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:
     words = ("upload", "-e", "SI|F(1, 80);SHOW(7);F(1, 80)", "--all", "--no-save")
     terminal = Terminal(*words, size=(100, 24), types=False)
-    states_shown = set()
+    shown_states = set()
     while terminal.take():
         text = "\n".join(terminal.lines())
         if text.count("running   SHOW 7") == 4:
-            states_shown.add("values")
+            shown_states.add("values")
         if text.count("running") == 4:
-            states_shown.add("running")
+            shown_states.add("running")
     assert terminal.end() == 0
-    assert states_shown == {"values", "running"}
+    assert shown_states == {"values", "running"}
     rows = list(filter(None, terminal.lines()))
     assert "Done: 4 of 4." in rows
     assert sum(row.endswith("Done.") for row in rows) == 4

@@ -35,7 +35,7 @@ def liner(tmp_path: Path) -> Path:
 
 
 def test_every_verb_is_covered() -> None:
-    robot_verbs = {verb for verb in VERBS for option in OPTIONS if option.is_taken_by(verb)
+    robot_verbs = {verb for verb in VERBS for option in OPTIONS if option.applies_to(verb)
              and option.kind is not None and option.kind.name == "program"}  # fmt: skip
     assert robot_verbs == set(OPTIONS_BY_VERB)
 

@@ -34,8 +34,8 @@ OLD_VERB_PATTERN = re.compile(
 )
 FILES_WITH_OLD_VERBS = ("CHANGELOG.md", "tests/cli/test_old_verbs.py")
 MISSPELLED = "complie "  # the misspelling that a document shows
-FILE_ENDINGS = ("c", "cpp", "h", "html", "ini", "ino", "js", "json", "md", "mjs", "ps1", "py", "sh",
-                "svg", "toml", "txt", "yml", "yaml")  # fmt: skip
+FILE_SUFFIXES = ("c", "cpp", "h", "html", "ini", "ino", "js", "json", "md", "mjs", "ps1", "py",
+                 "sh", "svg", "toml", "txt", "yml", "yaml")  # fmt: skip
 FOREIGN_FOLDERS = {".git", ".venv", ".pio", "node_modules", "__pycache__", "build", "dist"}
 
 
@@ -45,7 +45,7 @@ def files() -> Iterator[Path]:
         name = path.relative_to(ROOT)
         if (
             not FOREIGN_FOLDERS & {*name.parts}
-            and path.suffix[1:] in FILE_ENDINGS
+            and path.suffix[1:] in FILE_SUFFIXES
             and path.is_file()
         ):
             if name.as_posix() not in FILES_WITH_OLD_VERBS and ".mypy_cache" not in name.parts:

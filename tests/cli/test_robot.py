@@ -123,7 +123,7 @@ def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> 
 def test_a_name_survives_power_off(pty_robot: PtyRobot) -> None:
     result = on(pty_robot, "set", "name", "Ñandú")
     assert (result.code, result.out) == (0, f"{pty_robot.port}: the robot is now called Ñandú.\n")
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "Ñandú"
     for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
         assert on(pty_robot, "set", "name", name).code == 2

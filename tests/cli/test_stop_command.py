@@ -10,7 +10,7 @@ from unittest import mock
 
 import pytest
 
-from tests.support.command import FOREVER, Command, process
+from tests.support.command import FOREVER, Command, run_subprocess
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.waiting import until
 from tiniscript.cli.texts import text
@@ -212,7 +212,7 @@ def test_the_suspended_holder_of_an_address_is_woken(pty_robot: PtyRobot) -> Non
     holder = Command("monitor", "--port", address)
     until(lambda: registry.find_registration(address) is not None, "it shares the address")
     suspend(holder)
-    process("stop", "--port", address).gives(0, "", out="has confirmed the stop")
+    run_subprocess("stop", "--port", address).gives(0, "", out="has confirmed the stop")
     assert not pty_robot.moves
     holder.kill()
     bridge.kill()

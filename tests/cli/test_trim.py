@@ -101,13 +101,13 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     assert run_trim(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
     result = run_trim(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert result.out.endswith(
-        "has saved: motors swapped, right wheel reversed, right wheel 5 % weaker, "
+        "has saved: motors swapped, right wheel reversed, right motor 5 % weaker, "
         "the wheels begin to turn at 12 %, uses its kit's speeds for CM and DEG\n"
     )
     assert stored_trim(pty_robot) == Trim(True, False, True, -5, 12, Pace())
     assert run_trim(pty_robot, "--exchange", "no", "--balance", "0").code == 0
     assert stored_trim(pty_robot) == Trim(False, False, True, 0, 12, Pace())
-    assert "as they are wired, both wheels equally strong" in run_trim(pty_robot, "--reset").out
+    assert "as they are wired, both motors equally strong" in run_trim(pty_robot, "--reset").out
     assert stored_trim(pty_robot) == Trim(pace=Pace())
 
 

@@ -145,7 +145,7 @@ def test_a_reset_during_a_run_is_not_success(pty_robot: PtyRobot, is_many: bool)
     more_options = ("--port", "/dev/none") if is_many else ()
     command = Command("upload", "-e", "SI|F(200, 80)", "--port", pty_robot.port, *more_options)
     pty_robot.until(lambda: pty_robot.moves, "it drives")
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     result = command.wait_for_result()
     assert result.code == 3 and "Done." not in result.out + result.err
     assert "restarted, which ended its program" in result.out + result.err, result
@@ -161,10 +161,10 @@ def interrupt(command: Command) -> CommandResult:
     return command.wait_for_result()
 
 
-def test_saving_is_reported_while_a_stationary_program_runs(pty_robot: PtyRobot) -> None:
+def test_saving_is_reported_while_a_program_without_moves_runs(pty_robot: PtyRobot) -> None:
     command = Command("upload", "-e", WAITING_PROGRAM, "--port", pty_robot.port)
     command.until("Saved. The button starts it.")
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     command.kill()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
@@ -173,7 +173,7 @@ def test_after_ctrl_c_the_save_is_reported(pty_robot: PtyRobot) -> None:
     interrupt(start_endless_upload(pty_robot)).gives(
         2, "the robot has confirmed the stop", out="Saved. The button starts it."
     )
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["saved"] == "STORED"
 
 
@@ -189,7 +189,7 @@ def test_while_driving_a_name_and_a_trim_are_reported_as_saved_later(pty_robot: 
     interrupt(command)
     for words in (naming, trimming):
         assert on(pty_robot, *words).code == 0, words
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["name"] == "ANA"
 
 
@@ -248,7 +248,7 @@ def test_undo_reports_the_restored_program_and_its_save(pty_robot: PtyRobot) -> 
         lines = result.out.splitlines()
         assert f"{expected} {checksum}" in lines[0] and "tsc start --previous" in lines[0]
         assert len(lines) == 2 and lines[1].startswith(saved_text)
-        pty_robot.switch_off_and_on()
+        pty_robot.power_cycle()
         assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] == checksum
     receipt, kept_state = map(
         json.loads, on(pty_robot, "start", "--previous", "--json").out.splitlines()
@@ -298,7 +298,7 @@ def test_with_weak_batteries_undo_reports_that_nothing_is_lost(pty_robot: PtyRob
         assert on(pty_robot, "start", "--previous").code == 0, "the second one is saved already"
     on(pty_robot, "start", "--previous")
     pty_robot.ask(lambda robot: robot.supply(is_low=False))
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     assert json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"] in (
         first_checksum,
         second_checksum,

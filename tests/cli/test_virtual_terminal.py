@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.terminal import Terminal
 
 SIZE = (90, 30)
@@ -39,7 +39,7 @@ def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     terminal = Terminal("robot", "--memory", memory, "--lang", "es", size=SIZE)
     terminal.until("q: terminar   b: botón   h: botón 2 s   r: reinicio   p: apagar y encender")
     terminal.until("todavía sin programa")
-    process("upload", "--virtual", "-e", "SB|LOOP(FOREVER);L(1, 40);END_LOOP").gives(0)
+    run_subprocess("upload", "--virtual", "-e", "SB|LOOP(FOREVER);L(1, 40);END_LOOP").gives(0)
     terminal.until("su botón lo inicia")
     terminal.type("b")
     terminal.until(r"motor der\. +40 %")

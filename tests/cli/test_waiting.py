@@ -69,12 +69,12 @@ def test_waiting_for_a_board_is_reported_until_it_is_written(
     output = ""
 
     def write(*arguments: object) -> avrdude.WriteResult:
-        def is_said() -> bool:
+        def has_been_printed() -> bool:
             nonlocal output
             output += capsys.readouterr().err
             return "Waiting for the board on /dev/x …\n" in output
 
-        until(is_said, "the sentence")
+        until(has_been_printed, "the sentence")
         return avrdude.WriteResult(avrdude.DONE)
 
     monkeypatch.setattr(avrdude, "write", write)
@@ -286,12 +286,12 @@ def test_the_studio_reports_what_its_shutdown_waits_for(
 
     class Silent(Hosting):
         def close(self) -> list[str]:
-            def is_said() -> bool:
+            def has_been_printed() -> bool:
                 nonlocal output
                 output += capsys.readouterr().err
                 return "Waiting for the robots to confirm that they have stopped …\n" in output
 
-            until(is_said, "the sentence")
+            until(has_been_printed, "the sentence")
             return ["/dev/x"]
 
     def raise_interrupt(*arguments: object, **values: object) -> None:

@@ -1,4 +1,4 @@
-"""Authority: the reactions of an owned robot to a session that shows no key, or a wrong one."""
+"""Authority: the reactions of an owned robot to a session without a key, or with a wrong one."""
 
 from __future__ import annotations
 

@@ -190,7 +190,7 @@ def start_long_drive(end: End, draw: random.Random) -> None:
     assert state_of(end) == STATE_RUNNING
 
 
-def one_trial(end: End, seed: int) -> str:
+def run_trial(end: End, seed: int) -> str:
     """Send a robot a request through the attacker; return its kind."""
     draw = random.Random(seed)
     keys = Keys()
@@ -233,7 +233,7 @@ def one_trial(end: End, seed: int) -> str:
     return f"{kind}, cleared" if cleared else kind
 
 
-def one_stranger(end: End, strange: Stranger, seed: int) -> str:
+def run_stranger_trial(end: End, strange: Stranger, seed: int) -> str:
     """Send a request to a robot while another one answers, or one with another id; return the
     answer."""
     draw = random.Random(seed)
@@ -287,7 +287,7 @@ def one_stranger(end: End, strange: Stranger, seed: int) -> str:
 
 def test_a_stranger_with_its_own_id_is_not_trusted() -> None:
     end, strange = End(), Stranger()
-    outcomes = {one_stranger(end, strange, seed) for seed in range(1, TRIAL_COUNT + 1)}
+    outcomes = {run_stranger_trial(end, strange, seed) for seed in range(1, TRIAL_COUNT + 1)}
     assert len(outcomes) == 16  # each kind
 
 
@@ -328,7 +328,7 @@ def test_an_unknown_robot_is_trusted() -> None:
 
 def test_no_relay_can_remove_the_seals() -> None:
     end = End()
-    assert len({one_trial(end, seed) for seed in range(1, TRIAL_COUNT + 1)}) == 10  # each kind
+    assert len({run_trial(end, seed) for seed in range(1, TRIAL_COUNT + 1)}) == 10  # each kind
 
 
 @pytest.mark.parametrize("which", [KEY_OWNER, KEY_TEACHER])
@@ -381,7 +381,7 @@ def test_seal_support_is_learned_only_from_the_robot_itself() -> None:
 def play_either(ends: tuple[End, End, Stranger], seed: int) -> str:
     """Play one of somebody in between, or one of a stranger with an id of its own."""
     robot, other_end, strange = ends
-    return one_stranger(other_end, strange, seed) if seed % 2 else one_trial(robot, seed)
+    return run_stranger_trial(other_end, strange, seed) if seed % 2 else run_trial(robot, seed)
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ HONEST_GUESTS = ("owner", "owner", "stranger", "person")
 GUESTS = (*HONEST_GUESTS, "thief")
 
 
-def a_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
+def do_random_step(scene: Scene, rng: random.Random, is_soon: bool) -> None:
     """Somebody comes, goes, asks or types.
 
     If the twin arrives soon, no step asks for anything that continues without a client, nor uses
@@ -186,7 +186,7 @@ def check(seed: int) -> str:
     scene = Scene(memory_with_network()[0])
     wait_ms = rng.choice((3, 30, 300, LONGEST_WAIT_MS))
     for _ in range(rng.choice((2, 4, 8, 16))):
-        a_step(scene, rng, wait_ms < LONGEST_WAIT_MS)
+        do_random_step(scene, rng, wait_ms < LONGEST_WAIT_MS)
     actions = scene.robot.did[:]
     scene.talk(1, 2)
     while scene.guests:

@@ -219,7 +219,7 @@ def test_a_radio_with_any_history_behaves_like_a_fresh_one(part: int) -> None:
 
 @pytest.mark.sampled("reason")
 @pytest.mark.parametrize("reason", [15, 202, 203, 204])
-def test_a_network_that_finally_accepts_is_not_reported_as_refusing(reason: int) -> None:
+def test_a_network_that_accepts_in_the_end_is_not_reported_as_refusing(reason: int) -> None:
     """With a weak signal, the robot may have joined and be waiting for its address."""
     robot, owner = make_owned_robot(Keys())
     refuse_robot(robot, SCHOOL, reason)

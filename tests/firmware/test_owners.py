@@ -54,20 +54,20 @@ def test_the_button_confirms_a_claim_and_the_robot_keeps_the_key() -> None:
     assert owner_of(restarted, restarted.session(keys, nonce=2)) == OWNED_BY_YOU
 
 
-def a_shorter_press(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
+def claim_then_press_too_briefly(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     table.hold(session, 1900)
     return request
 
 
-def a_press_before_it(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
+def press_then_claim(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     assert table.outcome(session, session.hello()) == "OK"
     table.hold(session, 2500)
     return session.claim(KEY_OWNER)
 
 
-def spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
+def claim_then_spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[Any]:
     request = session.claim(KEY_OWNER)
     table.pass_time(session, 300)
     for _ in range(40):  # edges down that no press follows
@@ -76,7 +76,9 @@ def spikes_on_the_wire(table: OwnedRobot, session: Session) -> PendingRequest[An
     return request
 
 
-@pytest.mark.parametrize("act", [a_shorter_press, a_press_before_it, spikes_on_the_wire])
+@pytest.mark.parametrize(
+    "act", [claim_then_press_too_briefly, press_then_claim, claim_then_spikes_on_the_wire]
+)
 def test_other_button_actions_confirm_no_claim(
     act: Callable[[OwnedRobot, Session], PendingRequest[Any]],
 ) -> None:

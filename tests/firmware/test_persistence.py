@@ -50,7 +50,7 @@ def marks(robot: HostFirmware) -> list[str]:
 # -- motors ---------------------------------------------------------------------------------------
 
 
-def test_a_stationary_program_is_saved_while_it_runs() -> None:
+def test_a_program_without_moves_is_saved_while_it_runs() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, WAITS)
     assert read_saved_state(robot, session) == "SAVING"
@@ -87,7 +87,7 @@ def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int)
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_a_stationary_program_is_finally_stored_after_any_history(seed: int) -> None:
+def test_a_program_without_moves_is_eventually_stored_after_any_history(seed: int) -> None:
     """Sent again, after another one, after a power-off, or with a supply that was low."""
     chance, texts = Random(seed), [f"SI|SHOW({number})" for number in range(3)]
     robot, session = switched_on(), computer()

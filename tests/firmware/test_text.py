@@ -707,7 +707,7 @@ def test_a_program_too_long_for_the_buffer_is_not_run_in_part(seed: int) -> None
     rng = random.Random(seed)
     robot = switched_on()
     type_text(robot, "SI|W(0)\n", 200)  # from here on a line needs no SETUP word
-    times_lost = 0
+    lost_count = 0
     for _ in range(12):
         robot.wait(1500)
         robot.did.clear()
@@ -718,9 +718,9 @@ def test_a_program_too_long_for_the_buffer_is_not_run_in_part(seed: int) -> None
         answer = robot.step(text[:at_once], flags=16)
         answer += "\n".join(type_text(robot, text[at_once:], 300)).encode()
         is_lost = b"// Bytes were lost. Begin again." in answer
-        times_lost += is_lost
+        lost_count += is_lost
         assert not is_lost or not robot.did, text
-    assert 0 < times_lost < 12
+    assert 0 < lost_count < 12
 
 
 @pytest.mark.parametrize("intervening_bytes", ["zero", "frame", "button", "two tabs"])

@@ -419,7 +419,7 @@ def quick_uno(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Uno]:
         yield uno
 
 
-def lines_said(uno: Uno, data: bytes) -> list[str]:
+def printed_lines(uno: Uno, data: bytes) -> list[str]:
     """Return the lines that the robot says to this, until it is silent and no program runs."""
     start_index, sent_count = len(uno.sent_bytes), -1
     uno.send(data)
@@ -438,12 +438,12 @@ def test_a_lost_pasted_line_is_reported(quick_uno: Uno, line: str) -> None:
     with uno.try_out():
         first_lines = [
             line
-            for line in lines_said(uno, data)
+            for line in printed_lines(uno, data)
             if line not in ("// DONE", "// 1", LOST_BYTES_LINE)
         ]
         for count in (MISTAKE_LIMIT // 2, MISTAKE_LIMIT):
             with uno.try_out():
-                all_lines = lines_said(uno, data * count)
+                all_lines = printed_lines(uno, data * count)
                 answers = sum(line in first_lines for line in all_lines)
                 is_told = LOST_BYTES_LINE in all_lines or TOO_MANY_LINE in all_lines
                 assert is_told or answers == len(first_lines) * count, all_lines
@@ -456,7 +456,7 @@ def test_a_lost_pasted_line_is_reported(quick_uno: Uno, line: str) -> None:
 
 def test_a_line_of_227_bytes_is_pasted_whole(quick_uno: Uno) -> None:
     with quick_uno.try_out():
-        assert lines_said(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
+        assert printed_lines(quick_uno, b"SI|" + b"F(2,80);" * 28 + b"\n") == ["// OK"]
 
 
 if __name__ == "__main__":

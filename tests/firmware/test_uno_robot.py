@@ -230,8 +230,8 @@ def test_a_tag_takes_milliseconds_and_a_claim_survives_a_reset(uno: Uno) -> None
     """A key that is shown takes the main loop some milliseconds, and no more."""
     keys = Keys()
 
-    def read_ownership(shown_keys: Keys | None, nonce: int) -> str:
-        wired_uno.session = Session(nonce, BAUD, KIT.fingerprint, keys=shown_keys)
+    def read_ownership(session_keys: Keys | None, nonce: int) -> str:
+        wired_uno.session = Session(nonce, BAUD, KIT.fingerprint, keys=session_keys)
         assert wired_uno.until(wired_uno.session.hello()) == OK
         assert wired_uno.session.robot
         return ownership_of(wired_uno.session.robot)

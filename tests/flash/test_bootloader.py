@@ -12,7 +12,7 @@ from tests.machines.bootloaders import Bootloader, bootloader
 from tests.machines.uno import build_uno as nothing_but
 from tests.machines.uno import skip_unless_available
 from tests.support import arduino_builder
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.images import image_of
 from tests.support.needs import need
 from tests.support.platformio import firmware, shared_folder
@@ -109,10 +109,10 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
     ) as uno:
         uno.go()
         assert "bytes of flash verified" in avrdude(uno, loader, sketch)
-        identified = process("doctor", "--identify", "--port", uno.pty).gives(0)
+        identified = run_subprocess("doctor", "--identify", "--port", uno.pty).gives(0)
         assert identified.out.startswith(f"tinibot on {uno.pty}")
         assert states(uno) == OFF
-        process("upload", program, "--port", uno.pty).gives(0)
+        run_subprocess("upload", program, "--port", uno.pty).gives(0)
         uno.pause()
         outputs = [change for change in uno.pins.history("left") if change.state == "pwm"]
         assert len(outputs) == 1
@@ -211,7 +211,7 @@ def test_a_reset_mega_is_waited_for(
         mega.go(speed=3.0)
         for words in (["doctor", "--identify"], ["doctor", "--ports", "--ask"]):
             for _ in range(TRY_COUNT):  # a busy computer may be late; each try resets the board
-                result = process(*words, "--port", mega.pty)
+                result = run_subprocess(*words, "--port", mega.pty)
                 if "tinibot" in result.out:
                     break
             assert "tinibot" in result.out, (result.out, result.err)

@@ -19,7 +19,7 @@ import pytest
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import skip_unless_available
 from tests.support.casefile import ROOT
-from tests.support.command import CommandResult, Tsc, process
+from tests.support.command import CommandResult, Tsc, run_subprocess
 from tests.support.copies import link_copy
 from tests.support.edited_robots import TEXTS
 from tests.support.flashed_boards import (
@@ -64,15 +64,15 @@ def robot_file(tmp_path: Path) -> Path:
 def test_a_custom_robot_is_built_and_written(clone: Path, robot_file: Path) -> None:
     """It is built once and stays ready until one of its sources changes."""
     skip_unless_available()
-    variables, reason = prepare()
+    environment, reason = prepare()
     need(reason or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
     with new_board(bootloader("uno")) as uno:
-        result = tsc(clone, "--port", uno.pty, "--robot", str(robot_file), **variables)
+        result = tsc(clone, "--port", uno.pty, "--robot", str(robot_file), **environment)
         assert result.code == 0, result.err
         assert "PlatformIO is building the firmware of mine for the uno" in result.err
         first_line = result.out.splitlines()[0]
         assert first_line.startswith("The firmware for mine was written to the uno and verified: ")
-        info = process("doctor", "--json", "--port", uno.pty)
+        info = run_subprocess("doctor", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(robot_file)).kit.fingerprint:04x}"' in info.out, info.err
     files = ready.files(ready.firmware_cache())
     assert [(file.title, file.board) for file in files] == [("mine", "uno")]
@@ -84,7 +84,7 @@ def test_a_custom_robot_is_built_and_written(clone: Path, robot_file: Path) -> N
     source = clone.parent / "vm_arduino" / "src" / "main.cpp"
     source.unlink()
     source.write_text("?", encoding="utf-8")
-    broken_result = tsc(clone, "--build", "--robot", str(robot_file), **variables)
+    broken_result = tsc(clone, "--build", "--robot", str(robot_file), **environment)
     assert broken_result.code == 2
     assert "could not be built" in broken_result.err and "error" in broken_result.err
     log = broken_result.err.split()[-1]
@@ -144,14 +144,14 @@ def test_firmware_with_breakpoints_is_cached_beside_that_without(clone: Path) ->
     confused.
     """
     skip_unless_available()
-    variables, reason = prepare()
+    environment, reason = prepare()
     need(reason)
     for _ in range(2):
-        result = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **variables)
+        result = tsc(clone, "--build", "--breakpoints", "--chip", "uno", **environment)
         assert result.code == 0, result.err
         assert "no longer reads typed lines of text" in result.err
         assert result.out.startswith("tinibot on uno: ready, ")
-        variables = {}  # PlatformIO could not build now
+        environment = {}  # PlatformIO could not build now
     assert [file.title for file in ready.files(ready.firmware_cache())] == ["tinibot_breakpoints"]
     assert "tinibot on uno: not built yet" in tsc(clone, "--list").out
 
@@ -271,9 +271,9 @@ def make(name, rows):
 """
 
 
-def build_firmware(clone: Path, variables: dict[str, str], *words: str) -> CommandResult:
-    path = variables["PYTHONPATH"] + os.pathsep + str(clone)
-    return tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
+def build_firmware(clone: Path, environment: dict[str, str], *words: str) -> CommandResult:
+    path = environment["PYTHONPATH"] + os.pathsep + str(clone)
+    return tsc(clone, "--build", *words, **{**environment, "PYTHONPATH": path})
 
 
 OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); sys.exit(1)'
@@ -347,11 +347,11 @@ def test_a_failed_build_leaves_nothing(end: str, clone: Path, tmp_path: Path) ->
 def test_custom_settings_do_not_affect_the_build(clone: Path, tmp_path: Path) -> None:
     """Settings for a project of the person's own would change the build or its place."""
     body = 'print("Compiling", *sorted(n for n in os.environ if "PLATFORMIO" in n)); sys.exit(1)'
-    variables = fake_platformio(tmp_path, body)
+    environment = fake_platformio(tmp_path, body)
     for name in ("BUILD_FLAGS", "SRC_DIR", "BUILD_DIR", "WORKSPACE_DIR", "DEFAULT_ENVS"):
-        variables[f"PLATFORMIO_{name}"] = "other"
-    variables["PLATFORMIO_CORE_DIR"] = "kept"
-    build_firmware(clone, variables)
+        environment[f"PLATFORMIO_{name}"] = "other"
+    environment["PLATFORMIO_CORE_DIR"] = "kept"
+    build_firmware(clone, environment)
     lines = (ready.firmware_cache() / "build.log").read_text().split()[1:]
     assert "PLATFORMIO_CORE_DIR" in lines and "PLATFORMIO_SETTING_ENABLE_TELEMETRY" in lines
     assert not [name for name in lines if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
@@ -401,9 +401,9 @@ open({str(path)!r} + ".new", "w").write(f"{{os.getpid()}} {{child.pid}}")
 os.rename({str(path)!r} + ".new", {str(path)!r})
 time.sleep(600)
 """
-    variables = fake_platformio(tmp_path, body)
-    variables["PYTHONPATH"] += os.pathsep + str(clone)
-    run_interrupted(path, "--build", **variables).gives(2)
+    environment = fake_platformio(tmp_path, body)
+    environment["PYTHONPATH"] += os.pathsep + str(clone)
+    run_interrupted(path, "--build", **environment).gives(2)
     for number in path.read_text().split():
         until(partial(has_ended, number), f"the end of {number}")
 
@@ -499,11 +499,11 @@ assert os.path.exists("partitions.csv") and "esp32dev" in words
 def write_firmware(clone: Path, tmp_path: Path, *words: str, code: int = 0) -> CommandResult:
     main_end, its_end = os.openpty()
     port = os.ttyname(its_end)
-    variables = fake_platformio(tmp_path, ESP32)
-    variables = {"PYTHONPATH": variables["PYTHONPATH"] + os.pathsep + str(clone),
+    environment = fake_platformio(tmp_path, ESP32)
+    environment = {"PYTHONPATH": environment["PYTHONPATH"] + os.pathsep + str(clone),
                  "ITS_PORT": port, "ITS_CODE": str(code)}  # fmt: skip
     try:
-        return tsc(clone, "--robot", "tinibot32", "--port", port, *words, **variables)
+        return tsc(clone, "--robot", "tinibot32", "--port", port, *words, **environment)
     finally:
         os.close(main_end)
         os.close(its_end)

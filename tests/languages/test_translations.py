@@ -539,9 +539,9 @@ def test_a_stranger_adds_a_language_text_by_text(
 
 def test_missing_texts_are_named_with_the_line_to_insert_after() -> None:
     """The line is that of the previous English text, whatever the order of the file."""
-    translated = {"": "x"}
-    rows = [Entry("a", "A"), Entry("b", "B", translation=translated, line=7),
-            Entry("c", "C", line=99), Entry("d", "D", translation=translated, line=3),
+    translation = {"": "x"}
+    rows = [Entry("a", "A"), Entry("b", "B", translation=translation, line=7),
+            Entry("c", "C", line=99), Entry("d", "D", translation=translation, line=3),
             Entry("e", "E")]  # fmt: skip
     missing = [(line, row_text.partition(" ")[0]) for line, row_text in tool.missing_rows(rows)]
     assert missing == [(1, "a"), (7, "c"), (3, "e")]

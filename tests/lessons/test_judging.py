@@ -150,7 +150,7 @@ CASES = [
     ('kind = "order"\nwords = ["moves"]', "F(1,50)", "W(1)", "did not move"),
     ('kind = "ends"', "W(1)", "LOOP(FOREVER);W(1);END_LOOP", "After 10.0 s the program was still running"),
     ('kind = "uses"\nwords = ["UNTIL"]', "F(1,50) UNTIL(DISTANCE < 9)", "F(1,50) // UNTIL", "does not use UNTIL"),
-    ('kind = "uses"\nwords = ["LOOP"]\ntimes = 2', "LOOP(2);LOOP(2);BEEP(0.1,440);END_LOOP;END_LOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP 1 of 2 times"),
+    ('kind = "uses"\nwords = ["LOOP"]\ntimes = 2', "LOOP(2);LOOP(2);BEEP(0.1,440);END_LOOP;END_LOOP", "LOOP(2);W(0.1);END_LOOP", "needs 2 uses of LOOP, and the program has 1"),
     ('kind = "moves"\nat_most = 1', "LOOP(2);F(0.1,50);END_LOOP", "F(0.1,50);F(0.1,50)", "has 2 moves, but needs only 1"),
 ]  # fmt: skip
 
@@ -298,8 +298,8 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
 def test_a_lamp_blinks_on_the_way(tmp_path: Path, program: str, sentence: str) -> None:
     """A lamp that is set again without having been off has not blinked."""
     lamp = '[[criteria]]\nkind = "blinks"\nwhat = "LED"\ntimes = 2\n'
-    lines_told = sentences_on(lesson_of(tmp_path, lamp, "liner"), program)
-    assert [sentence in line for line in lines_told] == ([True] if sentence else [])
+    reported_sentences = sentences_on(lesson_of(tmp_path, lamp, "liner"), program)
+    assert [sentence in line for line in reported_sentences] == ([True] if sentence else [])
 
 
 @pytest.mark.parametrize(

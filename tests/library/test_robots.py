@@ -13,7 +13,7 @@ from typing import Any, cast
 import pytest
 
 import tiniscript
-from tests.support.command import FOREVER, OBSTACLE, Command, process
+from tests.support.command import FOREVER, OBSTACLE, Command, run_subprocess
 from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
 from tests.support.virtual_command import robot as virtual_robot
@@ -214,7 +214,7 @@ def test_the_button_a_command_and_leaving_stop_the_robot(pty_robot: PtyRobot) ->
         pty_robot.push()
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="BUTTON")
         drive()
-        result = process("stop", "--port", pty_robot.port)
+        result = run_subprocess("stop", "--port", pty_robot.port)
         assert (result.code, pty_robot.moves) == (0, False)
         assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
         with raises_error(tiniscript.RobotError, "WRONG_KIT"):
@@ -364,7 +364,7 @@ def test_a_reset_during_a_run_does_not_count_as_an_end(pty_robot: PtyRobot) -> N
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|F(200, 80)", save=False)
         pty_robot.until(lambda: pty_robot.moves, "it drives")
-        pty_robot.switch_off_and_on()
+        pty_robot.power_cycle()
         with raises_error(tiniscript.RobotError, "restarted"):
             robot.wait()
         robot.live("W(0.01)")
@@ -376,7 +376,7 @@ def test_a_reset_of_an_idle_robot_is_not_reported(pty_robot: PtyRobot) -> None:
         for _ in range(2):
             robot.upload("SI|SHOW(1)", save=False)
             assert robot.wait().name == "DONE"
-            pty_robot.switch_off_and_on()
+            pty_robot.power_cycle()
 
 
 def test_a_program_is_saved_by_the_end_of_a_wait_or_a_connection(
@@ -389,7 +389,7 @@ def test_a_program_is_saved_by_the_end_of_a_wait_or_a_connection(
         assert robot.wait().name == "DONE"
         assert robot.start().saved == "STORED"
         program = robot.upload("SB|" + "SHOW(2);" * 120)
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     with tiniscript.connect(pty_robot.port) as robot:
         assert robot.start().checksum == program.checksum
 
@@ -408,7 +408,7 @@ def test_the_previous_program_is_restored(pty_robot: PtyRobot) -> None:
         assert (receipt.checksum, receipt.is_running) == (programs[0].checksum, False)
         with raises_error(tiniscript.UsageError, "nothing_started"):
             robot.wait()
-    pty_robot.switch_off_and_on()
+    pty_robot.power_cycle()
     with tiniscript.connect(pty_robot.port) as robot:
         assert robot.start().checksum == programs[0].checksum
         assert robot.wait().name == "DONE"
@@ -499,7 +499,7 @@ def test_a_run_of_another_command_continues_after_the_connection_is_left(
     until(
         lambda: not any(thread.name == "holder" for thread in threading.enumerate()), "it lets go"
     )
-    process("doctor", "--identify", "--port", pty_robot.port).gives(0)
+    run_subprocess("doctor", "--identify", "--port", pty_robot.port).gives(0)
 
 
 def test_ctrl_c_stops_a_run_of_another_command_through_this_one(pty_robot: PtyRobot) -> None:

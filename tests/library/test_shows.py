@@ -56,10 +56,10 @@ def test_each_show_has_its_own_instruction_between_others() -> None:
 
 
 def test_shows_of_one_expression_are_told_apart_by_their_lines() -> None:
-    shows_found = list_shows(
+    found_shows = list_shows(
         "SHOW(TIME)\nSHOW( time ); SHOW(LIGHT_L); SHOW(LIGHT_L)\nSHOW(LIGHT_R)"
     )
-    assert shows_found == [
+    assert found_shows == [
         Show("TIME", 1, 1, shares_text=True),
         Show("TIME", 2, 1, shares_text=True),
         Show("LIGHT_L", 2, 15, shares_text=True, shares_line=True),

@@ -153,12 +153,12 @@ def test_a_robot_stays_its_owners_whatever_claims_were_lost(
             robot.does(authority.claim(ring, robot.info, role))
         else:
             robot.does(authority.disown(ring, robot.info, role))
-        robot.does(authority.show_keys(ring, robot.info, NONCE, lambda: 0, is_needed=False))
+        robot.does(authority.authenticate(ring, robot.info, NONCE, lambda: 0, is_needed=False))
         kept_keys = {key.key for key in ring.keys_of_robot(1)}
         assert {*robot.keys.values()} <= kept_keys
         robot.loss = 0.0  # before the claim, another client has connected
         for role, robot_key in robot.keys.items():
-            key_proof = authority.show_keys(
+            key_proof = authority.authenticate(
                 ring, robot.info, NONCE, lambda: 0, role, is_needed=False
             )
             reply = robot.does(key_proof)

@@ -54,7 +54,7 @@ def test_uploads_in_pieces_survive_a_bad_radio(
     assert counts["done"] > count * min_share, counts
 
 
-def one_undo(cpp: CppLink, seed: int) -> str:
+def undo_repeatedly(cpp: CppLink, seed: int) -> str:
     """Bring the program before back several times; return how many were confirmed."""
     rng = random.Random(seed)
     world = World(cpp, rng, 0, 0)
@@ -87,14 +87,14 @@ def one_undo(cpp: CppLink, seed: int) -> str:
 
 def test_undos_survive_a_bad_radio() -> None:
     """No undo is done twice, however often its answer is lost."""
-    counts = Counter(one_undo(cpp_link(), seed) for seed in range(UNDOS))
+    counts = Counter(undo_repeatedly(cpp_link(), seed) for seed in range(UNDOS))
     assert counts["4 confirmed"] > UNDOS * 0.8, counts
 
 
 if __name__ == "__main__":
     options = make_options(10_000, 1_000_000, "large", "undos", "pieces")
     one = (
-        one_undo
+        undo_repeatedly
         if options.undos
         else partial(run_upload_scenario, world_of=SplitWorld if options.pieces else World)
     )

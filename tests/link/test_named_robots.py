@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.command import LONG_PROGRAM, Command, Tsc, process, run_in_process
+from tests.support.command import LONG_PROGRAM, Command, Tsc, run_in_process, run_subprocess
 from tests.support.network import BadNetwork
 from tests.support.virtual_command import FOREVER, Robot, robot
 from tests.support.waiting import HANG_LIMIT_S, until
@@ -141,8 +141,9 @@ def tini() -> Iterator[Robot]:
 
 
 def test_a_robot_is_reached_by_its_name(tini: Robot) -> None:
-    for run, address in ((process, "tcp://Ñ tini {}"), (run_in_process, "tcp://ñ tini {}.local"),
-                       (run_in_process, "TCP://ñ TINI {}")):  # fmt: skip
+    for run, address in ((run_subprocess, "tcp://Ñ tini {}"),
+                         (run_in_process, "tcp://ñ tini {}.local"),
+                         (run_in_process, "TCP://ñ TINI {}")):  # fmt: skip
         port = address.format(PROCESS_ID)
         result = run("upload", "-e", "SI|F(0.2, 50)", "--port", port)
         assert (result.code, result.err) == (0, ""), port

@@ -10,7 +10,7 @@ import pytest
 import serial
 from serial.rfc2217 import PortManager
 
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 from tiniscript.link import ports
@@ -61,11 +61,13 @@ def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
         )
         server.start()
         address = f"{protocol}://127.0.0.1:{tcp.getsockname()[1]}"
-        result = process("upload", "-e", "SI|F(0.2, 50);SHOW(1.5)", "--port", address).gives(0, "")
+        result = run_subprocess("upload", "-e", "SI|F(0.2, 50);SHOW(1.5)", "--port", address).gives(
+            0, ""
+        )
         assert result.out.splitlines()[1:3] == ["SHOW 1.5", "Done."]
         assert pty_robot.actions == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
         server.join(10)
-        assert process("doctor", "--ports").out.count(address) == 1
+        assert run_subprocess("doctor", "--ports").out.count(address) == 1
 
 
 @pytest.mark.parametrize(("system", "port", "is_radio"), [

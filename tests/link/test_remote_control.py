@@ -293,7 +293,7 @@ def test_endless_requests_leave_keys_their_turn() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_keys_and_requests_of_an_owner_work_in_any_order(seed: int) -> None:
-    """They come at any moment, also while the robot is shown a key, which it forgets in silence."""
+    """At any moment, also during an authentication, which the robot forgets in silence."""
     rng = random.Random(seed)
     table, keys = OwnedRobot(), Keys()
     table.claim_session(keys)

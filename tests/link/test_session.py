@@ -635,7 +635,7 @@ def test_a_low_voltage_has_a_shorter_timeout(
     assert count_namings(statuses) == (times, wanted_status)
 
 
-def places_told(*replies: bytes) -> list[tuple[int, int]]:
+def reported_places(*replies: bytes) -> list[tuple[int, int]]:
     """Return the runs and places that a session tells when its heartbeats get these replies."""
     session = greet(features=PLACES)
     session.tells_places = True
@@ -655,11 +655,11 @@ def places_told(*replies: bytes) -> list[tuple[int, int]]:
 
 def test_a_place_is_reported_when_it_changes() -> None:
     place, other_place = b"\3\0abcd", b"\3\0abce"
-    assert places_told(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
-    places = places_told(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other_place)
+    assert reported_places(b"\1\1" + place, b"\1\1" + place, b"\0\1") == [(1, 3), (1, -1)]
+    places = reported_places(b"\1\1" + place, b"\1\2" + place, b"\1\2" + other_place)
     assert places == [(1, 3), (2, 3), (2, 3)]
 
 
 def test_a_truncated_place_or_one_of_another_run_is_ignored() -> None:
-    assert places_told(b"\1\1", b"\1\1abc", b"\0\1\3\0abcd", b"\2\1\3\0abcd") == []
-    assert places_told(b"\1\1\xff\xffabcd") == [(1, 0xFFFF)]
+    assert reported_places(b"\1\1", b"\1\1abc", b"\0\1\3\0abcd", b"\2\1\3\0abcd") == []
+    assert reported_places(b"\1\1\xff\xffabcd") == [(1, 0xFFFF)]

@@ -47,7 +47,7 @@ NO_DELAY = Pace()
 ECHO_SENSORS = ("DISTANCE",)
 
 
-def a_pace(rng: random.Random) -> Pace:
+def random_pace(rng: random.Random) -> Pace:
     """An echo that takes a part of each period, of a robot that is called often or seldom."""
     period_ms = rng.choice((31, 50, 90, 130, 170))
     from_ms = rng.randrange(period_ms // 3)

@@ -15,14 +15,14 @@ from tests.oracle.words import RANGES
 
 def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Are valid, and together do every instruction and end in every way."""
-    words_used: set[str] = set()
+    used_words: set[str] = set()
 
     def watch(name: str) -> None:
         does = getattr(TaskRobot, name)
 
         def watch_statement(self: TaskRobot, statement: Statement) -> Turns:
             word = statement.word if isinstance(statement, Do) else type(statement).__name__.upper()
-            words_used.add(
+            used_words.add(
                 f"{word} UNTIL" if isinstance(statement, Do) and statement.until else word
             )
             turns: Turns = does(self, statement)
@@ -37,8 +37,8 @@ def test_random_programs(monkeypatch: pytest.MonkeyPatch) -> None:
         kit = WIDE_KIT if number % 2 else PAPER_KIT
         text = program(rng, kit)
         trace = run(text, kit, senses(rng, kit), 20_000, 20_000, rng.randint(1, 2**32 - 1))
-        words_used.add(trace.splitlines()[-1].split(" ", 1)[1])
+        used_words.add(trace.splitlines()[-1].split(" ", 1)[1])
     words = {*RANGES, "S", "SHOW", "=", "READ", "SET", "CALL", "BREAK"}
     untils = {f"{word} UNTIL" for word in "FBLRW"}
     blocks_and_ends = {"IF", "LOOP", "WHILE", "DONE", "LIMIT", "FAULT OVERFLOW"}
-    assert words_used == words | untils | blocks_and_ends | {"FAULT DIVIDE_BY_ZERO"}
+    assert used_words == words | untils | blocks_and_ends | {"FAULT DIVIDE_BY_ZERO"}

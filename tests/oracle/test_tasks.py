@@ -18,13 +18,13 @@ from tests.support.rows import each_row
 from tests.support.task_agreement import KIT, compare_task_program
 from tiniscript import compile_text
 
-BATCH = 50
+BATCH_SIZE = 50
 
 
 @pytest.mark.sampled("first", keep=3)
-@pytest.mark.parametrize("first", range(0, 400, BATCH))
+@pytest.mark.parametrize("first", range(0, 400, BATCH_SIZE))
 def test_random_programs(first: int) -> None:
-    end_counts = Counter(compare_task_program(seed) for seed in range(first, first + BATCH))
+    end_counts = Counter(compare_task_program(seed) for seed in range(first, first + BATCH_SIZE))
     assert set(end_counts) == {"DONE", "LIMIT"}
 
 

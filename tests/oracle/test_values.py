@@ -24,7 +24,7 @@ from tiniscript.syntax.formatter import format_source
 
 KIT = robots.load("tinibot").kit
 MAX_MS = 300
-BATCH = 50
+BATCH_SIZE = 50
 WHOLE_IN = 4  # one in so many programs is also compiled without the optimizer and formatted
 
 
@@ -52,9 +52,9 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
 
 
 @pytest.mark.sampled("first", keep=3)
-@pytest.mark.parametrize("first", range(0, 400, BATCH))
+@pytest.mark.parametrize("first", range(0, 400, BATCH_SIZE))
 def test_random_programs(first: int) -> None:
-    end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH_SIZE))
     assert {"DONE", "LIMIT"} <= set(end_counts), end_counts
 
 

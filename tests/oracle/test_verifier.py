@@ -193,16 +193,16 @@ def test_the_verifier_is_independent_of_the_package(name: str) -> None:
 # -- a campaign ---------------------------------------------------------------------------------
 
 
-BATCH = 10_000
+BATCH_SIZE = 10_000
 
 
 def check_batch(seed: int) -> int:
     """Compare two batches; return how many rules they break."""
-    codes = (*random_codes(seed, BATCH), *damage_programs(every_program(), seed, BATCH))
+    codes = (*random_codes(seed, BATCH_SIZE), *damage_programs(every_program(), seed, BATCH_SIZE))
     return len(compare(codes) - {0})
 
 
 if __name__ == "__main__":
     options = make_options(100_000, 2000)
-    options.count = -(-options.count // (2 * BATCH))
+    options.count = -(-options.count // (2 * BATCH_SIZE))
     each_seed(check_batch, options)

@@ -27,7 +27,7 @@ from tiniscript.base.source import Source
 from tiniscript.bytecode.image import GO, unpack
 from tiniscript.syntax.formatter import format_source
 
-BATCH = 100
+BATCH_SIZE = 100
 
 
 def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str:
@@ -59,14 +59,14 @@ def check_program(seed: int, machines: Sequence[Machine] = (run_python,)) -> str
 
 
 @pytest.mark.sampled("first")
-@pytest.mark.parametrize("first", range(0, 4 * BATCH, BATCH))
+@pytest.mark.parametrize("first", range(0, 4 * BATCH_SIZE, BATCH_SIZE))
 def test_random_programs(first: int) -> None:
-    end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH))
+    end_counts = Counter(check_program(seed) for seed in range(first, first + BATCH_SIZE))
     assert {"DONE", "FAULT NO_POWER", "FAULT OVERFLOW"} <= set(end_counts), end_counts
 
 
 def test_random_programs_with_tasks() -> None:
-    seeds = range(4 * BATCH, 5 * BATCH)  # two of them go without power
+    seeds = range(4 * BATCH_SIZE, 5 * BATCH_SIZE)  # two of them go without power
     end_counts = Counter(compare_task_program(seed, needs=GO) for seed in seeds)
     assert {"DONE", "LIMIT", "NO_POWER"} <= set(end_counts), end_counts
 

@@ -17,7 +17,7 @@ Verdict = tuple[int, int]  # the number of the rule that is broken, or 0, and th
 OF_TASKS = ("TASK", "WHEN", "LOOK", "END_TASK", "END_WHEN")
 
 
-class Broken(Exception):
+class RuleBroken(Exception):
     """Raised with the name of the rule."""
 
 
@@ -40,7 +40,7 @@ def _row_of(instruction: Instruction) -> SimpleNamespace:
 
 def _require(holds: object, rule: str) -> None:
     if not holds:
-        raise Broken(rule)
+        raise RuleBroken(rule)
 
 
 @lru_cache(maxsize=1)
@@ -69,6 +69,6 @@ def verdict(
     names = program(changed_text or text())
     try:
         names["verify"](code, sensors, actuators, needs)
-    except Broken as broken:
-        return rule_numbers()[str(broken)], names["m"].at
+    except RuleBroken as error:
+        return rule_numbers()[str(error)], names["m"].at
     return 0, 0

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript.cli.commands.doctor import BLANK_FIELD, FORM_STEPS
@@ -85,7 +85,7 @@ def test_the_report_is_filled_in_as_far_as_possible(pty_robot: PtyRobot, tmp_pat
 
 def test_the_form_is_written_even_without_answers(tmp_path: Path) -> None:
     report = tmp_path / "bring-up.txt"
-    assert process("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
+    assert run_subprocess("doctor", "--port", "/dev/ttyUSB99", "--report", report).code == 3
     form = report.read_text("utf-8").split("\n\n")[-1].splitlines()
     assert form[2:4] == ["robot: none responded", f"1. It responds: {BLANK_FIELD}"]
 

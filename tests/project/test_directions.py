@@ -105,7 +105,7 @@ def test_programs_import_no_link() -> None:
     assert not unwanted_modules & modules
 
 
-def test_every_verb_exists_without_the_extras() -> None:
+def test_every_command_can_be_imported_without_the_extras() -> None:
     """A real robot needs no part of a virtual one, and a user without a radio has a cable."""
     verbs = [path.stem for path in (PACKAGE / "cli" / "commands").glob("*.py")]
     modules_imported_by(

@@ -15,7 +15,7 @@ import pytest
 import yaml
 
 from tests.support.casefile import ROOT
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tools.release.__main__ import main as release
 from tools.site.documents import FRONT_PAGE, sources
 
@@ -118,7 +118,7 @@ def test_tsc_lines_of_workflows_work() -> None:
     tsc_commands = [words for words in commands() if words[0] == "tsc"]
     assert len(tsc_commands) == 2
     for words in tsc_commands:
-        result = process(*words[1:])
+        result = run_subprocess(*words[1:])
         assert result.code == 0, result.err
     assert "drove" in result.out + result.err
 

@@ -8,7 +8,7 @@ from tests.pupils.corpus import check, entries
 from tests.support.rows import each_row
 from tiniscript.base.source import Source
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.rendering import message, names_found
+from tiniscript.diagnostics.rendering import found_names, message
 from tiniscript.recovery.meanings import plain
 
 # Findings that are counted, calculated, a sign for words, or a note's text.
@@ -32,7 +32,7 @@ def test_the_caret_points_at_the_text_that_the_message_names(part: int) -> None:
             named_text = without_spaces(diagnostic.values.get("found", ""))
             shown_message = message(diagnostic, source, "en")
             line = source.line_text(shown_message.line)
-            if not named_text or diagnostic.code in OTHERS or not names_found(diagnostic):
+            if not named_text or diagnostic.code in OTHERS or not found_names(diagnostic):
                 continue
             if named_text in without_spaces(line):
                 count += 1

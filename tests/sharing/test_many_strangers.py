@@ -22,7 +22,7 @@ from urllib.request import urlopen
 
 import pytest
 
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.port_strangers import drive_robot, registration_of, say_all
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript.studio.serving import MOST_CONNECTIONS
@@ -121,7 +121,7 @@ def attack(kind: str, count: int) -> list[tuple[str, Usage, Usage, Usage]]:
             usage_before = measure_process(pid)
             with visitors(number, kind, count):
                 usage_during = measure_process(pid)
-                state = json.loads(process("doctor", "--port", port, "--json").out)["robot"][
+                state = json.loads(run_subprocess("doctor", "--port", port, "--json").out)["robot"][
                     "state"
                 ]
                 assert state == "RUNNING"
@@ -129,14 +129,14 @@ def attack(kind: str, count: int) -> list[tuple[str, Usage, Usage, Usage]]:
                 (name, usage_before, usage_during, wait_until_settled(pid, usage_before.files + 3))
             )
         with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
-            assert process("stop", "--port", port).code == 0
+            assert run_subprocess("stop", "--port", port).code == 0
         out, err = command.communicate(timeout=HANG_LIMIT_S)
         assert command.returncode == 3
         assert b"was stopped from a computer" in out + err
         # Without a holder, clients are admitted in order, at most 256 a second. Half a greeting is
         # text, and a typing client holds the robot.
         with visitors(places[0][2], kind, min(count, CONNECTION_COUNT)):
-            result = process("stop", "--port", port)
+            result = run_subprocess("stop", "--port", port)
             assert kind == "half a greeting" or (result.code, result.err) == (0, "")
         robot.send_signal(signal.SIGINT)
         assert b"FAULT" not in robot.communicate(timeout=HANG_LIMIT_S)[0]

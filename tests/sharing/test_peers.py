@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import Command, process, run_in_process
+from tests.support.command import Command, run_in_process, run_subprocess
 from tests.support.port_strangers import drive_robot, registration_of
 from tests.support.socket_pairs import connected_pair
 from tests.support.virtual_command import Robot, robot, visitor
@@ -193,8 +193,8 @@ def test_the_owner_of_a_killed_robots_port_is_checked() -> None:
     running_robot.kill()
     listener = Command(running_robot.port.rpartition(":")[2], code=LISTENER_SCRIPT)
     listener.until("listens")
-    process("upload", "-e", "SI|S", "--port", running_robot.port).gives(3, "another user")
-    process("start", "--virtual").gives(3)
+    run_subprocess("upload", "-e", "SI|S", "--port", running_robot.port).gives(3, "another user")
+    run_subprocess("start", "--virtual").gives(3)
     listener.process.kill()
     assert listener.process.stdout
     assert set(listener.process.stdout.read().split()) <= {b"b''"}
@@ -226,7 +226,7 @@ def test_the_token_is_in_one_private_file() -> None:
     with drive_robot() as (virtual, port, command, receipt):
         registration = registration_of(port)
         secrets = [secret.encode() for secret in (registration.token, registration.answer)]
-        assert process("doctor", "--port", port).code == 0
+        assert run_subprocess("doctor", "--port", port).code == 0
         places = [receipt]
         for pid in (virtual.pid, command.pid):
             places += [Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")]
@@ -236,7 +236,7 @@ def test_the_token_is_in_one_private_file() -> None:
                 content = path.read_bytes()
                 found_paths += [path] if any(secret in content for secret in secrets) else []
                 places.append(str(path).encode())
-        assert process("stop", "--port", port).code == 0
+        assert run_subprocess("stop", "--port", port).code == 0
         places += command.communicate(timeout=HANG_LIMIT_S)
     assert len(found_paths) == 1 and len(places) > 7
     assert not [data for data in places for secret in secrets if secret in data]

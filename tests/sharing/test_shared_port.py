@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.command import FOREVER, LONG_PROGRAM, Command, process
+from tests.support.command import FOREVER, LONG_PROGRAM, Command, run_subprocess
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.shared_pty_robot import SharedLine
 from tiniscript import __version__, compile_text, robots
@@ -58,7 +58,7 @@ def test_commands_share_one_session(pty_robot: PtyRobot, link: Command, tmp_path
     assert on(pty_robot, "live", "X = 1 / 0").code == 1
     assert "3 round trips" in on(pty_robot, "doctor", "--count", "3").out
     compiled_file, robot_file = tmp_path / "ours.bin", tmp_path / "theirs.bin"
-    process("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
+    run_subprocess("compile", "-e", LONG_PROGRAM, "-o", compiled_file)
     assert on(pty_robot, "upload", compiled_file, "--no-run", "--no-save").code == 0
     assert on(pty_robot, "show", "-o", robot_file).code == 0
     assert robot_file.read_bytes() == compiled_file.read_bytes()
@@ -78,17 +78,19 @@ def test_all_names_of_a_port_lead_to_its_server(
 ) -> None:
     name = tmp_path / "by-id"
     name.symlink_to(pty_robot.port)
-    assert process("stop", "--port", name).code == 0
-    assert "SHOW 2" in process("live", "SHOW(2)", "--port", name).out
+    assert run_subprocess("stop", "--port", name).code == 0
+    assert "SHOW 2" in run_subprocess("live", "SHOW(2)", "--port", name).out
     assert hellos(pty_robot) == 1
-    rows = json.loads(process("doctor", "--ports", "--json").out)
+    rows = json.loads(run_subprocess("doctor", "--ports", "--json").out)
     assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "monitor --hold"
-    result = process("doctor", "--ports", "--ask", "--port", name)
+    result = run_subprocess("doctor", "--ports", "--ask", "--port", name)
     assert "robot" in result.out and "in use by tsc monitor --hold" in result.out
-    process("show", "--port", name, "--baud", "115200").gives(
+    run_subprocess("show", "--port", name, "--baud", "115200").gives(
         3, "in use by tsc monitor --hold, at 9600 baud"
     )
-    process("monitor", "--hold", "--port", name).gives(3, "already shared, by tsc monitor --hold")
+    run_subprocess("monitor", "--hold", "--port", name).gives(
+        3, "already shared, by tsc monitor --hold"
+    )
 
 
 BRIDGE = """
@@ -118,7 +120,7 @@ def address(pty_robot: PtyRobot) -> Iterator[str]:
 def test_an_address_is_held_like_a_port(pty_robot: PtyRobot, address: str) -> None:
     command = Command("upload", "-e", FOREVER, "--port", address.replace("127.0.0.1", "localhost"))
     command.until("running")
-    assert process("stop", "--port", address).code == 0
+    assert run_subprocess("stop", "--port", address).code == 0
     assert command.wait_for_result().code == 3
     assert hellos(pty_robot) == 1
 
@@ -312,7 +314,7 @@ def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Comman
     command.wait_for_result().gives(3, "(tsc monitor --hold) has ended")
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
     assert registry.find_registration(pty_robot.port) is not None
-    rows = json.loads(process("doctor", "--ports", "--json").out)
+    rows = json.loads(run_subprocess("doctor", "--ports", "--json").out)
     assert pty_robot.port not in [row["port"] for row in rows if row["held_by"]]
     on(pty_robot, "doctor").gives(0, "", out="LINK_LOST")
     assert registry.find_registration(pty_robot.port) is None
@@ -372,7 +374,7 @@ def test_one_of_three_competing_commands_gets_the_port(
     losers = [command.wait_for_result() for command in commands if command is not holder]
     assert [loser.code for loser in losers] == [3, 3]
     assert all("already shared" in loser.err for loser in losers)
-    assert process("stop", "--port", port).code == 0
+    assert run_subprocess("stop", "--port", port).code == 0
     holder.signal(signal.SIGINT)
     result = holder.wait_for_result()
     assert (result.code, result.err) == (0, "\n")

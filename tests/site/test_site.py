@@ -80,9 +80,9 @@ def visitor(browser: Browser, address: str) -> Iterator[Page]:
     context.close()
     assert questions
     assert [
-        address_asked
-        for address_asked in questions
-        if not address_asked.startswith((address, "data:"))
+        requested_address
+        for requested_address in questions
+        if not requested_address.startswith((address, "data:"))
     ] == []
     assert errors == []
 

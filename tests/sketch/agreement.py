@@ -156,12 +156,12 @@ def signal_differences(
     def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
         return all(abs(x - y) <= apart * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
 
-    differences_found = []
+    found_differences = []
     expected_spans, actual_spans = spans(want, end), spans(actual, end)
     for start_ms, end_ms, value in expected_spans:
         inner = [v for a, u, v in actual_spans if a < end_ms - near and u > start_ms + near]
         if end_ms - start_ms > 2 * near and not all(agree(value, v) for v in inner):
-            differences_found.append(f"{value} from {start_ms} to {end_ms}, but {inner[:4]}")
+            found_differences.append(f"{value} from {start_ms} to {end_ms}, but {inner[:4]}")
     for start_ms, end_ms, value in actual_spans:
         values_around = [
             v for a, u, v in expected_spans if a < end_ms + near and u > start_ms - near
@@ -169,10 +169,10 @@ def signal_differences(
         if start_ms > end - near:  # events after the end
             continue
         if end_ms - start_ms > 2 * near and not any(agree(value, v) for v in values_around):
-            differences_found.append(
+            found_differences.append(
                 f"{value} from {start_ms:.1f} to {end_ms:.1f} is not in the trace"
             )
-    return differences_found
+    return found_differences
 
 
 def nearness(trace: str, echo_us: float = 0) -> float:
@@ -197,10 +197,10 @@ def differences(
     want = parse_trace(trace)
     end = want.end_ms
     motors = [*want.motors]
-    differences_found = signal_differences(
+    found_differences = signal_differences(
         motors, shift_signal(run.motors, start_ms, (0, 0)), end, near
     )
-    differences_found += signal_differences(
+    found_differences += signal_differences(
         want.tones, shift_signal(run.tones, start_ms, (0,)), end, near, 0.02
     )
     for device, wiring in zip(robot.kit.actuators, robot.board.actuators, strict=True):
@@ -211,12 +211,12 @@ def differences(
             levels: Signal = [
                 (start_ms, ((value[0] ^ low) * 255,)) for start_ms, value in asked_signal
             ]
-            differences_found += signal_differences(levels, signal, end, near)
+            found_differences += signal_differences(levels, signal, end, near)
         elif wiring.driver == "servo":
-            differences_found += pulses(
+            found_differences += pulses(
                 device.low, device.high, wiring.settings, asked_signal, signal, end
             )
-    return differences_found + compare_shows(want, run, apart, near)
+    return found_differences + compare_shows(want, run, apart, near)
 
 
 def pulses(
@@ -228,7 +228,7 @@ def pulses(
     end: float,
 ) -> list[str]:
     """Return the pulses of a servo that do not match its settings."""
-    differences_found, low_us, high_us = [], settings["low_us"], settings["high_us"]
+    found_differences, low_us, high_us = [], settings["low_us"], settings["high_us"]
     for k, (start_ms, end_ms, value) in enumerate(spans(asked_signal, end)):
         lengths_us = [
             1000 * (gone - came)
@@ -237,14 +237,14 @@ def pulses(
         ]
         if k == 0 and (len(asked_signal) == 1 or asked_signal[1][0] > 0):
             if lengths_us:
-                differences_found.append(f"pulses before a SET: {lengths_us[:3]}")
+                found_differences.append(f"pulses before a SET: {lengths_us[:3]}")
             continue
         us = low_us + (value[0] - low / ONE) * (high_us - low_us) / ((high - low) / ONE)
         if end_ms - start_ms > 60 and (
             not lengths_us or any(abs(length_us - us) > 20 for length_us in lengths_us)
         ):
-            differences_found.append(f"{value} is {us} us, but {lengths_us[:4]}")
-    return differences_found
+            found_differences.append(f"{value} is {us} us, but {lengths_us[:4]}")
+    return found_differences
 
 
 def compare_shows(want: Wanted, run: Ran, apart: float, near: float) -> list[str]:
@@ -295,11 +295,13 @@ def example(seed: int, robot: Robot) -> Example | None:
     counts = {"LIGHT_R": rng.randint(0, 1023), "LIGHT_L": rng.randint(0, 1023),
               "TEMPERATURE": rng.randint(20, 360), "LINE": rng.choice((100, 900)),
               "TOUCH": rng.randint(0, 1)}  # fmt: skip
-    celsius = -50_000 + counts["TEMPERATURE"] * 488 + (counts["TEMPERATURE"] * 776 + 511) // 1023
+    millicelsius = (
+        -50_000 + counts["TEMPERATURE"] * 488 + (counts["TEMPERATURE"] * 776 + 511) // 1023
+    )
     senses: dict[str, Sequence[int]] = {
         "LIGHT_R": [counts["LIGHT_R"] * ONE],
         "LIGHT_L": [counts["LIGHT_L"] * ONE],
-        "TEMPERATURE": [max(-40_000, min(125_000, celsius))],
+        "TEMPERATURE": [max(-40_000, min(125_000, millicelsius))],
         "DISTANCE": [400_000],
         "TOUCH": [counts["TOUCH"]],
         "LINE": [int(counts["LINE"] > 600)],
@@ -334,7 +336,7 @@ def check(example: Example, robot: Robot, language: str = "en") -> None:
     reads = example.trace.count(" READ DISTANCE ")
     run = board.run_for(start + want.end_ms + (0 if want.is_cut else PLAIN_MS + 30 * reads))
     near = nearness(example.trace)
-    differences_found = differences(example.trace, run, robot, start, near)
-    assert not differences_found, (
-        f"seed {example.seed}: {differences_found[:3]}\n{example.text}\n{example.trace[:3000]}"
+    found_differences = differences(example.trace, run, robot, start, near)
+    assert not found_differences, (
+        f"seed {example.seed}: {found_differences[:3]}\n{example.text}\n{example.trace[:3000]}"
     )

@@ -93,8 +93,8 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
     want = parse_trace(trace)
     run = board.run_for(start + want.end_ms + (0 if want.is_cut else 400))
     near = nearness(trace, echo_us)
-    differences_found = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
-    assert not differences_found, f"{differences_found[:3]}\n{text}\n{trace[:2000]}"
+    found_differences = differences(trace, run, robot, start, near, 0.2 if echo_us else 0)
+    assert not found_differences, f"{found_differences[:3]}\n{text}\n{trace[:2000]}"
 
 
 @pytest.mark.sampled("echo_us", "path", keep=3)

@@ -69,8 +69,8 @@ def texts_through_blocks(page: Page, texts: list[str]) -> list[str]:
     forms = studio.ask_worker(page, requests)
     for form in forms:
         del form["size"]
-    forms_seen = round_trip(page, without_places(forms))
-    answers = studio.ask_worker(page, [{"do": "text", "form": form} for form in forms_seen])
+    seen_forms = round_trip(page, without_places(forms))
+    answers = studio.ask_worker(page, [{"do": "text", "form": form} for form in seen_forms])
     return [answer["text"] for answer in answers]
 
 

@@ -143,8 +143,10 @@ def test_the_page_is_small_enough(page: Path) -> None:
     ]
     weights = weights_of(page)
     assert {*weights} == {path.name for path in files}
-    sizes = [sum(weights[name] for name in studio.language_files(code)) for code in languages()]
-    assert sum(weights.values()) - sum(sizes) + max(sizes) <= LARGEST
+    language_sizes = [
+        sum(weights[name] for name in studio.language_files(code)) for code in languages()
+    ]
+    assert sum(weights.values()) - sum(language_sizes) + max(language_sizes) <= LARGEST
 
 
 def weights_of(page: Path) -> dict[str, int]:

@@ -368,7 +368,7 @@ def test_reported_work_is_limited_and_plain() -> None:
 
 
 SENT_WORK = {"text": "F(1, 50)", "robot": "tinibot", "lessons": ["01_first_line"]}
-BROUGHT_WORK = {**SENT_WORK, "lessons": ("01_first_line",)}
+GIVEN_WORK = {**SENT_WORK, "lessons": ("01_first_line",)}
 
 
 def names_of(room: Room) -> list[str]:
@@ -399,7 +399,7 @@ def test_only_the_teacher_returns_work_to_a_name() -> None:
     assert state["kept"] == [{**row, "given": number}]
     for _ in range(2):  # an answer may be lost
         given_work = room.checks_in(eve)["given"]
-        assert given_work == {"key": key, **BROUGHT_WORK}
+        assert given_work == {"key": key, **GIVEN_WORK}
     assert "given" not in room.checks_in(eve, took=take_change(given_work))
     assert room.teaches("class")["kept"] == []
     assert room.teaches("class_give_back", key=key, pupil=number)["kept"] == []  # pressed again

@@ -15,7 +15,7 @@ import pytest
 
 from tests.machines.bootloaders import bootloader
 from tests.machines.uno import skip_unless_available
-from tests.support.command import process
+from tests.support.command import run_subprocess
 from tests.support.node import in_node
 from tests.support.platformio import firmware, shared_folder
 
@@ -85,7 +85,7 @@ def test_a_new_board_becomes_a_robot(
         if board == "uno":
             assert flash(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
         assert flash(uno.pty, board, tmp_path / "firmware.hex") == "done"
-        identified = process("doctor", "--identify", "--port", uno.pty)
+        identified = run_subprocess("doctor", "--identify", "--port", uno.pty)
         assert identified.code == 0, identified.err
         assert identified.out.startswith(f"tinibot on {uno.pty}")
 
@@ -100,7 +100,7 @@ def test_a_board_with_a_sketch_but_no_bootloader_is_not_changed(
     with Uno(elf, tells_sleep=False) as uno:
         uno.go()
         assert flash(uno.pty, "uno", hex_file(tmp_path, b"x" * 500)) == "flash_nobody"
-        assert process("doctor", "--identify", "--port", uno.pty).code == 0
+        assert run_subprocess("doctor", "--identify", "--port", uno.pty).code == 0
 
 
 # -- onto boards that a test plays

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.command import FOREVER, Command, process
+from tests.support.command import FOREVER, Command, run_subprocess
 from tests.support.pty_robot import PtyRobot
 from tests.support.rows import each_row
 from tests.support.shared_pty_robot import SharedLine
@@ -212,7 +212,7 @@ def test_a_stop_by_another_command_is_reported(page: Page, robot: PtyRobot) -> N
     start_drive(page, robot)
     from threading import Thread
 
-    thread = Thread(target=lambda: process("stop", "--port", robot.port))
+    thread = Thread(target=lambda: run_subprocess("stop", "--port", robot.port))
     thread.start()
     page.until(lambda item: item.get("event") == "STOPPED")
     thread.join()
@@ -281,7 +281,7 @@ def test_a_port_has_one_page(
     # The upload was under way.
     response = page.ask("upload", image=image, robot="tinibot", runs=True)
     assert response["failure"] == "stopped_elsewhere" and not robot.moves
-    result = process("upload", "--port", robot.port, "-e", FOREVER)  # by another command
+    result = run_subprocess("upload", "--port", robot.port, "-e", FOREVER)  # by another command
     assert result.code != 0 and not robot.moves, result.out
     page.beat(action="leave")
     until(lambda: other_page.connect(robot.port) == {}, "the port is free")
@@ -430,5 +430,5 @@ def test_the_unread_event_queue_is_bounded() -> None:
     robot.attending.queue_news([{"event": "SHOW", "value": str(k)} for k in range(3000)])
     robot.attending.queue_news([{"event": "DONE"}])
     news = robot.attending.on_beat([], 0)
-    assert len(news) == attending.MOST_KEPT_NEWS and news[-1]["event"] == "DONE"
+    assert len(news) == attending.MOST_PENDING_NEWS and news[-1]["event"] == "DONE"
     robot.join(HANG_LIMIT_S)

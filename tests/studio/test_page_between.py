@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 LONGEST_SILENCE_S, TOLERANCE_S = 3.0, 0.5
 LONGEST_END_S = 40.0  # the longest request, and a stop
 NEXT_TRY_S = 40.0  # time until the next try succeeds
-LISTENING_SCRIPT = """(place) => {
+OBSERVER_SCRIPT = """(place) => {
   const line = document.querySelector(place);
   window.told = [];
   window.listens?.disconnect();
@@ -160,7 +160,7 @@ class Scene:
         """Do something while there is a fault, then all of it without."""
         self._prepare(action, fault)
         page, place = self._place(action)
-        start_ms = page.evaluate(LISTENING_SCRIPT, place)
+        start_ms = page.evaluate(OBSERVER_SCRIPT, place)
         self._begin(fault)
         page.click(BUTTONS[action])
         has_ended = self._until(END_PATTERNS[action], LONGEST_END_S, page)
@@ -260,14 +260,14 @@ class Scene:
                 and page.locator("#link_connect").is_enabled()
             ):
                 self._choose()
-                page.evaluate(LISTENING_SCRIPT, MESSAGE_PLACE)
+                page.evaluate(OBSERVER_SCRIPT, MESSAGE_PLACE)
                 page.click("#link_connect")
                 self._until(r"^(?!Connecting)", NEXT_TRY_S)
             page.wait_for_timeout(100)
         return ""
 
     def _run(self) -> str:
-        self.page.evaluate(LISTENING_SCRIPT, MESSAGE_PLACE)
+        self.page.evaluate(OBSERVER_SCRIPT, MESSAGE_PLACE)
         self.page.click("#link_upload")
         if not self._until("The robot has the program|stopped", NEXT_TRY_S):
             return f"no run: {self._link_text()}"
@@ -279,7 +279,7 @@ class Scene:
         return ""
 
     def _stop(self) -> str:
-        self.page.evaluate(LISTENING_SCRIPT, MESSAGE_PLACE)
+        self.page.evaluate(OBSERVER_SCRIPT, MESSAGE_PLACE)
         self.page.click("#stop")
         if not self._until(CONFIRMED_STOP, NEXT_TRY_S):
             return f"no stop: {self._link_text()}"

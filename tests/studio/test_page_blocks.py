@@ -446,7 +446,7 @@ def texts_on_blocks(page: Page) -> set[str]:
 
 
 @sampled
-def test_blocks_can_show_the_words_of_the_text(page: Page) -> None:
+def test_blocks_can_show_the_keywords(page: Page) -> None:
     start(page, "SI|LOOP(3)\n  IF(DISTANCE < 20)\n    S\n  ELSE\n    F(1, 80)\n  ENDIF\nEND_LOOP\n")
     assert texts_on_blocks(page) == {
         "when it starts", "repeat", "times", "if", "distance sensor", "<", "stop", "else",

@@ -64,9 +64,12 @@ class Radio:
         self._ask("simulatePreconnectedPeripheral", address=ADDRESS, name="<b>TINI</b>",
                   manufacturerData=[], knownServiceUuids=[service])  # fmt: skip
         self._page.on("DeviceAccess.deviceRequestPrompted", self._choose)
-        self._browser_session.on("BluetoothEmulation.gattOperationReceived", self._gatt)
         self._browser_session.on(
-            "BluetoothEmulation.characteristicOperationReceived", self._characteristic
+            "BluetoothEmulation.gattOperationReceived", self._answer_gatt_operation
+        )
+        self._browser_session.on(
+            "BluetoothEmulation.characteristicOperationReceived",
+            self._answer_characteristic_operation,
         )
 
     def close(self) -> None:
@@ -93,7 +96,7 @@ class Radio:
             selection = {"id": prompt["id"], "deviceId": prompt["devices"][0]["id"]}
             self._page.send("DeviceAccess.selectPrompt", selection)
 
-    def _gatt(self, request: Any) -> None:
+    def _answer_gatt_operation(self, request: Any) -> None:
         if request["type"] == "discovery" and not self._has_connected:
             self._has_connected = True
             service = self._ask("addService", address=ADDRESS, serviceUuid=self._service)
@@ -113,7 +116,7 @@ class Radio:
         return [(NORDIC.replace("0001-b5", "0002-b5"), to_robot),
                 (NORDIC.replace("0001-b5", "0003-b5"), to_computer)]  # fmt: skip
 
-    def _characteristic(self, request: Any) -> None:
+    def _answer_characteristic_operation(self, request: Any) -> None:
         answer: dict[str, Any] = {}
         if request["type"] == "write":
             data = base64.b64decode(request["data"])

@@ -333,7 +333,7 @@ def test_a_halted_program_ends_like_a_running_one(
     elif end_kind == "button":
         robot.push()
     else:
-        robot.switch_off_and_on()
+        robot.power_cycle()
     wait_for_message(page, re.compile("Stopped: |was stopped with its button|The robot restarted"))
     page.locator("html[data-halt=none]").wait_for(state="attached")
     assert page.locator("#link_values").is_hidden() and running(page) == ""

@@ -166,7 +166,7 @@ HANGING_MESSAGE = ("#coming, #status:has-text('not load'), #status:has-text('not
 COMPILER_FILES = ("worker.js", "pyodide.asm.mjs", "pyodide.asm.wasm", "python.zip",
                   "tiniscript.zip", "messages.en.json")  # fmt: skip
 BEGIN_BUTTON = "html[data-screen=start] [data-begin=dance]"
-OPTIONAL_ENDINGS = ("style.css", ".svg", ".webmanifest", ".cur")
+OPTIONAL_SUFFIXES = ("style.css", ".svg", ".webmanifest", ".cur")
 
 
 @pytest.fixture(scope="module")
@@ -222,7 +222,7 @@ def test_any_stalled_file_of_a_run_is_reported_until_it_arrives(
     page.goto(visits.address)
     page.click("[data-begin=dance]")
     check_dance_goes_on(page)
-    names = sorted({name for name in questions if name and not name.endswith(OPTIONAL_ENDINGS)})
+    names = sorted({name for name in questions if name and not name.endswith(OPTIONAL_SUFFIXES)})
     assert {*COMPILER_FILES, "main.js", "texts.en.json"} <= {*names}
     for name in names:
         page = visits.blank(is_alone=True)

@@ -30,7 +30,7 @@ SILENT_MESSAGE = (
 )
 LATE_MESSAGE = "The robot has now confirmed the stop: it is standing still."
 # Records the messages below the buttons from now on.
-LISTENING_SCRIPT = """() => {
+OBSERVER_SCRIPT = """() => {
   const line = document.querySelector('#link_said');
   window.told = [];
   window.listens?.disconnect();
@@ -115,7 +115,7 @@ def test_a_connect_after_lost_ones_takes_over_their_connection(page: Page, robot
     page.locator("#link_port option:first-of-type", has_text=robot.port).wait_for(state="attached")
     page.click("#link_connect")
     wait_for_message(page, "tsc studio has stopped responding")
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     page.click("#link_connect")
     wait_for_message(page, "Connected: ")
     messages = page.evaluate("window.told")
@@ -160,7 +160,7 @@ def test_only_the_outcome_of_a_stop_is_reported_once(
 ) -> None:
     connect(page, robot)
     start_drive(page, robot)
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     mute = EventFilter(page, "STOPPED")
 
     def stop() -> None:
@@ -177,7 +177,7 @@ def test_only_the_outcome_of_a_stop_is_reported_once(
     mute.is_open = False
     page.evaluate(VISIBILITY_SCRIPT, "visible")
     start_drive(page, robot)
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     stop()
     page.keyboard.press("Escape")  # this is the same stop
     wait_for_message(page, SILENT_MESSAGE)
@@ -192,7 +192,7 @@ def test_two_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> N
     for _ in range(2):  # the second round is another stop
         start_drive(page, robot)
         mute = EventFilter(page, "STOPPED")
-        page.evaluate(LISTENING_SCRIPT)
+        page.evaluate(OBSERVER_SCRIPT)
         page.dblclick("#stop")
         wait_for(page, partial(mute.keeps, True), "it has stopped")
         page.wait_for_timeout(300)  # waits for a second stop request, if there is one
@@ -210,7 +210,7 @@ def test_five_presses_of_stop_are_reported_once(page: Page, robot: PtyRobot) -> 
     connect(page, robot)
     start_drive(page, robot)
     torn_requests = tear_requests(page, "stop", lambda route: route.abort(), times=99)
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     page.evaluate("() => { for (let k = 0; k < 5; k++) document.querySelector('#stop').click(); }")
     wait_for_message(page, CONFIRMED_MESSAGE)
     wait_for(page, lambda: torn_requests, "they are lost")
@@ -243,7 +243,7 @@ def test_a_silent_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     connect(page, robot)
     start_drive(page, robot)
     robot.switch_off()
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     page.click("#stop")
     wait_for_message(page, SILENT_MESSAGE)
     page.wait_for_timeout(2500)  # the link is given up, too
@@ -257,7 +257,7 @@ def test_a_lost_robot_is_reported_once(page: Page, robot: PtyRobot) -> None:
     """
     connect(page, robot)
     robot.switch_off()
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     write(page, FOREVER)
     page.click("#link_upload")
     wait_for_message(page, "The robot has stopped responding")
@@ -272,7 +272,7 @@ def test_a_request_to_a_silent_robot_is_reported_as_waiting(page: Page, robot: P
     connect(page, robot)
     EventFilter(page, "LOST")
     robot.switch_off()
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     page.click("#link_identify")
     wait_for_message(page, "The robot has stopped responding")
     assert page.evaluate("window.told")[0] == "Waiting for the robot…"
@@ -297,7 +297,7 @@ def test_a_disconnection_before_confirmation_reports_an_unconfirmed_stop(
     connect(page, robot)
     start_drive(page, robot)
     EventFilter(page, "STOPPED", "LOST")
-    page.evaluate(LISTENING_SCRIPT)
+    page.evaluate(OBSERVER_SCRIPT)
     page.click("#stop")
     page.click("#link_leave")
     wait_for_message(page, f"Disconnected. {SILENT_MESSAGE}")

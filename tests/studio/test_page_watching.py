@@ -256,9 +256,11 @@ def test_flags_points_and_stars_are_shown_and_heard(heard_page: Page) -> None:
     wait_for_phase(page, "ended")
     assert page.locator("#score").inner_text() == "⚑ 2/2   230   ★★★"
     assert count(page, "2a9d6f") > 100  # the flags that were taken
-    heard_text = page.locator("#where").inner_text()
-    assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in heard_text
-    assert "cm from the left and 50 cm from the bottom, and is facing to the right." in heard_text
+    announced_text = page.locator("#where").inner_text()
+    assert "Flags: 2 of 2. Points: 230. Stars: 3 of 3." in announced_text
+    assert (
+        "cm from the left and 50 cm from the bottom, and is facing to the right." in announced_text
+    )
     page.select_option("#world", "obstacles")
     assert not page.locator("#score").is_visible()
 

@@ -12,7 +12,7 @@ from tests.machines import board as boards
 from tests.support.needs import need
 from tests.support.platformio import SKETCH
 
-BUILDER = Path("/usr/share/arduino-builder")
+BUILDER_HARDWARE = Path("/usr/share/arduino-builder")
 BOARDS = {"uno": "uno", "mega": "mega:cpu=atmega2560"}
 
 
@@ -44,7 +44,7 @@ def _build(board: str, folder: Path) -> SketchBuild:
     build.mkdir()
     completed = subprocess.run(
         ["arduino-builder", "-compile", "-warnings", "all",
-         "-hardware", BUILDER, "-hardware", boards.ARDUINO.parents[1],
+         "-hardware", BUILDER_HARDWARE, "-hardware", boards.ARDUINO.parents[1],
          "-tools", "/usr/bin", "-fqbn", f"arduino:avr:{BOARDS[board]}", "-build-path", build,
          "-prefs=compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__",
          copy / "vm_arduino.ino"],

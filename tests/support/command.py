@@ -78,7 +78,7 @@ def run_in_process(*arguments: str | Path, data: bytes = b"") -> CommandResult:
     )
 
 
-def process(*arguments: str | Path, data: bytes = b"") -> CommandResult:
+def run_subprocess(*arguments: str | Path, data: bytes = b"") -> CommandResult:
     """Run `tsc` as a process of its own."""
     words = [*TSC, *map(str, arguments)]
     completed = subprocess.run(words, input=data, capture_output=True, timeout=HANG_LIMIT_S)

@@ -55,9 +55,9 @@ def crowd(
 
 @contextmanager
 def _open_connections(
-    port: int, count: int, packets_sent: Sequence[bytes], host: str, source: str
+    port: int, count: int, sent_packets: Sequence[bytes], host: str, source: str
 ) -> Iterator[None]:
-    packets = ",".join(data.hex() for data in packets_sent)
+    packets = ",".join(data.hex() for data in sent_packets)
     words = [
         sys.executable,
         "-I",

@@ -87,7 +87,7 @@ class Device(ServiceInterface):
         self.is_connected = self.is_resolved = False
         self.signal = -50
         self.notifies: Characteristic | None = None
-        self._gatt: list[str] = []  # the paths of its service and characteristics
+        self._gatt_paths: list[str] = []  # the paths of its service and characteristics
 
     def advertise(self) -> None:
         self.signal = -50 if self.signal != -50 else -51
@@ -105,9 +105,9 @@ class Device(ServiceInterface):
             return
         self.is_connected = self.is_resolved = False
         self.emit_properties_changed({"Connected": False, "ServicesResolved": False})
-        for path in reversed(self._gatt):
+        for path in reversed(self._gatt_paths):
             self.bluez.bus.unexport(path)
-        self._gatt = []
+        self._gatt_paths = []
         self.notifies = None
         self.peripheral.part()
 
@@ -121,15 +121,15 @@ class Device(ServiceInterface):
         if self.peripheral.failing_stage == "services":
             self.part()
             return
-        self._gatt = [f"{self.path}/service0010"]
-        self.bluez.bus.export(self._gatt[0], Service(self))
+        self._gatt_paths = [f"{self.path}/service0010"]
+        self.bluez.bus.export(self._gatt_paths[0], Service(self))
         for k, (uuid, flags) in enumerate(self.peripheral.characteristics):
-            path = f"{self._gatt[0]}/char{k:04x}"
+            path = f"{self._gatt_paths[0]}/char{k:04x}"
             characteristic = Characteristic(self, uuid, flags)
             if "notify" in flags:
                 self.notifies = characteristic
             self.bluez.bus.export(path, characteristic)
-            self._gatt.append(path)
+            self._gatt_paths.append(path)
         self.is_resolved = True
         self.emit_properties_changed({"ServicesResolved": True})
 

@@ -111,7 +111,7 @@ class PtyRobot(PtyPort):
             self.off_after = None
             self._robot = self._make_robot(seed=0x9ABCDEF1)
 
-    def switch_off_and_on(self) -> None:
+    def power_cycle(self) -> None:
         self.switch_off()
         self.switch_on()
 

@@ -354,8 +354,8 @@ def test_a_name_may_begin_in_the_deepest_block() -> None:
         [row.split()[0] for row in code_of(text + closing)]
         for text in (f"V=1;{opening}S;", f"{opening}V=1;S;")
     )
-    opened_count = 2 + 1 + 2 * 16
-    assert late == early[2:opened_count] + early[:2] + early[opened_count:]
+    opening_end = 2 + 1 + 2 * 16
+    assert late == early[2:opening_end] + early[:2] + early[opening_end:]
 
 
 def test_at_most_255_bytes_of_code() -> None:

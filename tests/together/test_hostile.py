@@ -53,7 +53,7 @@ NEEDED_FIELDS = {
 FIELD_NAMES = ("id", "ids", "at", "nodes", "node", "text", "note", "apart", "end", "arms", "marks")
 
 
-def an_operation(rng: Random) -> Any:
+def random_operation(rng: Random) -> Any:
     operation: Any = {"do": rng.choice(list(NEEDED_FIELDS))}
     for field in NEEDED_FIELDS[operation["do"]]:
         operation[field] = rng.choice(LIKELY_VALUES[field])
@@ -71,7 +71,7 @@ def test_no_change_spoils_the_program(seed: int) -> None:
     page = Page.of("z", program.news("z", -1, ""))
     refusals: Counter[str] = Counter()
     for k in range(1, MESSAGE_COUNT + 1):
-        operation = an_operation(rng)
+        operation = random_operation(rng)
         uid = f"m:{program.last_count_by_page.get('m', 0) + 1}"
         sent_data = json.loads(json.dumps({"uid": uid, "ops": [operation] * rng.choice((1, 1, 3))}))
         try:

@@ -24,9 +24,9 @@ from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.syntax.formatter import format_source
 
-BATCH = 125
+BATCH_SIZE = 125
 PUSH32_BYTES = BY_NAME["PUSH32"].size
-BATCHES = 160  # batches of the tests, of which a commit runs one; a campaign runs more
+BATCH_COUNT = 160  # batches of the tests, of which a commit runs one; a campaign runs more
 
 
 def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
@@ -86,7 +86,7 @@ def reads_more(text: str) -> bool:
 
 
 def batches() -> list[range]:
-    return [range(number * BATCH, (number + 1) * BATCH) for number in range(BATCHES)]
+    return [range(number * BATCH_SIZE, (number + 1) * BATCH_SIZE) for number in range(BATCH_COUNT)]
 
 
 @pytest.mark.sampled("seeds")
@@ -122,4 +122,4 @@ def check_both(seed: int) -> None:
 
 
 if __name__ == "__main__":
-    each_seed(check_both, make_options(100_000, BATCH * BATCHES))
+    each_seed(check_both, make_options(100_000, BATCH_SIZE * BATCH_COUNT))

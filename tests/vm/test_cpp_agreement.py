@@ -58,8 +58,8 @@ from tiniscript.bytecode.opcodes import BY_NAME, ISA_MINOR, NEEDS_GO, OPS
 from tiniscript.bytecode.verify import RULES, load_image
 from tiniscript.vm.tasks import machine_of
 
-BATCH = 12_500
-BATCHES = 80  # batches of the tests
+BATCH_SIZE = 12_500
+BATCH_COUNT = 80  # batches of the tests
 
 
 # -- code ---------------------------------------------------------------------------------------
@@ -143,10 +143,10 @@ def test_codes_of_three_bytes_with_the_same_first_byte_agree(name: str) -> None:
 
 
 @pytest.mark.sampled("seed")
-@pytest.mark.parametrize("seed", range(BATCHES))
+@pytest.mark.parametrize("seed", range(BATCH_COUNT))
 def test_verdicts_on_random_codes_agree(seed: int) -> None:
     """A million in all, an eightieth of it on a commit: they break every rule, end in every way."""
-    counts = check_codes(host(), seed, BATCH)
+    counts = check_codes(host(), seed, BATCH_SIZE)
     others = ("CODE_LENGTH", "TOO_MANY_TASKS")  # these codes have no tasks
     rules = {str(number) for name, (number, _) in RULES.items() if name not in others}
     assert rules <= set(counts), sorted(rules - set(counts))
@@ -283,7 +283,7 @@ def test_random_programs_with_ways(first: int) -> None:
 @pytest.mark.sampled("seed")
 @pytest.mark.parametrize("seed", range(8))
 def test_images_get_the_same_verdict(seed: int) -> None:
-    cpp_checks.check_images(host(), seed, BATCH)
+    cpp_checks.check_images(host(), seed, BATCH_SIZE)
 
 
 @pytest.mark.sampled("seed")
@@ -341,9 +341,9 @@ def campaign(count: int, first: int) -> None:
     start_s = time.monotonic()
     total: Counter[str] = Counter()
     judged_count = 0
-    for seed in range(first, first + -(-count // BATCH)):
-        total += check_codes(host(), seed, BATCH)
-        judged_count += BATCH
+    for seed in range(first, first + -(-count // BATCH_SIZE)):
+        total += check_codes(host(), seed, BATCH_SIZE)
+        judged_count += BATCH_SIZE
         print(
             f"{judged_count} codes agree, "
             f"{judged_count / (time.monotonic() - start_s):.0f} a second",
@@ -359,5 +359,5 @@ def check_all_of_three() -> None:
 
 
 if __name__ == "__main__":
-    options = make_options(1_000_000, BATCHES, "three")
+    options = make_options(1_000_000, BATCH_COUNT, "three")
     check_all_of_three() if options.three else campaign(options.count, options.seed)

@@ -58,9 +58,11 @@ def numbers(state: int) -> Iterator[int]:
 
 
 def operations(seed: int, blocks: int) -> list[Operation]:
-    numbers_made = numbers(seed)
+    number_stream = numbers(seed)
     names = islice(cycle(OPERATIONS), BLOCK * blocks)
-    return [Operation(name, next(numbers_made), second(name, next(numbers_made))) for name in names]
+    return [
+        Operation(name, next(number_stream), second(name, next(number_stream))) for name in names
+    ]
 
 
 def second(name: str, b: int) -> int:

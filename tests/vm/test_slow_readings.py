@@ -16,7 +16,7 @@ import pytest
 
 from tests.machines import Senses, avr, host
 from tests.machines.host import host as host_machine
-from tests.machines.pace import ECHO_SENSORS, Pace, a_pace, trace_at
+from tests.machines.pace import ECHO_SENSORS, Pace, random_pace, trace_at
 from tests.oracle.interpreter import PAPER_KIT, run
 from tests.oracle.task_programs import rival_program, task_program
 from tests.support.campaign import each_seed, make_options
@@ -146,7 +146,7 @@ def check_program(seed: int, machines: Sequence[Run]) -> None:
     """Check that machines agree with the oracle, with tasks and late readings."""
     rng = random.Random(seed)
     text, readings = rng.choice((task_program, rival_program))(rng)
-    pace = a_pace(rng)
+    pace = random_pace(rng)
     want = run(
         text, PAPER_KIT, readings, MAX_MS, seed=seed + 1, is_slow=pace.is_slow,
         every_ms=pace.every_ms,

@@ -194,10 +194,10 @@ def test_refused_images_raise_an_error() -> None:
     from tiniscript.vm.wasm import WasmImage
 
     good = compile_text("SHOW(DISTANCE)", KIT).image
-    broken_bytes = [good[:length] for length in range(len(good))]
-    broken_bytes += [good[:k] + bytes([good[k] ^ 255]) + good[k + 1 :] for k in range(len(good))]
-    broken_bytes += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
-    for data in broken_bytes:
+    broken_images = [good[:length] for length in range(len(good))]
+    broken_images += [good[:k] + bytes([good[k] ^ 255]) + good[k + 1 :] for k in range(len(good))]
+    broken_images += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
+    for data in broken_images:
         with pytest.raises(ImageRefused) as ours:
             unpack(data)
         with pytest.raises(ImageRefused) as theirs:
@@ -294,12 +294,12 @@ def test_a_watched_move_may_last_longer_than_the_clock() -> None:
 def test_exceptions_of_a_robot_propagate() -> None:
     from tiniscript.vm.wasm import WasmImage
 
-    class Broken(Slow):
+    class NoMotors(Slow):
         def motors(self, left: int, right: int) -> None:
             raise OSError("no motors")
 
     compilation = compile_text("F(1, 50)", KITS[0][1])
-    machine = WasmImage(compilation.image, KITS[0][1]).machine(compilation.code, Broken())
+    machine = WasmImage(compilation.image, KITS[0][1]).machine(compilation.code, NoMotors())
     with pytest.raises(OSError, match="no motors"):
         machine.tick(0, 10)
 

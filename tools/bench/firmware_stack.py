@@ -134,7 +134,7 @@ def fill_stack(wired_uno: Wired, robot: Robot, has_breakpoints: bool) -> None:
 
 
 def claim(wired_uno: Wired, button: str) -> None:
-    """Claim the robot, show its key and give it up."""
+    """Claim the robot, authenticate and give it up."""
     request = wired_uno.session.claim(KEY_OWNER)
     wired_uno.run(300)
     wired_uno.uno.press(button, 2200)

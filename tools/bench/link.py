@@ -155,11 +155,11 @@ def print_figures(figures_by_baud: dict[int, Figures], folder: Path) -> bool:
     """Print the figures, and those of the other sketches; return whether all are kept."""
     figures = [*figures_by_baud.values()]
     page.show("link", [
-        (ROWS[0], *(f"{figure.start_ms:.1f} ms" for figure in figures)),
-        (ROWS[1], *(f"{figure.live_us:.0f} µs" for figure in figures)),
-        (ROWS[2], *(f"{figure.stop.us:.1f} µs" for figure in figures)),
-        (ROWS[3], *(f"{figure.stop.median_us:.1f} µs" for figure in figures)),
-        (ROWS[4], *(f"{figure.stop.together_us:.1f} µs" for figure in figures)),
+        (ROWS[0], *(f"{baud_figures.start_ms:.1f} ms" for baud_figures in figures)),
+        (ROWS[1], *(f"{baud_figures.live_us:.0f} µs" for baud_figures in figures)),
+        (ROWS[2], *(f"{baud_figures.stop.us:.1f} µs" for baud_figures in figures)),
+        (ROWS[3], *(f"{baud_figures.stop.median_us:.1f} µs" for baud_figures in figures)),
+        (ROWS[4], *(f"{baud_figures.stop.together_us:.1f} µs" for baud_figures in figures)),
     ])  # fmt: skip
     stop_of_sketch = measure_other_stops(folder)
     page.show("link", [
@@ -172,7 +172,7 @@ def print_figures(figures_by_baud: dict[int, Figures], folder: Path) -> bool:
             f"stops later than after {MOST_STOP_US} µs: {', '.join(late_sketches)}", file=sys.stderr
         )
     return not late_sketches and all(
-        is_within_limits(baud, figure) for baud, figure in figures_by_baud.items()
+        is_within_limits(baud, baud_figures) for baud, baud_figures in figures_by_baud.items()
     )
 
 

@@ -71,8 +71,8 @@ def main() -> int:
     ]
     least_cycles, most_cycles = min(later_rounds), max(later_rounds)
     print(
-        f"A turn of a task takes {first_turn:,.0f} cycles where it is the only one, and "
-        f"{least_cycles:,.0f} to {most_cycles:,.0f} where it is the second to the fourth.\n"
+        f"A turn of the first task takes {first_turn:,.0f} cycles; each further task adds "
+        f"{least_cycles:,.0f} to {most_cycles:,.0f}.\n"
     )
     parts_without_tasks = parts_of(firmware_without_tasks)
     rows = []
@@ -97,7 +97,7 @@ def parts_of(firmware: Path) -> dict[str, Counter[str]]:
 
 
 def turns_cycles(task_count: int) -> int:
-    """Return the cycles of the machine while each task goes so often around an empty loop."""
+    """Return the cycles of the machine while each task runs `TURN_COUNT` empty rounds."""
     text = f"TASK;LOOP({TURN_COUNT});END_LOOP;END_TASK;" * task_count + "W(1.2)"
     code = image_of(text, ROBOT.kit).code
     return run_on_chip(code, (), JUMP_BUDGET, WITH_TASKS)[1]

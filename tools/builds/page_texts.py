@@ -7,7 +7,7 @@ from tiniscript.base.words import WORDS
 from tiniscript.robots import load, names
 
 # Texts of the page's Python; those of lessons come with them.
-MESSAGES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
+CATALOGUES = ("messages", "statuses", "refusals", "library", "robot", "names", "foreign")
 # Texts shared with the command: comparisons of recordings, and the reasons of a run's end.
 COMMAND_TEXTS = {
     **{f"record_{what}": f"replay_{what}" for what in (
@@ -66,4 +66,4 @@ def page_texts(language: str) -> dict[str, str | list[str]]:
 
 def messages(language: str) -> dict[str, Texts]:
     """Return the messages for `tiniscript.studio.worker`, by catalogue."""
-    return {name: texts(name, language) for name in MESSAGES}
+    return {name: texts(name, language) for name in CATALOGUES}

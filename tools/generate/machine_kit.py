@@ -16,7 +16,7 @@ from itertools import chain, product, repeat
 from typing import NamedTuple
 
 from tests.machines import Senses
-from tests.machines.pace import ECHO_SENSORS, Pace, a_pace
+from tests.machines.pace import ECHO_SENSORS, Pace, random_pace
 from tests.machines.python import lists_of
 from tests.oracle import programs
 from tests.oracle.task_programs import rival_program, task_program
@@ -473,10 +473,12 @@ def task_program_runs() -> Iterator[Run]:
         yield run._replace(
             name=f"{run.name} (called every 7 ms, time wraps around)", schedule=SELDOM_SCHEDULE
         )
-        yield run.at_pace(a_pace(rng))
+        yield run.at_pace(random_pace(rng))
         run = task_run(f"tasks: rivals {seed}", *rival_program(rng))
         yield run
-        yield from (run.at_pace(a_pace(rng)._replace(every_ms=every_ms)) for every_ms in OFTEN_MS)
+        yield from (
+            run.at_pace(random_pace(rng)._replace(every_ms=every_ms)) for every_ms in OFTEN_MS
+        )
 
 
 def task_run(name: str, text: str, readings: Mapping[str, Sequence[int]]) -> Run:

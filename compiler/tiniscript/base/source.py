@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 LARGEST_SOURCE_BYTES = 1_000_000  # bytes
 # Endings of file names; editors on Windows add .txt.
-PROGRAM_ENDINGS = (".ts", ".tini", ".ts.txt", ".tini.txt")
+PROGRAM_SUFFIXES = (".ts", ".tini", ".ts.txt", ".tini.txt")
 # The spaces of all keyboards and phones, as a set in a regular expression.
 SPACES = r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"
 

@@ -34,18 +34,18 @@ class Row(NamedTuple):
 
 def rows(code: bytes) -> list[Row]:
     """Return the instructions of `code`, verified or not; other bytes have rows of their own."""
-    rows_found = []
+    found_rows = []
     offset = 0
     while offset < len(code):
         op = op_at(code, offset)
         if op is None or offset + op.size > len(code):
             data = code[offset : offset + 1] if op is None else code[offset:]
-            rows_found.append(Row(offset, data, None, ()))
+            found_rows.append(Row(offset, data, None, ()))
         else:
             data = code[offset : offset + op.size]
-            rows_found.append(Row(offset, data, op, read_operands(op, code, offset)))
+            found_rows.append(Row(offset, data, op, read_operands(op, code, offset)))
         offset += len(data)
-    return rows_found
+    return found_rows
 
 
 def disassemble(

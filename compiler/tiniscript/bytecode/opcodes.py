@@ -158,10 +158,10 @@ def _op(code: int, name: str, operands: str, effect: str, role: str, meaning: st
     for text in operands.split():
         operand_name, _, kind = text.partition(":")
         parts.append(Operand(operand_name, OPERAND_KINDS[kind]))
-    operands_taken, _, results_left = effect.partition("--")
+    taken_operands, _, results_left = effect.partition("--")
     size = 1 + (code > 0xFF) + sum(operand.kind.size for operand in parts)
     return Op(code, name, tuple(parts), effect, role, meaning,
-              size, len(operands_taken.split()), len(results_left.split()))
+              size, len(taken_operands.split()), len(results_left.split()))
 
 
 def _shorts(code: int, name: str, kind: str, effect: str, role: str, meaning: str) -> list[Op]:

@@ -22,7 +22,7 @@ from typing import NamedTuple
 from rich.cells import cell_len, set_cell_size
 
 from tiniscript import robots
-from tiniscript.base.source import PROGRAM_ENDINGS, Unreadable, decode, printable
+from tiniscript.base.source import PROGRAM_SUFFIXES, Unreadable, decode, printable
 from tiniscript.cli import compilations, inputs, outputs
 from tiniscript.cli.errors import CommandError, missing_package_error
 from tiniscript.cli.options import whole_number
@@ -44,7 +44,7 @@ from tiniscript.virtual.world import WorldRefused
 
 MOST_PROGRAMS = 200  # most programs in a folder
 LEAST_COLUMNS = 24  # columns that a sentence needs next to its program; otherwise below it
-TEXT_ENDINGS = (*PROGRAM_ENDINGS, ".txt")
+TEXT_SUFFIXES = (*PROGRAM_SUFFIXES, ".txt")
 NOTES_NAME = re.compile(r"(?:read ?me|leeme|notes|notas)(?![^\W\d_])", re.IGNORECASE)  # names
 # A line of a program begins so, also a wrong one: `SI|`, `SI`, `F 2`, `ADELANTE (2)`, `x = 3`.
 PROGRAM_LINE = re.compile(
@@ -202,7 +202,7 @@ def _programs(options: Namespace) -> Iterator[tuple[str, ProgramFile]]:
         raise CommandError(
             2, "lesson_folder", file=inputs.printable_name(folder), why=error
         ) from None
-    names = list(islice(in_folder(folder, TEXT_ENDINGS), MOST_PROGRAMS + 1))
+    names = list(islice(in_folder(folder, TEXT_SUFFIXES), MOST_PROGRAMS + 1))
     if len(names) > MOST_PROGRAMS:
         raise CommandError(
             2, "lesson_many", file=inputs.printable_name(folder), most=str(MOST_PROGRAMS)
@@ -227,7 +227,7 @@ def _is_note(file: ProgramFile) -> bool:
 
     When in doubt, it is a program: a pupil's work is marked, however wrong it is.
     """
-    if file.name.lower().endswith(PROGRAM_ENDINGS) or file.problem is not None:
+    if file.name.lower().endswith(PROGRAM_SUFFIXES) or file.problem is not None:
         return False
     letters = unicodedata.normalize("NFD", Path(file.name).name)
     plain_name = "".join(letter for letter in letters if not unicodedata.combining(letter))

@@ -31,13 +31,13 @@ def write(path: Path, data: bytes, error_key: str, mode: int | None = None) -> N
         raise unwritable_error(error_key, printable_name(str(path)), error) from None
 
 
-def write_output(name: str | None, data: bytes) -> bool:
+def write_output(output_path: str | None, data: bytes) -> bool:
     """Write into the file that `-o` names, or to standard output; return whether into a file.
 
     The text is UTF-8 there, whatever the locale. Raises CommandError.
     """
-    if name not in (None, "-"):
-        write(Path(name), data, "unwritable")
+    if output_path not in (None, "-"):
+        write(Path(output_path), data, "unwritable")
         return True
     sys.stdout.flush()
     sys.stdout.buffer.write(data)

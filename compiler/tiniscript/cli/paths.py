@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import robots
-from tiniscript.base.source import PROGRAM_ENDINGS
+from tiniscript.base.source import PROGRAM_SUFFIXES
 from tiniscript.bytecode.image import MAGIC
 from tiniscript.cli.errors import CommandError, unwritable_error
 from tiniscript.cli.texts import text
@@ -100,7 +100,7 @@ def real_name(program: str) -> str:
     """
     if os.path.exists(program):  # noqa: PTH110 - a name that no file can have gets no Path
         return program
-    for candidate in (f"{program}.txt", *(program + end for end in PROGRAM_ENDINGS)):
+    for candidate in (f"{program}.txt", *(program + end for end in PROGRAM_SUFFIXES)):
         if os.path.isfile(candidate):  # noqa: PTH113
             return candidate
     return program

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.base.source import PROGRAM_ENDINGS
+from tiniscript.base.source import PROGRAM_SUFFIXES
 from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
@@ -32,15 +32,15 @@ def are_several(names: Sequence[str]) -> bool:
 
 def programs(names: Sequence[str]) -> Iterator[ProgramFile]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
-    paths_seen: set[str] = set()
+    seen_paths: set[str] = set()
     for name in names:
         paths = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
         if not paths:
             raise CommandError(2, "no_programs", file=inputs.printable_name(name))
         for path in paths:
             real_path = os.path.realpath(path)
-            if real_path not in paths_seen:
-                paths_seen.add(real_path)
+            if real_path not in seen_paths:
+                seen_paths.add(real_path)
                 yield read(path)
 
 
@@ -48,10 +48,10 @@ def _is_folder(name: str) -> bool:
     return os.path.isdir(name)  # noqa: PTH112 - a name that no file can have gets no Path
 
 
-def in_folder(folder: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterator[str]:
+def in_folder(folder: str, suffixes: tuple[str, ...] = PROGRAM_SUFFIXES) -> Iterator[str]:
     """Yield the names of visible programs in a folder and its subfolders, in order.
 
-    `endings` are the ends of their names. A folder that cannot be read is yielded itself.
+    `suffixes` are the ends of their names. A folder that cannot be read is yielded itself.
     """
     pending_folders = [folder]
     while pending_folders:
@@ -63,7 +63,7 @@ def in_folder(folder: str, endings: tuple[str, ...] = PROGRAM_ENDINGS) -> Iterat
             yield folder  # reading the file reports the reason
             continue
         for entry in sorted_entries:
-            if not entry.name.startswith(".") and entry.name.lower().endswith(endings):
+            if not entry.name.startswith(".") and entry.name.lower().endswith(suffixes):
                 if not entry.is_dir(follow_symlinks=False):
                     yield entry.path
         subfolders = (entry for entry in sorted_entries if entry.is_dir(follow_symlinks=False))

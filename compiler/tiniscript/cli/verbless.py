@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from tiniscript.base.languages import languages
-from tiniscript.base.source import PROGRAM_ENDINGS
+from tiniscript.base.source import PROGRAM_SUFFIXES
 from tiniscript.base.spelling import nearest
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
@@ -83,7 +83,7 @@ def refuse_program(name: str) -> None:
 
     tsc does not choose a verb: a robot moves only when the user has asked for it.
     """
-    if name.lower().endswith((*PROGRAM_ENDINGS, ".bin")) or _is_file(name):
+    if name.lower().endswith((*PROGRAM_SUFFIXES, ".bin")) or _is_file(name):
         raise CommandError(2, "file_without_verb", found=_quote(name))
     if "(" in name or "|" in name:
         raise CommandError(2, "text_without_verb", found=_quote(name, is_always_quoted=True))

@@ -240,9 +240,9 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
     A mistake that begins where another one begins is usually its consequence.
     """
-    diagnostics_kept = []
+    kept_diagnostics = []
     mistake_starts = set()
-    keys_seen = set()
+    seen_keys = set()
     named_starts = {
         diagnostic.span.start for diagnostic in diagnostics if diagnostic.code is UNKNOWN_WORD or (
         diagnostic.code is UNKNOWN_NAME and diagnostic.values.get("near")
@@ -252,12 +252,12 @@ def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
         start = diagnostic.span.start
         if diagnostic.code is BAD_NAME and start in named_starts:
             continue  # `Bebé(1, 440)`: the word is replaced, with its accent
-        if key in keys_seen or (diagnostic.is_mistake and start in mistake_starts):
+        if key in seen_keys or (diagnostic.is_mistake and start in mistake_starts):
             continue
-        keys_seen.add(key)
-        diagnostics_kept.append(diagnostic)
+        seen_keys.add(key)
+        kept_diagnostics.append(diagnostic)
         if diagnostic.is_mistake:
             mistake_starts.add(start)
     return sorted(
-        diagnostics_kept, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number)
+        kept_diagnostics, key=lambda diagnostic: (diagnostic.span, diagnostic.code.number)
     )

@@ -169,11 +169,11 @@ def drop_wrong_offers(
     checked.
     """
     checks_left = min(MOST_CHECKS, CHECKED_CHARACTERS // (len(text) + 1))
-    diagnostics_kept = list(diagnostics)
+    kept_diagnostics = list(diagnostics)
     for _ in _SHOWN_GAPS:
         offers = [
             edits_of(diagnostic) or [] if diagnostic.is_mistake else []
-            for diagnostic in diagnostics_kept
+            for diagnostic in kept_diagnostics
         ]
         joined_edits: list[Edit] = []
         for edits in offers:
@@ -182,15 +182,15 @@ def drop_wrong_offers(
         joined_set = set(joined_edits)
         suspects = [
             k for k, edits in enumerate(offers)
-            if diagnostics_kept[k].is_mistake and (edits or diagnostics_kept[k].values.get("fix"))
+            if kept_diagnostics[k].is_mistake and (edits or kept_diagnostics[k].values.get("fix"))
             and not (edits and set(edits) <= joined_set
-                     and joined_text.is_right(diagnostics_kept[k], edits))
+                     and joined_text.is_right(kept_diagnostics[k], edits))
         ]  # fmt: skip
         # Results for offers without edits, so that each is checked once.
         is_right_of_offer: dict[tuple[Code, str], bool] = {}
         for k in suspects[:checks_left]:
-            diagnostic = diagnostics_kept[k]
-            codes_and_words = _covered_by_offer(diagnostics_kept, offers, k, text)
+            diagnostic = kept_diagnostics[k]
+            codes_and_words = _covered_by_offer(kept_diagnostics, offers, k, text)
             offer_key = diagnostic.code, diagnostic.values.get("fix", "")
             if offers[k] or offer_key not in is_right_of_offer:
                 is_right_of_offer[offer_key] = any(
@@ -198,11 +198,11 @@ def drop_wrong_offers(
                     for edits in ([offers[k]] if offers[k] else _shown_edits(diagnostic, text))
                 )
             if not is_right_of_offer[offer_key]:
-                diagnostics_kept[k] = _without_offer(diagnostic)
+                kept_diagnostics[k] = _without_offer(diagnostic)
         checks_left -= len(suspects)
         if not suspects:
             break
-    return diagnostics_kept
+    return kept_diagnostics
 
 
 def _covered_by_offer(

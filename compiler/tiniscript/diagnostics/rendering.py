@@ -177,7 +177,7 @@ def _templates(key: str, language: str) -> Iterator[str]:
         yield text
 
 
-def names_found(diagnostic: Diagnostic) -> bool:
+def found_names(diagnostic: Diagnostic) -> bool:
     """Return whether a message quotes the text that it is about."""
     key = f"{diagnostic.code.number}/message"
     template = _first_usable_template(key, diagnostic.values, languages.SOURCE_LANGUAGE)
@@ -267,13 +267,13 @@ def _line_window(line: str, start: int, end: int) -> tuple[str, int, int]:
     start_cell = start - offset
     left, right = 0, len(cells)
     if len(cells) < len(line) or sum(width for _, width in cells) > LINE_COLUMNS:
-        left, columns_used = start_cell, 0
-        while left and columns_used + cells[left - 1][1] <= MOST_COLUMNS_ON_LEFT:
+        left, used_columns = start_cell, 0
+        while left and used_columns + cells[left - 1][1] <= MOST_COLUMNS_ON_LEFT:
             left -= 1
-            columns_used += cells[left][1]
+            used_columns += cells[left][1]
         right = start_cell
-        while right < len(cells) and columns_used + cells[right][1] <= LINE_COLUMNS:
-            columns_used += cells[right][1]
+        while right < len(cells) and used_columns + cells[right][1] <= LINE_COLUMNS:
+            used_columns += cells[right][1]
             right += 1
     ellipsis_before = "…" if offset + left > 0 else ""
     ellipsis_after = "…" if offset + right < len(line) else ""

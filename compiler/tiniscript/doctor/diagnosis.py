@@ -154,7 +154,7 @@ def _diagnose_open_port(
         findings = [Finding(cause, not is_address(port))]
     finally:
         wire.close()
-    # only the connection shows a key, and then an owned robot reports more
+    # only the connection authenticates, and then an owned robot reports more
     has_key = any(
         answer.hello.features & OWNED and expectations.has_key(answer.hello.id)
         for answer in answers

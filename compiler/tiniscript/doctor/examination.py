@@ -186,7 +186,7 @@ def _kit_findings(hello: HelloReply, expectations: Expectations) -> list[Finding
 
 def _owner_findings(robot: Robot, hello: HelloReply, expectations: Expectations) -> list[Finding]:
     """Compare the allowed drivers: a refusal looks like a robot that does nothing."""
-    may_be_own = not robot.has_shown_keys and expectations.has_key(hello.id)
+    may_be_own = not robot.has_tried_keys and expectations.has_key(hello.id)
     is_others = hello.features & (OWNED | YOURS) == OWNED and not may_be_own
     return [sure_finding("of_another_owner")] if is_others else []
 

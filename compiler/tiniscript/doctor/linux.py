@@ -78,9 +78,9 @@ def access(system: System, port: str, owner: Owner) -> Access:
 
 def _group(system: System, group_id: int) -> tuple[str, list[str]]:
     for row in (system.text("/etc/group") or "").splitlines():
-        parts = row.split(":")
-        if len(parts) == 4 and parts[2] == str(group_id):
-            return parts[0], parts[3].split(",")
+        fields = row.split(":")
+        if len(fields) == 4 and fields[2] == str(group_id):
+            return fields[0], fields[3].split(",")
     return "", []
 
 

@@ -27,11 +27,11 @@ MOST_UNANSWERED = 3  # unanswered questions in a row after which the check ends
 
 
 class Robot(ABC):
-    """`missed_count` is how many requests were not answered at the first try. `has_shown_keys`:
+    """`missed_count` is how many requests were not answered at the first try. `has_tried_keys`:
     those of this computer, so that the robot has reported whether it is the person's."""
 
     missed_count = 0
-    has_shown_keys = False
+    has_tried_keys = False
 
     @abstractmethod
     def ask(self, name: str, try_count: int = MOST_TRIES) -> Reply[SentReply] | None:
@@ -106,12 +106,12 @@ class WireRobot(Robot):
 
 
 class SharedRobot(Robot):
-    """A robot on a shared connection, which does the retries and shows keys.
+    """A robot on a shared connection, which does the retries and authenticates.
 
     `wait` waits for a request, and may show the user that it takes long.
     """
 
-    has_shown_keys = True
+    has_tried_keys = True
 
     def __init__(
         self,

@@ -65,8 +65,8 @@ def _paragraph(lines: list[str]) -> list[Block]:
     if lines[0].startswith("|"):
         row_texts = (line.strip().removeprefix("|").removesuffix("|") for line in lines)
         rows = [tuple(cell.strip() for cell in row.split("|")) for row in row_texts]
-        rows_kept = tuple(row for row in rows if set("".join(row)) - set("-: "))
-        return [Block("table", rows_kept)] if rows_kept else []
+        kept_rows = tuple(row for row in rows if set("".join(row)) - set("-: "))
+        return [Block("table", kept_rows)] if kept_rows else []
     groups: list[tuple[str, list[str]]] = []
     for line in lines:
         match = ITEM.match(line)
@@ -93,14 +93,14 @@ def studio_part(page: str) -> str:
 
 
 def _section(page: str, prefix_of_mark: dict[str, str]) -> str:
-    lines_kept = []
+    kept_lines = []
     for line in page.split("\n"):
         mark = MARK.match(line)
         if mark is None:
-            lines_kept.append(line)
+            kept_lines.append(line)
         elif mark[2] in prefix_of_mark:
-            lines_kept.append((mark[1] or "") + prefix_of_mark[mark[2]] + line[mark.end() :])
-    return "\n".join(lines_kept)
+            kept_lines.append((mark[1] or "") + prefix_of_mark[mark[2]] + line[mark.end() :])
+    return "\n".join(kept_lines)
 
 
 def as_text(page: str) -> str:

@@ -218,8 +218,8 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
             )
         return Criterion("", {}, (), (), NO_LABELS)
     has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.check_for("at"))
-    numbers_asked = [number for number in kind.numbers if has_places or number is not WITHIN_CM]
-    numbers = {number.key: _number(table, number) for number in numbers_asked}
+    number_specs = [number for number in kind.numbers if has_places or number is not WITHIN_CM]
+    numbers = {number.key: _number(table, number) for number in number_specs}
     numbers |= {flag: float(table.yes_no(flag, False)) for flag in kind.flags}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
@@ -235,7 +235,7 @@ def _criterion(table: Table, world: World, known_words: Mapping[str, tuple[str, 
     words: tuple[str, ...] = ()
     if kind.words in DEVICE_KINDS:
         if kind.words == "switch" or table.check_for("what"):
-            words = _asked_device(table, known_words[kind.words])
+            words = _named_device(table, known_words[kind.words])
     elif kind.words:
         words = _words(table, known_words[kind.words])
     table.finish()
@@ -249,7 +249,7 @@ def _number(table: Table, number: Number) -> float:
     return table.number(number.key, low, high, f"{number.key} = {number.low:g}") / ONE
 
 
-def _asked_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
+def _named_device(table: Table, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the device that a criterion asks for."""
     device_name = table.text("what", 'what = "LED"')
     if device_name is None or device_name in names:

@@ -111,8 +111,8 @@ def _with_condition(
     ]
     is_turned = finding.key.endswith("/turned")
     if finding.key == "still/brief":  # it had power, so no IF kept it from moving
-        words_called = {token.text for token in called_tokens}
-        if "M" in words_called and "UNTIL" not in words_called:
+        called_words = {token.text for token in called_tokens}
+        if "M" in called_words and "UNTIL" not in called_words:
             return finding
         finding = finding._replace(key="still")
     question = kept.question(called_tokens, is_turned, ending)
@@ -120,9 +120,9 @@ def _with_condition(
         return finding
     kit = robots.load(lesson.robot).kit
     sensors = [device.name for device in kit.readings]
-    sensors_named = [word for word in [*question.words, *words] if word in sensors]
+    named_sensors = [word for word in [*question.words, *words] if word in sensors]
     key = f"{'turned' if is_turned else 'still'}/{'ever' if question.is_ever else 'question'}"
-    sensor = (*sensors_named, sensors[0])[0]
+    sensor = (*named_sensors, sensors[0])[0]
     return finding._replace(
         key=key, values={"word": question.word, "what": sensor, "truth": question.truth}
     )
@@ -177,15 +177,15 @@ def _uncalled_words(words: Sequence[str]) -> list[str]:
             name = ""
         else:
             (words_by_def[name] if name else main_words).add(word)
-    names_called: set[str] = set()
+    called_names: set[str] = set()
     newly_called = main_words & words_by_def.keys()
     while newly_called:
-        names_called |= newly_called
+        called_names |= newly_called
         newly_called = (
             set().union(*(words_by_def[name_called] for name_called in newly_called))
-            & words_by_def.keys() - names_called
+            & words_by_def.keys() - called_names
         )
-    return [body for body in words_by_def if body not in names_called]
+    return [body for body in words_by_def if body not in called_names]
 
 
 def _loop_bodies(words: Sequence[str]) -> list[list[str]]:

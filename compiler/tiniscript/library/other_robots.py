@@ -76,18 +76,18 @@ def hints_among(
     }
     kit_names = own_words.union(*words_by_robot.values())
     words_in_text = {token.text for token in scan(text).tokens if token.kind is WORD}
-    words_used = {
+    used_words = {
         word if word in kit_names else lexicon_concept(word) for word in words_in_text
     } & kit_names
     robot_in_text = named_robot(text)
     named_robot_name = robot_in_text.name.lower() if robot_in_text else ""
     complete_robots = [
-        robot for robot, kit_words in words_by_robot.items() if words_used <= kit_words
+        robot for robot, kit_words in words_by_robot.items() if used_words <= kit_words
     ]
     hinted_diagnostics: list[Diagnostic] = []
     hinted_robot_sets: list[set[str]] = []  # robots that words have led to
     hinted_codes = (
-        {*_UNKNOWN_CODES, NO_BUTTON} if words_used - own_words - {BUTTON} else {*_UNKNOWN_CODES}
+        {*_UNKNOWN_CODES, NO_BUTTON} if used_words - own_words - {BUTTON} else {*_UNKNOWN_CODES}
     )
     for diagnostic in diagnostics:
         word = diagnostic.values.get("found", "").upper()
@@ -108,7 +108,7 @@ def hints_among(
             robots_with_word.sort(
                 key=lambda robot: (
                     robot != named_robot_name,
-                    -len(words_used & words_by_robot[robot]),
+                    -len(used_words & words_by_robot[robot]),
                     robot not in LESSON_ROBOTS,
                 )
             )

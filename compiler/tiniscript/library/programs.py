@@ -8,7 +8,7 @@ from pathlib import Path
 from tiniscript import robots
 from tiniscript.base.files import read_limited
 from tiniscript.base.languages import languages
-from tiniscript.base.source import PROGRAM_ENDINGS, printable
+from tiniscript.base.source import PROGRAM_SUFFIXES, printable
 from tiniscript.bytecode import verify
 from tiniscript.bytecode.disassembly import disassemble
 from tiniscript.bytecode.image import Image, ImageRefused, unpack
@@ -28,7 +28,7 @@ Language = str  # a language code, such as "en"
 MOST_VALUE_CHARACTERS = 200  # characters of a name or a value in a sentence
 MOST_REMARK_CHARACTERS = 60  # characters of a line in a disassembly
 MOST_FILE_BYTES = 1_000_000  # most bytes of a file
-FILE_ENDINGS = (*PROGRAM_ENDINGS, ".bin")
+FILE_SUFFIXES = (*PROGRAM_SUFFIXES, ".bin")
 
 
 class Program:
@@ -127,7 +127,7 @@ def show(
 
 def _refuse_file_name(text: str, language: Language) -> None:
     """Raise UsageError where a text is the name of a program's file."""
-    if text.lower().endswith(FILE_ENDINGS) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
+    if text.lower().endswith(FILE_SUFFIXES) and "\n" not in text and os.path.exists(text):  # noqa: PTH110
         values = {"path": printable(text, MOST_VALUE_CHARACTERS)}
         raise UsageError("file_name", _check_language(language), values)
 

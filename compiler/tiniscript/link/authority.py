@@ -1,4 +1,4 @@
-"""The exchanges about a robot's owner: to show a key, to claim a robot, to give it up.
+"""The exchanges about a robot's owner: to authenticate, to claim a robot, to give it up.
 
 It knows the order of messages and the format of a tag. Knows no file: a `KeyRing` keeps the keys.
 """
@@ -149,7 +149,7 @@ def is_impostor(ring: KeyRing | None, place: str, robot: DeviceInfo) -> bool:
     return any(key.id == known_id or canonical_name(key.name) == name != "" for key in our_keys)
 
 
-def show_keys(
+def authenticate(
     ring: KeyRing | None,
     robot: DeviceInfo,
     nonce: int,
@@ -157,19 +157,19 @@ def show_keys(
     kind: int | None = None,
     is_needed: bool = True,
 ) -> Exchange[AuthenticateReply]:
-    """Show a robot its keys, the teacher's first, until one is right; `kind` alone if it is given.
+    """Try our keys of a robot, the teacher's first, until one is right; only `kind` if it is given.
 
-    Then it is known of a pending key whether the robot has taken it. A stale key is shown only if
-    it `is_needed`, since showing it takes time.
+    Then it is known of a pending key whether the robot has taken it. A stale key is tried only if
+    it `is_needed`, since trying it takes time.
     """
     reply: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.keys_of_robot(robot.id)
     for key in sorted(keys, key=_key_order):
         if kind not in (None, key.kind) or (key.is_stale and not is_needed):
             continue
-        reply = yield from _show_key(key, robot, nonce, current_epoch)
+        reply = yield from _authenticate_with(key, robot, nonce, current_epoch)
         if reply.status == STALE:  # a stop or a fault came between: the tag was one of before
-            reply = yield from _show_key(key, robot, nonce, current_epoch)
+            reply = yield from _authenticate_with(key, robot, nonce, current_epoch)
         if ring is not None and reply.status == OK:
             proven_key = key._replace(
                 is_pending=False, is_stale=False, uses_seals=_can_seal(robot) or key.uses_seals
@@ -191,7 +191,7 @@ def _key_order(key: RobotKey) -> tuple[bool, bool, bool]:
     return key.is_stale, key.kind != KEY_TEACHER, key.is_pending
 
 
-def _show_key(
+def _authenticate_with(
     key: RobotKey, robot: DeviceInfo, nonce: int, current_epoch: Callable[[], int]
 ) -> Exchange[AuthenticateReply]:
     challenge_request = Request("AUTHENTICATE", {"kind": key.kind, "tag": b""})

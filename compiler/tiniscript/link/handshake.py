@@ -102,7 +102,7 @@ class Handshake:
             self._state.state = reply.values.state
             is_owned = bool(device_info.values.features & OWNED)
             if is_owned or must_seal:
-                key_reply = yield from self.show_keys(is_needed=must_seal and not is_owned)
+                key_reply = yield from self.authenticate(is_needed=must_seal and not is_owned)
                 if key_reply.status == STATUSES["STALE"]:  # the robot was reset meanwhile
                     return as_refusal(key_reply)
                 # The answer is sealed, and proves whether HELLO was genuine.
@@ -134,7 +134,7 @@ class Handshake:
         return (yield from self.with_key(make_exchange))
 
     def with_key(self, make_exchange: Callable[[], Exchange[T]]) -> Exchange[T]:
-        """Make and run an exchange; again, if the robot wants to be shown its key before."""
+        """Make and run an exchange; again, if the robot requires authentication first."""
         reply = yield from make_exchange()
         if reply.status not in (NOT_OWNER, STATUSES["HELD_BACK"]) or self._keys is None:
             return reply
@@ -142,18 +142,18 @@ class Handshake:
             hello = yield from self.hello()
             if hello.status != OK:
                 return as_refusal(hello)
-        key_reply = yield from self.show_keys()
+        key_reply = yield from self.authenticate()
         if key_reply.status != OK:
             return as_refusal(reply if key_reply.status == NOT_OWNER else key_reply)
         return (yield from make_exchange())
 
-    def show_keys(
+    def authenticate(
         self, kind: int | None = None, is_needed: bool = True
     ) -> Exchange[AuthenticateReply]:
-        """Show the robot our keys of it; `kind` alone if it is given. See `authority`."""
+        """Try our keys of the robot; only `kind` if it is given. See `authority`."""
         assert self.robot
         keys, robot, nonce = self._keys, self.robot, self._nonce
-        reply = yield from authority.show_keys(
+        reply = yield from authority.authenticate(
             keys, robot, nonce, self._current_epoch, kind, is_needed
         )
         if reply.status == OK:
@@ -199,7 +199,7 @@ class Handshake:
         assert self._keys is not None
         reply = yield from authority.claim(self._keys, self.robot, kind)
         if reply.status == OK:
-            yield from self.show_keys()
+            yield from self.authenticate()
         return reply
 
     def disown(self, kind: int) -> Exchange[EmptyReply]:
@@ -211,7 +211,7 @@ class Handshake:
 
     def hold_back(self) -> Exchange[EmptyReply]:
         """Stop the robot so that only the teacher's key, or its button, releases it."""
-        key_reply = yield from self.show_keys(KEY_TEACHER)
+        key_reply = yield from self.authenticate(KEY_TEACHER)
         if key_reply.status != OK:
             return as_refusal(key_reply)
         return (yield from requests.send_single(Request("STOP"), EmptyReply))

@@ -98,7 +98,7 @@ NOISE_BYTES = 2  # noise of both discs
 MOST_BREAKPOINTS = 4
 VARIABLE_BYTES, TASK_BYTES = 4, 7  # bytes of one variable, and of one task
 VARIABLES_BYTES = 13 * VARIABLE_BYTES  # variables in one frame
-TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
+ALL_TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
 UNTOLD = 0x80  # flag in READING's sensor: earlier readings were not sent
 SHOW_PLACE_BYTES = 3  # bytes of a SHOW's place: its run, and its instruction (16 bits)
 COUNTER_BYTES = 4
@@ -154,7 +154,7 @@ FEATURES = (
     (OWNERS, "OWNERS", "The robot knows owners."),
     (OWNED, "OWNED", "It has an owner."),
     (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
-    (YOURS, "YOURS", "This session has shown a key of the robot."),
+    (YOURS, "YOURS", "This session has authenticated with a key of the robot."),
     (BY_TEACHER, "BY_TEACHER", "That key was the teacher's."),
     (
         SEALS,
@@ -294,7 +294,7 @@ MESSAGES = (
     _message(16, "CLAIM", True, f"kind:u8 key:rest=0..{KEY_BYTES}", "",
              "Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
     _message(17, "AUTHENTICATE", True, f"kind:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
-             "Without a tag, it asks for a challenge. With a tag, it shows a key of the robot."),
+             "Without a tag, it asks for a challenge. With a tag, it proves possession of a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,
              "Brings back the previous program. The running program ends; no program starts."),
@@ -312,7 +312,7 @@ MESSAGES = (
              "Continues a halted program; `how` says how far."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
              "Asks for the variables of the running program, starting with the variable `first`: 32 bits each."),
-    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 offset:u16 tasks:rest=0..{TASKS_BYTES}",
+    _message(28, "READ_TASKS", True, "", f"run:u8 is_halted:u8 task:u8 offset:u16 tasks:rest=0..{ALL_TASKS_BYTES}",
              "Asks for the tasks of the running program, and where each of them is."),
     _message(29, "TELL_READINGS", True, "is_on:u8", "",
              "Sets whether the robot sends READING to this session."),

@@ -97,7 +97,7 @@ IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 SILENT_MS = DEAD_MAN_MS + 200  # time after a lost link in which only stops are sent
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
 PLACE_QUESTION = b"\1"  # question of a PING for the program's place
-MOST_KEY_SHOWINGS = 5  # times that a key is shown again for one request
+MOST_REAUTHENTICATIONS = 5  # for one request
 _STALE_STATUS = STATUSES["STALE"]
 _WAITING_STATUSES = (
     STATUSES["BUSY"],
@@ -145,7 +145,7 @@ class PendingExchange(PendingRequest[T]):
         self.waiting_status = 0  # the robot's last one, if of _WAITING_STATUSES, or 0
         self.may_be_done = False  # the robot has not reported whether it is
         self.is_midway = False  # a frame of the exchange is under way or has arrived
-        self.key_showings = 0  # number of times a key was shown again for it
+        self.reauthentication_count = 0
         self.interrupted_exchange: InterruptedExchange | None = None
 
     @property
@@ -159,8 +159,8 @@ class PendingExchange(PendingRequest[T]):
 
 
 class InterruptedExchange(NamedTuple):
-    """An exchange whose request continues after a key is shown again, a run is ended, or keys are
-    pressed."""
+    """An exchange whose request continues after the session has authenticated again, a run is
+    ended, or keys are pressed."""
 
     pending_exchange: PendingExchange[Any]
     transmission: Transmission
@@ -518,7 +518,7 @@ class Session(Requester):
         return self._seq
 
     def _authenticate_again(self, now_ms: int) -> None:
-        """The robot no longer knows our seal: show a key, then continue with the same request.
+        """The robot no longer knows our seal: authenticate, then continue with the same request.
 
         It has the same number, so the robot does not repeat it.
         """
@@ -528,17 +528,17 @@ class Session(Requester):
         if transmission.is_of("KEYS"):
             self._end_press()  # the press is not repeated: a key comes before the next word
             return
-        pending_exchange.key_showings += 1
+        pending_exchange.reauthentication_count += 1
         self._transmission = Transmission(self._round_trips)
         if (
-            pending_exchange.key_showings > MOST_KEY_SHOWINGS
+            pending_exchange.reauthentication_count > MOST_REAUTHENTICATIONS
         ):  # its exchange is notified, and may repeat it
             pending_exchange.exchange.close()
             pending_exchange.outcome = Reply(NOT_OWNER)
             self._pending_exchange = None
             return
         self._pending_exchange = PendingExchange(
-            self._handshake.show_keys(), is_own=pending_exchange.is_own
+            self._handshake.authenticate(), is_own=pending_exchange.is_own
         )
         self._pending_exchange.interrupted_exchange = InterruptedExchange(
             pending_exchange, transmission

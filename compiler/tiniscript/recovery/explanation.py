@@ -407,14 +407,14 @@ class _Explainer:
     ) -> Explanation:
         is_end = code is codes.NEVER_ENDS
         if (
-            spoken_signs_found := spoken_signs(self.program[slice(*change.span)])
+            found_spoken_signs := spoken_signs(self.program[slice(*change.span)])
             if change.new_tokens
             else ()
         ):
             code = codes.OTHER_SIGN
             details: SlipDetails | UnendedBlock = SlipDetails(
                 slips.slip_of(change, code, step),
-                spoken=", ".join(spoken_signs_found[:_MOST_SIGN_NAMES]),
+                spoken=", ".join(found_spoken_signs[:_MOST_SIGN_NAMES]),
             )
         else:
             details = (

@@ -347,5 +347,5 @@ def _is_question_word(word: str, names: Names) -> bool:
     """Return whether a word makes its neighbours a question. A constant yes or no does not, and may
     be more: `si no avanza`.
     """
-    is_known = word in ("TRUE", "FALSE")
-    return word in COMPARISONS or (names.is_yes_no(word) and not is_known)
+    is_constant = word in ("TRUE", "FALSE")
+    return word in COMPARISONS or (names.is_yes_no(word) and not is_constant)

@@ -207,16 +207,16 @@ class _Search:
             and has_word_or_number
             and len(tokens) < MOST_TOKENS_WITH_SLIPS
         ):
-            readings_found = self.search(first_reading, MOST_SLIP_STATES, self.undo_slips)
-            readings_found = [
+            found_readings = self.search(first_reading, MOST_SLIP_STATES, self.undo_slips)
+            found_readings = [
                 reading
-                for reading in readings_found
-                if reading.items and reading.cost < readings_found[0].cost + SLIP_MARGIN
+                for reading in found_readings
+                if reading.items and reading.cost < found_readings[0].cost + SLIP_MARGIN
             ]
-            is_only_reading = len({reading.normal_text for reading in readings_found}) == 1
+            is_only_reading = len({reading.normal_text for reading in found_readings}) == 1
             readings = [
                 reading._replace(is_sure=reading.is_sure and is_only_reading)
-                for reading in readings_found
+                for reading in found_readings
             ]
         return readings
 
@@ -226,18 +226,18 @@ class _Search:
         """Return the cheapest right readings, which are few, of `most_states` lines at most."""
         order = count()
         heap = [(first_reading.cost, next(order), first_reading)]
-        texts_seen: set[tuple[str, ...]] = set()
+        seen_texts: set[tuple[str, ...]] = set()
         readings: list[Reading] = []
-        while heap and len(texts_seen) < most_states:
+        while heap and len(seen_texts) < most_states:
             cost, _, reading = heapq.heappop(heap)
             if readings and (
                 cost > readings[0].cost + RIVAL_MARGIN or len(readings) >= MOST_RIVALS
             ):
                 break
             texts = reading.token_texts
-            if texts in texts_seen:
+            if texts in seen_texts:
                 continue
-            texts_seen.add(texts)
+            seen_texts.add(texts)
             items = parse_line(reading.tokens, self.names)
             if not isinstance(items, Failure):
                 if not self.repeats_instruction(reading, items, first_reading):

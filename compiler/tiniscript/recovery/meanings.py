@@ -90,7 +90,7 @@ def lexemes(line: str) -> list[Lexeme]:
 
 @lru_cache(REMEMBERED_LINES)
 def _lexemes(line: str) -> tuple[Lexeme, ...]:
-    tokens_found, end_offset = [], 0
+    found_tokens, end_offset = [], 0
     for match in _TOKEN.finditer(line):
         text, kind = match[0], NUMBER if match[1] else WORD if match[2] else UNKNOWN_SIGN
         if kind is WORD:
@@ -102,9 +102,9 @@ def _lexemes(line: str) -> tuple[Lexeme, ...]:
             kind = text = "-" if text in DASHES else text
         elif lexicon_concept(text[0]):
             kind, text = WORD, text[0]  # an arrow is a command
-        tokens_found.append(Lexeme(kind, text, match[0], line[end_offset : match.start()]))
+        found_tokens.append(Lexeme(kind, text, match[0], line[end_offset : match.start()]))
         end_offset = match.end()
-    return tuple(tokens_found)
+    return tuple(found_tokens)
 
 
 def number_text(number: float) -> str:
@@ -263,7 +263,7 @@ class _LineNames(NamedTuple):
     compared_words: set[str]  # words next to a sign that compares them with a number
     counted_starts: list[str]  # `PARA(3)`, which begins one, where a bare end is left for it
     open_headers: int  # headers that lack an end
-    units_given: set[
+    given_units: set[
         tuple[str, str]
     ]  # units other than of time, and the numbers they become in calls: % 50
 
@@ -271,9 +271,9 @@ class _LineNames(NamedTuple):
 @lru_cache(REMEMBERED_LINES)
 def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
     block_starts, counted_starts, open_headers = _block_counts(line)
-    names_found = _LineNames(
+    found_names = _LineNames(
         set(), set(), set(), set(), {}, set(), block_starts, _standalone_words(line),
-        _compared_words(line), counted_starts, open_headers, _units_given(line),
+        _compared_words(line), counted_starts, open_headers, _given_units(line),
     )  # fmt: skip
     head = line[2:] if len(line) > 1 and line[1].text == "|" else line
     depth = 0
@@ -282,12 +282,12 @@ def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
         if token.kind is not WORD:
             continue
         if depth > 0:
-            names_found.in_brackets.add(token.text)
+            found_names.in_brackets.add(token.text)
         elif (
             following_token.text in ("=", "++", "--", "+=", "-=", ":=", "<-")
             and token.text not in WORDS
         ):
-            names_found.variables.add(token.text)
+            found_names.variables.add(token.text)
         is_def = "DEF" in (token.text, lexicon_concept(token.text))
         is_def = is_def or (
             token.text == "TASK" and next_index == len(line)
@@ -300,28 +300,28 @@ def _names_of(line: tuple[Lexeme, ...]) -> _LineNames:
                 not lexicon_meaning(following_token.text, "main")
                 and lexicon_concept(following_token.text) != "START"
             ):
-                names_found.defs.add(following_token.text)
+                found_names.defs.add(following_token.text)
                 if bare_values := _bare_values(line[next_index:]):
-                    names_found.names_with_values.add((following_token.text, *bare_values))
+                    found_names.names_with_values.add((following_token.text, *bare_values))
                 end = brackets_end(line, next_index)
-                names_given = (
+                given_names = (
                     texts(line[next_index + 1 : end - 1 : 2])
                     if end
                     else _logo_names(line[next_index:])
                 )
-                if all(name.isidentifier() and name not in WORDS for name in names_given):
-                    names_found.parameters[following_token.text] = names_given
+                if all(name.isidentifier() and name not in WORDS for name in given_names):
+                    found_names.parameters[following_token.text] = given_names
     if len(head) > 2 and "DEF" in (head[0].text, lexicon_concept(head[0].text)):
-        spaced_name, target = _name_in_words(head[1:], ";"), names_found.defs
+        spaced_name, target = _name_in_words(head[1:], ";"), found_names.defs
     else:
-        spaced_name, target = _name_in_words(head, "="), names_found.variables
+        spaced_name, target = _name_in_words(head, "="), found_names.variables
     if spaced_name:
-        names_found.spaced_names.add(spaced_name)
+        found_names.spaced_names.add(spaced_name)
         target.add(joined_name(spaced_name))
-    return names_found
+    return found_names
 
 
-def _units_given(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
+def _given_units(line: tuple[Lexeme, ...]) -> set[tuple[str, str]]:
     """Return the powers and the pitches that calls of a line give as plain numbers, by unit."""
     windows = zip(line, line[1:], line[2:], line[3:], line[4:], line[5:], strict=False)
     return {
@@ -452,7 +452,7 @@ class Names:
         self.defs = {name for line in names_of_lines for name in line.defs} - {
             row[0] for row in self.spaced_names
         }
-        units_and_numbers = {pair for line in names_of_lines for pair in line.units_given}
+        units_and_numbers = {pair for line in names_of_lines for pair in line.given_units}
         units = [unit for unit, _ in units_and_numbers]
         self.usual_values = {
             unit: text for unit, text in units_and_numbers if units.count(unit) == 1

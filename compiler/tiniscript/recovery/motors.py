@@ -136,9 +136,9 @@ def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
     """Return the diagnostics for motors set one by one, with the edits for further reading."""
     text, motor_instructions = source.text, [*_motors(source.text)]
     findings: list[tuple[Diagnostic, Edit]] = []
-    spans_used: set[Span] = set()
+    used_spans: set[Span] = set()
     for motor, next_motor in zip_longest(motor_instructions, motor_instructions[1:]):
-        if motor.span in spans_used:
+        if motor.span in used_spans:
             continue
         is_pair = next_motor and motor.side != next_motor.side
         if is_pair and not text[motor.span.end : next_motor.span.start].strip(_SEPARATORS):
@@ -148,7 +148,7 @@ def motor_diagnostics(source: Source) -> list[tuple[Diagnostic, Edit]]:
             edit = Edit(whole_span, fix)
             call_values = {"found": motor.name, "right": "M", "takes": WORDS["M"].usage, "fix": fix}
             repair = Repair((edit,), False)
-            spans_used.add(next_motor.span)
+            used_spans.add(next_motor.span)
             findings.append(
                 (
                     Diagnostic(codes.OTHER_LANGUAGE, whole_span, call_values, whole_span, repair),

@@ -8,7 +8,7 @@ from functools import lru_cache
 from tiniscript.base.source import Source, Span
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.diagnostics.rendering import names_found
+from tiniscript.diagnostics.rendering import found_names
 from tiniscript.recovery.meanings import plain
 
 # They found a calculated number.
@@ -24,7 +24,7 @@ def point_at_found(diagnostic: Diagnostic, source: Source) -> Diagnostic:
     try."""
     code, span, place = diagnostic.code, diagnostic.span, diagnostic.place
     found_text = diagnostic.values.get("found", "").strip()
-    if not found_text or code in _COUNTING_CODES or not names_found(diagnostic):
+    if not found_text or code in _COUNTING_CODES or not found_names(diagnostic):
         return diagnostic
     if _normalize(source[span]) == _normalize(found_text):
         return diagnostic

@@ -393,11 +393,11 @@ class Recovery:
 
     def match_blocks(self, readings: Sequence[Reading]) -> Matching | None:
         """Return the ends that all blocks of the lines need, or None if they never fit."""
-        lines_read = [
+        read_lines = [
             Line(line.indent, _WHEN_AT_START.match(line.source.upper()) is not None, reading)
             for line, reading in zip(self.lines, readings, strict=False)
         ]
-        matching = Matching(lines_read)
+        matching = Matching(read_lines)
         return matching if matching.run() else None
 
     def make_changes(self, readings: Sequence[Reading], blocks: Matching) -> list[LineChange]:

@@ -157,11 +157,11 @@ def _spoken_diagnostic(source: Source, kit: Kit) -> Diagnostic | None:
         ).strip()
         values = {"button": "SB|"} if head == "SB" else {"begun": start_text}
         words = words[count:]
-    instructions_said = spoken_instructions(words, names) if head else []
-    if not instructions_said or (head == "SB" and instructions_said[0].word in ("S", "STOP")):
+    stated_instructions = spoken_instructions(words, names) if head else []
+    if not stated_instructions or (head == "SB" and stated_instructions[0].word in ("S", "STOP")):
         return None
-    fix = f"{head}|{instructions_text(instructions_said)}"
-    sample = samples_text(instructions_said)
+    fix = f"{head}|{instructions_text(stated_instructions)}"
+    sample = samples_text(stated_instructions)
     values |= {"whole": fix, "example": sample} if sample else {"fix": fix}
     line_span = Span(line_match.start(), line_match.start() + len(body))
     start = line_span.start + body.index(start_text)

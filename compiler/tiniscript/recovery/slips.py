@@ -581,15 +581,15 @@ def instructions(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:
 
     A separator in brackets separates nothing if all brackets of the line are closed.
     """
-    instructions_found: list[list[Lexeme]] = [[]]
+    found_instructions: list[list[Lexeme]] = [[]]
     depth, is_closed = 0, texts(tokens).count("(") == texts(tokens).count(")")
     for token in tokens:
         depth += (token.text == "(") - (token.text == ")")
         if token.text == ";" and not (is_closed and depth > 0):
-            instructions_found.append([])
+            found_instructions.append([])
         else:
-            instructions_found[-1].append(token)
-    return instructions_found
+            found_instructions[-1].append(token)
+    return found_instructions
 
 
 def without_setup(tokens: Sequence[Lexeme]) -> list[list[Lexeme]]:

@@ -605,7 +605,7 @@ def _rest_of_words(gaps: Gaps, name: str) -> str:
     )
 
 
-def _instructions_said(part: TrailingTokens) -> list[SpokenInstruction]:
+def _stated_instructions(part: TrailingTokens) -> list[SpokenInstruction]:
     """The instructions that the words describe, or nothing if a turn among them lacks a
     direction."""
     found_instructions = spoken_instructions(part.row_tokens, part.names)
@@ -621,7 +621,7 @@ def _instructions_said(part: TrailingTokens) -> list[SpokenInstruction]:
 
 def _call_and_instructions(gaps: Gaps) -> str:
     """The instruction, and those that the words after it say."""
-    found_instructions = _instructions_said(gaps.trailing_tokens)
+    found_instructions = _stated_instructions(gaps.trailing_tokens)
     return (
         f"{gaps.trailing_tokens.call_text};{instructions_text(found_instructions)}"
         if found_instructions
@@ -722,7 +722,7 @@ _GAP_FUNCTIONS: dict[str, Callable[[Gaps], str]] = {
     "question": lambda gaps: format_line(_condition_tokens(gaps)),
     "contrary": lambda gaps:
         format_line(rewrites.negate(it)) if (it := _condition_tokens(gaps)) else "",
-    "made_up": lambda gaps: samples_text(_instructions_said(gaps.trailing_tokens)),
+    "made_up": lambda gaps: samples_text(_stated_instructions(gaps.trailing_tokens)),
     "until": lambda gaps: f" {_rest_of_words(gaps, 't')}".rstrip(),
     "behind": lambda gaps: _rest_of_words(gaps, "w"), "orders": _call_and_instructions,
     "sensors": lambda gaps: ", ".join(gaps.trailing_tokens.names.sensor_names),

@@ -73,7 +73,7 @@ class WrongText:
         return Recovery(
             text,
             self.kit,
-            lambda text_asked: self._mistakes(text_asked, is_own_text=text_asked == text),
+            lambda checked_text: self._mistakes(checked_text, is_own_text=checked_text == text),
         )
 
     def _mistakes(self, text: str, is_own_text: bool) -> list[Code]:

@@ -414,9 +414,9 @@ class Usage:
         ):
             return usage_with_number
         if word == "SHOW" and (
-            variables_used := [word for word in self.words if word in self.names.variables]
+            used_variables := [word for word in self.words if word in self.names.variables]
         ):
-            return f"{word}({variables_used[0]})"
+            return f"{word}({used_variables[0]})"
         is_ended = word in BLOCK_ENDS and self.program_text.has_block_ends
         if word not in BLOCK_ENDS or (is_ended and word != "LOOP"):
             return _usage(word)
@@ -536,9 +536,9 @@ class Usage:
         instruction_text = plain(self.source[self.instruction_span])
         match = _OWN_WORD.fullmatch(instruction_text)
         name, is_call, number = match.groups() if match else ("", "", "")
-        numbers_given = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
+        given_numbers = re.findall(rf"(?i)\b{name}\s*\(\s*(\d+)\s*\)", self.text) if name else []
         if (
-            not name or number or len({*numbers_given}) > 1
+            not name or number or len({*given_numbers}) > 1
         ):  # seconds or repetitions, as the author knows
             call = _CALL_WITH_VALUES.fullmatch(instruction_text)
             is_known_call = call is None or lexicon_meaning(call[1], *_KINDS_NO_CALL)
@@ -675,8 +675,8 @@ class Usage:
             number if k in positions else value for k, value in enumerate(values)
         )
         low = as_text(word.arguments[positions[0]].low)
-        values_said = {"low": low, "high": as_text(word.arguments[positions[0]].high)}
-        return values_said | {
+        bounds = {"low": low, "high": as_text(word.arguments[positions[0]].high)}
+        return bounds | {
             "greatest" if bound_word == "MAX" else "slow": f"{word.text}({values_text})"
         }
 

@@ -164,7 +164,7 @@ def _in_centimetres(number_text: str, unit: Sequence[str]) -> str:
 
 
 def _subjects(
-    own_names: Sequence[str], texts: Sequence[str], kinds_said: set[str], names: Names
+    own_names: Sequence[str], texts: Sequence[str], stated_kinds: set[str], names: Names
 ) -> list[str]:
     """Return the sensors that are asked, or the variable."""
     sensors = [text for text in own_names if text in names.number_readings]
@@ -174,10 +174,10 @@ def _subjects(
         if (concept := names.find_meaning(text, NEAR_COST)) in names.number_readings
     ]
     subjects = sensors[:1] or list(own_names[:1])
-    if not subjects and "light" in kinds_said and "ahead" not in kinds_said:
+    if not subjects and "light" in stated_kinds and "ahead" not in stated_kinds:
         subjects = _lights(names)[:2]
         sided_sensors = [
-            f"LIGHT_{side[0].upper()}" for side in ("left", "right") if side in kinds_said
+            f"LIGHT_{side[0].upper()}" for side in ("left", "right") if side in stated_kinds
         ]
         subjects = [
             name for name in sided_sensors if name in subjects and len(sided_sensors) == 1
@@ -208,11 +208,11 @@ def _written_sign(tokens: Sequence[Lexeme]) -> str:
     return _MIRRORED_SIGNS.get(sign, sign) if is_mirrored else sign
 
 
-def _sign(name: str, written_sign: str, kinds_said: set[str]) -> str:
-    is_negated = bool(kinds_said & {"no", "without", "none"})
+def _sign(name: str, written_sign: str, stated_kinds: set[str]) -> str:
+    is_negated = bool(stated_kinds & {"no", "without", "none"})
     if written_sign:
         return OPPOSITES[written_sign] if is_negated else written_sign
-    is_below = "little" in kinds_said or (name == "DISTANCE" and "much" not in kinds_said)
+    is_below = "little" in stated_kinds or (name == "DISTANCE" and "much" not in stated_kinds)
     return "<" if is_below != is_negated else ">"
 
 

@@ -136,7 +136,7 @@ def answer_of_both(condition: Expression, kit: Kit) -> tuple[str, str]:
     )
 
 
-def can_come_true(condition: Expression, direction: str, kit: Kit) -> bool | None:
+def is_usable_in_until(condition: Expression, direction: str, kit: Kit) -> bool | None:
     """Return whether a condition is one for the UNTIL of a move; None if that is not known.
 
     It is none where a distance changes the other way, where it asks for exactly one of very many

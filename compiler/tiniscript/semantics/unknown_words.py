@@ -122,13 +122,13 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, diagnostic_
 
 def report_words_shown(scope: Scope, diagnostic_count: int) -> None:
     """`SHOW(HOLA)`: words are not shown. Changes the diagnostics since `diagnostic_count`."""
-    words_shown = dict.fromkeys(
+    shown_words = dict.fromkeys(
         diagnostic.values.get("shown") for diagnostic in scope.diagnostics[:MOST_DIAGNOSTICS]
     )
     for k, diagnostic in enumerate(scope.diagnostics[diagnostic_count:], diagnostic_count):
         if diagnostic.code is codes.UNKNOWN_NAME and not diagnostic.values.get("near"):
             name = diagnostic.values["found"]
-            number = str(len([*takewhile(name.__ne__, filter(None, words_shown))]) + 1)
+            number = str(len([*takewhile(name.__ne__, filter(None, shown_words))]) + 1)
             is_word = len(name) > 2 and name.isalpha() and not value_of(name)
             word_values = {"meaning": name, "number": number} if is_word else {}
             scope.diagnostics[k] = diagnostic._replace(

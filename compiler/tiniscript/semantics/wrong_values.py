@@ -230,6 +230,6 @@ def hints_of_def(scope: Scope, span: Span) -> dict[str, str]:
     name = scope.source[span].upper()
     for node in scope.parsed_program.body:
         if isinstance(node, Def) and node.span.start < span.start < node.span.end:
-            is_own = any(parameter.name == name for parameter in node.parameters)
-            return {"own": name, "called": node.name} if is_own else {}
+            is_parameter = any(parameter.name == name for parameter in node.parameters)
+            return {"own": name, "called": node.name} if is_parameter else {}
     return {}

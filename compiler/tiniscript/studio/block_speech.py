@@ -27,7 +27,7 @@ PROGRAM_FORMS = (
 VALUE_FORM = "SHOW({})"
 _BRACKETS = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
 _NAME = rf"[^\W\d]\w*{_BRACKETS}|[A-Z][A-Z0-9_]*\b"
-_PART = re.compile(rf" ?(?:{_NAME}|{_BRACKETS}|\d+(?:\.\d+)?\b|<>|<=|>=|[-+*/%<>=])")
+_CODE_PART = re.compile(rf" ?(?:{_NAME}|{_BRACKETS}|\d+(?:\.\d+)?\b|<>|<=|>=|[-+*/%<>=])")
 _BEGINNING = re.compile(r"(?<![\w.])(?P<word>[A-Z][A-Z0-9_]*\b|[^\W\d]\w*(?=\())")
 
 
@@ -73,7 +73,7 @@ def _end_of_code(sentence: str, start: int, kit: Kit) -> int:
     word = WORD_PATTERN.match(sentence, start)
     assert word is not None, "code begins with a name"
     ends, end = [word.end()], start
-    while part := _PART.match(sentence, end):
+    while part := _CODE_PART.match(sentence, end):
         end = part.end()
         ends.append(end)
     return next((end for end in reversed(ends) if _is_code(sentence[start:end], kit)), 0)

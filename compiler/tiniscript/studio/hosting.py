@@ -102,15 +102,15 @@ class Hosting:
         tab, connection = _connection(page, request)
         with self._lock:
             self._forget_ended()
-            own_robot = self._robot_by_page.get(page)
-            is_same = own_robot is not None and own_robot.tab == tab
-            if own_robot is not None and is_same and connection <= own_robot.connection:
-                own_robot.attending.connect_again()  # the answer was lost, or is late
+            page_robot = self._robot_by_page.get(page)
+            is_same = page_robot is not None and page_robot.tab == tab
+            if page_robot is not None and is_same and connection <= page_robot.connection:
+                page_robot.attending.connect_again()  # the answer was lost, or is late
                 return {}
             port_robots = self._robots_at(port)
             rivals = [
                 rival
-                for rival in {*port_robots, *([own_robot] if own_robot else ())}
+                for rival in {*port_robots, *([page_robot] if page_robot else ())}
                 if _is_driving(rival)
             ]
             if not all(rival.tab == tab or rival.attending.is_half_made for rival in rivals):
@@ -119,9 +119,11 @@ class Hosting:
                 rival.leave()
             if sum(map(_is_driving, self._robot_by_page.values())) >= MOST_ROBOTS:
                 return {"failure": "too_many"}
-            if own_robot is not None:
-                self._parting_robots.append(own_robot)
-            stop_count = own_robot.attending.stop_count if own_robot is not None and is_same else 0
+            if page_robot is not None:
+                self._parting_robots.append(page_robot)
+            stop_count = (
+                page_robot.attending.stop_count if page_robot is not None and is_same else 0
+            )
             hosted_robot = HostedRobot(
                 port, profile_name, str(language), tab, connection, stop_count, port_robots
             )

@@ -43,13 +43,13 @@ def report_given_way(tokens: Sequence[Token], kit: Kit, source: Source) -> list[
 
 def own_words(tokens: Sequence[Token]) -> dict[str, Token]:
     """Return the younger words that a program names something with where they first appear."""
-    words_seen: set[str] = set()
+    seen_words: set[str] = set()
     token_of_word = {}
     begins_instruction, is_in_def, depth = True, False, 0
     for k, token in enumerate(tokens):
         kind, text = token.kind, token.text
-        if kind is WORD and text in KIT_WORDS_SINCE and text not in words_seen:
-            words_seen.add(text)
+        if kind is WORD and text in KIT_WORDS_SINCE and text not in seen_words:
+            seen_words.add(text)
             is_named = tokens[k - 1].text == "DEF" if k else False
             is_set = (
                 begins_instruction

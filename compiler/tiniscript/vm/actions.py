@@ -43,7 +43,7 @@ def _add_move_handlers(direction: str, left: int, right: int) -> None:
     def powers(power: int) -> Powers:
         return left * power, right * power
 
-    def popped_powers(machine: Drive) -> Powers:
+    def pop_powers(machine: Drive) -> Powers:
         return powers(_percent(machine.task.stack.pop(), 0))
 
     def move8(machine: Drive, next_pc: int, time8: int, power: int) -> Step:
@@ -51,32 +51,32 @@ def _add_move_handlers(direction: str, left: int, right: int) -> None:
 
     def move(machine: Drive, next_pc: int) -> Step:
         def step() -> int:
-            move_powers = popped_powers(machine)
+            move_powers = pop_powers(machine)
             return machine.drive(_duration(machine.task.stack.pop()), move_powers, next_pc)
 
         return step
 
     def watch(machine: Drive, next_pc: int) -> Step:
         def step() -> int:
-            move_powers = popped_powers(machine)
+            move_powers = pop_powers(machine)
             return machine.watch(_duration(machine.task.stack.pop()), move_powers, next_pc)
 
         return step
 
     def watch_forever(machine: Drive, next_pc: int) -> Step:
-        return lambda: machine.watch(FOREVER, popped_powers(machine), next_pc)
+        return lambda: machine.watch(FOREVER, pop_powers(machine), next_pc)
 
-    def extent_move(machine: Drive) -> tuple[int, Powers]:
+    def pop_extent_move(machine: Drive) -> tuple[int, Powers]:
         percent = _percent(machine.task.stack.pop(), 0)
         return machine.robot.go_ms(machine.task.stack.pop(), percent, left != right), powers(
             percent
         )
 
     def go(machine: Drive, next_pc: int) -> Step:
-        return lambda: machine.drive(*extent_move(machine), next_pc)
+        return lambda: machine.drive(*pop_extent_move(machine), next_pc)
 
     def watch_go(machine: Drive, next_pc: int) -> Step:
-        return lambda: machine.watch(*extent_move(machine), next_pc)
+        return lambda: machine.watch(*pop_extent_move(machine), next_pc)
 
     HANDLERS[f"GO_{direction}"] = go
     HANDLERS[f"WATCH_GO_{direction}"] = watch_go

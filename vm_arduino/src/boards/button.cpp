@@ -30,14 +30,14 @@ bool button_has_moved(bool is_down) { return is_down != button.was_down; }
 
 Press button_read(bool is_down, uint32_t now_ms) {
   Button* const it = near(&button);
-  const uint8_t time_ms = static_cast<uint8_t>(now_ms);
+  const uint8_t now_low_ms = static_cast<uint8_t>(now_ms);
   if (is_down != it->was_down) {
     it->was_down = is_down;
     it->steady_ms = 0;
-  } else if (time_ms != it->last_ms && it->steady_ms < kDebounceMs) {
+  } else if (now_low_ms != it->last_ms && it->steady_ms < kDebounceMs) {
     it->steady_ms++;
   }
-  it->last_ms = time_ms;
+  it->last_ms = now_low_ms;
   if (it->state == State::kUp && is_down) {
     it->state = State::kEdge;
     return Press::kPressed;

@@ -72,7 +72,7 @@ bool firmware_radio_name(RadioName* name);
 // Whether WiFi is off after restarts: HELLO reports this.
 void firmware_wifi_rests(bool is_so);
 
-// Whether the client of a transport has shown a key of the robot.
+// Whether the client of a transport has authenticated with a key of the robot.
 bool firmware_has_key(Transport transport);
 
 // A transport has no client any more: this ends an attached run that the client started.

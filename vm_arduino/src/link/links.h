@@ -67,7 +67,7 @@ class Links {
   // Whether the current session drives already.
   bool is_driving() const { return driver_ == current_; }
 
-  // Whether the session of a transport has shown a key.
+  // Whether the session of a transport has authenticated.
   bool has_key(Transport transport) const { return yours_[place_of(transport)] != 0; }
 
   // A line of text of the current session begins. False: another one has the memory for it now.

@@ -95,7 +95,7 @@ enum class Message : uint8_t {
   kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. Answers OK as NAME does.
   kClaim = 16,  // Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does.
-  kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it shows a key of the robot.
+  kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it proves possession of a key of the robot.
   kIdentify = 18,  // Makes the robot blink and play the tune of its id.
   kUndo = 19,  // Brings back the previous program. The running program ends; no program starts.
   kText = 20,  // Sets whether lines of text may drive a robot with an owner, until power-off.

@@ -58,13 +58,13 @@ void Reader::resolve(uint8_t at) {
 
 // Emits the shortest instruction that pushes `value_` thousandths, or less them.
 void Reader::emit_number(bool is_minus) {
-  uint32_t operand = value_;
+  uint32_t significand = value_;
   uint8_t places = 3;
-  while (places != 0 && operand % 10 == 0) {
-    operand /= 10;
+  while (places != 0 && significand % 10 == 0) {
+    significand /= 10;
     places--;
   }
-  uint16_t number = limited(operand);
+  uint16_t number = limited(significand);
   const uint16_t most = static_cast<uint16_t>(uint16_t{32767} + is_minus);
   uint8_t op = byte_of(Op::kPush16);
   uint8_t bytes = 2;
@@ -96,7 +96,7 @@ void Reader::emit_number(bool is_minus) {
       bytes = 4;
     }
   }
-  operand = bytes == 4 ? value_ : number;
+  uint32_t operand = bytes == 4 ? value_ : number;
   if (is_minus) operand = 0 - operand;
   emit(op);
   for (; bytes != 0; bytes--) {

@@ -45,8 +45,10 @@ def find_robots(known_ports: list[str], language: str) -> ReachableRobots:
     reach = ReachableRobots({}, [], [], [])
     reasons = set()  # one note covers two missing packages
     with ThreadPoolExecutor(2) as pool:
-        searches = [(kind, pool.submit(search, known_ports, language))
-                    for kind, search in ((BLE, _find_by_radio), (TCP, _find_by_name))]  # fmt: skip
+        searches = [
+            (kind, pool.submit(search, known_ports, language))
+            for kind, search in ((BLE, _find_on_bluetooth), (TCP, _find_on_network))
+        ]
         for kind, search in searches:
             try:
                 reach_part = search.result()
@@ -61,7 +63,7 @@ def find_robots(known_ports: list[str], language: str) -> ReachableRobots:
     return reach
 
 
-def _find_by_radio(known_ports: list[str], language: str) -> ReachableRobots:
+def _find_on_bluetooth(known_ports: list[str], language: str) -> ReachableRobots:
     devices = ports.find_bluetooth_robots()
     names = [canonical_name(device.name) for device in devices]
     rows = []
@@ -74,7 +76,7 @@ def _find_by_radio(known_ports: list[str], language: str) -> ReachableRobots:
     return _name_robots(rows, canonical_of)
 
 
-def _find_by_name(known_ports: list[str], language: str) -> ReachableRobots:
+def _find_on_network(known_ports: list[str], language: str) -> ReachableRobots:
     announced_robots = ports.find_announced_robots()
     rows = []
     for announced_robot in announced_robots:

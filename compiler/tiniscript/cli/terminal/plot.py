@@ -92,8 +92,8 @@ class Plot:
         for values in self.values_by_name.values():
             while len(values) > 1 and values[1][0] < begin_ms:
                 values.popleft()
-        values_shown = [value for _, value in chain.from_iterable(self.values_by_name.values())]
-        low, high, step = scale(min(values_shown, default=0), max(values_shown, default=1000))
+        shown_values = [value for _, value in chain.from_iterable(self.values_by_name.values())]
+        low, high, step = scale(min(shown_values, default=0), max(shown_values, default=1000))
         rows = min(MOST_ROWS, height - 1)
         ticks = [as_text(value) for value in range(low, high + 1, step)]
         # The margin never shrinks.

@@ -66,7 +66,7 @@ class Option(NamedTuple):
         """Return the name of its value in help."""
         return verb_text(f"value/{self.value}", language) or self.value
 
-    def is_taken_by(self, verb: str) -> bool:
+    def applies_to(self, verb: str) -> bool:
         return self.verbs == "*" or verb in self.verbs.split()
 
 
@@ -325,7 +325,7 @@ OPTIONS: tuple[Option, ...] = (
 
 def options_of(verb: str) -> list[Option]:
     """Return the options of a command, or of `tsc` itself, in the order of help."""
-    return [option for option in OPTIONS if option.is_taken_by(verb)]
+    return [option for option in OPTIONS if option.applies_to(verb)]
 
 
 def selecting_options_of(command: str) -> list[Option]:

@@ -211,9 +211,9 @@ class _Sketch:
         statements.variables_set_by_calls = self.argument_variables - {
             *procedure.values
         }  # the DEF sets these itself
-        variables_read = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
+        read_variables = ir.referenced_numbers("VARIABLE", ir.walk(procedure.body))
         for k in procedure.values:
-            if k not in variables_read:  # a compiler would warn about an unused variable
+            if k not in read_variables:  # a compiler would warn about an unused variable
                 statements.add_line(f"(void){self.sketch_names.variables[k]};")
         statements.add_body(procedure.body)
         body, statements.lines = statements.lines, []

@@ -19,9 +19,9 @@ from tiniscript.semantics.comparisons import (
     Comparison,
     answer_of,
     answer_of_both,
-    can_come_true,
     comparison_of,
     is_one_of_many,
+    is_usable_in_until,
     looks_ahead,
 )
 from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, LintContext
@@ -250,8 +250,8 @@ class _Conditions:
             for k, device in enumerate(self._kit.readings)
             if device.name == sensor_of_variable[name]
         )
-        terms_used = self._context.variables.terms_used_in(outermost)
-        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & terms_used:
+        used_terms = self._context.variables.terms_used_in(outermost)
+        if {ir.Term("SENSOR", sensor), ir.Term("VARIABLE", variables[0])} & used_terms:
             return  # it is shown together with the current measurement, or the rounds depend on it
         fix = f"SHOW({sensor_of_variable[name]})"
         self._context.report(
@@ -391,9 +391,9 @@ class _Conditions:
         Return "" if there is none to write, as when a move in this direction never makes it true.
         """
         sensor_condition = self._condition_of_sensors(condition, sensor_of_variable)
-        can_become_true = can_come_true(sensor_condition, direction, self._kit)
+        is_usable = is_usable_in_until(sensor_condition, direction, self._kit)
         text = self._context.condition_text(span, word)
-        if not can_become_true and (can_become_true is not None or direction):
+        if not is_usable and (is_usable is not None or direction):
             return ""
         return re.sub(
             r"[A-Za-z_]\w*", lambda match: sensor_of_variable.get(match[0].upper(), match[0]), text

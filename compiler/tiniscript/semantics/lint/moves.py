@@ -11,7 +11,12 @@ from tiniscript.base.fixed_point import as_text
 from tiniscript.base.source import Span
 from tiniscript.diagnostics import codes
 from tiniscript.semantics import ir
-from tiniscript.semantics.comparisons import asks_if_near, can_come_true, is_distance, looks_ahead
+from tiniscript.semantics.comparisons import (
+    asks_if_near,
+    is_distance,
+    is_usable_in_until,
+    looks_ahead,
+)
 from tiniscript.semantics.lint.context import STANDING_STATEMENTS, BodyContext, LintContext
 from tiniscript.semantics.optimizer import known_value
 from tiniscript.syntax.operators import OPPOSITES, SIGN_OF
@@ -65,8 +70,8 @@ class _LateConditions:
                 continue
             condition = branch.arms[0].condition
             sensor = self._distance_in(condition)
-            can_become_true = can_come_true(condition, statement.direction, self._kit)
-            if sensor is not None and can_become_true:
+            is_usable = is_usable_in_until(condition, statement.direction, self._kit)
+            if sensor is not None and is_usable:
                 condition_text = self._context.condition_text(branch.arms[0].span, "IF")
                 self._report_late_check(statement, sensor, condition_text)
                 late_indexes.add(index)
@@ -82,7 +87,7 @@ class _LateConditions:
         if _only_stop(branch) or not isinstance(move, ir.Move):
             return
         is_blind = self._is_blind(move, LONG_AFTER_MS)
-        if is_blind and can_come_true(condition, move.direction, self._kit):
+        if is_blind and is_usable_in_until(condition, move.direction, self._kit):
             self._report_late_check(
                 move, sensor, self._context.condition_text(branch.arms[0].span, "IF")
             )
@@ -166,15 +171,15 @@ class _LateConditions:
         """Return the words for an S before or after a move, with a repair where one is sure."""
         stop_text, move_text = self._source[stop.span], self._source[move.span]
         condition = branch.arms[0].condition
-        can_become_true = can_come_true(condition, move.direction, self._kit)
+        is_usable = is_usable_in_until(condition, move.direction, self._kit)
         if move.direction == "B" and self._distance_in(condition) is not None:
-            can_become_true = False  # sensors do not see behind the robot
+            is_usable = False  # sensors do not see behind the robot
         condition_text = (
-            self._context.condition_text(branch.arms[0].span, "IF") if can_become_true else ""
+            self._context.condition_text(branch.arms[0].span, "IF") if is_usable else ""
         )
         values = {"found": stop_text, "move": "", "next": "", gap: move_text}
         values["fix"] = f"{move_text} UNTIL({condition_text})" if condition_text else ""
-        if not can_become_true:
+        if not is_usable:
             values["needless" if gap == "move" else "behind"] = move_text
         return values
 

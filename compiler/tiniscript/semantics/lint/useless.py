@@ -228,11 +228,11 @@ def _leading_instructions(statements: Sequence[ir.Statement], source: Source) ->
 
 def report_unused_variables(context: LintContext) -> None:
     program = context.program
-    variables_used = ir.referenced_numbers("VARIABLE", context.statements)
+    used_variables = ir.referenced_numbers("VARIABLE", context.statements)
     owners = {k: procedure for procedure in program.procedures for k in procedure.values}
     for statement in context.statements:
-        if isinstance(statement, ir.Assign) and statement.variable not in variables_used:
-            variables_used.add(statement.variable)  # reported once
+        if isinstance(statement, ir.Assign) and statement.variable not in used_variables:
+            used_variables.add(statement.variable)  # reported once
             name = program.variables[statement.variable]
             device = name if lexicon_meaning(name, "device") else ""
             values = {"name": name, "device": device, "example": use_of(name)}
@@ -243,20 +243,20 @@ def report_unused_variables(context: LintContext) -> None:
 
 def report_unused_readings(context: LintContext) -> None:
     """`SI|DISTANCE`, if nothing asks for the distance: it is measured, and nobody sees it."""
-    sensors_asked = ir.referenced_numbers("SENSOR", context.statements)
+    referenced_sensors = ir.referenced_numbers("SENSOR", context.statements)
     for statement in context.statements:
-        if isinstance(statement, ir.Read) and statement.sensor not in sensors_asked:
-            sensors_asked.add(statement.sensor)  # reported once
+        if isinstance(statement, ir.Read) and statement.sensor not in referenced_sensors:
+            referenced_sensors.add(statement.sensor)  # reported once
             name = context.kit.readings[statement.sensor].name
             context.report(codes.UNUSED_READING, statement.span, name=name, fix=f"SHOW({name})")
 
 
 def report_unused_defs(context: LintContext) -> None:
-    numbers_called = {
+    called_numbers = {
         statement.procedure for statement in context.statements if isinstance(statement, ir.Call)
     }
     for number, procedure in enumerate(context.program.procedures):
-        if number not in numbers_called:
+        if number not in called_numbers:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
             values = {"name": procedure.name}
             if procedure.values:

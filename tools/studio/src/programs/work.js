@@ -16,10 +16,10 @@ const EARLIER_WORLDS_KEY = 'tiniscript.worlds_before'; // the texts of those bef
 export const OWN_WORLD = ':own'; // no name of a shipped world
 export const MOST_CHARACTERS = 1_000_000; // characters
 
-const MOST_OTHER_WORLDS = 5;
+const MOST_OTHER_TEXTS = 5;
 
-/** The worlds of this tab that may be in the place: others there are of another tab. @type {Set<string>} */
-let ownWorlds = new Set();
+/** This tab's worlds that may be in storage; others there are another tab's. @type {Set<string>} */
+let tabWorldTexts = new Set();
 
 /** @returns {Work | null} */
 export function loadWork() {
@@ -29,13 +29,13 @@ export function loadWork() {
 /** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
 export function loadWorldTexts() {
   const newestText = loadText(WORLD_KEY, 'sessionStorage') || loadText(WORLD_KEY);
-  const earlierTexts = loadEarlierWorlds('sessionStorage') ?? loadEarlierWorlds() ?? [];
-  ownWorlds = new Set([newestText, ...earlierTexts]);
+  const earlierTexts = loadEarlierTexts('sessionStorage') ?? loadEarlierTexts() ?? [];
+  tabWorldTexts = new Set([newestText, ...earlierTexts]);
   return { newest: newestText, before: earlierTexts };
 }
 
 /** @param {import('../page/kept.js').StoreName} [storeName] @returns {string[] | null} */
-function loadEarlierWorlds(storeName) {
+function loadEarlierTexts(storeName) {
   const texts = loadJson(EARLIER_WORLDS_KEY, storeName);
   return Array.isArray(texts) ? texts.filter((worldText) => typeof worldText === 'string' && worldText) : null;
 }
@@ -57,21 +57,21 @@ export function storeWork(work) {
  * @returns {boolean}
  */
 export function storeWorldTexts(newestText, earlierTexts) {
-  for (const worldText of [newestText, ...earlierTexts]) ownWorlds.add(worldText);
+  for (const worldText of [newestText, ...earlierTexts]) tabWorldTexts.add(worldText);
   // What lasts was put there by the tab that changed last, with the worlds of all tabs as it found them.
-  const otherWorlds = [...new Set(loadLastingWorlds())].filter((worldText) => !ownWorlds.has(worldText)).slice(0, MOST_OTHER_WORLDS);
+  const otherTexts = [...new Set(loadLastingTexts())].filter((worldText) => !tabWorldTexts.has(worldText)).slice(0, MOST_OTHER_TEXTS);
   let charactersLeft = MOST_CHARACTERS;
-  const fittingWorlds = [...earlierTexts, ...otherWorlds].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
-  const ownEarlierTexts = fittingWorlds.filter((worldText) => earlierTexts.includes(worldText));
-  const areEarlierStored = storeInBothStorages(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlierTexts), JSON.stringify(fittingWorlds));
+  const fittingTexts = [...earlierTexts, ...otherTexts].filter((worldText) => (charactersLeft -= worldText.length) >= 0);
+  const ownEarlierTexts = fittingTexts.filter((worldText) => earlierTexts.includes(worldText));
+  const areEarlierStored = storeInBothStorages(EARLIER_WORLDS_KEY, JSON.stringify(ownEarlierTexts), JSON.stringify(fittingTexts));
   const isStored = newestText ? storeInBothStorages(WORLD_KEY, newestText) && areEarlierStored : areEarlierStored;
-  if (isStored) ownWorlds = new Set([newestText, ...earlierTexts]);
+  if (isStored) tabWorldTexts = new Set([newestText, ...earlierTexts]);
   return isStored;
 }
 
 /** Those that the next tab would find. @returns {string[]} */
-function loadLastingWorlds() {
-  return [loadText(WORLD_KEY), ...(loadEarlierWorlds() ?? [])].filter(Boolean);
+function loadLastingTexts() {
+  return [loadText(WORLD_KEY), ...(loadEarlierTexts() ?? [])].filter(Boolean);
 }
 
 /** @param {string} key @param {string} content @param {string} [lastingContent] for the next tab @returns {boolean} whether that is kept, too */

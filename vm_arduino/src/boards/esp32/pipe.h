@@ -147,7 +147,7 @@ class Pipe {
 
   bool is_connected() const { return __atomic_load_n(&is_connected_, __ATOMIC_ACQUIRE); }
 
-  // Whether the client has shown a key: the main loop sets it, the radio's task reads it.
+  // Whether the client has authenticated: the main loop sets it, the radio's task reads it.
   void note_key(bool has_key) { __atomic_store_n(&has_key_, has_key, __ATOMIC_RELAXED); }
   bool has_key() const { return __atomic_load_n(&has_key_, __ATOMIC_RELAXED); }
 
