@@ -88,6 +88,7 @@ def meet(a: dict[str, float], b: dict[str, float]) -> bool:
 # Opens one group after the other: the kinds of the blocks that can be dragged out.
 OFFERED_SCRIPT = """() =>
   [...document.querySelectorAll('.blocklyToolboxCategory')].flatMap((row) => {
+  row.scrollIntoView({ block: 'center' });
   const { x, y, width, height } = row.getBoundingClientRect();
   const words = document.elementFromPoint(x + width / 2, y + height / 2);
   const press = () => ['pointerdown', 'pointerup'].forEach((type) =>

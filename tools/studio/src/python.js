@@ -75,7 +75,7 @@ import { watchPromise } from './page/progress.js';
 
 /**
  * @typedef {object} Parting
- * @property {string} what
+ * @property {string} outcome
  * @property {number} agreed
  * @property {number} line
  * @property {{ms: number, event: string} | null} robot

@@ -808,7 +808,7 @@ export class SimulatorPanel {
 }
 
 /** Where a recorded run and the one that was played part, in words. @param {import('../python.js').Parting} parting */
-function partingText({ what: key, agreed, line, robot, virtual, sensor, began_ms }) {
+function partingText({ outcome: key, agreed, line, robot, virtual, sensor, began_ms }) {
   /** @param {{ms: number, event: string} | null} row */
   const rowText = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
   const placeText = line ? text('line', { line }) : text('record_end');
