@@ -411,6 +411,7 @@ export class Views {
           return;
         }
         this.#shownText = newText;
+        this.#isForced = false; // whoever types on sees no grey blocks
         this.#changeCount = 0;
         this.#blocks.setGivenBlocks(isShippedProgram(newText) ? form : null);
         this.#blocks.show(form);
