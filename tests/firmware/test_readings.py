@@ -11,8 +11,15 @@ from math import inf
 import pytest
 
 from tests.support.debugging import DebuggedRobot
+from tests.support.images import image_of
 from tests.support.robot_on_host import KIT
-from tests.support.sensed_runs import BYTE_TICKS, LARGEST_DELAY_MS, is_steady, sensed_run
+from tests.support.sensed_runs import (
+    BYTE_TICKS,
+    LARGEST_DELAY_MS,
+    is_steady,
+    run_with_sensors,
+    sensed_run,
+)
 from tests.support.shown_in_loops import largest_difference_ms, program
 from tiniscript.link import handshake
 from tiniscript.link.frames import Frame, encode_frame
@@ -24,6 +31,7 @@ from tiniscript.link.session import Session
 MOST_BYTES = 17  # bytes of READING on the line, as for SHOW
 FAST_TICKS = 0  # a line without delay
 READING = BY_NAME["READING"]
+TOO_MANY_READINGS = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
 
 
 @pytest.mark.sampled("seed", keep=10)
@@ -78,8 +86,7 @@ def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
 
 
 def test_a_too_slow_line_is_reported() -> None:
-    text = "SI|LOOP(FOREVER);X = LIGHT_L + LIGHT_R + DISTANCE;W(0.005);END_LOOP"
-    run = sensed_run(text, 1, True, BYTE_TICKS, most_ms=5)
+    run = sensed_run(TOO_MANY_READINGS, 1, True, BYTE_TICKS, most_ms=5)
     assert [event for event in run.readings if event.sensor & UNTOLD]
 
 
@@ -101,6 +108,42 @@ def test_a_reading_message_is_no_longer_than_a_value_message() -> None:
         seq, epoch = rng.randrange(256), rng.randrange(256)
         wire = encode_frame(Frame(READING.number, seq, epoch, payload, is_reply=True))
         assert len(wire) <= MOST_BYTES
+
+
+def drawn_program(rng: random.Random) -> str:
+    """Return a program that reads each sensor at once, and whose values leave readings room."""
+    text = program(rng).replace("X = 1", "X = DISTANCE + LIGHT_L + LIGHT_R", 1)
+    return text.replace("SHOW(", "W(0.01)\nSHOW(")
+
+
+@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.parametrize("seed", range(40))
+def test_a_run_reports_the_readings_that_a_fresh_robot_reports(seed: int) -> None:
+    """Whatever has run before on whatever line, and whenever that was stopped."""
+    rng = random.Random(seed)
+    text = rng.choice((drawn_program(rng), TOO_MANY_READINGS))
+    first_text = rng.choice((text, drawn_program(rng)))
+
+    values = [rng.choice((0, 100)) for _ in KIT.sensors]  # 0 is what a robot assumes at first
+
+    def told_by(robot: DebuggedRobot) -> list[tuple[int, int, int]]:
+        if text != first_text:  # the same program starts anew, with its readings still to come
+            upload = robot.session.upload(image_of(text), runs=False, saves=False)
+            assert robot.robot.until(robot.session, upload) == OK
+        robot.robot.pace(FAST_TICKS)
+        robot.robot.sense(*values)
+        robot.start()
+        events = [event for event in robot.talk(300) if isinstance(event, ReadingEvent)]
+        return [(event.sensor, event.value, event.ms) for event in events
+                if event.run == robot.session.run and event.ms < 250]  # fmt: skip
+
+    robots = [DebuggedRobot(first_text) for _ in range(2)]
+    for robot in robots:
+        assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
+    line_ticks, run_ms = rng.choice((FAST_TICKS, BYTE_TICKS)), rng.choice((5, 60, 300))
+    run_with_sensors(robots[0], rng, line_ticks, most_ms=5, run_ms=run_ms)
+    used_told, fresh_told = (told_by(robot) for robot in robots)
+    assert fresh_told and used_told == fresh_told, f"{first_text}\nthen {text}"
 
 
 def test_other_sessions_get_no_readings() -> None:

@@ -6,7 +6,6 @@ Its line takes as long for a byte as one of 9600 baud, or a little more or less.
 from __future__ import annotations
 
 import random
-from struct import pack
 from typing import NamedTuple
 
 from tests.machines.host_firmware import TICKS
@@ -38,16 +37,27 @@ def sensed_run(
     """Run a program while its sensors' readings change, with or without reporting them."""
     robot = DebuggedRobot(text)
     assert robot.robot.until(robot.session, robot.session.tell_readings(is_told)) == OK
-    rng, readings = random.Random(seed), [[0] for _ in KIT.sensors]
+    return run_with_sensors(robot, random.Random(seed), byte_ticks, most_ms)
+
+
+def run_with_sensors(
+    robot: DebuggedRobot,
+    rng: random.Random,
+    byte_ticks: int,
+    most_ms: int = 30,
+    run_ms: int = RUN_MS,
+) -> SensedRun:
+    """Start the program that a robot holds, and change its sensors' readings meanwhile."""
+    readings = [[0] for _ in KIT.sensors]
+    robot.robot.sense(*(0 for _ in KIT.sensors))
     first_row = len(robot.robot.did)
     robot.start()
-    robot.robot.ask(b"P", bytes([byte_ticks]))
-    events, end_ms = list[Event](), robot.robot.now_ms + RUN_MS
+    robot.robot.pace(byte_ticks)
+    events, end_ms = list[Event](), robot.robot.now_ms + run_ms
     while robot.robot.now_ms < end_ms:
         for row in readings:
             row.append(row[-1] if rng.random() < 0.5 else rng.randrange(0, 400_000, 100))
-        values = [row[-1] for row in readings]
-        robot.robot.ask(b"V", pack(f"<{len(values)}i", *values))
+        robot.robot.sense(*(row[-1] for row in readings))
         events += robot.talk(rng.randint(1, most_ms))
     rows = (line.split(" ", 1) for line in robot.robot.did[first_row:])
     return SensedRun([(float(ms), action) for ms, action in rows], events, readings)
