@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import re
 from collections.abc import Callable
 
@@ -335,9 +336,9 @@ def test_a_full_nvs_is_reported_and_the_previous_program_stays(room: int) -> Non
 # -- failures
 
 
-def driving_robot(text: str = AWAY_PROGRAM) -> Esp32Robot:
+def driving_robot(text: str = AWAY_PROGRAM, is_detached: bool = False) -> Esp32Robot:
     robot, session = switched_on(Esp32Robot()), computer()
-    send(robot, session, text)
+    send(robot, session, text, is_detached=is_detached)
     robot.talk(session, 100)
     assert actions_of(robot) == ["MOTORS 80 80"]
     robot.did.clear()
@@ -384,6 +385,20 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     restarted_robot = Esp32Robot(kept_memory=robot.read_kept(), reset=TASK_WATCHDOG)
     restarted_robot.wait(200)
     assert restarted_robot.is_latched
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_only_a_stall_that_is_too_long_by_itself_stops_a_robot(seed: int) -> None:
+    """However many short ones there have been, and however briefly the main loop ran between."""
+    rng = random.Random(seed)
+    robot = driving_robot(is_detached=True)
+    for _ in range(40):
+        robot.hang(rng.choice((1, 15, 50, 99)))
+        robot.wait(rng.choice((1, 1, 3, 25)))
+    assert robot.did == []
+    robot.hang(111)  # a look in every 10 ms finds it
+    robot.wait(1)
+    assert actions_of(robot)[0] == "MOTORS 0 0"
 
 
 @pytest.mark.parametrize(
