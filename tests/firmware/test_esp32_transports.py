@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
+from functools import lru_cache
 
 import pytest
 
@@ -537,24 +539,61 @@ def test_a_pasted_program_waits_until_the_robot_has_room(pace: str, comment: byt
     assert overrun(robot) == 0
 
 
+def hold_radio(robot: Esp32Robot, end: End, is_held: bool) -> None:
+    """Let the radio take no more bytes for its client, or let it go on."""
+    robot.radio("k" if isinstance(end, LowEnergy) else "Z", bytes([is_held]))
+
+
 @pytest.mark.parametrize("make", RADIOS)
 def test_lines_wait_while_their_answers_are_not_read(make: Make) -> None:
     """Each has an answer, which a client reads late; earlier lines are not lost either."""
     robot = boot()
     end, client = make(robot), RawClient()
-    if isinstance(end, LowEnergy):
-        robot.radio("k", b"\1")
-    else:
-        robot.radio("Z", b"\1")
+    hold_radio(robot, end, True)
     end.send(b"".join(b"SHOW(%d)\r\n" % (100 + k) for k in range(90)))
     robot.wait(3000)
-    if isinstance(end, LowEnergy):
-        robot.radio("k", b"\0")
-    else:
-        robot.radio("Z", b"\0")
+    hold_radio(robot, end, False)
     talk(robot, [(end, client)], 9000)
     assert b"lost" not in client.received and client.received.rstrip().endswith(b"// DONE")
     assert overrun(robot) == 0
+
+
+WHOLE_LINES = (b"HELP\n", b"PING|CHECK_CONNECTION\n", b"SI|SHOW(7)\n", b"FOO(1)\n",
+               b"HELP\nFOO(1)\n")  # fmt: skip
+LONGEST_WRITE_MS = 1200  # the core's `write` gives up after a second
+
+
+@lru_cache
+def answer_by_cable(line: bytes) -> bytes:
+    client = RawClient(line)
+    talk(boot(), [(None, client)], 400)
+    return client.received
+
+
+@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.parametrize("make", RADIOS)
+@pytest.mark.parametrize("seed", range(10))
+def test_a_client_gets_all_of_its_answers_and_nothing_else(seed: int, make: Make) -> None:
+    """However many bytes it has got, wherever the client before it left, and whenever the radio
+    takes them.
+    """
+    rng = random.Random(seed)
+    robot = boot()
+    for _ in range(rng.randrange(3)):
+        end = make(robot)
+        hold_radio(robot, end, rng.random() < 0.5)
+        talk(robot, [(end, RawClient(rng.choice(WHOLE_LINES)))], rng.randrange(1, 60))
+        end.leave()
+        talk(robot, [], LONGEST_WRITE_MS)
+        hold_radio(robot, end, False)
+    end, client = make(robot), RawClient()
+    for _ in range(12):
+        client.to_send, client.received = (line := rng.choice(WHOLE_LINES)), b""
+        hold_radio(robot, end, rng.random() < 0.5)
+        talk(robot, [(end, client)], rng.choice((5, 30, 60, LONGEST_WRITE_MS)))
+        hold_radio(robot, end, False)
+        talk(robot, [(end, client)], 300)
+        assert client.received == answer_by_cable(line)
 
 
 def press_keys(robot: Esp32Robot, clients: Ends, session: Session, keys: int = 1) -> str:

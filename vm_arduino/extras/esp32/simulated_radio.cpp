@@ -403,9 +403,9 @@ void BluetoothSerial::onData(BluetoothSerialDataCb cb) {
 }
 
 size_t BluetoothSerial::write(const uint8_t* buffer, size_t size) {
-  if (is_port_stuck) {
-    vTaskDelay(kPortWaitMs);
-    return 0;
+  for (uint16_t ms = 0; is_port_stuck; ms++) {
+    if (ms == kPortWaitMs) return 0;
+    vTaskDelay(1);
   }
   const Lock lock(guard);
   port_out.append(reinterpret_cast<const char*>(buffer), size);

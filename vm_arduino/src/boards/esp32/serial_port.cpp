@@ -21,6 +21,13 @@ BluetoothSerial port;
 uint32_t handle;    // of the client; 0: none
 uint32_t heard_ms;  // when something was heard of the client, or it came
 
+uint8_t clients;  // so far: the core's task writes it, the radio's reads it
+
+// The radio's task: bytes that wait, and for which client.
+uint8_t waiting[64];
+size_t length;
+uint8_t its_client;
+
 Pipe& pipe() { return radio_pipe(Transport::kSerialPort); }
 
 // The core sends a second client away, and the first one stays. The next try of the second one
@@ -30,6 +37,7 @@ void on_client(uint32_t found) {
   if (handle == 0) {
     handle = found;
     heard_ms = now_ms;
+    __atomic_store_n(&clients, static_cast<uint8_t>(clients + 1), __ATOMIC_RELAXED);
     pipe().begin();
   } else if (now_ms - heard_ms >= kPlaceMs) {
     esp_spp_disconnect(handle);
@@ -59,12 +67,15 @@ bool spp_begin() {
   return port.begin(radio_name().name);
 }
 
-// `write` blocks while the peer accepts no bytes, up to a second: only this task waits.
+// `write` blocks while the peer accepts no bytes, up to a second: only this task waits. Then it has
+// accepted none.
 void spp_turn() {
-  uint8_t bytes[64];
-  size_t length = 0;
-  while (pipe().is_connected() && length < sizeof bytes && pipe().take(bytes + length)) length++;
-  if (length != 0) port.write(bytes, length);
+  const uint8_t found = __atomic_load_n(&clients, __ATOMIC_RELAXED);
+  if (found != its_client) length = 0;  // the waiting bytes are for an earlier client
+  its_client = found;
+  if (!pipe().is_connected()) return;
+  while (length < sizeof waiting && pipe().take(waiting + length)) length++;
+  if (length != 0 && port.write(waiting, length) != 0) length = 0;
 }
 
 }  // namespace tiniscript
