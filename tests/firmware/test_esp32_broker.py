@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import random
+import socket
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import NamedTuple
 
 import pytest
@@ -26,7 +29,7 @@ from tests.support.esp32_wifi import (
     school_in_reach,
 )
 from tests.support.images import image_of
-from tests.support.mosquitto import AtBroker, Mosquitto
+from tests.support.mosquitto import LOCAL_ADDRESS, AtBroker, Mosquitto
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import AWAY_PROGRAM, Ends, upload_text, wait_for_outcome
 from tests.support.waiting import HANG_LIMIT_S
@@ -38,6 +41,8 @@ from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES
 from tiniscript.link.session import Session
 from tiniscript.link.transports.broker import ROOT, Access, Broker, RobotPresence
 
+LONGEST_RETRY_MS = 5000  # until a robot tries again to reach its broker
+LONGEST_TALK_MS = 200
 RECONNECT_MS = 300  # longest delay after a connection has ended
 BROKER_KEY = b"broker"
 
@@ -372,6 +377,63 @@ def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], failu
     talk(robot, [], AUTHORITY_MS + 3000)
     assert upload_text(robot, [(AtBroker(robot, end), next_client)], next_client) == "OK"
     end.close()
+
+
+# What a broker says to a robot: the answers to CONNECT and SUBSCRIBE, and a message of a client.
+BROKER_ANSWERS = {
+    0x10: b"\x20\2\0\0",
+    0x82: b"\x90\4\0\1\0\0\x30\x2c\0\4tini" + bytes(range(1, 39)),
+}
+
+
+class CuttingBroker:
+    """A broker in the chip's time that closes each connection after so many bytes of its own."""
+
+    def __init__(self) -> None:
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.server.setblocking(False)
+        self.connection: socket.socket | None = None
+
+    def connect(self, robot: Esp32Robot, byte_count: int) -> bytes:
+        """Await the robot, and talk until the end of the connection; return what was heard."""
+        heard, end_ms = b"", robot.now_ms + LONGEST_RETRY_MS
+        while robot.now_ms < end_ms:
+            robot.wait(5 if self.connection else 50)
+            if self.connection is None:
+                with suppress(BlockingIOError):
+                    self.connection = self.server.accept()[0]
+                    self.connection.setblocking(False)
+                    end_ms = robot.now_ms + LONGEST_TALK_MS
+                continue
+            data = b""
+            with suppress(BlockingIOError):
+                data = self.connection.recv(4096)
+            heard += data
+            answer = BROKER_ANSWERS.get(data[0], b"")[:byte_count] if data else b""
+            self.connection.sendall(answer)
+            byte_count -= len(answer)
+            if byte_count == 0:
+                break
+        assert self.connection, "the robot comes back"
+        self.connection.close()
+        self.connection = None
+        return heard
+
+
+@pytest.mark.sampled("seed", keep=2)
+@pytest.mark.parametrize("seed", range(12))
+def test_a_robot_returns_to_a_broker_that_was_lost_after_any_byte(seed: int) -> None:
+    rng = random.Random(seed)
+    cutting_broker = CuttingBroker()
+    port = cutting_broker.server.getsockname()[1]
+    robot, owner = join_network(Keys())
+    settings = wifi.BrokerSettings(LOCAL_ADDRESS, port, "aula", b"", b"")
+    assert wait_for_outcome(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+    most = sum(map(len, BROKER_ANSWERS.values()))
+    for _ in range(3):
+        cutting_broker.connect(robot, rng.randrange(1, most))
+        assert b"+tini-5678" in cutting_broker.connect(robot, most + 1)
+    cutting_broker.server.close()
 
 
 def test_a_client_that_leaves_or_hangs_ends_its_run_and_makes_room(broker: Mosquitto) -> None:
