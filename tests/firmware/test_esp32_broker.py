@@ -78,6 +78,13 @@ def start_drive(broker: Mosquitto, text: str = AWAY_PROGRAM, keys: Keys | None =
     return Drive(robot, teacher, owner, clients)
 
 
+def talk_until_still(robot: Esp32Robot, clients: Ends, limit_ms: int) -> None:
+    end_ms = robot.now_ms + limit_ms
+    while motor_state(robot) != "MOTORS 0 0":
+        talk(robot, clients, 5)
+        assert robot.now_ms < end_ms
+
+
 def test_lack_of_memory_for_a_broker_is_reported_and_the_connection_retried(
     broker: Mosquitto,
 ) -> None:
@@ -103,8 +110,7 @@ def test_the_owner_drives_over_a_broker_and_one_message_stops_the_class(
     talk(robot, clients, 1500)
     assert motor_state(robot) == "MOTORS 80 80"
     other_client.stop("aula")
-    talk(robot, clients, 100)
-    assert motor_state(robot) == "MOTORS 0 0"
+    talk_until_still(robot, clients, DEAD_MAN_MS)
     owner.events()
     assert upload_text(robot, clients, owner) == "OK"
     assert motor_state(robot) == "MOTORS 80 80"
@@ -361,11 +367,7 @@ def test_losing_the_broker_ends_the_run(brokers: Callable[..., Mosquitto], failu
         own_broker.stall()
     else:
         set_network_in_reach(robot, "", "")
-    begun_ms = robot.now_ms
-    limit_ms = DEAD_MAN_MS if failure == "stalls" else RECONNECT_MS
-    while motor_state(robot) != "MOTORS 0 0":
-        talk(robot, clients, 5)
-        assert robot.now_ms < begun_ms + limit_ms
+    talk_until_still(robot, clients, DEAD_MAN_MS if failure == "stalls" else RECONNECT_MS)
     own_broker.stall(False)
     if failure == "dies":
         own_broker.start()
