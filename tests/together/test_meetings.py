@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from functools import partial
 from itertools import count
 from random import Random
@@ -326,6 +327,15 @@ def edits(page: Page, rng: Random) -> None:
     page.leave()
 
 
+def retypes(page: Page, rng: Random) -> None:
+    """Give an instruction another value."""
+    k = rng.randrange(1, len(page.lines))
+    value = f"({rng.randrange(1, 99)},"
+    page.type([re.sub(r"\(\d+,", value, row) if row_number == k else row
+               for row_number, row in enumerate(page.lines)], k)  # fmt: skip
+    page.leave()
+
+
 def program_of(page: Page) -> list[str]:
     return [row.rstrip(";") for row in page.lines]
 
@@ -394,6 +404,30 @@ def test_text_typed_before_and_after_a_reload_is_in_the_program(seed: int) -> No
     typed_text = program_of(two.ana)
     two.meet()
     assert program_of(two.luz) == program_of(two.ana) == typed_text and not two.ana.refusals
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_reload_shows_what_the_news_show(seed: int) -> None:
+    """Whatever both have changed, and whatever the computer has refused meanwhile."""
+    rng, two = Random(seed), PagePair(FLAT_PROGRAM)
+    for _ in range(60):
+        match rng.choice(("edit", "retype", "retype", "luz", "luz", "lose", "hear", "reload")):
+            case "edit":
+                edits(two.ana, rng)
+            case "retype":
+                retypes(two.ana, rng)
+            case "luz":
+                edits(two.luz, rng)
+                two.sends(two.luz)
+            case "reload":
+                stored_data = json.loads(json.dumps(two.ana.store_data()))
+                two.hears(two.ana)
+                reloaded_page = Page.of("a", two.program.news("a", -1, ""), stored_data)
+                assert reloaded_page.lines == two.ana.lines
+                two.ana = reloaded_page
+            case message:
+                exchange(two, message)
+    two.meet()
 
 
 def data(page: Page) -> Any:
