@@ -2598,10 +2598,11 @@ const PARTS = {
     return async (random, isGood) => {
       const late_ms = isGood ? 5 : 5 + random.below(700);
       const robots = ['A', 'B'].map((name) => ({ name, late_ms: random.of([100, 900, 1500, 1e9]) }));
+      const lossRate = isGood ? 0 : random.of([0.2, 0.2, 0.6, 1]);
       let began_ms = now();
       room = async (request) => {
         await later(late_ms);
-        if (!isGood && random() < 0.2) throw new Broken();
+        if (random() < lossRate) throw new Broken();
         if (request.do === 'stop_all') began_ms = now();
         isAnswered = true;
         return answers({ robots: robots.map((item) => ({ name: item.name, stop: now() - began_ms < item.late_ms ? 'asked' : 'confirmed' })) });
@@ -2614,8 +2615,12 @@ const PARTS = {
         if (k < 55) seen.push(shown()); // the answer is there
         if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
-      if (!isGood && isAnswered && random() < 0.5) { // whatever gets lost, each that confirms is counted
+      if (!isGood && random() < 0.5) { // whatever gets lost, each that confirms is counted; where all is, that is said
         await passes(15_000);
+        const hasNotice = JSON.stringify(shown()).includes(text('stops_gone'));
+        if (isAnswered === hasNotice) throw new Error(`it is ${isAnswered ? 'heard' : 'lost'}, and it says ${shown()}`);
+        if (!isAnswered && lossRate < 0.5) throw new Error('it is not asked again');
+        if (!isAnswered) return { ends: ['unheard'], seen };
         const confirmedCount = robots.filter((item) => item.late_ms < 1e6).length;
         if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
       }

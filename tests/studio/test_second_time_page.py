@@ -43,7 +43,7 @@ ENDS_BY_PART = {
     "member": {"joins", "leaves", "ends", "edits"},
     "news": {"asks", "tells", "moves"},
     "orders": {"run", "start", "step", "line", "send", "points", "halts", "stop"},
-    "stops": {"silent", "confirmed"},
+    "stops": {"silent", "confirmed", "unheard"},
     "worlds": {"draws", "earlier", "keeps", "reloads", "rests"},
     "drawing": {"adds", "undoes", "redoes", "enters", "opens"},
     "programs": {"kept", "full"},
