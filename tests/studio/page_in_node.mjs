@@ -342,6 +342,15 @@ export async function learns(page) {
   stands('fetch', before);
 }
 
+/** Somebody chooses a file, which a browser tells of if it is another one than it has there. @param {Part} input @param {any} file */
+export function choosesFile(input, file) {
+  const hasFile = () => Boolean(input.files.length);
+  Object.defineProperty(input, 'value', { get: () => (hasFile() ? `C:\\fakepath\\${input.files[0].name}` : ''), set: () => { input.files = []; }, configurable: true });
+  if (hasFile() && input.files[0].name === file.name) return;
+  input.files = [file];
+  input.dispatchEvent(new Event('change', { bubbles: true }));
+}
+
 export const playsFetch = (callback) => stands('fetch', callback);
 export const playsNavigator = (value) => stands('navigator', value);
 

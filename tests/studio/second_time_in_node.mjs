@@ -5,7 +5,7 @@
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
 import { blocklyInNode } from './blockly_in_node.mjs';
-import { chanceOf, compared, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
+import { chanceOf, choosesFile, compared, freshPage, later, learns, noting, now, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
 
 const [part, seeds] = words;
 const unhandled = [];
@@ -2767,8 +2767,7 @@ const PARTS = {
         drawing.forget();
       },
       async opens() {
-        page.byId('world_file').files = [new File(['w'], 'w.toml')];
-        page.byId('world_file').dispatchEvent(new Event('change'));
+        choosesFile(page.byId('world_file'), new File(['w'], 'w.toml'));
         await passes(50);
       },
     };

@@ -3,7 +3,7 @@
 // what its histories have done.
 
 import { readFileSync } from 'node:fs';
-import { chanceOf, freshPage, later, learns, made, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
+import { chanceOf, choosesFile, freshPage, later, learns, made, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
 
 const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
 const [first, seeds] = words.map(Number);
@@ -510,7 +510,7 @@ const PARTS = {
           if (isBroken) notice = bugSentence(error);
         }
       },
-      chooses: () => opens((file) => changes(page.byId('run_file'), { files: [file] })),
+      chooses: () => opens((file) => choosesFile(page.byId('run_file'), file)),
       async drops() {
         await opens((file) => {
           if (random() < 0.2) file.name = 'picture.png';
