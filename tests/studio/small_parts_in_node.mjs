@@ -3,6 +3,7 @@
 // what its histories have done.
 
 import { readFileSync } from 'node:fs';
+import { playedEditor, view } from './editor_in_node.mjs';
 import { chanceOf, choosesFile, freshPage, later, learns, made, now, passes, playsFetch, playsNavigator, settles, sources, words } from './page_in_node.mjs';
 
 const HTML = readFileSync(`${sources}/index.html`, 'utf-8');
@@ -549,6 +550,43 @@ const PARTS = {
       [asked, saved] = [[], []];
     };
     return { acts: { ...actions, savesMore: actions.saves, savesAgain: actions.saves, opensAgain: actions.opens, ranMore: actions.ran }, checks };
+  },
+
+  // What runs is marked in the text, which is scrolled to where the program halts: once for each halt.
+  async editor(random) {
+    playsNavigator({});
+    const page = freshPage(playedEditor);
+    await learns(page);
+    const { Editor } = await page.load('writing/editor.js');
+    const editor = new Editor(page.byId('editor'));
+    let haltedLine = 0, scrolled = -1, marked = [];
+    const rangeOf = (line) => ({ line, column: 1, end_line: line, end_column: 5 });
+    const shows = (lines, isHeld) => {
+      view.sought = -1;
+      editor.showRunning(lines.map(rangeOf), isHeld);
+      const halted = isHeld ? lines[0] ?? 0 : 0;
+      const isNew = halted && halted !== haltedLine;
+      haltedLine = halted;
+      marked = lines;
+      scrolled = isNew ? view.state.doc.line(halted).from : -1;
+    };
+    const someLines = () => Array.from({ length: 1 + random.below(2) }, () => 1 + random.below(3));
+    editor.replace('F(1)\nF(2)\nF(3)');
+    const actions = {
+      halts: () => shows(someLines(), true),
+      runs: () => shows(someLines(), false),
+      ends: () => shows([], false),
+      types() { // what runs is of another text then
+        editor.replace(Array.from({ length: 3 }, () => `F(${random.below(9)})`).join('\n'));
+        shows([], random() < 0.5 && haltedLine > 0);
+      },
+      drawsAnew: () => view.dispatch({ selection: { anchor: random.below(9) } }),
+    };
+    const checks = () => {
+      is(view.sought, scrolled, 'what it is scrolled to');
+      is(Array.from(CSS.highlights.get('running'), ({ startContainer, startOffset }) => [startContainer === view.lines, view.state.doc.lineAt(startOffset).number]), marked.map((line) => [true, line]), 'what is marked');
+    };
+    return { acts: { ...actions, haltsAgain: actions.halts }, checks, waits: [0] };
   },
 
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.

@@ -22,6 +22,7 @@ NEEDED_ACTS = {
     "own": {"opens", "names", "paints", "fills"},
     "twice": {"presses", "keys", "hides"},
     "timeLine": {"begins", "moves", "keys", "presses", "releases", "resizes"},
+    "editor": {"halts", "runs", "ends", "types"},
     "runs": {"opens", "sees", "saves", "chooses", "drops"},
     "fields": {"types", "takesBack", "opens", "playsKey", "steps", "names"},
     "words": {"shows", "speaks"},

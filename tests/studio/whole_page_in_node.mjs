@@ -3,7 +3,7 @@
 // and what is seen afterwards, in the one tab and in the other.
 
 import { readFileSync } from 'node:fs';
-import { pathToFileURL } from 'node:url';
+import { codemirror, forEachDiagnostic, playedEditor, view } from './editor_in_node.mjs';
 import { chanceOf, compared, freshPage, later, made, passes, playsFetch, playsNavigator, PROGRAM, settles, sources, virtualRobot, words } from './page_in_node.mjs';
 
 const [firstSeed, seedCount] = words.map(Number);
@@ -13,45 +13,6 @@ process.on('unhandledRejection', (error) => unhandled.push(String(error?.stack ?
 process.on('uncaughtException', (error) => unhandled.push(String(error.stack)));
 Date.now = () => 0;
 globalThis.innerWidth = 1366;
-globalThis.CSS = { highlights: new Map() };
-globalThis.Highlight = Set;
-globalThis.StaticRange = class {
-  constructor(ends) { Object.assign(this, ends); }
-};
-
-// -- the text editor of a browser: CodeMirror's own states in a view that draws nothing
-
-const codemirror = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/view/dist/index.js`).href);
-const { forEachDiagnostic } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/lint/dist/index.js`).href);
-const { Transaction } = await import(pathToFileURL(`${sources}/../node_modules/@codemirror/state/dist/index.js`).href);
-let view = null;
-class EditorView {
-  hasFocus = false;
-  lines = {}; // any update may draw them anew
-  #isUpdating = false;
-
-  constructor({ state }) {
-    this.state = state;
-    view = this;
-  }
-
-  dispatch = (...specs) => {
-    if (this.#isUpdating) throw new Error('a change within a change');
-    const startState = this.state;
-    const transaction = specs[0] instanceof Transaction ? specs[0] : startState.update(...specs);
-    this.state = transaction.state;
-    this.lines = {};
-    this.#isUpdating = true;
-    const update = { view: this, state: this.state, startState, transactions: [transaction], changes: transaction.changes, docChanged: transaction.docChanged };
-    for (const hears of this.state.facet(codemirror.EditorView.updateListener)) hears(update);
-    this.#isUpdating = false;
-  };
-
-  domAtPos = (offset) => ({ node: this.lines, offset });
-
-  focus() { this.hasFocus = true; }
-}
-for (const name of ['updateListener', 'theme', 'baseTheme', 'decorations', 'lineWrapping', 'contentAttributes', 'scrollIntoView']) EditorView[name] = codemirror.EditorView[name];
 
 // -- Python
 
@@ -182,8 +143,7 @@ async function opens(stores) {
     terminate() {}
   };
   const page = freshPage({
-    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEnd: () => '', EditorView,
-    ...Object.fromEntries(['Decoration', 'GutterMarker', 'WidgetType', 'gutter', 'highlightActiveLine', 'keymap', 'lineNumbers'].map((name) => [name, codemirror[name]])),
+    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEnd: () => '', ...playedEditor,
     generate: () => ({ toCanvas() {} }), correction: {},
   }, HTML);
   for (const [name, kept] of Object.entries(stores)) for (const [key, value] of kept) window[name].setItem(key, value);
@@ -199,6 +159,8 @@ async function opens(stores) {
   await loading;
   await passes(500);
   const { pageState } = await page.load('page/page_state.js');
+  const { virtualRun } = pageState;
+  virtualRun.subscribe(({ isHeld }) => { if (!isHeld) view.sought = -1; }); // somebody scrolls away
   const { summaryOf } = await page.load('writing/messages.js');
   const versions = await page.load('programs/versions.js');
   const { isShippedProgram } = await page.load('start/beginnings.js');
@@ -403,6 +365,12 @@ function checkStays({ stays }) {
   if (typeof stays === 'string' && text !== stays) throw new Error(`${JSON.stringify(stays)} was typed, and is ${JSON.stringify(text)} now`);
 }
 
+/** The part where the program halts is seen. */
+function checksHalt({ pageState: { virtualRun: { value: { isHeld, ranges: [range] } } } }) {
+  const offset = isHeld && range ? view.state.doc.line(range.line).from + range.column - 1 : view.sought;
+  if (view.sought !== offset) throw new Error(`the program halts at ${offset}, and the text is scrolled to ${view.sought}`);
+}
+
 /** What has to be said and shown of the program, whoever has done what; nothing is under way. */
 function checksRest({ pageState, summaryOf, versions, countAllStars, seen }) {
   const { checkResult, virtualRun, robotName, programText, fault, breakpoints } = pageState;
@@ -483,6 +451,7 @@ async function playsSeed(seed) {
     ends.push(playActions(random, tab));
     await passes(random.of([0, random.below(50), random.below(800)]));
     checkStays(tab);
+    checksHalt(tab);
     if (k % 20) continue;
     tab.python.late = () => 5;
     await passes(4000);

@@ -273,12 +273,12 @@ export class Editor {
    */
   showRunning(ranges, isHeld = false) {
     const allOffsets = ranges.map((range) => this.#offsetsOfRange(range));
+    const [offsets] = allOffsets;
+    const isElsewhere = offsets && isHeld && offsets.from !== this.#heldOffset;
+    this.#heldOffset = offsets && isHeld ? offsets.from : -1; // also where a changed text has no marks any more
     const markedKey = allOffsets.length ? JSON.stringify([allOffsets, isHeld]) : '';
     if (markedKey === this.#markedKey) return;
     this.#markedKey = markedKey;
-    const [offsets] = allOffsets;
-    const isElsewhere = offsets && isHeld && offsets.from !== this.#heldOffset;
-    this.#heldOffset = offsets && isHeld ? offsets.from : -1;
     this.#runningOffsets = allOffsets.filter(({ from, to }) => from < to);
     this.#markRunning();
     if (isElsewhere) this.#view.dispatch({ effects: EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }) });
