@@ -589,6 +589,61 @@ const PARTS = {
     return { acts: { ...actions, haltsAgain: actions.halts }, checks, waits: [0] };
   },
 
+  // The keys of robots, from one file after another, while other tabs store some: no key is lost, whatever a file has, and
+  // what is said is so.
+  async keys(random) {
+    const KEYS = 'tiniscript.link.keys';
+    playsNavigator({});
+    const page = freshPage({
+      replaceOptions() {}, makePictureOption() {}, makeSymbolPicture() {}, hasSerial: false, choosePort() {}, listKnownPorts: async () => [],
+      HostRobot: class {}, hasHost: false, isPupil: false, isTeacher: false, post: async () => ({}), fetchPorts: async () => [],
+    });
+    await learns(page);
+    const { text } = await page.load('page/texts.js');
+    const { loadText, storeText } = await page.load('page/kept.js');
+    const { RobotPanel } = await page.load('robot/panel.js');
+    const { RunningPlace } = await page.load('robot/place.js');
+    const { Recorder } = await page.load('robot/recorder.js');
+    const { Runs } = await page.load('virtual/runs.js');
+    const listOf = (list) => list.split(',').filter(Boolean);
+    const python = {
+      async ask({ kept }, data) {
+        const content = new TextDecoder().decode(data);
+        await later(random.below(60));
+        if (content === 'broken') throw new Error('broken');
+        if (!content.startsWith('keys:')) return { count: null };
+        const keys = listOf(content.slice('keys:'.length));
+        return { count: keys.length, keys: [...new Set([...listOf(kept), ...keys])].join() };
+      },
+    };
+    new RobotPanel({ python, goTo() {}, recorder: new Recorder({ runs: new Runs(), play() {} }), place: new RunningPlace(), pad: { letGo() {}, offerRobot() {} } });
+    await passes(50);
+    const wanted = new Set();
+    let count = 0;
+    const puts = () => {
+      const key = `k${(count += 1)}`;
+      wanted.add(key);
+      storeText(KEYS, [...listOf(loadText(KEYS)), key].join());
+    };
+    const actions = {
+      async opens() {
+        const keys = Array.from({ length: random.below(3) }, () => `f${random.below(9)}`);
+        const kind = random.of(['keys', 'keys', 'wrong', 'broken', 'gone']);
+        choosesFile(page.byId('keys_file'), { name: random.of(['a.json', 'b.json']), slice: () => ({ arrayBuffer: async () => {
+          if (kind === 'gone') throw new Error('gone');
+          return new TextEncoder().encode(kind === 'keys' ? `keys:${keys}` : kind).buffer;
+        } }) });
+        await passes(random.below(80));
+        if (random() < 0.4) puts();
+        await passes(500);
+        if (kind === 'keys') for (const key of keys) wanted.add(key);
+        is(page.byId('link_said').textContent, kind === 'keys' && keys.length ? text('say_keys', { count: keys.length }) : text('say_no_keys'), `what is said of a file that is ${kind}`);
+      },
+      puts,
+    };
+    return { acts: { ...actions, opensAgain: actions.opens }, checks: () => is(listOf(loadText(KEYS)).toSorted(), [...wanted].toSorted(), 'the keys'), waits: [0] };
+  },
+
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
   async words(random) {
     playsNavigator({});

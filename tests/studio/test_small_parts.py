@@ -24,6 +24,7 @@ NEEDED_ACTS = {
     "timeLine": {"begins", "moves", "keys", "presses", "releases", "resizes"},
     "editor": {"halts", "runs", "ends", "types"},
     "runs": {"opens", "sees", "saves", "chooses", "drops"},
+    "keys": {"opens", "puts"},
     "fields": {"types", "takesBack", "opens", "playsKey", "steps", "names"},
     "words": {"shows", "speaks"},
     "world": {"chooses", "brings", "puts", "keeps", "reloads"},

@@ -450,7 +450,12 @@ export class RobotPanel {
       return;
     }
     try {
-      const importResult = await this.#page.python.ask({ do: 'import_keys', kept: loadText(KEYS_STORAGE_KEY) }, await bytesOf(file));
+      const data = await bytesOf(file);
+      let keptText, importResult;
+      do {
+        keptText = loadText(KEYS_STORAGE_KEY);
+        importResult = await this.#page.python.ask({ do: 'import_keys', kept: keptText }, data);
+      } while (loadText(KEYS_STORAGE_KEY) !== keptText); // another tab has stored keys meanwhile, or the robot's session
       if (importResult.count) storeText(KEYS_STORAGE_KEY, importResult.keys);
       this.#speech.say(importResult.count ? 'say_keys' : 'say_no_keys', { count: importResult.count });
     } catch {
