@@ -644,6 +644,69 @@ const PARTS = {
     return { acts: { ...actions, opensAgain: actions.opens }, checks: () => is(listOf(loadText(KEYS)).toSorted(), [...wanted].toSorted(), 'the keys'), waits: [0] };
   },
 
+  // What several tabs of a browser keep: a tab that is loaded again has what it had, a new one what the last tab had, or what
+  // can be read of both.
+  async tabs(random) {
+    freshPage();
+    const { localStorage } = window;
+    const PLACES = { work: 'tiniscript.work', newest: 'tiniscript.world', before: 'tiniscript.worlds_before' };
+    const tabs = [];
+    let lasting = { work: null, newest: '', before: [] }, count = 0;
+    const loads = async (tab) => {
+      tab.modules = freshPage();
+      tab.has = { ...tab.has };
+      Object.assign(window, { localStorage, sessionStorage: tab.store ?? window.sessionStorage });
+      tab.store = window.sessionStorage;
+      tab.work = await tab.modules.load('programs/work.js');
+      is(tab.work.loadWork(), tab.has.work ?? lasting.work, 'the work');
+      const { newest, before } = tab.work.loadWorldTexts();
+      is([newest, before.slice(0, (tab.has.before ?? lasting.before).length)], [tab.has.newest || lasting.newest, tab.has.before ?? lasting.before], 'the worlds');
+    };
+    const sees = (tab) => {
+      window.sessionStorage = tab.store;
+      return tab;
+    };
+    const opens = async (has = {}, kept = []) => {
+      const tab = { has };
+      freshPage();
+      tab.store = window.sessionStorage;
+      for (const [key, value] of kept) tab.store.setItem(key, value);
+      tabs.push(tab);
+      await loads(tab);
+    };
+    await opens();
+    const actions = {
+      opens: () => opens(),
+      copies() { // with what it keeps
+        const { has, store } = random.of(tabs);
+        return opens(has, store);
+      },
+      reloads: () => loads(random.of(tabs)),
+      works() {
+        const tab = sees(random.of(tabs)), own = random.of([null, { text: 'own', robot: 'tinibot', name: 'o' }]), name = `n${(count += 1)}`;
+        const work = { text: `F(${count})`, robot: random.of(['tinibot', 'liner']), lesson: own ? 'l' : '', own, world: 'obstacles', language: 'en', name, view: random.of(['blocks', 'text']), level: 'usual', words: random() < 0.5, sound: random() < 0.5 };
+        localStorage.room = random() < 0.2 ? 0 : Infinity;
+        is(tab.work.storeWork(work), localStorage.room > 0, 'whether the next tab finds it');
+        tab.has.work = work;
+        if (localStorage.room) lasting.work = work;
+        localStorage.room = Infinity;
+      },
+      draws() {
+        const tab = sees(random.of(tabs)), { newest, before } = tab.work.loadWorldTexts();
+        tab.has = { ...tab.has, newest: `w${(count += 1)}`, before: [newest, ...before].filter(Boolean).slice(0, 5) };
+        is(tab.work.storeWorldTexts(tab.has.newest, tab.has.before), true, 'whether the next tab finds them');
+        Object.assign(lasting, { newest: tab.has.newest, before: tab.has.before });
+      },
+      damages() { // what a tab keeps, or what all have
+        const place = random.of(['work', 'before']), tab = random.of([null, ...tabs]);
+        (tab?.store ?? localStorage).setItem(PLACES[place], random.of(['{', '7', 'null']));
+        if (tab) delete tab.has[place];
+        else lasting[place] = place === 'work' ? null : [];
+      },
+    };
+    return { acts: { ...actions, worksMore: actions.works, reloadsMore: actions.reloads }, checks() {}, waits: [0] };
+  },
+
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
   async words(random) {
     playsNavigator({});

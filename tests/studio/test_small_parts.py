@@ -25,6 +25,7 @@ NEEDED_ACTS = {
     "editor": {"halts", "runs", "ends", "types"},
     "runs": {"opens", "sees", "saves", "chooses", "drops"},
     "keys": {"opens", "puts"},
+    "tabs": {"opens", "copies", "reloads", "works", "draws", "damages"},
     "fields": {"types", "takesBack", "opens", "playsKey", "steps", "names"},
     "words": {"shows", "speaks"},
     "world": {"chooses", "brings", "puts", "keeps", "reloads"},
