@@ -123,7 +123,9 @@ class SharedProgram:
     def snapshot(self) -> Json:
         """Return everything needed to continue, without the history."""
         return {"epoch": self.epoch, "n": self.number, "whole": self.tree.snapshot(),
-                "counts": self.last_count_by_page}  # fmt: skip
+                "counts": self.last_count_by_page,
+                "refused": [list(refusal) for refusals in self.refusals_by_page.values()
+                            for refusal in refusals]}  # fmt: skip
 
     def replay(self, rows: list[Json]) -> None:
         """Decide again as it was decided before. Leave out the first operation that does not fit,
@@ -144,10 +146,16 @@ class SharedProgram:
 def program_of(snapshot: Json, keep: Callable[[Json], None] = lambda _: None) -> SharedProgram:
     """Return the program of a snapshot. Raises Refused."""
     number, epoch, counts = snapshot.get("n"), snapshot.get("epoch"), snapshot.get("counts")
-    if type(number) is not int or not isinstance(epoch, str) or not isinstance(counts, dict):
+    refusals = snapshot.get("refused")
+    if type(number) is not int or not isinstance(epoch, str):
+        raise Refused("bad")
+    if not isinstance(counts, dict) or not isinstance(refusals, list):
         raise Refused("bad")
     program = SharedProgram(tree_of(snapshot.get("whole")), epoch, keep)
     program.number = number
+    for refusal in refusals:
+        if isinstance(refusal, list) and len(refusal) == 2 and is_uid(refusal[0]):
+            program._note_refused(refusal[0], str(refusal[1]))
     program.last_count_by_page = {
         page: count for page, count in counts.items() if type(count) is int
     }
