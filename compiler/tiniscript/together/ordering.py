@@ -44,22 +44,25 @@ class SharedProgram:
         self._checksum: tuple[int, int] | None = None  # number of the change, and its checksum
 
     def submit(self, changes: list[Change]) -> bool:
-        """Decide on the changes of a page, in their order; return whether one was taken."""
+        """Decide on the changes of a page, in their order; return whether one was taken.
+
+        A page sends all changes that it knows no decision on. So those that are missing were
+        decided, and this computer has lost them: its disk was full before it crashed.
+        """
         old_number = self.number
         for change in changes:
-            page, count = page_and_count(change.uid)
-            last_count = self.last_count_by_page.get(page, 0)
-            if count > last_count + 1:
-                break  # a change is missing; the page will send it again
-            if count == last_count + 1:
+            if self._is_undecided(change.uid):
                 self._decide(change)
         return self.number > old_number
 
     def refuse(self, uid: str, reason: str) -> None:
-        """Refuse an invalid change when its turn comes."""
-        page, count = page_and_count(uid)
-        if count == self.last_count_by_page.get(page, 0) + 1:
+        """Refuse an invalid change."""
+        if self._is_undecided(uid):
             self._refuse(uid, reason)
+
+    def _is_undecided(self, uid: str) -> bool:
+        page, count = page_and_count(uid)
+        return count > self.last_count_by_page.get(page, 0)
 
     def _decide(self, change: Change) -> None:
         try:
