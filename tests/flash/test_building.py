@@ -13,6 +13,7 @@ import sys
 from argparse import Namespace
 from functools import partial
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -95,7 +96,7 @@ def test_a_custom_robot_is_built_and_written(clone: Path, robot_file: Path) -> N
 
 
 def test_the_digest_covers_sources_robot_and_board(clone: Path, robot_file: Path) -> None:
-    sources = building.sources()
+    sources, rng = building.sources(), Random(1)
     assert sources is not None
     digests = {
         sources.digest(robot)
@@ -110,11 +111,14 @@ def test_the_digest_covers_sources_robot_and_board(clone: Path, robot_file: Path
     assert sources.digest(spanish) not in digests and ready.title_of(spanish) == "tinibot_es"
     assert ready.title_of(spanish.with_language("en")) == "tinibot_es"
     for name in sources.files:
-        changed_sources = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
-        digests.add(changed_sources.digest(robots.load("tinibot")))
+        data, k = bytearray(sources.files[name]), rng.randrange(len(sources.files[name]))
+        data[k] ^= 1
+        for changed_data in (bytes(data), sources.files[name] + b"\n"):
+            changed_sources = building.Sources({**sources.files, name: changed_data})
+            digests.add(changed_sources.digest(robots.load("tinibot")))
         fewer = {value: data for value, data in sources.files.items() if value != name}
         digests.add(building.Sources(fewer).digest(robots.load("tinibot")))
-    assert len(digests) == 3 + 2 * len(sources.files) > 100
+    assert len(digests) == 3 + 3 * len(sources.files) > 150
 
 
 def test_breakpoints_change_the_firmware_only_if_they_replace_a_feature(

@@ -10,11 +10,15 @@ import random
 import pytest
 
 from tests.oracle import programs
+from tests.oracle.interpreter import PAPER_KIT
+from tests.oracle.task_programs import task_program
 from tests.support.kits import KITS
 from tests.support.source_maps import compile_right_text, make_source_map
-from tiniscript import compile_text
+from tiniscript import compile_text, robots
 from tiniscript.bytecode.disassembly import rows
-from tiniscript.bytecode.image import checksum
+from tiniscript.bytecode.image import GO, TASKS, checksum
+from tiniscript.cli import images
+from tiniscript.cli.inputs import Input
 from tiniscript.library import source_map
 from tiniscript.library.source_map import MapLocation
 from tiniscript.semantics.ir import Show
@@ -175,6 +179,27 @@ def test_a_variables_type_is_known_at_its_show() -> None:
     )
     assert compilation.variables == ("FAST", "SPEED") * 3
     assert compilation.yes_no_flags == (True, False) * 3
+
+
+def test_a_map_is_found_by_the_checksum_that_a_robot_reports() -> None:
+    """Whatever a program needs, and whether it was compiled now or read from an image."""
+    robot, needs_seen = robots.load("tinibot"), set[int]()
+    for seed in range(40):
+        rng, has_ways = random.Random(seed), seed % 2 == 0
+        program_text = task_program(rng, has_ways)[0]
+        if seed % 4 < 2:
+            program_text = programs.program(rng, PAPER_KIT, has_ways)
+        compilation = compile_text(program_text, robot.kit)
+        assert compilation.is_right
+        program_input = Input("-", program_text.encode(), None)
+        ready_program = images.ready_program(program_input, robot, "en")
+        assert ready_program is not None
+        images.keep_map(ready_program)
+        assert source_map.recall(checksum(compilation.image)) == ready_program.program_map
+        image_input = Input("-", compilation.image, None)
+        assert images.ready_program(image_input, robot, "en") == ready_program
+        needs_seen.add(ready_program.image.needs)
+    assert needs_seen == {0, TASKS, GO, TASKS | GO}
 
 
 def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from tests.support.casefile import ROOT
 from tools import CannotMake
 from tools.release import __main__ as release
 from tools.release import facts
+from tools.release.parts import Clone
 
 VERSION = "9.8.7"
 URL = "https://example.org/tiniscript"
@@ -22,7 +24,7 @@ FILES = ("CITATION.cff", "LICENSE", "SECURITY.md", "docs/en/versions.md", "pypro
 CHANGELOG = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
 
 
-def git(root: Path, *words: str) -> None:
+def git(root: Path, *words: str) -> bytes:
     identity_options = (
         "-c",
         "user.name=a",
@@ -31,7 +33,8 @@ def git(root: Path, *words: str) -> None:
         "-c",
         "init.defaultBranch=main",
     )
-    subprocess.run(["git", "-C", root, *identity_options, *words], check=True, capture_output=True)
+    command = ["git", "-C", str(root), *identity_options, *words]
+    return subprocess.run(command, check=True, capture_output=True).stdout
 
 
 def replace_in_file(name: str, old_text: str, new_text: str) -> Callable[[Path], None]:
@@ -180,6 +183,30 @@ def test_a_different_address_is_kept(
         assert len(log.stdout.splitlines()) == commits
         assert shared_clone.address == url
         assert list(facts.release_problems(shared_clone.root)) == []
+
+
+@pytest.mark.parametrize("url", ["", URL, "https://example.org/other"])
+def test_clones_of_one_commit_give_the_same_bytes_whenever_they_are_made(
+    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, url: str
+) -> None:
+    monkeypatch.setattr(release, "ROOT", clone)
+    commit_clone, numbers = release._commit, count(2_000_000_000)
+
+    def commit_later(root: Path) -> None:
+        monkeypatch.setenv("GIT_COMMITTER_DATE", f"{next(numbers)} +0000")
+        commit_clone(root)
+
+    monkeypatch.setattr(release, "_commit", commit_later)
+    clones = list[Clone]()
+    for name in ("first", "second"):
+        (tmp_path / name).mkdir()
+        clones += release._clones(tmp_path / name, url, whole_stick=False)
+    assert len({git(made_clone.root, "rev-parse", "HEAD^{tree}") for made_clone in clones}) == 1
+    facts_kept = {one._replace(root=tmp_path, parts=tmp_path, seed=0) for one in clones}
+    assert len(facts_kept) == 1
+    variables = [made_clone.environment() for made_clone in clones]
+    differing = {name for name in variables[0] if len({one[name] for one in variables}) > 1}
+    assert differing == {"PYTHONHASHSEED", "PYTHONPATH"}
 
 
 def test_this_repository_agrees_with_itself() -> None:

@@ -8,6 +8,7 @@ import shutil
 import sys
 import zipfile
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -21,6 +22,7 @@ from tiniscript.studio.serving import POLICY
 from tools import CannotMake
 from tools.builds import studio
 from tools.builds.page_texts import page_texts
+from tools.studio import pack as packing
 from tools.studio.pack import MODULES_NOT_HERE
 
 LARGEST = 6_000_000  # bytes of all files, gzipped, with one language: no browser fetches another
@@ -219,6 +221,39 @@ def test_the_same_sources_give_the_same_page(
     assert {path.name for path in second_page.iterdir()} == {path.name for path in page.iterdir()}
     for path in second_page.iterdir():
         assert path.read_bytes() == (page / path.name).read_bytes(), path.name
+
+
+def page_sources(scratch: Path) -> set[Path]:
+    """Return the files of which the page is made, or which make it: modules in Python, their data,
+    and what esbuild reads. Texts of lessons are made of catalogues, which are among the data."""
+    with zipfile.ZipFile(scratch / "library.zip", "w") as library:  # none of Python's own modules
+        builder = packing.Packer([ROOT], library)
+        builder.add(building.MODULE)
+    paths = {ROOT / name for name in builder.own_files} - {ROOT / "tools" / "__init__.py"}
+    for patterns in (packing.DATA_PATTERNS, packing.LESSON_DATA_PATTERNS):
+        paths |= {PACKAGE.parent / name for name in packing.data_of(str(PACKAGE.parent), patterns)}
+    paths |= {*PACKAGE.rglob("*.py"), *PACKAGE.rglob("languages/*/*.toml")}
+    paths |= {path for path in (SOURCES / "src").rglob("*") if path.is_file()}
+    return {path for path in paths if path.suffix != ".texts"}
+
+
+def test_a_page_is_out_of_date_after_any_change_of_a_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sources = page_sources(tmp_path)
+    assert len(sources) > 600 and sources <= {*building._sources()}
+    digests, read_bytes, rng = {building.digest()}, Path.read_bytes, Random(1)
+    for changed_path in rng.sample(sorted(sources), 3):
+
+        def read_changed(path: Path, changed_path: Path = changed_path) -> bytes:
+            data = bytearray(read_bytes(path))
+            if path == changed_path:
+                data[rng.randrange(len(data))] ^= 1
+            return bytes(data)
+
+        monkeypatch.setattr(Path, "read_bytes", read_changed)
+        digests.add(building.digest())
+    assert len(digests) == 4
 
 
 def change_sources_in(monkeypatch: pytest.MonkeyPatch, step: str) -> None:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from itertools import count
 from pathlib import Path
 from random import Random
 from threading import Event, Thread
@@ -15,10 +19,12 @@ import pytest
 
 from tests.support.class_room import PUPIL_ADDRESS, Room, without_ports
 from tests.support.waiting import HANG_LIMIT_S, until
+from tiniscript.base import files
 from tiniscript.studio import groups
 from tiniscript.studio.class_keeping import MOST_PUPILS
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.robot_link import BadRequest
+from tiniscript.together import journal as journals
 from tiniscript.together.form import data_of_change
 from tiniscript.together.page import Page
 
@@ -412,6 +418,51 @@ def test_groups_continue_after_a_crash_without_loss(school: School) -> None:
     answer = ana.joins("Red", old_token=ana.page.name)  # her page is loaded again
     assert answer["page"] == ana.page.name
     assert luz.joins("Red", old_token=ana.page.name)["page"] not in (ana.page.name, teo.page.name)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_groups_continue_after_crashes_whenever_the_disk_was_full(
+    school: School, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """A second crash loses no more than the first one, and all that is typed then is taken."""
+    rng, is_full, numbers = Random(seed), False, count(100)
+    monkeypatch.setattr(journals, "MOST_BYTES", 1500)
+
+    def on_the_disk(call: Callable[..., Any]) -> Callable[..., Any]:
+        def write(*arguments: Any, **keywords: Any) -> Any:
+            if is_full:
+                raise OSError(errno.ENOSPC, "full")
+            return call(*arguments, **keywords)
+
+        return write
+
+    monkeypatch.setattr(os, "write", on_the_disk(os.write))
+    monkeypatch.setattr(journals, "replace", on_the_disk(files.replace))
+    members = [Member(school, "Ana"), Member(school, "Luz"), Member(school, "Teo", "Blue")]
+
+    def type_and_send(member: Member) -> None:
+        member.sends()
+        old_line = rng.choice([row for row in member.page.lines if "0)" in row])
+        new_line = re.sub(r"\(\d+", f"({next(numbers)}", old_line)
+        member.types(old_line, new_line)
+        member.sends()
+        [group] = [row for row in school.teaches("class")["groups"]
+                   if school.number(member.name) in row["pupils"]]  # fmt: skip
+        assert new_line in school.teaches("class_text", group=group["key"])["text"].split("\n")
+
+    def texts() -> list[str]:
+        keys = [group["key"] for group in school.teaches("class")["groups"]]
+        return [school.teaches("class_text", group=key)["text"] for key in keys]
+
+    for _ in range(40):
+        is_full = rng.random() < (0.7 if is_full else 0.2)
+        type_and_send(rng.choice(members))
+        school.now_s += 1
+        if rng.random() < 0.2:
+            school.crashes()
+            texts_then = texts()
+            school.crashes()
+            assert texts() == texts_then and len(texts_then) == 2
 
 
 def test_a_group_survives_another_lesson_without_its_pupils(school: School) -> None:

@@ -350,6 +350,26 @@ def test_a_reading_may_follow_later_rows() -> None:
         parting((1020, "SHOW 8"), (3, "SHOW 8"), text=text)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_a_robots_clock_may_be_fast_or_slow(seed: int) -> None:
+    """Readings have the time of its clock, all other rows that of the computer."""
+    rng, rows, now_ms = random.Random(seed), Rows(), 0
+    reading_rows, speed = ReadingRows(TINIBOT.kit), rng.uniform(0.97, 1.03)
+    for _ in range(200):
+        now_ms += rng.choice((0, 20, 300))
+        if rng.random() < 0.5:
+            rows.add(Row(now_ms, f"SHOW {rng.randrange(9)}"))
+            continue
+        clock_ms = max(0, round((now_ms - rng.randrange(200)) * speed))
+        event = ReadingEvent(1, 2, rng.randrange(9000), clock_ms % recordings.MS_MODULUS)
+        for row in reading_rows.rows(event, now_ms):
+            rows.add(row)
+    recording = decode(encode(first_line(), rows.rows, now_ms).encode())
+    expected_rows = [row._replace(ms=min(row.ms, now_ms)) for row in rows.rows]
+    assert sorted(recording.rows) == sorted(expected_rows)
+    assert [row.ms for row in recording.rows] == sorted(row.ms for row in expected_rows)
+
+
 def test_an_out_of_range_reading_becomes_the_nearest_valid_one() -> None:
     text = "X = DISTANCE + 0;W(1);\nSHOW(X)"
     rows = [(3, "READ DISTANCE 9999999"), (4, "READ NOBODY 1"), (1020, "SHOW 400"), (1021, "DONE")]

@@ -13,6 +13,7 @@ from tiniscript.together.differences import find_operations
 from tiniscript.together.form import Change, Delete, Insert, Move, Operation, data_of, operation_of
 from tiniscript.together.layout import Unparsed, parse_tree, text_of
 from tiniscript.together.operations import apply_change
+from tiniscript.together.tree import FIELDS, PLACE, Tree
 
 BASE = "SI|F(1, 80)\nR(0.5, 60)\nB(2, 40)  // back\n\n// again\nW(1)\nS\n"
 SEVEN_MOVES = "F(1,1)\nF(2,2)\nF(3,3)\nF(4,4)\nF(5,5)\nF(6,6)\nF(7,7)\n"
@@ -138,6 +139,11 @@ def edit_rows(rng: Random, rows: list[str]) -> list[str]:
     return new_rows
 
 
+def marks_of(tree: Tree) -> list[list[str]]:
+    """Return the last change of each part of a node, and of its place."""
+    return [[tree[id].mark(name) for name in (*FIELDS, PLACE)] for id in tree.subtree_ids()]
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_operations_produce_the_new_program_and_are_undone(seed: int) -> None:
     rng, tried = Random(seed), Counter[str]()
@@ -150,6 +156,9 @@ def test_operations_produce_the_new_program_and_are_undone(seed: int) -> None:
             new_tree = parse_tree("\n".join(new_rows))
         except Unparsed:
             continue
+        for node in old_tree.node_by_id.values():  # others have worked on it
+            node.creator_uid = "o:1"
+            node.marks = {name: "o:2" for name in (*FIELDS, PLACE) if rng.random() < 0.5}
         operations = find_operations(
             old_tree,
             "\n".join(new_rows),
@@ -162,5 +171,6 @@ def test_operations_produce_the_new_program_and_are_undone(seed: int) -> None:
         restored = apply_change(outcome.tree, Change("n:2", outcome.inverse)).tree
         assert text_of(restored) == text_of(old_tree)
         assert restored.subtree_ids() == old_tree.subtree_ids()
+        assert marks_of(restored) == marks_of(old_tree)  # so an earlier change can be undone, too
         tried.update(type(operation).__name__ for operation in operations or [Delete(())])
     assert {Insert.__name__, Move.__name__, "Wrap", "Unwrap", "Replace"} <= set(tried)

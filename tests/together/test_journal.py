@@ -152,22 +152,39 @@ def test_a_crash_on_a_bad_disk_loses_no_readable_data(
     assert final is not None and are_same(final, program)
 
 
-def test_an_overlong_journal_is_rotated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("seed", range(5))
+def test_a_program_goes_on_as_before_a_crash_whenever_its_journal_began_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """Each page hears the same of its changes, taken or refused."""
+    rng, path = Random(seed), tmp_path / "journal"
     monkeypatch.setattr(journals, "MOST_BYTES", 3000)
-    path = tmp_path / "journal"
-    _, program = begin_journal(path)
-    for value in range(1, 60):
-        change_program(program, value)
+    journal, program = begin_journal(path)
+    for k in range(60):
+        change_program(program, rng.choice((0, 1000 + k)), rng.choice("abc"))
         assert path.stat().st_size < 6000
+        reopened = Journal(path)
+        resumed_program = reopened.resume(f"e{k}")
+        assert resumed_program is not None and are_same(resumed_program, program)
+        if rng.random() < 0.1:  # it crashes
+            journal.close()
+            journal, program = reopened, resumed_program
+        else:
+            reopened.close()
     assert path.with_name(path.name + OLD_ENDING).exists()
-    resumed_program = Journal(path).resume("e2")
-    assert resumed_program is not None
-    assert resumed_program.tree.checksum() == program.tree.checksum()
 
 
 @pytest.mark.parametrize(
     "data",
-    [b"", b"{}\n", b"[]\n", b"no\n", b"[" * 100_000 + b"\n", b'{"n":1,"epoch":"e","counts":{}}\n'],
+    [
+        b"",
+        b"{}\n",
+        b"[]\n",
+        b"no\n",
+        b"[" * 100_000 + b"\n",
+        b'{"n":1,"epoch":"e","counts":{}}\n',
+        b'{"n":1,"epoch":"e","counts":{},"refused":1}\n',
+    ],
 )
 def test_an_invalid_journal_is_ignored(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "journal"

@@ -23,7 +23,7 @@ from tests.support.campaign import each_seed, make_options
 from tests.support.virtual_robot import Talk, floor, robot_in, trace
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.robot import RESET_BUTTON
+from tiniscript.virtual.robot import POWER_ON, RESET_BUTTON, VirtualRobot
 
 WALL = "[[boxes]]\nx_cm = 140\ny_cm = 140\nlength_cm = 20\nwidth_cm = 20\nheading = 20\n"
 TOLERANCE_CM, TOLERANCE_DEGREES = 0.5, 1.0
@@ -116,6 +116,43 @@ def check(seed: int) -> str:
     # Outputs that the program's own end leaves on.
     assert is_done or not any(actuators_left.values()), explanation
     return ending if len(want.trace) > 3 else "little"
+
+
+def check_power_on(seed: int) -> int:
+    """However long it was on before, a robot acts like one that is switched on for the first time
+    in its place, with its memory; return the number of its actions."""
+    rng = random.Random(seed)
+    name, reset = rng.choice(("grabber", "tinibot2")), rng.choice((POWER_ON, RESET_BUTTON))
+    robot = robot_in(floor(WALL), name, baud=0)
+    talk = Talk(robot)
+    assert talk.upload(program(rng, name)).status == 0
+    talk.wait(rng.choice((0, 30, 900, 5000)))
+    robot.step(robot.now_ms + rng.choice((0, 1, 60_000)))
+    place = floor(WALL)._replace(start=robot.pose)
+    other = robot_in(place, name, robot.memory, baud=0)
+    both_robots = (robot, other)
+    for started_robot in both_robots:
+        started_robot.power_cycle(reset)
+        started_robot.take_events()
+    begin_times_ms, count = (robot.now_ms, other.now_ms), 0
+    for _ in range(60):
+        key = rng.choice((VirtualRobot.press, VirtualRobot.let_go, lambda _: None))
+        duration_ms, data = rng.choice((0, 0, 0, 1, 100)), rng.choice((b"", b"", b"\nSHOW(1)\n"))
+        for started_robot in both_robots:
+            key(started_robot)
+            started_robot.step(started_robot.now_ms + duration_ms, data)
+        events, other_events = (
+            [f"{event.time_ms - begin_ms} {event.text}" for event in started_robot.take_events()]
+            for started_robot, begin_ms in zip(both_robots, begin_times_ms, strict=True)
+        )
+        assert events == other_events, f"seed {seed} {name} {reset}"
+        count += len(events)
+    return count
+
+
+@pytest.mark.parametrize("part", range(2))
+def test_each_power_on_is_as_the_first(part: int) -> None:
+    assert sum(check_power_on(seed) for seed in range(part * 10, (part + 1) * 10)) > 30
 
 
 @pytest.mark.sampled("part")

@@ -24,6 +24,7 @@ MODULES = SOURCES / "node_modules"
 FETCH_STAMP = MODULES / ".tiniscript"
 MODULE = "tools.builds.studio"
 BUILDER = CLONE / "tools" / "builds" / "studio.py"
+TEXT_BUILDER = BUILDER.with_name("page_texts.py")
 STAMP = "build.json"  # file of the page with the digest of its sources; not part of the page
 OLDEST_NODE = 22
 # The build's messages at each step, with the progress in percent.
@@ -87,6 +88,7 @@ def _sources() -> list[Path]:
         *own_files,
         *(path for path in package_files if page_folder not in path.parents),
         BUILDER,
+        TEXT_BUILDER,
     ]
     return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 

@@ -44,22 +44,25 @@ class SharedProgram:
         self._checksum: tuple[int, int] | None = None  # number of the change, and its checksum
 
     def submit(self, changes: list[Change]) -> bool:
-        """Decide on the changes of a page, in their order; return whether one was taken."""
+        """Decide on the changes of a page, in their order; return whether one was taken.
+
+        A page sends all changes that it knows no decision on. So those that are missing were
+        decided, and this computer has lost them: its disk was full before it crashed.
+        """
         old_number = self.number
         for change in changes:
-            page, count = page_and_count(change.uid)
-            last_count = self.last_count_by_page.get(page, 0)
-            if count > last_count + 1:
-                break  # a change is missing; the page will send it again
-            if count == last_count + 1:
+            if self._is_undecided(change.uid):
                 self._decide(change)
         return self.number > old_number
 
     def refuse(self, uid: str, reason: str) -> None:
-        """Refuse an invalid change when its turn comes."""
-        page, count = page_and_count(uid)
-        if count == self.last_count_by_page.get(page, 0) + 1:
+        """Refuse an invalid change."""
+        if self._is_undecided(uid):
             self._refuse(uid, reason)
+
+    def _is_undecided(self, uid: str) -> bool:
+        page, count = page_and_count(uid)
+        return count > self.last_count_by_page.get(page, 0)
 
     def _decide(self, change: Change) -> None:
         try:
@@ -123,7 +126,9 @@ class SharedProgram:
     def snapshot(self) -> Json:
         """Return everything needed to continue, without the history."""
         return {"epoch": self.epoch, "n": self.number, "whole": self.tree.snapshot(),
-                "counts": self.last_count_by_page}  # fmt: skip
+                "counts": self.last_count_by_page,
+                "refused": [list(refusal) for refusals in self.refusals_by_page.values()
+                            for refusal in refusals]}  # fmt: skip
 
     def replay(self, rows: list[Json]) -> None:
         """Decide again as it was decided before. Leave out the first operation that does not fit,
@@ -144,10 +149,16 @@ class SharedProgram:
 def program_of(snapshot: Json, keep: Callable[[Json], None] = lambda _: None) -> SharedProgram:
     """Return the program of a snapshot. Raises Refused."""
     number, epoch, counts = snapshot.get("n"), snapshot.get("epoch"), snapshot.get("counts")
-    if type(number) is not int or not isinstance(epoch, str) or not isinstance(counts, dict):
+    refusals = snapshot.get("refused")
+    if type(number) is not int or not isinstance(epoch, str):
+        raise Refused("bad")
+    if not isinstance(counts, dict) or not isinstance(refusals, list):
         raise Refused("bad")
     program = SharedProgram(tree_of(snapshot.get("whole")), epoch, keep)
     program.number = number
+    for refusal in refusals:
+        if isinstance(refusal, list) and len(refusal) == 2 and is_uid(refusal[0]):
+            program._note_refused(refusal[0], str(refusal[1]))
     program.last_count_by_page = {
         page: count for page, count in counts.items() if type(count) is int
     }
