@@ -20,6 +20,7 @@ from tests.support.command import PROGRAM, Command, Tsc
 from tests.support.platformio import firmware, shared_folder
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
+from tiniscript.together.journal import Journal
 
 # Hypothesis stores its findings outside of the repository.
 os.environ.setdefault(
@@ -121,6 +122,22 @@ def own_cache(
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", "unix:path=/nonexistent")  # nor their Bluetooth
     monkeypatch.delenv("TINISCRIPT_DEBUG", raising=False)
+
+
+@pytest.fixture(autouse=True)
+def closed_journals(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A class that a test lets crash has its files closed, as at the end of a process."""
+    journals: list[Journal] = []
+    make = Journal.__init__
+
+    def make_and_note(journal: Journal, path: Path | None) -> None:
+        make(journal, path)
+        journals.append(journal)
+
+    monkeypatch.setattr(Journal, "__init__", make_and_note)
+    yield
+    for journal in journals:
+        journal.close()
 
 
 @pytest.fixture
