@@ -38,7 +38,7 @@ from tools.generate import cpp_header
 SLOW = robots.load("tinibot").kit._replace(speed=1, turn=1)
 
 
-# The codes of each minor version that has been released: another one needs a later `since`.
+# The codes of each minor version that has been released: another one needs a later `since_minor`.
 RELEASED = {
     0: "00-0c 10-19 20-28 2a-2d 30-35 38-3b 40-54 56 58-5b 60-65 68-75 78-7c 80-c3"
     " c8-cd d0-d5 d8-dd e0-e5 e8-ed f0-f5",

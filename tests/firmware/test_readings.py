@@ -126,7 +126,7 @@ def test_a_run_reports_the_readings_that_a_fresh_robot_reports(seed: int) -> Non
 
     values = [rng.choice((0, 100)) for _ in KIT.sensors]  # 0 is what a robot assumes at first
 
-    def told_by(robot: DebuggedRobot) -> list[tuple[int, int, int]]:
+    def readings_of(robot: DebuggedRobot) -> list[tuple[int, int, int]]:
         if text != first_text:  # the same program starts anew, with its readings still to come
             upload = robot.session.upload(image_of(text), runs=False, saves=False)
             assert robot.robot.until(robot.session, upload) == OK
@@ -142,7 +142,7 @@ def test_a_run_reports_the_readings_that_a_fresh_robot_reports(seed: int) -> Non
         assert robot.robot.until(robot.session, robot.session.tell_readings(True)) == OK
     line_ticks, run_ms = rng.choice((FAST_TICKS, BYTE_TICKS)), rng.choice((5, 60, 300))
     run_with_sensors(robots[0], rng, line_ticks, most_ms=5, run_ms=run_ms)
-    used_told, fresh_told = (told_by(robot) for robot in robots)
+    used_told, fresh_told = (readings_of(robot) for robot in robots)
     assert fresh_told and used_told == fresh_told, f"{first_text}\nthen {text}"
 
 

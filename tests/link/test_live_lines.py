@@ -24,7 +24,7 @@ LIVE = BY_NAME["LIVE"].number
 
 
 class LiveWorld(World):
-    """`sent` counts the times that a line goes out, the repeated ones too."""
+    """`sent_count` counts how often lines are sent, including repeats."""
 
     sent_count = 0
 

@@ -15,7 +15,7 @@ from tiniscript.link.transports.pushed import END_REASON, MOST_BUFFERED_BYTES, P
 class Bell:
     """The bell of one thread, which counts how many times it would have waited.
 
-    `then` delivers the frames that arrive meanwhile.
+    `late_pieces` are bytes that arrive while it waits, the last one first.
     """
 
     def __init__(self) -> None:

@@ -41,8 +41,8 @@ KEPT_FRAMES = 400  # frames that the stranger keeps
 
 
 class SealedWorld(World):
-    """A robot with an owner, whose session is sealed. `says` is how many times the stranger
-    speaks.
+    """A robot with an owner, whose session is sealed. `forgery_rate` is the part of the turns in
+    which a stranger speaks.
     """
 
     has_hello = True

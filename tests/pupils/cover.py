@@ -130,7 +130,7 @@ def choose_cover(
 ) -> list[int]:
     """Return the numbers of a few sets whose union is that of all.
 
-    Each time the one that adds most; of two, rather one of `before`, so that little changes.
+    Each adds the most branches; of equals, one of `covered_before` is chosen: little changes.
     """
     chosen_before, uncovered = set(covered_before), set().union(*branches)
     heap = [(-len(branch_set), k not in chosen_before, k) for k, branch_set in enumerate(branches)]

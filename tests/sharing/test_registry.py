@@ -46,7 +46,7 @@ def dead() -> Registration:
 def call_at_line(
     wanted_line: int, action: Callable[[], object], runs: Callable[[], object]
 ) -> bool:
-    """Call `runs`, and call `does` just before its line number `wanted` in the registry. Return
+    """Call `runs`, and `action` just before its line number `wanted_line` in the registry. Return
     whether it has so many lines."""
     lines = 0
 

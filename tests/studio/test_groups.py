@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import errno
 import json
-import os
 import re
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,8 +16,8 @@ from typing import Any
 import pytest
 
 from tests.support.class_room import PUPIL_ADDRESS, Room, without_ports
+from tests.support.journal_disk import before_each_write, full_disk
 from tests.support.waiting import HANG_LIMIT_S, until
-from tiniscript.base import files
 from tiniscript.studio import groups
 from tiniscript.studio.class_keeping import MOST_PUPILS
 from tiniscript.studio.classroom import Classroom
@@ -428,16 +426,7 @@ def test_groups_continue_after_crashes_whenever_the_disk_was_full(
     rng, is_full, numbers = Random(seed), False, count(100)
     monkeypatch.setattr(journals, "MOST_BYTES", 1500)
 
-    def on_the_disk(call: Callable[..., Any]) -> Callable[..., Any]:
-        def write(*arguments: Any, **keywords: Any) -> Any:
-            if is_full:
-                raise OSError(errno.ENOSPC, "full")
-            return call(*arguments, **keywords)
-
-        return write
-
-    monkeypatch.setattr(os, "write", on_the_disk(os.write))
-    monkeypatch.setattr(journals, "replace", on_the_disk(files.replace))
+    before_each_write(monkeypatch, lambda: full_disk() if is_full else None)
     members = [Member(school, "Ana"), Member(school, "Luz"), Member(school, "Teo", "Blue")]
 
     def type_and_send(member: Member) -> None:

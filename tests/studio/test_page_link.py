@@ -476,7 +476,7 @@ def test_an_edit_removes_the_mark_and_its_undo_restores_it(page: Page) -> None:
 
 
 def upload_until_told(page: Page, place: int) -> None:
-    """Upload, and wait until the page got the place `at` instead of the robot's."""
+    """Upload, and wait until the page has been told `place` instead of the robot's place."""
     places: list[int] = []
 
     def change_places(route: Route) -> None:

@@ -48,7 +48,7 @@ TOKEN_SCRIPT = "sessionStorage.getItem('tiniscript.token')"
 
 
 class Stranger(ThreadingHTTPServer):
-    """Another user's server; `taken` has its worker's reports."""
+    """Another user's server; `loot` has the reports of its worker."""
 
     daemon_threads = True
 

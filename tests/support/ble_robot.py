@@ -32,7 +32,7 @@ DRIVE_ACTIONS = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 class Peripheral:
     """A module without a robot: it hears and says nothing.
 
-    It says its name from the `late`th advertisement on. `fails_at`: its connection ends at
+    It is named after `late_rounds` advertisements. `failing_stage`: its connection ends at
     `connect`, `services` or `notify`; `parts_after`: after so many bytes that it has heard.
     """
 
@@ -84,8 +84,8 @@ class Echo(Peripheral):
 
 
 class BleRobot(Peripheral):
-    """A module with its robot. `late_s`: delay of each notification; `sent` is everything that the
-    module has sent by radio.
+    """A module with its robot. `late_s`: delay of each notification; `sent_packets` is all
+    that the module has sent by radio.
     """
 
     def __init__(

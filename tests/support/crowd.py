@@ -37,7 +37,7 @@ def crowd(
     *ports: int, count: int = 1000, packets: Sequence[bytes] = (b"",), host: str = "127.0.0.1",
     source: str = "",
 ) -> Iterator[None]:  # fmt: skip
-    """Open so many connections to each port, which send one of `says` in turn."""
+    """Open `count` connections to each port, which send one of `packets` in turn."""
     with ExitStack() as stack:
         for port in ports:
             for start_index in range(0, count, CONNECTIONS_PER_PROCESS):

@@ -11,6 +11,6 @@ TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.
 
 
 def edit_profile(name: str, old_text: str, new_text: str) -> str:
-    """The text of a shipped profile with its first `old` replaced."""
+    """The text of a shipped profile with its first `old_text` replaced."""
     assert old_text in TEXTS[name]
     return TEXTS[name].replace(old_text, new_text, 1)

@@ -48,7 +48,7 @@ class End(Protocol):
 
 
 class LowEnergy:
-    """A client of the Nordic UART service. `slow`: it takes one notification in so many looks."""
+    """A client of the Nordic UART service. It takes one notification in each `look_interval`."""
 
     def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, look_interval: int = 1) -> None:
         self.robot, self.mtu, self.look_interval = robot, mtu, look_interval

@@ -95,7 +95,7 @@ def _run_try(tried_test: MutantTrial, items: Sequence[pytest.Item]) -> str:
 
 
 def _run_in_child(items: Sequence[pytest.Item], begin_try: Callable[[], None]) -> str:
-    """Run tests after `begin`; an endless loop fails."""
+    """Run tests after `begin_try`; an endless loop fails."""
     child = os.fork()
     if child == 0:
         code = TROUBLE_CODE

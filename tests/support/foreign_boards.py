@@ -111,7 +111,7 @@ RECORDINGS: Mapping[str, Recording] = {
 class Board(UnpoweredEnd):
     """A board that starts when its port is opened, and takes `boot_ms` for that.
 
-    `starts` is its output then, repeated every `again_ms`.
+    `start_bytes` is its output then, repeated every `repeat_ms`.
     """
 
     start_bytes = b""

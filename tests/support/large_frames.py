@@ -23,9 +23,10 @@ HELLO, DATA = (BY_NAME[name].number for name in ("HELLO", "DATA"))
 
 
 class AnsweringRobot:
-    """A robot as a computer sees it: describes itself in HELLO, and accepts DATA as `takes` says.
+    """A robot as a computer sees it: describes itself in HELLO, and accepts DATA as `take_data`
+    says.
 
-    `takes` gets each DATA that is answered: the number of it, its offset and its bytes. It returns
+    `take_data` gets the number, the offset and the bytes of each DATA that is answered. It returns
     the status and the next expected offset, or None if the frame or its answer is lost.
     """
 

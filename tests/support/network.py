@@ -68,7 +68,7 @@ class Network:
 
 
 class BadNetwork(Network):
-    """Each piece is `late_s` on its way, one of `every` much longer; some are lost."""
+    """Each piece is `late_s` on its way, one of `resend_interval` much longer; some are lost."""
 
     def __init__(
         self, target: int, late_s: float = 0.02, resend_interval: int = 10, loss_rate: float = 0.0

@@ -21,7 +21,7 @@ from tools.builds.studio import find_tools
 
 def in_node(script: Path, *words: str, input_text: str = "") -> list[str]:
     """Run a script with the folder of the page's sources and these words; return the lines that it
-    prints. It reads `given` on its standard input."""
+    prints. It reads `input_text` on its standard input."""
     try:
         node = find_tools().node
     except CannotMake as error:

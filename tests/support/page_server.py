@@ -31,7 +31,7 @@ def ask(
     host: str, path: str = "/", method: str = "GET", body: bytes | None = None,
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[HTTPResponse, bytes]:  # fmt: skip
-    """Ask the server at `own`, a host and its port. A header with the value None is left out."""
+    """Ask the server at `host`, a name and its port. A header with the value None is left out."""
     given_headers = {name: value for name, value in (headers or {}).items() if value is not None}
     connection = HTTPConnection(host, timeout=HANG_LIMIT_S)
     try:
@@ -46,7 +46,7 @@ def post(
     host: str, token: str, body: bytes, path: str = serving.ROBOTS_PATH,
     headers: Mapping[str, str | None] | None = None,
 ) -> tuple[int, bytes]:  # fmt: skip
-    """Post as the page at `own` does, but for some headers; return the status and the answer."""
+    """Post as the page at `host` does, but for some headers; return the status and the answer."""
     given_fields = {
         "Host": host,
         "Origin": f"http://{host}",

@@ -143,7 +143,7 @@ def driver(of_studio: bool = True) -> Iterator[Playwright]:
 def browser(
     playwright: Playwright, *more_options: str, is_whole: bool = False
 ) -> Iterator[Browser]:
-    """A browser; the complete one is the one that people have. `more` are options of it."""
+    """A browser; the complete one is the one that people have. `more_options` are options of it."""
     path, options = (chromium(), BROWSER_OPTIONS) if is_whole else (headless(), OPTIONS)
     browser = playwright.chromium.launch(executable_path=path, args=[*options, *more_options])
     try:

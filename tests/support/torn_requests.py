@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 def tear_requests(
     page: Page, verb: str, tear: Callable[[Route], None], times: int = 1
 ) -> list[str]:
-    """Tear this many requests that contain `what`; return the list of those."""
+    """Tear the first `times` requests of a verb; return the list of those."""
     torn_requests: list[str] = []
 
     def handle(route: Route) -> None:

@@ -36,7 +36,7 @@ LARGE_PROGRAM = 60  # instructions: from then on more is deleted
 
 
 class Pupil:
-    """`typed` has all that somebody has written; `focus` is where in the text this one works."""
+    """`typed_texts`: all that anybody has written; `focus`: where in the text this one works."""
 
     def __init__(
         self, page: Page, rng: Random, numbers: Iterator[int], typed_texts: set[str],

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import os
-from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 from random import Random
-from typing import Any
 
 import pytest
 
+from tests.support.journal_disk import before_each_write, full_disk
 from tests.together.world import FIRST_PROGRAM
-from tiniscript.base import files
 from tiniscript.together import journal as journals
 from tiniscript.together.form import Change, Replace, Unwrap
 from tiniscript.together.journal import OLD_ENDING, Journal
@@ -86,9 +83,6 @@ def test_with_a_full_disk_the_lesson_continues_and_the_journal_catches_up(
     journal, program = begin_journal(path)
     write = os.write
 
-    def fail_full_disk(*_: object) -> int:
-        raise OSError(errno.ENOSPC, "full")
-
     def write_half(file: int, data: bytes) -> int:
         return write(file, data[: len(data) // 2])
 
@@ -96,7 +90,7 @@ def test_with_a_full_disk_the_lesson_continues_and_the_journal_catches_up(
         if says_so == "in part":
             disk.setattr(os, "write", write_half)
         else:
-            disk.setattr(os, says_so, fail_full_disk)
+            disk.setattr(os, says_so, full_disk)
         assert change_program(program, 7)
         assert journal.is_incomplete
     assert change_program(program, 8)
@@ -114,28 +108,23 @@ def test_a_crash_on_a_bad_disk_loses_no_readable_data(
     journal, program = begin_journal(path)
     monkeypatch.setattr(journals, "MOST_BYTES", 2000)
 
-    def stop_saving() -> None:
+    def check_kept_changes() -> None:
         reopened = Journal(path)
         resumed_program = reopened.resume("e2")
         reopened.close()
         assert resumed_program is not None and resumed_program.number >= kept_number
 
-    def checked_call(call: Callable[..., Any]) -> Callable[..., Any]:
-        def write_before(*arguments: Any, **keywords: Any) -> Any:
-            stop_saving()
-            if is_full:
-                raise OSError(errno.ENOSPC, "full")
-            return call(*arguments, **keywords)
+    def before_write() -> None:
+        check_kept_changes()
+        if is_full:
+            full_disk()
 
-        return write_before
-
-    monkeypatch.setattr(os, "write", checked_call(os.write))
-    monkeypatch.setattr(journals, "replace", checked_call(files.replace))
+    before_each_write(monkeypatch, before_write)
     for value in range(1, 40):
         is_full = rng.random() < (0.8 if is_full else 0.2)
         assert change_program(program, value)
         kept_number = kept_number if journal.is_incomplete else program.number
-        stop_saving()
+        check_kept_changes()
         if rng.random() < 0.2:  # it crashes, and resumes with the stored data
             journal.close()
             journal = Journal(path)

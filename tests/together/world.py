@@ -61,7 +61,7 @@ RETRY_S = 9.0  # after which a page asks again
 
 
 class World:
-    """`delay` is of one way; `lost` the part of messages that is. Epochs are those of crashes."""
+    """`delay` is of one way; `loss_rate`: of messages. A crash begins an epoch."""
 
     def __init__(
         self, pages: int, seed: int, delay: Callable[[Random], float] = lambda r: r.uniform(0, 5),

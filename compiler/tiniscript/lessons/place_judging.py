@@ -174,8 +174,8 @@ def _missed_sentence(
 ) -> str:
     """Return the sentence for a place that the robot has missed.
 
-    `origin`: the point from which the robot had to reach the place. `nearest`: the point at which
-    it came closest.
+    `origin`: the point from which the robot had to reach the place. `nearest_point`: where it
+    came closest.
     """
     run, start = task.run, task.run.world.start
     if run.driven_cm < STILL_CM:

@@ -52,7 +52,7 @@ export class NumberField extends Blockly.FieldNumber {
     return fittingNumber;
   }
 
-  /** Who typed what does not fit is told. @param {any} value */
+  /** Tells whoever has typed a number that does not fit which one took its place. @param {any} value */
   onFinishEditing_(value) {
     super.onFinishEditing_(value);
     if (this.changeNotice) pageState.note.set(this.changeNotice);

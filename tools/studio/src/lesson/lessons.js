@@ -269,7 +269,7 @@ export class Lessons {
     return this.#isJudged && this.#judgement?.verdict === 'passed';
   }
 
-  /** Shows what the newest check has said. Who repairs the program reads on, and sees that it was said of the one before. */
+  /** Shows what the newest check has said. It stays while the program is repaired, and says that the program has changed. */
   #showJudgement() {
     const judgement = this.#judgement, { dataset } = this.#verdictElement;
     if (judgement) dataset['verdict'] = this.#isJudged ? judgement.verdict : 'before';

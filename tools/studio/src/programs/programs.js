@@ -32,7 +32,7 @@ import { messageWithFix } from '../writing/messages.js';
  */
 
 const PUBLIC_ADDRESS_KEY = 'tiniscript.public'; // where others find this page, as somebody has told it
-const READER_CODES = 'TS3';
+const READER_CODES = 'TS3'; // of what a robot that reads text cannot do
 const MOST_CODE_BYTES = 900; // bytes: a camera reads no picture with more from a screen
 const MARGIN_MODULES = 4; // modules that must stay white around a code
 
@@ -170,7 +170,7 @@ export class Programs {
     const request = { do: 'line', robot: this.#page.work.robot, language: currentLanguage() };
     const answer = await this.#page.python.ask(request, new TextEncoder().encode(this.#page.work.text));
     if (answer.text !== undefined) return { text: answer.text };
-    const isTooMuch = answer.code.startsWith(READER_CODES); // for a robot that reads text: the fix is for who types commands
+    const isTooMuch = answer.code.startsWith(READER_CODES); // its own fix names a command of the terminal
     return { refusal: messageWithFix({ ...answer, ...isTooMuch && { fix: text('share_line_else') } }) };
   }
 

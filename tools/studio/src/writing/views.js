@@ -176,7 +176,7 @@ export class Views {
     if (!this.#blocks) return;
     if (!this.#isStale()) {
       this.#markBlocks(); // it has come back
-      if (!this.isBusy && this.#isTouched) this.#blocksChanged(); // and what was done to them had failed to
+      if (!this.isBusy && this.#isTouched) this.#blocksChanged(); // a change of theirs had failed to become text
       return;
     }
     this.#showState();
