@@ -507,7 +507,7 @@ def test_a_tried_stack_hides_no_smaller_one(page: Page) -> None:
     page.mouse.down()
     page.mouse.move(b["x"] + 25, b["y"] + b["height"] / 2 + 8, steps=8)
     page.mouse.up()
-    page.locator("#blocks[data-state=shown]").wait_for()
+    wait_for_blocks(page)
     assert abs(box_of(value)["x"] - b["x"]) < 40  # the value lies on the hat, unattached
     page.mouse.click(b["x"] + 6, b["y"] + b["height"] - 8)
     page.locator("#blocks .alone").first.wait_for(state="attached")

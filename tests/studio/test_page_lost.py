@@ -174,9 +174,9 @@ def test_only_the_outcome_of_a_stop_is_reported_once(
     assert page.evaluate("window.told") == ["Stopping…"]
     mute.is_open = True
     wait_for_message(page, HIDDEN_MESSAGE if stop_action == "hidden" else CONFIRMED_MESSAGE)
-    mute.is_open = False
     page.evaluate(VISIBILITY_SCRIPT, "visible")
     start_drive(page, robot)
+    mute.is_open = False
     page.evaluate(OBSERVER_SCRIPT)
     stop()
     page.keyboard.press("Escape")  # this is the same stop
