@@ -4557,7 +4557,7 @@ const PARTS = {
     const stage = new Stage({ look: (from) => { camera = from; }, stop: () => { stops += 1; } });
     const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
     const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
-    const has = { full: false, big: false, held: false, turns: 0 };
+    const has = { full: false, big: false, held: false, whole: false, turns: 0 };
     const shrinks = () => { has.big &&= ['running', 'paused'].includes(root.dataset['phase']); };
     const key = (name, isTyped = false) => dispatchEvent(Object.assign(new Event('keydown'), { key: name, composedPath: () => (isTyped ? [Object.assign(document.createElement('textarea'))] : []) }));
     const moves = () => dispatchEvent(Object.assign(new Event('pointermove'), { pointerType: 'mouse', buttons: 0 }));
@@ -4565,7 +4565,7 @@ const PARTS = {
     return async (random) => {
       delay = () => random.below(30);
       const actions = {
-        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); has.big = true; },
+        runs() { root.dataset['phase'] = 'running'; stage.enlarge(); has.big = true; has.whole = false; },
         pauses() { if (root.dataset['phase'] === 'running') root.dataset['phase'] = 'paused'; },
         async ends() {
           root.dataset['phase'] = 'ended';
@@ -4599,14 +4599,22 @@ const PARTS = {
           has.held = false;
         },
         reads() { lessons.dispatchEvent(new Event('click')); has.big = false; },
-        worlds() { stage.showWhole(); shrinks(); },
+        worlds() {
+          stage.showWorld();
+          has.whole = true;
+          if (pageState.sideId.value === 'side_lessons') shrinks();
+        },
+        judges() { stage.shrink(); shrinks(); },
         home() {
           pageState.screen.set('start');
           pageState.screen.set('studio');
           has.full = has.big = false;
         },
         same: () => pageState.sideId.set(pageState.sideId.value),
-        other() { pageState.sideId.set(`side ${(sides += 1)}`); has.full = false; },
+        other() {
+          pageState.sideId.set(pageState.sideId.value !== 'side_lessons' && random() < 0.5 ? 'side_lessons' : `side ${(sides += 1)}`);
+          has.full = false;
+        },
         fills() { if (random() < 0.5) fullButton.click(); else key('f'); has.full = !has.full; },
         letter: () => key('f', true),
         escape() { key('Escape'); has.full = false; },
@@ -4637,7 +4645,7 @@ const PARTS = {
         ends.add(act);
         await actions[act]();
         if (stage.isFull !== has.full || ('big' in root.dataset) !== has.big) throw new Error(`after ${act} it is ${Object.keys(root.dataset)} in place of ${JSON.stringify(has)}`);
-        if (!has.turns && camera !== (has.full || has.big || 'peek' in root.dataset ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
+        if (!has.turns && camera !== (!has.whole && (has.full || has.big || 'peek' in root.dataset) ? 'near' : 'whole')) throw new Error(`after ${act} it is seen from ${camera}`);
         await passes(random.below(60));
         if (random() < 0.7) continue;
         await passes(200);

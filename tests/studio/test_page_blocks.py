@@ -44,6 +44,7 @@ from tests.support.studio import (
     wait_for_blocks,
     wait_for_note,
     wait_for_phase,
+    wait_until_checked,
     write,
 )
 from tiniscript import check, compile, robots
@@ -377,6 +378,29 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
     wait_for_blocks(page)
     wait_for_text(page, "SI|S;\nLOOP(2);\n  B(2, 80);\nEND_LOOP;\n")
     assert icons.count() == 0
+
+
+def test_a_message_names_what_its_reader_works_with(page: Page) -> None:
+    """Beside the blocks somebody can type a line: what its message says can be typed there, too."""
+    start(page, "SI|S;\nTURN(2);\n")
+    message = check("S;\nTURN(2)")[0]
+    rows = page.locator("#messages li")
+    editor = page.locator("#editor .cm-content")
+
+    def choose_view_again() -> None:
+        page.click("#view_text")
+        page.click("#view_blocks")
+
+    for step, is_typed in (
+        (lambda: editor.press("Control+End"), False),
+        (lambda: editor.press_sequentially("S;"), True),
+        (lambda: page.click("#undo"), True),
+        (choose_view_again, False),
+        (lambda: editor.press("Backspace"), True),
+    ):
+        step()
+        wait_until_checked(page)
+        rows.filter(has_text=message.fix if is_typed else "turn left 2 s at 80 %").wait_for()
 
 
 @sampled

@@ -350,15 +350,17 @@ def test_scrolling_during_a_run_is_respected(page: Page) -> None:
     page.click("#view_text")
 
 
-def test_a_newly_chosen_world_is_fully_visible(page: Page) -> None:
-    """For example a lesson's world, whose goal would be out of sight."""
+def test_a_newly_chosen_world_is_fully_visible_and_moves_no_button(page: Page) -> None:
+    """The world's goal would be out of sight, and the next press would miss its button."""
     write(page, "SI|F(0.1, 20);\n")
     page.select_option("#world", "free")
     page.click("#run")
     wait_for_phase(page, "ended")
-    assert page.locator("html[data-big]").count()
+    camera, run = page.locator("#camera"), page.locator("#run")
+    near_text, box = camera.get_attribute("title"), run.bounding_box()
     page.select_option("#world", "light")
-    assert page.locator("html[data-big]").count() == 0
+    assert camera.get_attribute("title") != near_text
+    assert run.bounding_box() == box
 
 
 @pytest.mark.sampled("language")

@@ -139,8 +139,8 @@ CODE_PATTERN = r"\b[A-Z]{2,}\b|\b[FWT]\(|[Ll](ine|ínea|inha) \d"
 
 
 @sampled
-def test_the_time_line_keeps_its_length_while_dragged(page: Page) -> None:
-    """Else what a finger drags runs away under it."""
+def test_the_time_line_keeps_its_length(page: Page) -> None:
+    """Else what a finger drags, or presses a second time, runs away under it."""
     start_run(page, "F(0.4, 60)")
     wait_for_phase(page, "ended")
     box = page.locator("#time_at").bounding_box()
@@ -150,10 +150,10 @@ def test_the_time_line_keeps_its_length_while_dragged(page: Page) -> None:
     for part in (0.8, 0.5):
         page.mouse.move(box["x"] + part * box["width"], box["y"] + box["height"] / 2)
         page.locator("#doing", has_text="Looking back").wait_for()
-        assert page.locator("#why").is_hidden()
         assert page.locator("#time_at").bounding_box() == box
     page.mouse.up()
-    page.locator("#why").wait_for()
+    assert page.locator("#why").is_enabled()
+    assert page.locator("#time_at").bounding_box() == box
 
 
 @sampled
@@ -162,7 +162,7 @@ def test_why_explains_the_condition_and_its_readings(page: Page) -> None:
     task = "LOOP(3);\nIF(DISTANCE > 3);\nF(0.4, 60);\nENDIF;\nW(0.1);\nEND_LOOP"
     start_run(page, f"SI|TASK;\n{task};\nEND_TASK;\nW(2)")
     wait_for_phase(page, "ended")
-    assert page.locator("#why").is_hidden()
+    assert page.locator("#why").is_disabled()
     page.focus("#time_at")
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
@@ -182,6 +182,21 @@ def test_why_explains_the_condition_and_its_readings(page: Page) -> None:
     page.keyboard.press("Home")
     page.click("#why")
     assert "Line 3" not in status_text(page) and "motors" not in status_text(page)
+
+
+@sampled
+def test_why_says_that_the_robot_has_bumped_while_it_looks_so(page: Page) -> None:
+    start_run(page, "F(6, 100)")
+    wait_for_phase(page, "ended")
+    page.focus("#time_at")
+    page.keyboard.press("ArrowLeft")
+    page.click("#why")
+    page.focus("#time_at")
+    bump_text = str(page_texts("en")["where_bump"])
+    wait_for(page, lambda: bump_text in status_text(page), "it stands at the wall")
+    page.keyboard.press("Home")
+    wait_for(page, lambda: bump_text not in status_text(page), "it stands free")
+    page.click("#why")
 
 
 @sampled

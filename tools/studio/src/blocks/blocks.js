@@ -10,7 +10,7 @@ import { Checker, defineBlocks, setNarrow, setNewPieces, setRobot } from './shap
 import { setTonePlayer } from './fields.js';
 import { insert } from './insert.js';
 import { pictureOf } from './picture.js';
-import { sayOnBlocks } from './said.js';
+import { sayAsSeen } from './said.js';
 import { Search } from './search.js';
 import { getOptions } from './styles.js';
 import { findItems, levelOf, makeToolbox } from './toolbox.js';
@@ -498,7 +498,7 @@ export class Blocks {
     if (this.#faultAt.id) messages.set(this.#faultAt.id, [this.#faultAt.said]);
     for (const finding of findings) {
       const id = this.#blockAt(finding.line, finding.column) ?? '';
-      const { message, fix } = sayOnBlocks(finding), saidText = [message, fix && `${text('try')} ${fix}`].filter(Boolean).join('\n');
+      const { message, fix } = sayAsSeen(finding), saidText = [message, fix && `${text('try')} ${fix}`].filter(Boolean).join('\n');
       messages.set(id, [...(messages.get(id) ?? []), saidText]);
       if (finding.severity === 'mistake') wrongIds.add(id);
     }

@@ -110,6 +110,16 @@ export function labelOfCode(code, spokenBlocks) {
   return { text: namesAsWritten.reduce((text, name) => text.replace(name.toUpperCase(), name), labelText), colour };
 }
 
+/** Whether somebody works with blocks: whoever has just typed a line reads of its words. */
+export function areBlocksNamed() {
+  return pageState.view.value === 'blocks' && !pageState.isTyped.value;
+}
+
+/** What the compiler says, as this person works with the program. @param {import('../python.js').Finding} finding @returns {{message: string, fix: string}} */
+export function sayAsSeen(finding) {
+  return areBlocksNamed() ? sayOnBlocks(finding) : finding;
+}
+
 /**
  * What the compiler says, for who sees blocks: its code is named as its blocks are.
  * @param {import('../python.js').Finding} finding @returns {{message: string, fix: string}}

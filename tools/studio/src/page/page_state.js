@@ -49,6 +49,7 @@ export const pageState = {
   taughtBlocks: new Observable(/** @type {TaughtBlocks} */ ({ offered: [], needed: [], fresh: [] })),
   isRobotNamed: new Observable(false), // by the text: `// robot: liner`
   programText: new Observable(''),
+  isTyped: new Observable(false), // somebody wrote the newest change of it as text, in this view
   groupName: new Observable(''), // of pupils who edit this program together
   /** What the compiler says of the newest text; null while it is at work. */
   checkResult: new Observable(/** @type {import('../python.js').CheckResult | null} */ (null)),

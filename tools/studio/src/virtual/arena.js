@@ -106,6 +106,11 @@ export class Arena {
     this.#moods.cheer();
   }
 
+  /** Whether it shows that its robot has just bumped into something. @param {RobotState} state */
+  isDizzy(state) {
+    return !state.fault && this.#moods.faceOf(state).mood === 'dizzy';
+  }
+
   /** Takes what its pen has drawn off the floor. */
   eraseTracks() {
     this.#tracks = [[]];

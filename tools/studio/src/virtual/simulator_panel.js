@@ -238,7 +238,7 @@ export class SimulatorPanel {
   async play(run) {
     await this.#start(false, run, isStill() ? run.until_ms : run.until_ms / LONGEST_REPLAY_MS);
     if (this.#isDriving) await new Promise((resolve) => { this.#onRunOver = () => resolve(undefined); });
-    this.#stage.showWhole(); // what is said of it is read
+    this.#stage.shrink();
   }
 
   /**
@@ -430,7 +430,7 @@ export class SimulatorPanel {
     this.#previewWorld = null;
     this.#worldDrawing.forget();
     this.#switchOff();
-    this.#stage?.showWhole();
+    this.#stage?.showWorld();
   }
 
   #pauseRun() {
@@ -623,7 +623,7 @@ export class SimulatorPanel {
     this.#showScore(state?.score ?? null);
     this.#announcer.announce(state, phase);
     this.#showValues();
-    if (!this.#timeLine.isDragged) setHidden(this.#whyButton, !this.#timeLine.seenState); // the line is as long until it is let go
+    this.#whyButton.disabled = !this.#timeLine.seenState;
     this.#whyButton.setAttribute('aria-pressed', String(this.#isWhyAsked));
     this.#plot.draw(state && this.#timeLine.seenState ? state.now_ms - (state.began_ms ?? state.now_ms) : null);
     this.#timeLine.show();
@@ -752,6 +752,7 @@ export class SimulatorPanel {
     const values = new Map(variables.map(({ name, is_yes_no }, index) => [name, variableText(state.variables[index], is_yes_no)]));
     const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
     const joiner = new Intl.ListFormat(currentLanguage());
+    const bumpSentences = this.#arena.isDizzy(state) ? [text('where_bump')] : [];
     const sentences = conditions.flatMap(({ line, condition, values: conditionValues, is: isTrue }) => [
       this.#say('why_asks', 'why_asks_block', { line, condition }, condition),
       conditionValues.length ? asSentence(joiner.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))) : '',
@@ -760,7 +761,7 @@ export class SimulatorPanel {
     const { driver } = state, tasks = blocksOf(run.origin.text, places, /^(?:TASK|WHEN)\b/i);
     const task = driver === null ? undefined : tasks.find(({ has: hasOffset }) => hasOffset(driver));
     if (driver !== null && tasks.length) sentences.push(task ? this.#say('why_task', 'why_task_block', { line: task.line }, run.origin.text.split('\n')[task.line - 1]?.replace(/^.*\|/, '') ?? '') : text('why_main'));
-    return sentences.join(' ') || text('why_nothing');
+    return [...bumpSentences, ...sentences].join(' ') || text('why_nothing');
   }
 
   /** @param {import('../python.js').RobotState} state @returns {[string, string][]} the value of each sensor and variable, by its name */

@@ -24,6 +24,7 @@ export class Stage {
   #page;
   /** What somebody has chosen; before that, a run that has room is followed. @type {Camera | ''} */
   #chosenCamera = '';
+  #isWorldWhole = false; // until a run begins
   #restTimer = 0;
   #peekCount = 0;
   #isScreenFilled = false; // the browser has filled the screen, too
@@ -62,22 +63,22 @@ export class Stage {
       isHeld = true;
     }, { capture: true });
     writing.addEventListener('focusin', () => {
-      if (!isHeld) this.#shrink();
+      if (!isHeld) this.shrink();
     });
     for (const kind of ['pointerup', 'pointercancel']) addEventListener(kind, () => {
-      if (isHeld) setTimeout(() => this.#shrink()); // after what it did to a block
+      if (isHeld) setTimeout(() => this.shrink()); // after what it did to a block
       isHeld = false;
     }, { capture: true });
     // Whoever is at a lesson reads on: once a button has been pressed, which else would go from under the finger.
     const lessons = element('lessons', HTMLElement);
-    lessons.addEventListener('click', () => this.#shrink(true));
+    lessons.addEventListener('click', () => this.shrink(true));
     lessons.addEventListener('focusin', ({ target }) => {
-      if (target instanceof Element && target.matches(':focus-visible')) this.#shrink();
+      if (target instanceof Element && target.matches(':focus-visible')) this.shrink();
     });
     pageState.screen.subscribe((screen) => {
       if (screen !== 'start') return;
       this.#setFull(false);
-      this.#shrink(true); // whoever leaves a run ends it
+      this.shrink(true); // whoever leaves a run ends it
     });
     let shownSideId = pageState.sideId.value;
     pageState.sideId.subscribe((sideId) => {
@@ -95,6 +96,7 @@ export class Stage {
   /** A run of the whole program begins: it has a third of a large page, and is followed. */
   enlarge() {
     root.dataset['big'] = '';
+    this.#isWorldWhole = false;
     this.#show();
   }
 
@@ -115,9 +117,11 @@ export class Stage {
     }, PEEK_MS);
   }
 
-  /** What stood there before a run of another robot or world is seen whole, as somebody first sees it. */
-  showWhole() {
-    this.#shrink();
+  /** Another robot or world is seen whole, where the one before was: no button moves. */
+  showWorld() {
+    this.#isWorldWhole = true;
+    if (pageState.sideId.value === 'side_lessons') this.shrink(); // its task is read
+    this.#show();
   }
 
   /** A run is over: whoever has the mouse over the program goes on with it. */
@@ -129,12 +133,12 @@ export class Stage {
   #awaitRest() {
     clearTimeout(this.#restTimer);
     this.#restTimer = window.setTimeout(() => {
-      if (isMouseOver('#writing') && !isTouched(BLOCK_SELECTOR)) this.#shrink();
+      if (isMouseOver('#writing') && !isTouched(BLOCK_SELECTOR)) this.shrink();
     }, REST_MS);
   }
 
-  /** @param {boolean} isAsked also while something runs */
-  #shrink(isAsked = false) {
+  /** The program and what is said of it have their room again. @param {boolean} isAsked also while something runs */
+  shrink(isAsked = false) {
     if (!('big' in root.dataset) || (!isAsked && ['running', 'paused'].includes(root.dataset['phase'] ?? ''))) return;
     delete root.dataset['big'];
     this.#show();
@@ -161,7 +165,7 @@ export class Stage {
 
   /** @returns {Camera} */
   get #currentCamera() {
-    return this.#chosenCamera || (this.isFull || 'big' in root.dataset || 'peek' in root.dataset ? 'near' : 'whole');
+    return this.#chosenCamera || (!this.#isWorldWhole && (this.isFull || 'big' in root.dataset || 'peek' in root.dataset) ? 'near' : 'whole');
   }
 
   #show() {

@@ -84,6 +84,10 @@ export class Editor {
               this.#places = null;
               this.#markedKey = '';
               this.#runningOffsets = [];
+              const changes = update.transactions.filter(({ docChanged }) => docChanged);
+              if (!changes.every((transaction) => ['undo', 'redo', 'input.repair'].some((event) => transaction.isUserEvent(event)))) {
+                pageState.isTyped.set(changes.some((transaction) => ['input', 'delete', 'move'].some((event) => transaction.isUserEvent(event)) && !transaction.isUserEvent('input.blocks')));
+              }
               pageState.programText.set(this.text);
             }
             this.#markRunning(); // in lines that were drawn anew

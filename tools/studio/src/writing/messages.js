@@ -1,10 +1,9 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
-import { labelOfCode, sayOnBlocks } from '../blocks/said.js';
+import { areBlocksNamed, labelOfCode, sayAsSeen } from '../blocks/said.js';
 import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
-import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
 import { text } from '../page/texts.js';
 
@@ -18,15 +17,10 @@ export function messageWithFix({ message = '', fix = '' }) {
   return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(separator);
 }
 
-/** A finding in words, as this person sees the program. @param {Finding} finding @returns {{message: string, fix: string}} */
-function findingAsSeen(finding) {
-  return pageState.view.value === 'blocks' ? sayOnBlocks(finding) : finding;
-}
-
 /** A finding on the page: code is shown as it looks in the program. @param {Finding} finding @returns {Node | string} */
 function makeSentence(finding) {
   const { spoken, ...sentences } = finding.on_blocks;
-  return pageState.view.value === 'blocks'
+  return areBlocksNamed()
     ? makeTextElement('span', messageWithFix(sentences), { labelOfCode: (code) => labelOfCode(code, spoken) }) : messageWithFix(finding);
 }
 
@@ -40,7 +34,7 @@ export function showMessages(list, findings, goTo) {
   const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
     const lineButton = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
     lineButton.className = 'place';
-    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(findingAsSeen(finding)) });
+    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(sayAsSeen(finding)) });
     firstMessage ||= lineButton.ariaLabel;
     const row = makeElement('li', '', lineButton, ' ', makeSentence(finding));
     row.className = finding.severity;
@@ -61,7 +55,7 @@ export function showMessages(list, findings, goTo) {
 export function showRepair(list, findingIndex, finding, repair) {
   const repairButton = makeButton('repair', () => repair(finding));
   repairButton.className = 'repair';
-  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: findingAsSeen(finding).fix }));
+  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: sayAsSeen(finding).fix }));
   if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 

@@ -244,7 +244,10 @@ export class Views {
       element(`view_${viewName}`, HTMLButtonElement).setAttribute('aria-pressed', String(viewName === view));
     }
     this.#levelSelect.hidden = view !== 'blocks';
-    if (pageState.view.value !== view) pageState.view.set(view);
+    if (pageState.view.value !== view) {
+      pageState.isTyped.set(false); // whoever chooses blocks reads of blocks
+      pageState.view.set(view);
+    }
     if (view === 'blocks' && this.#isAwake) this.#fetchingBlocks ??= this.#fetchBlocks();
   }
 
