@@ -125,7 +125,7 @@ def test_a_list_has_the_robots_that_are_there(played: Network, seed: int) -> Non
     for _ in range(5):  # each list is like the first
         played.answers = {name: random_answer(rng) for name in NAMES}
         played.events = [
-            (rng.choice(("add", "add", "update", "remove")), rng.choice(NAMES)) for _ in range(8)
+            (rng.choice(("add", "add", "update", "remove")), rng.choice(NAMES)) for _ in range(12)
         ]
         announced_names = set[str]()
         for kind, name in played.events:
