@@ -67,18 +67,30 @@ def test_a_vanished_port_raises_an_error(line: Line) -> None:
         line.port.read(1)
 
 
-def test_a_write_that_nobody_reads_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("is_exclusive", [True, False])
+def test_a_write_that_nobody_reads_ends(
+    monkeypatch: pytest.MonkeyPatch, is_exclusive: bool
+) -> None:
     """Of a stop past another program's lock, too."""
-    for is_exclusive in (True, False):
-        end, device_end = pty.openpty()
-        tty.setraw(device_end)
-        with monkeypatch.context() as patch, FileIO(end, "r+"):
-            patch.setattr(serial, "WRITE_S", 0.01)
-            device = serial.open_port(os.ttyname(device_end), 9600, 20.0, is_exclusive)
-            with pytest.raises(SerialTimeoutException):
+    monkeypatch.setattr(serial, "WRITE_S", 0.01)
+    end, device_end = pty.openpty()
+    tty.setraw(device_end)
+    with FileIO(end, "r+"):
+        device = serial.open_port(os.ttyname(device_end), 9600, 20.0, is_exclusive)
+        failures: list[Exception] = []
+
+        def write() -> None:
+            try:
                 device.write(bytes(1_000_000))
-            os.close(device_end)
-            device.close()
+            except Exception as error:
+                failures.append(error)
+
+        writer = threading.Thread(target=write, daemon=True)
+        writer.start()
+        writer.join(10)
+        assert [type(error) for error in failures] == [SerialTimeoutException]
+        os.close(device_end)
+        device.close()
 
 
 def open_with(monkeypatch: pytest.MonkeyPatch, failure: BaseException) -> PortError:
