@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import random
 import shutil
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 from typing import cast
 
@@ -22,8 +24,9 @@ from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import has_text
+from tiniscript.cli.texts import has_text, text
 from tiniscript.flash import avrdude, ready
+from tiniscript.flash import bootloaders as flash_bootloaders
 from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import ReadyFile
@@ -201,6 +204,38 @@ def test_ctrl_c_reports_a_partial_firmware_from_the_first_byte_on(
     assert getattr(exception_info.value, "key", None) == ("flash_stopped" if count else None)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_bootloaders_are_tried_until_one_answers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seed: int
+) -> None:
+    """What that one says is the outcome: another one writes nothing over it."""
+    rng, firmware = random.Random(seed), ReadyFile("tinibot", "nano", "0", Path("x.hex"))
+    older_text = text("flash_older", "en")
+    for _ in range(4):  # the next board is like the first
+        bootloaders = rng.choice((BOARDS["nano"][1], BOARDS["uno"][1], BOARDS["nano"][1][::-1]))
+        outcomes = [rng.choice((avrdude.NOBODY, *avrdude.OUTCOMES)) for _ in bootloaders]
+        tried: list[flash_bootloaders.Bootloader] = []
+
+        def write(
+            command: list[str], bootloader: flash_bootloaders.Bootloader, *_: object,
+            tried: list[flash_bootloaders.Bootloader] = tried, outcomes: list[str] = outcomes,
+        ) -> avrdude.WriteResult:  # fmt: skip
+            tried.append(bootloader)
+            return avrdude.WriteResult(outcomes[len(tried) - 1])
+
+        monkeypatch.setattr(avrdude, "write", write)
+        answers = [k for k, outcome in enumerate(outcomes) if outcome != avrdude.NOBODY]
+        last = answers[0] if answers else len(outcomes) - 1
+        is_done = outcomes[last] == avrdude.DONE
+        with nullcontext() if is_done else pytest.raises(CommandError) as exception_info:
+            firmware_command._write(["x"], bootloaders, "x", firmware, "en")
+        assert tried == list(bootloaders[: last + 1])
+        if exception_info is not None:
+            error = exception_info.value
+            assert (error.exit_code, error.key) == (3, f"flash_{outcomes[last]}")
+        assert capsys.readouterr().err.count(older_text) == last
+
+
 def test_a_missing_avrdude_is_reported_with_its_source(package: Path, tmp_path: Path) -> None:
     result = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
     assert result.code == 2
@@ -255,6 +290,43 @@ def test_the_avrdude_of_another_program_is_found(
 def test_messages_of_avrdude_map_to_outcomes(outcome: str, name: str) -> None:
     for code in (1, 255, -9, -15):  # including exits by a signal from outside
         assert avrdude.result_of(code, name).outcome == outcome
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_an_unfinished_write_is_never_a_success_or_an_unchanged_board(seed: int) -> None:
+    """Only its exit code says that it has succeeded, and only its bar that it has begun."""
+    rng, bar = random.Random(seed), "Reading | ## | 100%\n"
+    words = {
+        avrdude.NOBODY: "programmer is NOT responding",
+        avrdude.OTHER_CHIP: "Expected signature for ATmega328P is 1E 95 0F",
+        avrdude.PORT_FAILED: "can't open device",
+        avrdude.FAILED: "something new",
+    }
+    for _ in range(20):
+        cause, has_begun = rng.choice([*words, avrdude.DIFFERS]), rng.random() < 0.5
+        output = rng.choice(("", bar)) + ("Writing | ##" if has_begun else "")
+        output += (
+            f"\navrdude: {words.get(cause, 'verification error')}\navrdude done.  Thank you.\n"
+        )
+        code = rng.choice((0, 1, 255, -9, -15))
+        expected = cause if cause == avrdude.DIFFERS or not has_begun else avrdude.BROKEN_OFF
+        result = avrdude.result_of(code, output)
+        assert result.outcome == (avrdude.DONE if code == 0 else expected)
+        assert result.output == ("something new" if result.outcome == avrdude.FAILED else "")
+
+
+@pytest.mark.parametrize("chip", BOARDS)
+def test_avrdude_gets_all_of_a_bootloader(chip: str, tmp_path: Path) -> None:
+    """It erases no flash: a bootloader does that, page by page, or not at all."""
+    script, told_path = tmp_path / "avrdude.py", tmp_path / "told"
+    script.write_text(f"import sys\nopen({str(told_path)!r}, 'w').write(' '.join(sys.argv[1:]))")
+    for loader in BOARDS[chip][1]:
+        result = avrdude.write(
+            [sys.executable, str(script)], loader, "/dev/x", tmp_path / "f.hex", lambda _: None
+        )
+        words = f"-c {loader.programmer} -p {loader.part} -P /dev/x -b {loader.baud} -D"
+        assert result == avrdude.WriteResult(avrdude.DONE)
+        assert told_path.read_text() == f"{words} -U flash:w:{tmp_path / 'f.hex'}:i"
 
 
 def test_every_outcome_has_its_message() -> None:
