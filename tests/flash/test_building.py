@@ -11,9 +11,12 @@ import shutil
 import subprocess
 import sys
 from argparse import Namespace
-from functools import partial
+from collections.abc import Callable
+from contextlib import nullcontext
+from functools import cache, partial
 from pathlib import Path
 from random import Random
+from typing import NamedTuple
 
 import pytest
 
@@ -37,9 +40,10 @@ from tests.support.waiting import has_ended, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
-from tiniscript.flash import building, ready
-from tiniscript.flash.building import COMPILING, FETCHING, StepProgress
+from tiniscript.flash import building, children, ready
+from tiniscript.flash.building import COMPILING, FETCHING, CannotBuild, Sources, StepProgress
 from tiniscript.library import install_advice
+from tiniscript.robots.profile import Robot
 
 
 @pytest.fixture
@@ -247,6 +251,150 @@ def test_the_cache_does_not_grow_for_ever() -> None:
     files = ready.files(ready.firmware_cache())
     assert len(files) == ready.MOST_FILES and files[-1].digest == f"{ready.MOST_FILES + 4:016x}"
     assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
+
+
+# -- with a PlatformIO that a test plays
+
+
+class Played(NamedTuple):
+    """An end of PlatformIO: its exit code, its output, and the file that it leaves."""
+
+    code: int
+    log: str
+    file: str | None
+
+    @property
+    def refusal(self) -> str | None:
+        """The reason why there is no firmware; a size is one, whatever else is said."""
+        if "greater than maximum" in self.log:
+            return CannotBuild.TOO_LARGE
+        if self.code == 0 and self.file == WHOLE_FILE:
+            return None
+        is_offline = "Compiling" not in self.log and "HTTP" in self.log
+        return CannotBuild.UNREACHABLE if is_offline else CannotBuild.FAILED
+
+
+WHOLE_FILE = ":0400000001020304F2\n:00000001FF\n"
+LOGS = (
+    "",
+    "Compiling a\n",
+    "Compiling a\nsize (33000 bytes) is greater than maximum allowed (32256 bytes)\n",
+    "Tool Manager: Installing a\nHTTPClientError\n",
+    "Tool Manager: Installing a\nHTTP\nCompiling a\n",
+)
+
+
+class PlatformIO:
+    """Is `children.run`: each run ends as one of `ends`."""
+
+    def __init__(self, robot: Robot, sources: Sources) -> None:
+        self.robot, self.sources = robot, sources
+        self.ends: list[Played] = []
+        self.commands: list[list[str]] = []  # without the folder
+        self.folders = set[Path]()
+
+    def __call__(
+        self,
+        command: list[str],
+        folder: Path,
+        on_output: Callable[[str], None],
+        environment: dict[str, str],
+    ) -> tuple[int, str]:
+        end = self.ends[len(self.commands)]
+        words = command[command.index("-d") :]
+        assert words[1] == str(folder) and words[2] == "-e"
+        assert "PLATFORMIO_BUILD_FLAGS" not in environment
+        assert environment["PLATFORMIO_SETTING_ENABLE_TELEMETRY"] == "no"
+        files = dict(self.sources.files)
+        files[building.HEADER_FILE] = building.header(self.robot).encode()
+        found = {
+            path.relative_to(folder).as_posix(): path.read_bytes()
+            for path in folder.rglob("*")
+            if path.is_file() and ".pio" not in path.parts
+        }
+        assert found == files
+        self.folders.add(folder)
+        self.commands.append(words[3:])
+        on_output(end.log)
+        if end.file is not None:
+            path = folder / ".pio" / "build" / words[3] / "firmware.hex"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(end.file)
+        return end.code, end.log
+
+
+@pytest.fixture
+def play(monkeypatch: pytest.MonkeyPatch) -> Callable[[Robot, list[Played]], PlatformIO]:
+    # Sources that a person has built from still have the header of another robot.
+    sources = Sources({"platformio.ini": b"[env]\n", "src/a.cpp": b"a", building.HEADER_FILE: b"?"})
+    monkeypatch.setattr(building, "platformio", lambda: ["pio"])
+    monkeypatch.setenv("PLATFORMIO_BUILD_FLAGS", "other")
+
+    def begin(robot: Robot, ends: list[Played]) -> PlatformIO:
+        played = PlatformIO(robot, sources)
+        played.ends = ends
+        monkeypatch.setattr(children, "run", played)
+        return played
+
+    return begin
+
+
+load = cache(robots.load)  # takes longer than what is tested with it
+
+
+def random_end(rng: Random) -> Played:
+    code, file = rng.choice((0, 0, 0, 1, -9)), rng.choice((WHOLE_FILE, WHOLE_FILE, ROW, None))
+    return Played(code, rng.choice(LOGS), file)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_firmware_is_that_of_a_build_that_has_succeeded(
+    play: Callable[[Robot, list[Played]], PlatformIO], seed: int
+) -> None:
+    """Only a size that is too large is tried again, smaller; the next build is like the first."""
+    rng = Random(seed)
+    for _ in range(10):
+        name, chip = rng.choice(("tinibot", "tinibot2")), rng.choice(("uno", "nano", "mega"))
+        robot = load(name, chip)
+        has_breakpoints = building.can_have_breakpoints(robot) and rng.random() < 0.5
+        first = f"{chip}_tinibot2" if name == "tinibot2" and chip != "mega" else chip
+        environments = [f"{chip}_breakpoints" if has_breakpoints else first]
+        ends = [random_end(rng), random_end(rng)]
+        if ends[0].refusal == CannotBuild.TOO_LARGE and environments == [chip] and chip != "mega":
+            environments.append({"uno": "uno_without_tasks", "nano": "nano_without_remote"}[chip])
+        end, steps = ends[len(environments) - 1], list[StepProgress]()
+        played = play(robot, ends)
+        if end.refusal is None:
+            data = building.build(played.sources, robot, steps.append, has_breakpoints)
+            assert data == WHOLE_FILE.encode()
+        else:
+            with pytest.raises(CannotBuild) as exception_info:
+                building.build(played.sources, robot, steps.append, has_breakpoints)
+            error = exception_info.value
+            assert (error.reason, error.log) == (end.refusal, end.log) and error.last_output
+        assert played.commands == [[name] for name in environments]
+        smaller_phases = [step.phase for step in steps if step.phase.startswith("less_")]
+        assert len(smaller_phases) == len(environments) - 1
+        assert not any(folder.exists() for folder in played.folders)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_only_a_firmware_that_was_built_is_written(
+    play: Callable[[Robot, list[Played]], PlatformIO], seed: int
+) -> None:
+    """It is written where there is a port, and says so where that fails."""
+    rng, robot = Random(seed), load("tinibot32")
+    for _ in range(10):
+        ends, port = [random_end(rng)._replace(file=None) for _ in "ab"], rng.choice((None, "COM5"))
+        built = ends[0]._replace(file=WHOLE_FILE).refusal  # it makes no HEX file
+        played = play(robot, ends)
+        reason = built or (CannotBuild.NOT_WRITTEN if port and ends[1].code else None)
+        with pytest.raises(CannotBuild) if reason else nullcontext() as exception_info:
+            building.upload(played.sources, robot, port, lambda _: None)
+        assert exception_info is None or exception_info.value.reason == reason
+        writes = [["esp32dev", "-t", "upload", "--upload-port", "COM5"]] if port else []
+        assert played.commands == [["esp32dev"], *(writes if built is None else [])]
+        assert not any(folder.exists() for folder in played.folders)
 
 
 # -- with a PlatformIO whose output is scripted
