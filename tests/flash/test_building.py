@@ -41,9 +41,18 @@ from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
 from tiniscript.flash import building, children, ready
-from tiniscript.flash.building import COMPILING, FETCHING, CannotBuild, Sources, StepProgress
+from tiniscript.flash.building import (
+    COMPILING,
+    FETCHING,
+    WRITING,
+    CannotBuild,
+    Sources,
+    StepProgress,
+)
 from tiniscript.library import install_advice
 from tiniscript.robots.profile import Robot
+
+load = cache(robots.load)  # takes longer than what is tested with it
 
 
 @pytest.fixture
@@ -123,6 +132,40 @@ def test_the_digest_covers_sources_robot_and_board(clone: Path, robot_file: Path
         fewer = {value: data for value, data in sources.files.items() if value != name}
         digests.add(building.Sources(fewer).digest(robots.load("tinibot")))
     assert len(digests) == 3 + 3 * len(sources.files) > 150
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_no_two_sources_have_one_digest(seed: int) -> None:
+    """However the same bytes are spread over the same names."""
+    rng, robot, files_by_digest = Random(seed), load("tinibot"), dict[str, dict[str, bytes]]()
+    for _ in range(60):
+        text, names = b"a\n1\n"[: rng.randrange(6)], ["a", "b", "a\n1"][: rng.randrange(4)]
+        files: dict[str, bytes] = {}
+        for name in names:
+            k = rng.randrange(len(text) + 1)
+            files[name], text = text[:k], text[k:]
+        digest = building.Sources(files).digest(robot)
+        assert files_by_digest.setdefault(digest, files) == files
+
+
+def test_the_sources_are_those_of_the_project_without_a_robot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whichever robot was built before, and the first folder that has any."""
+    names = ("platformio.ini", "partitions.csv", "src/main.cpp", "src/boards/a.h")
+    for folder, others in (("none", ()), ("first", ("src/boards/kits/own.h",)), ("second", ())):
+        for name in (*names[folder == "none" :], *others, "README.md", ".pio/a.cpp"):
+            (tmp_path / folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / folder / name).write_text(f"{name} in {folder}")
+    folders = tuple(tmp_path / folder for folder in ("none", "first", "second"))
+    monkeypatch.setattr(building, "SOURCE_FOLDERS", folders)
+    for _ in range(2):
+        found_sources = building.sources()
+        assert found_sources is not None
+        assert found_sources.files == {name: f"{name} in first".encode() for name in names}
+        (tmp_path / "first" / building.HEADER_FILE).unlink(missing_ok=True)
+    monkeypatch.setattr(building, "SOURCE_FOLDERS", folders[:1])
+    assert building.sources() is None
 
 
 def test_breakpoints_change_the_firmware_only_if_they_replace_a_feature(
@@ -278,7 +321,7 @@ WHOLE_FILE = ":0400000001020304F2\n:00000001FF\n"
 LOGS = (
     "",
     "Compiling a\n",
-    "Compiling a\nsize (33000 bytes) is greater than maximum allowed (32256 bytes)\n",
+    *["Compiling a\nsize (33000 bytes) is greater than maximum allowed (32256 bytes)\n"] * 4,
     "Tool Manager: Installing a\nHTTPClientError\n",
     "Tool Manager: Installing a\nHTTP\nCompiling a\n",
 )
@@ -337,9 +380,6 @@ def play(monkeypatch: pytest.MonkeyPatch) -> Callable[[Robot, list[Played]], Pla
         return played
 
     return begin
-
-
-load = cache(robots.load)  # takes longer than what is tested with it
 
 
 def random_end(rng: Random) -> Played:
@@ -604,6 +644,8 @@ def test_a_package_without_sources_names_their_origin(tmp_path: Path) -> None:
     ("Tool Manager: Installing a\nDownloading 100%\nTool Manager: Installing b\n",
      StepProgress(FETCHING, 0, "b")),
     ("Building in release mode\nCompiling a\nCompiling b\n", StepProgress(COMPILING, 20)),
+    ("Compiling a\nWriting at 0x1... (7 %)\nWriting at 0x2... (42 %)\n", StepProgress(WRITING, 42)),
+    ("Writing at 0x00010000 [===>  ] 12.5% 1/8 bytes\n", StepProgress(WRITING, 12)),
     ("Compiling a\n" * 50, StepProgress(COMPILING, 99)),
 ])  # fmt: skip
 def test_progress_is_parsed_from_the_output(expected: str, progress: StepProgress | None) -> None:
