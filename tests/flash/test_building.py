@@ -393,7 +393,7 @@ def test_a_firmware_is_that_of_a_build_that_has_succeeded(
 ) -> None:
     """Only a size that is too large is tried again, smaller; the next build is like the first."""
     rng = Random(seed)
-    for _ in range(10):
+    for _ in range(25):
         name, chip = rng.choice(("tinibot", "tinibot2")), rng.choice(("uno", "nano", "mega"))
         robot = load(name, chip)
         has_breakpoints = building.can_have_breakpoints(robot) and rng.random() < 0.5
@@ -435,6 +435,69 @@ def test_only_a_firmware_that_was_built_is_written(
         writes = [["esp32dev", "-t", "upload", "--upload-port", "COM5"]] if port else []
         assert played.commands == [["esp32dev"], *(writes if built is None else [])]
         assert not any(folder.exists() for folder in played.folders)
+
+
+FAILURES = (
+    CannotBuild(CannotBuild.FAILED, "error", "first log"),
+    CannotBuild(CannotBuild.FAILED, "error", "another log"),
+    CannotBuild(CannotBuild.FAILED, "no output"),
+    OSError(errno.ENOSPC, "full"),
+)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_firmware_is_built_once_for_each_robot_and_its_sources(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seed: int
+) -> None:
+    """One that failed is built again; its output is kept until the next failure."""
+    rng, built = Random(seed), dict[str, str]()
+    versions = [Sources({"src/a.cpp": bytes((k,))}) for k in range(2)]
+    log_path = ready.firmware_cache() / firmware_build.LOG_FILE
+    monkeypatch.setattr(building, "platformio", lambda: ["pio"])
+    monkeypatch.setattr(building, "missing_mb", lambda _: 0)
+    for number in range(30):
+        language, has_breakpoints = rng.choice(("en", "es")), rng.random() < 0.4
+        robot = load("tinibot", rng.choice(("uno", "nano"))).with_language(language)
+        sources, failure = rng.choice(versions), rng.choice((None, None, *FAILURES))
+        # Firmware with breakpoints answers no text: its language is none.
+        key = f"{versions.index(sources)} {robot.board.chip} {has_breakpoints or language}"
+        hex_text = f":01000000{number:02X}{255 - number:02X}\n:00000001FF\n"
+        calls: list[bool] = []
+
+        def build(
+            sources_: Sources, robot_: Robot, on_progress: Callable[[StepProgress], None],
+            breakpoints: bool, calls: list[bool] = calls, sources: Sources = sources,
+            failure: Exception | None = failure, hex_text: str = hex_text,
+        ) -> bytes:  # fmt: skip
+            assert sources_ is sources
+            calls.append(breakpoints)
+            on_progress(StepProgress(FETCHING, 5, "a package"))
+            on_progress(StepProgress(FETCHING, 50, "a package"))
+            on_progress(StepProgress(COMPILING, 50))
+            if failure is not None:
+                raise failure
+            return hex_text.encode()
+
+        monkeypatch.setattr(building, "build", build)
+        monkeypatch.setattr(building, "sources", lambda sources=sources: sources)
+        log_before = log_path.read_text() if log_path.exists() else None
+        if key in built or failure is None:
+            file = firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints)
+            assert calls == ([] if key in built else [has_breakpoints])
+            assert file.path.read_text() == built.setdefault(key, hex_text)
+            assert file.board == robot.board.chip
+            log_after = log_before
+        else:
+            with pytest.raises(CommandError) as exception_info:
+                firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints)
+            is_ours = isinstance(failure, CannotBuild)
+            key_expected = "flash_build_failed" if is_ours else "flash_no_room"
+            assert (exception_info.value.exit_code, exception_info.value.key) == (2, key_expected)
+            log_after = (
+                failure.log if isinstance(failure, CannotBuild) and failure.log else log_before
+            )
+        assert (log_path.read_text() if log_path.exists() else None) == log_after
+        assert capsys.readouterr().err.count("a package") == len(calls)
 
 
 # -- with a PlatformIO whose output is scripted
