@@ -16,7 +16,7 @@ from contextlib import nullcontext
 from functools import cache, partial
 from pathlib import Path
 from random import Random
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import pytest
 
@@ -40,6 +40,7 @@ from tests.support.waiting import has_ended, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.terminal.progress import Progress
 from tiniscript.flash import building, children, ready
 from tiniscript.flash.building import (
     COMPILING,
@@ -239,7 +240,7 @@ def test_an_outdated_packaged_file_is_not_used(clone: Path) -> None:
 
 
 @pytest.mark.parametrize(("titles", "spanish", "english"), [
-    (["liner", "liner_es"], "liner_es", "liner"),
+    (["liner", "liner_es", "own"], "liner_es", "liner"),
     (["liner"], "liner", "liner"),  # an answer in another language is better than no robot
     (["tinibot"], None, None),
 ])  # fmt: skip
@@ -256,6 +257,11 @@ def test_a_package_without_sources_uses_the_file_in_the_robots_language(
                 firmware_build.firmware(robot, Namespace(yes=True), "en")
         else:
             assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == wanted_text
+        with pytest.raises(CommandError):  # a firmware without breakpoints is none with them
+            firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints=True)
+        own_robot = robot._replace(name="own")
+        with pytest.raises(CommandError):
+            firmware_build.firmware(own_robot, Namespace(yes=True), "en")
 
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
@@ -294,6 +300,25 @@ def test_the_cache_does_not_grow_for_ever() -> None:
     files = ready.files(ready.firmware_cache())
     assert len(files) == ready.MOST_FILES and files[-1].digest == f"{ready.MOST_FILES + 4:016x}"
     assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
+    for file in files:
+        os.utime(file.path, (2**33, 2**33))  # the clock of this computer was ahead, or is behind
+    for number in range(2):
+        assert ready.store("new", "uno", f"{number:016x}", b":00000001FF\n").path.is_file()
+
+
+@pytest.mark.parametrize("board", ["esp32dev", "esp32c3", "esp8266"])
+def test_only_an_image_that_its_board_can_start_is_offered(board: str, tmp_path: Path) -> None:
+    """It begins where that board looks for it."""
+    for offset in (0, 1, 0x1000):
+        data = bytes(offset) + ready.IMAGE_MAGIC + bytes(0x2000)
+        path = tmp_path / f"tinibot-{board}-{offset}.bin"
+        path.write_bytes(data)
+        is_offered = ready.IMAGE_OFFSETS.get(board) == offset
+        images = [ready.ReadyFile("tinibot", board, str(offset), path)] * is_offered
+        assert ready.images(tmp_path) == images
+        path.write_bytes(data[:offset])
+        assert ready.images(tmp_path) == []
+        path.unlink()
 
 
 # -- with a PlatformIO that a test plays
@@ -325,6 +350,19 @@ LOGS = (
     "Tool Manager: Installing a\nHTTPClientError\n",
     "Tool Manager: Installing a\nHTTP\nCompiling a\n",
 )
+
+
+class DrawnProgress(Progress):
+    """Draws at once, on a terminal."""
+
+    drawn: ClassVar[set[Progress]] = set()
+
+    def draw(self, done_units: int) -> bool:
+        self.drawn.add(self)
+        return True
+
+    def end(self) -> None:
+        self.drawn.discard(self)
 
 
 class PlatformIO:
@@ -455,6 +493,7 @@ def test_a_firmware_is_built_once_for_each_robot_and_its_sources(
     log_path = ready.firmware_cache() / firmware_build.LOG_FILE
     monkeypatch.setattr(building, "platformio", lambda: ["pio"])
     monkeypatch.setattr(building, "missing_mb", lambda _: 0)
+    monkeypatch.setattr(firmware_build, "Progress", DrawnProgress)
     for number in range(30):
         language, has_breakpoints = rng.choice(("en", "es")), rng.random() < 0.4
         robot = load("tinibot", rng.choice(("uno", "nano"))).with_language(language)
@@ -498,6 +537,7 @@ def test_a_firmware_is_built_once_for_each_robot_and_its_sources(
             )
         assert (log_path.read_text() if log_path.exists() else None) == log_after
         assert capsys.readouterr().err.count("a package") == len(calls)
+        assert not DrawnProgress.drawn, "nothing is left of the bar"
 
 
 # -- with a PlatformIO whose output is scripted
