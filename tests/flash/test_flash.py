@@ -6,10 +6,12 @@ import os
 import random
 import shutil
 import sys
+from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
-from typing import cast
+from types import SimpleNamespace
+from typing import ClassVar, cast
 
 import pytest
 import serial
@@ -30,6 +32,7 @@ from tiniscript.flash import bootloaders as flash_bootloaders
 from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import ReadyFile
+from tiniscript.link import ports
 from tiniscript.robots.profile import answer_languages
 from tools import CannotMake
 from tools.bench import firmware_size
@@ -236,6 +239,68 @@ def test_bootloaders_are_tried_until_one_answers(
         assert capsys.readouterr().err.count(older_text) == last
 
 
+class Line:
+    """A robot's line: it is met, or that fails."""
+
+    failure: BaseException | None = None
+    open_count = 0
+    met_chips: ClassVar[list[str]] = []
+
+    def __init__(self, options: Namespace, *_: object) -> None:
+        assert options.port == "COM5"
+
+    def __enter__(self) -> Line:
+        Line.open_count += 1
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        Line.open_count -= 1
+
+    def meet(self, chip: str) -> None:
+        self.met_chips.append(chip)
+        if self.failure is not None:
+            raise self.failure
+
+
+@pytest.mark.parametrize(("failure", "code", "key"), [
+    (None, 0, ""),
+    (CommandError(3, "link_silent"), 3, "flash_silent"),
+    (CommandError(2, "other_version"), 2, "other_version"),
+])  # fmt: skip
+def test_the_robot_that_was_written_is_shown_or_its_silence_is_an_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+    failure: CommandError | None, code: int, key: str,
+) -> None:  # fmt: skip
+    monkeypatch.setattr(firmware_command, "Connection", Line)
+    monkeypatch.setattr(Line, "failure", failure)
+    monkeypatch.setattr(
+        firmware_command, "describe_robot", lambda _: SimpleNamespace(text=lambda: "a robot")
+    )
+    robot = robots.load("tinibot")
+    for _ in range(2):
+        Line.met_chips.clear()
+        with pytest.raises(CommandError) if failure else nullcontext() as exception_info:
+            firmware_command._introduce("COM5", robot, "uno", "en")
+        if exception_info is not None:
+            assert (exception_info.value.exit_code, exception_info.value.key) == (code, key)
+        assert capsys.readouterr().out == ("" if failure else "a robot\n")
+        assert (Line.met_chips, Line.open_count) == (["uno"], 0)
+
+
+def test_the_port_is_free_again_before_the_firmware_is_written(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    closed: list[str] = []
+
+    def open_port(port: str, *_: object) -> SimpleNamespace:
+        return SimpleNamespace(close=lambda: closed.append(port))
+
+    monkeypatch.setattr(ports, "open_port", open_port)
+    for count in (1, 2):
+        assert firmware_command._port(Namespace(port="COM5")) == "COM5"
+        assert closed == ["COM5"] * count
+
+
 def test_a_missing_avrdude_is_reported_with_its_source(package: Path, tmp_path: Path) -> None:
     result = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
     assert result.code == 2
@@ -266,6 +331,22 @@ def test_the_avrdude_of_another_program_is_found(
     config_folder.mkdir(exist_ok=True)
     (config_folder / "avrdude.conf").touch()
     assert avrdude.find_avrdude() == [str(program), "-C", str(config_folder / "avrdude.conf")]
+
+
+def test_the_newest_avrdude_of_the_arduino_ide_is_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its versions are numbers: 10 is newer than 9."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    tools = tmp_path / ".arduino15" / "packages" / "arduino" / "tools" / "avrdude"
+    versions = ["6.3.0-arduino9", "6.3.0-arduino17", "8.0.0-arduino1", "10.0-arduino1"]
+    for count in range(1, len(versions) + 1):
+        folder = tools / versions[count - 1]
+        for name in ("bin/avrdude", "etc/avrdude.conf"):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).touch(mode=0o755)
+        assert (avrdude.find_avrdude() or [""])[0] == str(folder / "bin" / "avrdude")
 
 
 @pytest.mark.parametrize(("outcome", "name"), [
