@@ -7,12 +7,13 @@ then finds the earlier content, with the change or without it, and so does the n
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 import signal
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, nullcontext, suppress
 from itertools import count
 from pathlib import Path
 from random import Random
@@ -42,12 +43,16 @@ LINES = 8  # lines at which a commit kills each action; --whole tries all
 
 
 class KeptNumbers(NamedTuple):
-    """`add` keeps a number, with the earlier ones unless it `is_alone`; `all` returns them."""
+    """`add` keeps a number, with the earlier ones unless it `is_alone`; `all` returns them.
+
+    `failure` is what `add` raises where it cannot; without it, the number is not kept, that is all.
+    """
 
     add: Callable[[int], object]
     all: Callable[[], list[int]]
     module: ModuleType
     is_alone: bool = False
+    failure: tuple[type[Exception], ...] = ()
 
 
 def key_file() -> KeyFile:
@@ -84,13 +89,33 @@ def found_output() -> list[int]:
     return []
 
 
+FIRMWARE_ROW = ":01000000{value:02X}{check:02X}\n"
+
+
+def remember_firmware(number: int, value: int) -> None:
+    rows = FIRMWARE_ROW.format(value=value, check=255 - value) * (len(LONG_TEXT) // 14)
+    data = f"{rows}:00000001FF\n".encode()
+    assert ready.store("robot", "uno", str(number), data).path.is_file()
+
+
+def found_firmware() -> dict[int, int]:
+    firmware_files = ready.files(ready.firmware_cache())
+    return {int(file.digest): int(file.path.read_text()[9:11]) for file in firmware_files}
+
+
 KEPT_FILES = {
     "ports": KeptNumbers(
         lambda number: known_ports.remember(f"/dev/ttyUSB{number}", LONG_TEXT),
-        lambda: [int(name[-1]) for name in known_ports.remembered_ports().name_by_port],
+        lambda: [
+            int(port[-1])
+            for port in known_ports.remembered_ports().name_by_port
+            if port.startswith("/dev/ttyUSB")
+        ],
         known_ports,
     ),
-    "keys": KeptNumbers(add_key, lambda: [key.id for key in key_file().all()], keys),
+    "keys": KeptNumbers(
+        add_key, lambda: [key.id for key in key_file().all()], keys, failure=(BadKeys,)
+    ),
     "robots that were met": KeptNumbers(
         lambda number: met_robots.remember_robot(met_robots_file(), f"{number}{LONG_TEXT}", number),
         lambda: [*met_robots.read_met_robots(met_robots_file()).id_by_place.values()],
@@ -100,11 +125,18 @@ KEPT_FILES = {
         lambda number: met_robots.accept(met_robots_file(), number),
         lambda: met_robots.read_met_robots(met_robots_file()).accepted_ids,
         met_robots,
+        failure=(OSError,),
     ),
     "profiles": KeptNumbers(
         lambda number: given.remember(f"/{LONG_TEXT}{number}", number),
         lambda: [number for number, _ in given._remembered_profiles()],
         given,
+    ),
+    "firmware": KeptNumbers(
+        lambda number: remember_firmware(number, number),
+        lambda: [*found_firmware()],
+        ready,
+        failure=(OSError,),
     ),
     "maps": KeptNumbers(
         lambda number: source_map.remember(program(number), SourceMap(LONG_TEXT, (), ())),
@@ -116,9 +148,13 @@ KEPT_FILES = {
         found_output,
         outputs,
         is_alone=True,
+        failure=(CommandError,),
     ),
 }
 each_kept_file = pytest.mark.parametrize("name", KEPT_FILES)
+each_growing_file = pytest.mark.parametrize(
+    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
+)
 
 
 @pytest.fixture(autouse=True)
@@ -240,7 +276,7 @@ def test_a_disk_full_at_any_byte_leaves_the_kept_data_intact(name: str, tmp_path
 
         def limit_size(free_bytes: int = free_bytes) -> None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (free_bytes, free_bytes))
-            with suppress(BadKeys, CommandError, OSError):
+            with suppress(*kept_memory.failure):
                 kept_memory.add(SECOND_NUMBER)
 
         assert wait_for_child(fork_child(limit_size)) == 0
@@ -252,10 +288,21 @@ def test_a_disk_full_at_any_byte_leaves_the_kept_data_intact(name: str, tmp_path
         ), free_bytes
 
 
+@each_growing_file
+def test_a_folder_that_cannot_be_made_ends_nothing(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept_memory = KEPT_FILES[name]
+    (tmp_path / "file").touch()
+    for variable in ("XDG_CACHE_HOME", "XDG_CONFIG_HOME"):
+        monkeypatch.setenv(variable, str(tmp_path / "file"))
+    for _ in range(2):
+        with pytest.raises(kept_memory.failure) if kept_memory.failure else nullcontext():
+            kept_memory.add(FIRST_NUMBER)
+
+
 @pytest.mark.sampled("name", keep=2)
-@pytest.mark.parametrize(
-    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
-)
+@each_growing_file
 def test_concurrent_commands_lose_none_of_their_data(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
@@ -294,9 +341,7 @@ def test_concurrent_commands_lose_none_of_their_data(
             os.close(end)
 
 
-@pytest.mark.parametrize(
-    "name", [name for name, kept_file in KEPT_FILES.items() if not kept_file.is_alone]
-)
+@each_growing_file
 def test_a_suspended_writer_does_not_block_others_for_ever(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -319,7 +364,7 @@ def test_a_suspended_writer_does_not_block_others_for_ever(
             )
         for _ in range(2):  # the second pass finds the existing files
             now_s = 0.0
-            with suppress(BadKeys, OSError):
+            with suppress(*kept_memory.failure):
                 kept_memory.add(SECOND_NUMBER)
             assert sorted(kept_memory.all()) in (
                 saved_numbers,
@@ -327,6 +372,64 @@ def test_a_suspended_writer_does_not_block_others_for_ever(
             )
     kept_memory.add(THIRD_NUMBER)
     assert THIRD_NUMBER in kept_memory.all()
+
+
+# -- what something else has changed --------------------------------------------------------------
+
+
+JUNK: tuple[Any, ...] = (
+    None, True, -1, 1e400, 10**30, "", "x", "\x1b[2J", "\ud800", [], [[]], [[1, 2, 3]], {},
+    {"a": 1},
+)  # fmt: skip
+JUNK_FILES = (
+    b"", b"\xff\xfe", b"{}", b"[]", b"null", b"[" * 100_000, b"1" * 5000, b":zz", ":é\n".encode(),
+    b" " * (1 << 21) + b"{}",
+)  # fmt: skip
+
+
+def damaged(data: bytes, rng: Random) -> bytes:
+    """Return a file's bytes with junk in the place of any part."""
+    if rng.random() < 0.1:
+        return data[: rng.randrange(len(data))]
+    try:
+        holder: Any = [json.loads(data)]
+    except ValueError:  # the file is not JSON
+        k = rng.randrange(len(data))
+        return data[:k] + bytes((rng.randrange(256),)) + data[k + 1 :]
+    root, key = holder, 0
+    while isinstance(holder[key], (list, dict)) and holder[key] and rng.random() < 0.8:
+        holder = holder[key]
+        key = rng.choice(list(holder) if isinstance(holder, dict) else range(len(holder)))
+    if isinstance(holder, dict) and rng.random() < 0.3:
+        del holder[key]
+    else:
+        holder[key] = rng.choice(JUNK)
+    return json.dumps(root[0]).encode()
+
+
+@pytest.mark.parametrize("seed", range(3))
+@each_growing_file
+def test_whatever_a_file_has_become_the_next_command_works(
+    name: str, seed: int, tmp_path: Path
+) -> None:
+    """Keys that cannot be read are an error, and stay as they are; all else is kept again."""
+    rng, kept_memory = Random(seed), KEPT_FILES[name]
+    for junk in (*JUNK_FILES, *[None] * 20):
+        restore(kept_memory, tmp_path)
+        (path,) = (
+            path for path in tmp_path.rglob("*") if path.is_file() and path.suffix != ".lock"
+        )
+        data = damaged(path.read_bytes(), rng) if junk is None else junk
+        path.write_bytes(data)
+        try:
+            kept_memory.all()
+            ports = known_ports.remembered_ports()
+            assert isinstance(ports.last_port, str | None)
+            assert all(name.isprintable() for name in ports.name_by_port.values())
+            kept_memory.add(SECOND_NUMBER)
+            assert SECOND_NUMBER in kept_memory.all(), data
+        except BadKeys:
+            assert kept_memory.module == keys and path.read_bytes() == data
 
 
 # -- what there is no room for --------------------------------------------------------------------
@@ -343,19 +446,6 @@ class LimitedMemory(NamedTuple):
     remember: Callable[[int, int], object]
     entries: Callable[[], dict[int, int]]
     ignores_known: bool = False
-
-
-FIRMWARE_ROW = ":01000000{value:02X}{check:02X}\n:00000001FF\n"
-
-
-def remember_firmware(number: int, value: int) -> None:
-    row = FIRMWARE_ROW.format(value=value, check=255 - value)
-    assert ready.store("robot", "uno", str(number), row.encode()).path.is_file()
-
-
-def found_firmware() -> dict[int, int]:
-    firmware_files = ready.files(ready.firmware_cache())
-    return {int(file.digest): int(file.path.read_text()[9:11]) for file in firmware_files}
 
 
 def maps_by_number() -> dict[int, int]:

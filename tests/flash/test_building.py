@@ -11,9 +11,12 @@ import shutil
 import subprocess
 import sys
 from argparse import Namespace
-from functools import partial
+from collections.abc import Callable
+from contextlib import nullcontext
+from functools import cache, partial
 from pathlib import Path
 from random import Random
+from typing import ClassVar, NamedTuple
 
 import pytest
 
@@ -37,9 +40,20 @@ from tests.support.waiting import has_ended, until
 from tiniscript import robots
 from tiniscript.cli import firmware_build
 from tiniscript.cli.errors import CommandError
-from tiniscript.flash import building, ready
-from tiniscript.flash.building import COMPILING, FETCHING, StepProgress
+from tiniscript.cli.terminal.progress import Progress
+from tiniscript.flash import building, children, ready
+from tiniscript.flash.building import (
+    COMPILING,
+    FETCHING,
+    WRITING,
+    CannotBuild,
+    Sources,
+    StepProgress,
+)
 from tiniscript.library import install_advice
+from tiniscript.robots.profile import Robot
+
+load = cache(robots.load)  # takes longer than what is tested with it
 
 
 @pytest.fixture
@@ -121,6 +135,40 @@ def test_the_digest_covers_sources_robot_and_board(clone: Path, robot_file: Path
     assert len(digests) == 3 + 3 * len(sources.files) > 150
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_no_two_sources_have_one_digest(seed: int) -> None:
+    """However the same bytes are spread over the same names."""
+    rng, robot, files_by_digest = Random(seed), load("tinibot"), dict[str, dict[str, bytes]]()
+    for _ in range(60):
+        text, names = b"a\n1\n"[: rng.randrange(6)], ["a", "b", "a\n1"][: rng.randrange(4)]
+        files: dict[str, bytes] = {}
+        for name in names:
+            k = rng.randrange(len(text) + 1)
+            files[name], text = text[:k], text[k:]
+        digest = building.Sources(files).digest(robot)
+        assert files_by_digest.setdefault(digest, files) == files
+
+
+def test_the_sources_are_those_of_the_project_without_a_robot(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whichever robot was built before, and the first folder that has any."""
+    names = ("platformio.ini", "partitions.csv", "src/main.cpp", "src/boards/a.h")
+    for folder, others in (("none", ()), ("first", ("src/boards/kits/own.h",)), ("second", ())):
+        for name in (*names[folder == "none" :], *others, "README.md", ".pio/a.cpp"):
+            (tmp_path / folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / folder / name).write_text(f"{name} in {folder}")
+    folders = tuple(tmp_path / folder for folder in ("none", "first", "second"))
+    monkeypatch.setattr(building, "SOURCE_FOLDERS", folders)
+    for _ in range(2):
+        found_sources = building.sources()
+        assert found_sources is not None
+        assert found_sources.files == {name: f"{name} in first".encode() for name in names}
+        (tmp_path / "first" / building.HEADER_FILE).unlink(missing_ok=True)
+    monkeypatch.setattr(building, "SOURCE_FOLDERS", folders[:1])
+    assert building.sources() is None
+
+
 def test_breakpoints_change_the_firmware_only_if_they_replace_a_feature(
     clone: Path,
 ) -> None:
@@ -192,7 +240,7 @@ def test_an_outdated_packaged_file_is_not_used(clone: Path) -> None:
 
 
 @pytest.mark.parametrize(("titles", "spanish", "english"), [
-    (["liner", "liner_es"], "liner_es", "liner"),
+    (["liner", "liner_es", "own"], "liner_es", "liner"),
     (["liner"], "liner", "liner"),  # an answer in another language is better than no robot
     (["tinibot"], None, None),
 ])  # fmt: skip
@@ -209,6 +257,11 @@ def test_a_package_without_sources_uses_the_file_in_the_robots_language(
                 firmware_build.firmware(robot, Namespace(yes=True), "en")
         else:
             assert firmware_build.firmware(robot, Namespace(yes=True), "en").title == wanted_text
+        with pytest.raises(CommandError):  # a firmware without breakpoints is none with them
+            firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints=True)
+        own_robot = robot._replace(name="own")
+        with pytest.raises(CommandError):
+            firmware_build.firmware(own_robot, Namespace(yes=True), "en")
 
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
@@ -247,6 +300,244 @@ def test_the_cache_does_not_grow_for_ever() -> None:
     files = ready.files(ready.firmware_cache())
     assert len(files) == ready.MOST_FILES and files[-1].digest == f"{ready.MOST_FILES + 4:016x}"
     assert {path.suffix for path in ready.firmware_cache().iterdir()} == {".hex"}
+    for file in files:
+        os.utime(file.path, (2**33, 2**33))  # the clock of this computer was ahead, or is behind
+    for number in range(2):
+        assert ready.store("new", "uno", f"{number:016x}", b":00000001FF\n").path.is_file()
+
+
+@pytest.mark.parametrize("board", ["esp32dev", "esp32c3", "esp8266"])
+def test_only_an_image_that_its_board_can_start_is_offered(board: str, tmp_path: Path) -> None:
+    """It begins where that board looks for it."""
+    for offset in (0, 1, 0x1000):
+        data = bytes(offset) + ready.IMAGE_MAGIC + bytes(0x2000)
+        path = tmp_path / f"tinibot-{board}-{offset}.bin"
+        path.write_bytes(data)
+        is_offered = ready.IMAGE_OFFSETS.get(board) == offset
+        images = [ready.ReadyFile("tinibot", board, str(offset), path)] * is_offered
+        assert ready.images(tmp_path) == images
+        path.write_bytes(data[:offset])
+        assert ready.images(tmp_path) == []
+        path.unlink()
+
+
+# -- with a PlatformIO that a test plays
+
+
+class Played(NamedTuple):
+    """An end of PlatformIO: its exit code, its output, and the file that it leaves."""
+
+    code: int
+    log: str
+    file: str | None
+
+    @property
+    def refusal(self) -> str | None:
+        """The reason why there is no firmware; a size is one, whatever else is said."""
+        if "greater than maximum" in self.log:
+            return CannotBuild.TOO_LARGE
+        if self.code == 0 and self.file == WHOLE_FILE:
+            return None
+        is_offline = "Compiling" not in self.log and "HTTP" in self.log
+        return CannotBuild.UNREACHABLE if is_offline else CannotBuild.FAILED
+
+
+WHOLE_FILE = ":0400000001020304F2\n:00000001FF\n"
+LOGS = (
+    "",
+    "Compiling a\n",
+    *["Compiling a\nsize (33000 bytes) is greater than maximum allowed (32256 bytes)\n"] * 4,
+    "Tool Manager: Installing a\nHTTPClientError\n",
+    "Tool Manager: Installing a\nHTTP\nCompiling a\n",
+)
+
+
+class DrawnProgress(Progress):
+    """Draws at once, on a terminal."""
+
+    drawn: ClassVar[set[Progress]] = set()
+
+    def draw(self, done_units: int) -> bool:
+        self.drawn.add(self)
+        return True
+
+    def end(self) -> None:
+        self.drawn.discard(self)
+
+
+class PlatformIO:
+    """Is `children.run`: each run ends as one of `ends`."""
+
+    def __init__(self, robot: Robot, sources: Sources) -> None:
+        self.robot, self.sources = robot, sources
+        self.ends: list[Played] = []
+        self.commands: list[list[str]] = []  # without the folder
+        self.folders = set[Path]()
+
+    def __call__(
+        self,
+        command: list[str],
+        folder: Path,
+        on_output: Callable[[str], None],
+        environment: dict[str, str],
+    ) -> tuple[int, str]:
+        end = self.ends[len(self.commands)]
+        words = command[command.index("-d") :]
+        assert words[1] == str(folder) and words[2] == "-e"
+        assert "PLATFORMIO_BUILD_FLAGS" not in environment
+        assert environment["PLATFORMIO_SETTING_ENABLE_TELEMETRY"] == "no"
+        files = dict(self.sources.files)
+        files[building.HEADER_FILE] = building.header(self.robot).encode()
+        found = {
+            path.relative_to(folder).as_posix(): path.read_bytes()
+            for path in folder.rglob("*")
+            if path.is_file() and ".pio" not in path.parts
+        }
+        assert found == files
+        self.folders.add(folder)
+        self.commands.append(words[3:])
+        on_output(end.log)
+        if end.file is not None:
+            path = folder / ".pio" / "build" / words[3] / "firmware.hex"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(end.file)
+        return end.code, end.log
+
+
+@pytest.fixture
+def play(monkeypatch: pytest.MonkeyPatch) -> Callable[[Robot, list[Played]], PlatformIO]:
+    # Sources that a person has built from still have the header of another robot.
+    sources = Sources({"platformio.ini": b"[env]\n", "src/a.cpp": b"a", building.HEADER_FILE: b"?"})
+    monkeypatch.setattr(building, "platformio", lambda: ["pio"])
+    monkeypatch.setenv("PLATFORMIO_BUILD_FLAGS", "other")
+
+    def begin(robot: Robot, ends: list[Played]) -> PlatformIO:
+        played = PlatformIO(robot, sources)
+        played.ends = ends
+        monkeypatch.setattr(children, "run", played)
+        return played
+
+    return begin
+
+
+def random_end(rng: Random) -> Played:
+    code, file = rng.choice((0, 0, 0, 1, -9)), rng.choice((WHOLE_FILE, WHOLE_FILE, ROW, None))
+    return Played(code, rng.choice(LOGS), file)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_firmware_is_that_of_a_build_that_has_succeeded(
+    play: Callable[[Robot, list[Played]], PlatformIO], seed: int
+) -> None:
+    """Only a size that is too large is tried again, smaller; the next build is like the first."""
+    rng = Random(seed)
+    for _ in range(25):
+        name, chip = rng.choice(("tinibot", "tinibot2")), rng.choice(("uno", "nano", "mega"))
+        robot = load(name, chip)
+        has_breakpoints = building.can_have_breakpoints(robot) and rng.random() < 0.5
+        first = f"{chip}_tinibot2" if name == "tinibot2" and chip != "mega" else chip
+        environments = [f"{chip}_breakpoints" if has_breakpoints else first]
+        ends = [random_end(rng), random_end(rng)]
+        if ends[0].refusal == CannotBuild.TOO_LARGE and environments == [chip] and chip != "mega":
+            environments.append({"uno": "uno_without_tasks", "nano": "nano_without_remote"}[chip])
+        end, steps = ends[len(environments) - 1], list[StepProgress]()
+        played = play(robot, ends)
+        if end.refusal is None:
+            data = building.build(played.sources, robot, steps.append, has_breakpoints)
+            assert data == WHOLE_FILE.encode()
+        else:
+            with pytest.raises(CannotBuild) as exception_info:
+                building.build(played.sources, robot, steps.append, has_breakpoints)
+            error = exception_info.value
+            assert (error.reason, error.log) == (end.refusal, end.log) and error.last_output
+        assert played.commands == [[name] for name in environments]
+        smaller_phases = [step.phase for step in steps if step.phase.startswith("less_")]
+        assert len(smaller_phases) == len(environments) - 1
+        assert not any(folder.exists() for folder in played.folders)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_only_a_firmware_that_was_built_is_written(
+    play: Callable[[Robot, list[Played]], PlatformIO], seed: int
+) -> None:
+    """It is written where there is a port, and says so where that fails."""
+    rng, robot = Random(seed), load("tinibot32")
+    for _ in range(10):
+        ends, port = [random_end(rng)._replace(file=None) for _ in "ab"], rng.choice((None, "COM5"))
+        built = ends[0]._replace(file=WHOLE_FILE).refusal  # it makes no HEX file
+        played = play(robot, ends)
+        reason = built or (CannotBuild.NOT_WRITTEN if port and ends[1].code else None)
+        with pytest.raises(CannotBuild) if reason else nullcontext() as exception_info:
+            building.upload(played.sources, robot, port, lambda _: None)
+        assert exception_info is None or exception_info.value.reason == reason
+        writes = [["esp32dev", "-t", "upload", "--upload-port", "COM5"]] if port else []
+        assert played.commands == [["esp32dev"], *(writes if built is None else [])]
+        assert not any(folder.exists() for folder in played.folders)
+
+
+FAILURES = (
+    CannotBuild(CannotBuild.FAILED, "error", "first log"),
+    CannotBuild(CannotBuild.FAILED, "error", "another log"),
+    CannotBuild(CannotBuild.FAILED, "no output"),
+    OSError(errno.ENOSPC, "full"),
+)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_firmware_is_built_once_for_each_robot_and_its_sources(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seed: int
+) -> None:
+    """One that failed is built again; its output is kept until the next failure."""
+    rng, built = Random(seed), dict[str, str]()
+    versions = [Sources({"src/a.cpp": bytes((k,))}) for k in range(2)]
+    log_path = ready.firmware_cache() / firmware_build.LOG_FILE
+    monkeypatch.setattr(building, "platformio", lambda: ["pio"])
+    monkeypatch.setattr(building, "missing_mb", lambda _: 0)
+    monkeypatch.setattr(firmware_build, "Progress", DrawnProgress)
+    for number in range(30):
+        language, has_breakpoints = rng.choice(("en", "es")), rng.random() < 0.4
+        robot = load("tinibot", rng.choice(("uno", "nano"))).with_language(language)
+        sources, failure = rng.choice(versions), rng.choice((None, None, *FAILURES))
+        # Firmware with breakpoints answers no text: its language is none.
+        key = f"{versions.index(sources)} {robot.board.chip} {has_breakpoints or language}"
+        hex_text = f":01000000{number:02X}{255 - number:02X}\n:00000001FF\n"
+        calls: list[bool] = []
+
+        def build(
+            sources_: Sources, robot_: Robot, on_progress: Callable[[StepProgress], None],
+            breakpoints: bool, calls: list[bool] = calls, sources: Sources = sources,
+            failure: Exception | None = failure, hex_text: str = hex_text,
+        ) -> bytes:  # fmt: skip
+            assert sources_ is sources
+            calls.append(breakpoints)
+            on_progress(StepProgress(FETCHING, 5, "a package"))
+            on_progress(StepProgress(FETCHING, 50, "a package"))
+            on_progress(StepProgress(COMPILING, 50))
+            if failure is not None:
+                raise failure
+            return hex_text.encode()
+
+        monkeypatch.setattr(building, "build", build)
+        monkeypatch.setattr(building, "sources", lambda sources=sources: sources)
+        log_before = log_path.read_text() if log_path.exists() else None
+        if key in built or failure is None:
+            file = firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints)
+            assert calls == ([] if key in built else [has_breakpoints])
+            assert file.path.read_text() == built.setdefault(key, hex_text)
+            assert file.board == robot.board.chip
+            log_after = log_before
+        else:
+            with pytest.raises(CommandError) as exception_info:
+                firmware_build.firmware(robot, Namespace(yes=True), "en", has_breakpoints)
+            is_ours = isinstance(failure, CannotBuild)
+            key_expected = "flash_build_failed" if is_ours else "flash_no_room"
+            assert (exception_info.value.exit_code, exception_info.value.key) == (2, key_expected)
+            log_after = (
+                failure.log if isinstance(failure, CannotBuild) and failure.log else log_before
+            )
+        assert (log_path.read_text() if log_path.exists() else None) == log_after
+        assert capsys.readouterr().err.count("a package") == len(calls)
+        assert not DrawnProgress.drawn, "nothing is left of the bar"
 
 
 # -- with a PlatformIO whose output is scripted
@@ -456,6 +747,8 @@ def test_a_package_without_sources_names_their_origin(tmp_path: Path) -> None:
     ("Tool Manager: Installing a\nDownloading 100%\nTool Manager: Installing b\n",
      StepProgress(FETCHING, 0, "b")),
     ("Building in release mode\nCompiling a\nCompiling b\n", StepProgress(COMPILING, 20)),
+    ("Compiling a\nWriting at 0x1... (7 %)\nWriting at 0x2... (42 %)\n", StepProgress(WRITING, 42)),
+    ("Writing at 0x00010000 [===>  ] 12.5% 1/8 bytes\n", StepProgress(WRITING, 12)),
     ("Compiling a\n" * 50, StepProgress(COMPILING, 99)),
 ])  # fmt: skip
 def test_progress_is_parsed_from_the_output(expected: str, progress: StepProgress | None) -> None:

@@ -4,12 +4,15 @@ before.
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -81,6 +84,69 @@ def test_no_child_process_is_left(
                 )
         child = int(noted_path.read_text(encoding="utf-8"))
         until(partial(is_over, child), "what it has started ends")
+
+
+def run_in_thread(command: list[str], folder: Path, variables: dict[str, str]) -> tuple[int, str]:
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(children.run, command, folder, let_continue, variables).result()
+
+
+def run_here(command: list[str], folder: Path, variables: dict[str, str]) -> tuple[int, str]:
+    return children.run(command, folder, let_continue, variables)
+
+
+@pytest.fixture
+def typed_line() -> Iterator[None]:
+    """Somebody has typed a line."""
+    stdin, (reader, writer) = os.dup(0), os.pipe()
+    os.write(writer, b"typed\n")
+    os.close(writer)
+    os.dup2(reader, 0)
+    yield
+    os.dup2(stdin, 0)
+    for end in (stdin, reader):
+        os.close(end)
+
+
+@pytest.mark.usefixtures("typed_line")
+@pytest.mark.parametrize("run", [run_here, run_in_thread])
+def test_a_child_has_its_folder_and_variables_and_nobody_to_ask(
+    tmp_path: Path, run: Callable[..., tuple[int, str]]
+) -> None:
+    """The second one has nothing of the first one."""
+    for number in (3, 0):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        variables = {f"OWN_{number}": "its own", "PATH": os.environ["PATH"]}
+        script = f'pwd; cat; env | grep ^OWN; echo "an error" >&2; exit {number}'
+        code, output = run(["sh", "-c", script], folder, variables)
+        assert (code, output) == (number, f"{folder}\nOWN_{number}=its own\nan error\n")
+
+
+def test_the_last_bytes_of_a_long_output_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(children, "LOG_BYTES", 1000)
+    for last in ("the end", "another end"):
+        script = f"head -c 100000 /dev/zero | tr '\\0' x; printf '{last}'"
+        _, output = children.run(["sh", "-c", script], None, let_continue)
+        assert output == "x" * (1000 - len(last)) + last
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_reason_is_the_first_error_or_the_last_line(seed: int) -> None:
+    rng = Random(seed)
+    errors = ("a.cpp:3: error: no such thing", "npm ERROR! it fails", "Error 1")
+    like_errors = ("HTTPClientError:", "OSError: [Errno 28] x")
+    others = ("Compiling a", "  Linking  ", "terror", "==== ----", "", "\t")
+    kinds = rng.choice((others, (*others, *like_errors), (*others, *like_errors, *errors)))
+    rows = [rng.choice(kinds) for _ in range(6)]
+    said = [row.strip() for row in rows if row.strip(" \t=-")]
+    found = [row for row in said if row in errors] or [row for row in said if row in like_errors]
+    expected = (found or said[-1:] or [""])[0]
+    assert children.reason("\n".join(rows)) == expected.rstrip(": ")
+    assert (
+        children.reason(f"{'x' * 500} error: at its end")
+        == ("x" * 500 + " error: at its end")[-200:]
+    )
 
 
 # Exceptions of Popen for a program that cannot be started.

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from functools import partial
 from pathlib import Path
 from socket import socketpair
@@ -86,7 +87,9 @@ def test_a_slow_reader_reads_nothing_of_the_next_opened_file(
 
     monkeypatch.setattr(os, "read", read_slowly)
     body = "import time\nprint('attempt 1 of 10, attempt 2 of 10', flush=True)\ntime.sleep(600)\n"
+    threads_before = {*threading.enumerate()}
     assert write_and_watch(tmp_path, body)[0].outcome == avrdude.NOBODY
+    assert {*threading.enumerate()} <= threads_before, "nobody reads any more"
     next_ones = [end for _ in range(4) for end in socketpair()]
     for end in next_ones:
         end.setblocking(False)

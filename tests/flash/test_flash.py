@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
+import random
 import shutil
 import sys
+from argparse import Namespace
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
-from typing import cast
+from types import SimpleNamespace
+from typing import ClassVar, cast
 
 import pytest
 import serial
@@ -22,11 +26,13 @@ from tests.support.terminal import Terminal
 from tiniscript import robots
 from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.texts import has_text
+from tiniscript.cli.texts import has_text, text
 from tiniscript.flash import avrdude, ready
+from tiniscript.flash import bootloaders as flash_bootloaders
 from tiniscript.flash.avrdude import StepProgress
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tiniscript.flash.ready import ReadyFile
+from tiniscript.link import ports
 from tiniscript.robots.profile import answer_languages
 from tools import CannotMake
 from tools.bench import firmware_size
@@ -201,6 +207,100 @@ def test_ctrl_c_reports_a_partial_firmware_from_the_first_byte_on(
     assert getattr(exception_info.value, "key", None) == ("flash_stopped" if count else None)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_bootloaders_are_tried_until_one_answers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seed: int
+) -> None:
+    """What that one says is the outcome: another one writes nothing over it."""
+    rng, firmware = random.Random(seed), ReadyFile("tinibot", "nano", "0", Path("x.hex"))
+    older_text = text("flash_older", "en")
+    for _ in range(4):  # the next board is like the first
+        bootloaders = rng.choice((BOARDS["nano"][1], BOARDS["uno"][1], BOARDS["nano"][1][::-1]))
+        outcomes = [rng.choice((avrdude.NOBODY, *avrdude.OUTCOMES)) for _ in bootloaders]
+        tried: list[flash_bootloaders.Bootloader] = []
+
+        def write(
+            command: list[str], bootloader: flash_bootloaders.Bootloader, *_: object,
+            tried: list[flash_bootloaders.Bootloader] = tried, outcomes: list[str] = outcomes,
+        ) -> avrdude.WriteResult:  # fmt: skip
+            tried.append(bootloader)
+            return avrdude.WriteResult(outcomes[len(tried) - 1])
+
+        monkeypatch.setattr(avrdude, "write", write)
+        answers = [k for k, outcome in enumerate(outcomes) if outcome != avrdude.NOBODY]
+        last = answers[0] if answers else len(outcomes) - 1
+        is_done = outcomes[last] == avrdude.DONE
+        with nullcontext() if is_done else pytest.raises(CommandError) as exception_info:
+            firmware_command._write(["x"], bootloaders, "x", firmware, "en")
+        assert tried == list(bootloaders[: last + 1])
+        if exception_info is not None:
+            error = exception_info.value
+            assert (error.exit_code, error.key) == (3, f"flash_{outcomes[last]}")
+        assert capsys.readouterr().err.count(older_text) == last
+
+
+class Line:
+    """A robot's line: it is met, or that fails."""
+
+    failure: BaseException | None = None
+    open_count = 0
+    met_chips: ClassVar[list[str]] = []
+
+    def __init__(self, options: Namespace, *_: object) -> None:
+        assert options.port == "COM5"
+
+    def __enter__(self) -> Line:
+        Line.open_count += 1
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        Line.open_count -= 1
+
+    def meet(self, chip: str) -> None:
+        self.met_chips.append(chip)
+        if self.failure is not None:
+            raise self.failure
+
+
+@pytest.mark.parametrize(("failure", "code", "key"), [
+    (None, 0, ""),
+    (CommandError(3, "link_silent"), 3, "flash_silent"),
+    (CommandError(2, "other_version"), 2, "other_version"),
+])  # fmt: skip
+def test_the_robot_that_was_written_is_shown_or_its_silence_is_an_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+    failure: CommandError | None, code: int, key: str,
+) -> None:  # fmt: skip
+    monkeypatch.setattr(firmware_command, "Connection", Line)
+    monkeypatch.setattr(Line, "failure", failure)
+    monkeypatch.setattr(
+        firmware_command, "describe_robot", lambda _: SimpleNamespace(text=lambda: "a robot")
+    )
+    robot = robots.load("tinibot")
+    for _ in range(2):
+        Line.met_chips.clear()
+        with pytest.raises(CommandError) if failure else nullcontext() as exception_info:
+            firmware_command._introduce("COM5", robot, "uno", "en")
+        if exception_info is not None:
+            assert (exception_info.value.exit_code, exception_info.value.key) == (code, key)
+        assert capsys.readouterr().out == ("" if failure else "a robot\n")
+        assert (Line.met_chips, Line.open_count) == (["uno"], 0)
+
+
+def test_the_port_is_free_again_before_the_firmware_is_written(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    closed: list[str] = []
+
+    def open_port(port: str, *_: object) -> SimpleNamespace:
+        return SimpleNamespace(close=lambda: closed.append(port))
+
+    monkeypatch.setattr(ports, "open_port", open_port)
+    for count in (1, 2):
+        assert firmware_command._port(Namespace(port="COM5")) == "COM5"
+        assert closed == ["COM5"] * count
+
+
 def test_a_missing_avrdude_is_reported_with_its_source(package: Path, tmp_path: Path) -> None:
     result = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
     assert result.code == 2
@@ -233,6 +333,22 @@ def test_the_avrdude_of_another_program_is_found(
     assert avrdude.find_avrdude() == [str(program), "-C", str(config_folder / "avrdude.conf")]
 
 
+def test_the_newest_avrdude_of_the_arduino_ide_is_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its versions are numbers: 10 is newer than 9."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    tools = tmp_path / ".arduino15" / "packages" / "arduino" / "tools" / "avrdude"
+    versions = ["6.3.0-arduino9", "6.3.0-arduino17", "8.0.0-arduino1", "10.0-arduino1"]
+    for count in range(1, len(versions) + 1):
+        folder = tools / versions[count - 1]
+        for name in ("bin/avrdude", "etc/avrdude.conf"):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).touch(mode=0o755)
+        assert (avrdude.find_avrdude() or [""])[0] == str(folder / "bin" / "avrdude")
+
+
 @pytest.mark.parametrize(("outcome", "name"), [
     (avrdude.NOBODY, "avrdude: stk500_getsync() attempt 10 of 10: not in sync: resp=0xc9"),
     (avrdude.NOBODY, "avrdude: stk500v2_ReceiveMessage(): timeout"),
@@ -255,6 +371,43 @@ def test_the_avrdude_of_another_program_is_found(
 def test_messages_of_avrdude_map_to_outcomes(outcome: str, name: str) -> None:
     for code in (1, 255, -9, -15):  # including exits by a signal from outside
         assert avrdude.result_of(code, name).outcome == outcome
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_an_unfinished_write_is_never_a_success_or_an_unchanged_board(seed: int) -> None:
+    """Only its exit code says that it has succeeded, and only its bar that it has begun."""
+    rng, bar = random.Random(seed), "Reading | ## | 100%\n"
+    words = {
+        avrdude.NOBODY: "programmer is NOT responding",
+        avrdude.OTHER_CHIP: "Expected signature for ATmega328P is 1E 95 0F",
+        avrdude.PORT_FAILED: "can't open device",
+        avrdude.FAILED: "something new",
+    }
+    for _ in range(20):
+        cause, has_begun = rng.choice([*words, avrdude.DIFFERS]), rng.random() < 0.5
+        output = rng.choice(("", bar)) + ("Writing | ##" if has_begun else "")
+        output += (
+            f"\navrdude: {words.get(cause, 'verification error')}\navrdude done.  Thank you.\n"
+        )
+        code = rng.choice((0, 1, 255, -9, -15))
+        expected = cause if cause == avrdude.DIFFERS or not has_begun else avrdude.BROKEN_OFF
+        result = avrdude.result_of(code, output)
+        assert result.outcome == (avrdude.DONE if code == 0 else expected)
+        assert result.output == ("something new" if result.outcome == avrdude.FAILED else "")
+
+
+@pytest.mark.parametrize("chip", BOARDS)
+def test_avrdude_gets_all_of_a_bootloader(chip: str, tmp_path: Path) -> None:
+    """It erases no flash: a bootloader does that, page by page, or not at all."""
+    script, told_path = tmp_path / "avrdude.py", tmp_path / "told"
+    script.write_text(f"import sys\nopen({str(told_path)!r}, 'w').write(' '.join(sys.argv[1:]))")
+    for loader in BOARDS[chip][1]:
+        result = avrdude.write(
+            [sys.executable, str(script)], loader, "/dev/x", tmp_path / "f.hex", lambda _: None
+        )
+        words = f"-c {loader.programmer} -p {loader.part} -P /dev/x -b {loader.baud} -D"
+        assert result == avrdude.WriteResult(avrdude.DONE)
+        assert told_path.read_text() == f"{words} -U flash:w:{tmp_path / 'f.hex'}:i"
 
 
 def test_every_outcome_has_its_message() -> None:

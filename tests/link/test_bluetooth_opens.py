@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from random import Random
 from time import sleep
 from types import SimpleNamespace
 from typing import Any
@@ -45,14 +47,21 @@ class Device:
 class Client:
     """A BleakClient. Being connected it keeps others off until it is disconnected."""
 
+    is_connecting = False
+
     def __init__(self, device: Device, *_: object, **__: object) -> None:
         self.device = device
 
     async def connect(self) -> None:
         assert not self.device.clients, "somebody else has the device"
-        await self.device.reach("before it is connected")
-        self.device.clients.append(self)
-        await self.device.reach("connected")
+        assert not Client.is_connecting, "BlueZ makes one connection at a time"
+        Client.is_connecting = True
+        try:
+            await self.device.reach("before it is connected")
+            self.device.clients.append(self)
+            await self.device.reach("connected")
+        finally:
+            Client.is_connecting = False
 
     async def disconnect(self) -> None:
         await asyncio.sleep(0)
@@ -186,3 +195,80 @@ def connects_until(loop: event_loop.EventLoop, device: Device, patch: pytest.Mon
     port = bluetooth.BluetoothPort(loop, 9600)
     patch.setattr(loop, "run", count_runs)
     port.connect(device)  # type: ignore[arg-type]
+
+
+def test_a_device_that_does_not_answer_delays_others_no_longer_than_it_may(
+    loop: event_loop.EventLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They wait for each other, and each is connected or given up."""
+    monkeypatch.setattr(bluetooth, "CONNECT_S", 0.3)  # more than a busy computer needs
+    for stage in STAGES[:2]:
+        devices = [Device() for _ in range(3)]
+        devices[0].failing_stage = stage
+        with ThreadPoolExecutor(len(devices)) as pool:
+            opened = [pool.submit(connects, loop, device) for device in devices]
+        for device, future in zip(devices, opened, strict=True):
+            failure = future.exception()
+            if device.failing_stage:
+                assert isinstance(failure, PortError) and failure.reason == errors.SLOW
+                assert device.clients == []
+            else:
+                assert failure is None
+                future.result().close()
+            check_next_client_works(loop, device)
+
+
+class Radio:
+    """A client's writes: each is taken, or fails, with the connection or without it."""
+
+    def __init__(self) -> None:
+        self.failure: Exception | None = None
+        self.is_connected = True
+        self.written_bytes = b""
+
+    async def write_gatt_char(self, _: object, data: bytes, response: bool) -> None:
+        if self.failure is not None:
+            raise self.failure
+        self.written_bytes += data
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_failed_write_loses_its_bytes_or_the_connection(
+    loop: event_loop.EventLoop, monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """What is lost is sent again by the session; a lost connection is an error from then on."""
+    rng, radio, run = Random(seed), Radio(), loop.run
+    properties = rng.choice((["write"], ["write-without-response"]))
+    characteristic: Any = SimpleNamespace(
+        properties=properties, max_write_without_response_size=rng.choice((10, 20, 100))
+    )
+    port, limits_s = bluetooth.BluetoothPort(loop, 9600), list[float]()
+    port._client, port._write_characteristic = radio, characteristic  # type: ignore[assignment]
+
+    def run_and_note(work: Any, timeout_s: float) -> object:
+        limits_s.append(timeout_s)
+        return run(work, 100)
+
+    monkeypatch.setattr(loop, "run", run_and_note)
+    for _ in range(10):
+        data = rng.randbytes(rng.choice((1, 20, 65, 1000)))
+        radio.failure = rng.choice((None, None, BleakError("no"), OSError("no"), EOFError()))
+        radio.is_connected = radio.failure is None or rng.random() < 0.8
+        radio.written_bytes = b""
+        if radio.is_connected:
+            port.write(data)
+            assert radio.written_bytes == (data if radio.failure is None else b"")
+            assert port.read(1) == b""
+        else:
+            with pytest.raises(OSError):
+                port.write(data)
+        # A module's UART sends a byte in ten bits.
+        assert limits_s[-1] > len(data) * 10 / 9600
+        if not radio.is_connected:
+            break
+    if not radio.is_connected:
+        radio.failure, radio.is_connected = None, True
+        for use in (lambda: port.write(b"x"), lambda: port.read(1), lambda: port.write(b"x")):
+            with pytest.raises(OSError):
+                use()
+        assert radio.written_bytes == b""

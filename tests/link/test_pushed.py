@@ -19,12 +19,12 @@ class Bell:
     """
 
     def __init__(self) -> None:
-        self.count = 0
+        self.count = self.ring_count = 0
         self.late_pieces: list[bytes] = []
         self.port: PushedTransport | None = None
 
     def ring(self) -> None:
-        """No one else is connected."""
+        self.ring_count += 1
 
     def wait(self, timeout_s: float) -> None:
         assert timeout_s == READ_S
@@ -47,8 +47,9 @@ def test_a_read_waits_like_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed
     unread, is_cancelled, failure = b"", False, ""
     for _ in range(200):
         action = rng.choice(("read", "read", "read", "bring", "cancel", "while it waits"))
-        if rng.random() < 0.002:
+        if rng.random() < (0.1 if failure else 0.002):
             action = "end"
+        ring_count_before = bell.ring_count
         if action == "bring":
             data = rng.randbytes(rng.choice((1, 20, 300)))
             port.add_received(data)
@@ -57,8 +58,9 @@ def test_a_read_waits_like_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed
             port.cancel_read()
             is_cancelled = True
         elif action == "end":
-            port.end("")
-            failure = failure or END_REASON
+            reason = rng.choice(("", "the first one", "another one"))
+            port.end(reason)
+            failure = failure or reason or END_REASON
         else:
             size = rng.choice((1, 20, 4096))
             late_bytes = rng.randbytes(5) if action == "while it waits" else b""
@@ -75,6 +77,8 @@ def test_a_read_waits_like_on_a_fresh_port(monkeypatch: pytest.MonkeyPatch, seed
             unread = unread[size:]
             assert bell.count - count_before == has_to_wait, "it waits once, or not at all"
             is_cancelled = False
+        is_woken = action in ("bring", "cancel", "end")
+        assert not is_woken or bell.ring_count > ring_count_before, "a read that waits goes on"
         assert port.in_waiting == len(unread)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import random
 import time
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -15,6 +17,7 @@ from tests.support.shared_pty_robot import SharedLine
 from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import compile, robots
 from tiniscript.library import opening
+from tiniscript.library.errors import RobotError
 from tiniscript.link.messages import STOP_BYTES
 from tiniscript.studio import attending, hosted_robot
 from tiniscript.studio.hosting import Hosting
@@ -140,6 +143,115 @@ def test_a_fault_reports_its_place(page: Page) -> None:
     page.upload("X = 0;\nSHOW(1 / X)")
     fault = page.until(lambda item: item.get("event") == "FAULT")
     assert fault["fault"] == "DIVIDE_BY_ZERO" and fault["at"] > 0
+
+
+class EarlierRobot:
+    """Closes its port at some time, or lets another command use it from some time on."""
+
+    def __init__(self, clock: list[float], closed_s: float, holds_s: float) -> None:
+        self.clock, self.closed_s, self.holds_s = clock, closed_s, holds_s
+
+    @property
+    def is_parting(self) -> bool:
+        return self.clock[0] < self.closed_s
+
+    @property
+    def is_holding_port(self) -> bool:
+        return self.clock[0] >= self.holds_s
+
+    @property
+    def free_s(self) -> float:
+        return min(self.closed_s, self.holds_s)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_port_is_opened_once_those_before_have_left_it(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """Or after the time that they may take; a page that has left meanwhile opens nothing."""
+    rng, clock, opened_s = random.Random(seed), [0.0], list[float]()
+    limit_s, poll_s = hosted_robot.PARTING_TIMEOUT_S, attending.POLL_INTERVAL_S
+
+    def refuse(*_: object, **__: object) -> None:
+        opened_s.append(clock[0])
+        raise RobotError("port_missing", sentence_text="no such port")
+
+    monkeypatch.setattr(hosted_robot, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(hosted_robot, "Client", refuse)
+    monkeypatch.setattr(hosted_robot, "Thread", lambda **_: SimpleNamespace(start=lambda: None))
+    for _ in range(5):
+        clock[0], never_s = 0.0, 10 * limit_s
+        opened_s.clear()
+        earlier_robots = [
+            EarlierRobot(clock, rng.choice((0, 1, 3, never_s)), rng.choice((2, never_s, never_s)))
+            for _ in range(rng.randrange(4))
+        ]
+        left_s = rng.choice((0.0, 1.5, never_s, never_s))
+        hosted = hosted_robot.HostedRobot("COM5", "tinibot", "en")
+        hosted._earlier_robots = earlier_robots  # type: ignore[assignment]
+
+        def wait(seconds: float, hosted: Any = hosted, left_s: float = left_s) -> None:
+            clock[0] += seconds
+            if clock[0] >= left_s:
+                hosted.leave()
+
+        for earlier in earlier_robots:
+            vars(earlier)["join"] = wait
+        wait(0)
+        hosted._run()
+        free_s = min(limit_s, max((robot.free_s for robot in earlier_robots), default=0.0))
+        end_s = min(free_s, left_s)
+        assert end_s <= clock[0] <= end_s + 2 * poll_s
+        assert len(opened_s) == (not hosted.was_left) and hosted.has_ended
+        assert hosted.was_left or end_s == free_s
+        reasons = [item["over"] for item in hosted.attending._news if "over" in item]
+        assert reasons == ["left" if hosted.was_left else "port_missing"]
+
+
+class PlayedLink:
+    """A link whose events come one at a time; `stop` does nothing but count."""
+
+    def __init__(self, clock: list[float], has_run: bool, events: list[str | None]) -> None:
+        self.clock, self.has_run, self.events = clock, has_run, events
+        self.stop_count = self.news_count = 0
+
+    def news(self, timeout_s: float = 0.0) -> list[dict[str, Any]]:
+        self.clock[0] += timeout_s
+        self.news_count += 1
+        event = self.events[self.news_count - 1] if self.news_count <= len(self.events) else None
+        return [] if event is None else [{"event": event}]
+
+    def stop(self) -> None:
+        self.stop_count += 1
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_page_hears_of_its_stop_before_it_hears_that_it_is_over(
+    monkeypatch: pytest.MonkeyPatch, seed: int
+) -> None:
+    """All that happened is told. The wait ends with the confirmation, or a link that is lost."""
+    rng, clock = random.Random(seed), [0.0]
+    monkeypatch.setattr(hosted_robot, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(hosted_robot, "Thread", lambda **_: SimpleNamespace(start=lambda: None))
+    poll_s, limit_s = attending.POLL_INTERVAL_S, opening.CONFIRM_TIMEOUT_S
+    for _ in range(10):
+        events = [rng.choice(("SHOW", None, None, "STOPPED", "LOST")) for _ in range(5)]
+        link = PlayedLink(clock, rng.random() < 0.8, events)
+        hosted = hosted_robot.HostedRobot("COM5", "tinibot", "en")
+        start_s = clock[0]
+        hosted._part_from_robot(link)  # type: ignore[arg-type]
+        told = [item["event"] for item in hosted.attending._news]
+        if not link.has_run:
+            assert (told, link.stop_count, hosted.is_unconfirmed) == ([], 0, False)
+            continue
+        ends = [k for k in range(1, 5) if events[k] in ("STOPPED", "LOST")]
+        last = ends[0] if ends else 4
+        shown = [event for event in events[1 : last + 1] if event is not None]
+        assert told == [*([] if events[0] is None else [events[0]]), "STOPPING", *shown]
+        assert link.stop_count == 1
+        assert hosted.is_unconfirmed == (not ends or events[last] == "LOST")
+        wait_s = last * poll_s if ends else limit_s
+        assert wait_s - 1e-6 <= clock[0] - start_s <= wait_s + poll_s
 
 
 @pytest.fixture

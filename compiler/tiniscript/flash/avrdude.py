@@ -88,9 +88,14 @@ def _bundled_avrdudes(home: Path) -> list[Path]:
     programs: list[Path] = []
     for folder in folders:
         tools = folder / "packages" / "arduino" / "tools" / "avrdude"
-        programs += sorted(tools.glob(f"*/bin/{name}"), reverse=True)
+        programs += sorted(tools.glob(f"*/bin/{name}"), key=_version, reverse=True)
     platformio = home / ".platformio" / "packages" / "tool-avrdude"
     return [*programs, *sorted(platformio.glob(f"**/{name}"))]
+
+
+def _version(program: Path) -> list[int]:
+    """Return the numbers in the name of a program's folder, as in `6.3.0-arduino17`."""
+    return [int(number) for number in re.findall(r"\d+", program.parent.parent.name)]
 
 
 def write(

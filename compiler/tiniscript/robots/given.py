@@ -58,7 +58,7 @@ def _remembered_profiles() -> list[tuple[int, str]]:
     try:
         entries = json.loads(files.read_limited(_path(), MOST_FILE_BYTES))
         return [(int(kit), str(path)) for kit, path in entries if str(path).isprintable()]
-    except (OSError, ValueError, TypeError, RecursionError):
+    except (OSError, ValueError, OverflowError, TypeError, RecursionError):
         return []
 
 
