@@ -1,0 +1,325 @@
+"""Whole sessions of `tsc live` at the prompt: whatever came before a line, it does what a plain
+model does, each value that the robot shows is printed once, and each Ctrl-C stops the robot.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import random
+from argparse import Namespace
+from collections import deque
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any, NamedTuple, cast
+
+import pytest
+
+from tiniscript import robots
+from tiniscript.base.fixed_point import as_text
+from tiniscript.base.trace import Ending, Senses
+from tiniscript.cli.commands import live
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot import own_kit
+from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.live_state import LiveState
+from tiniscript.library import source_map
+from tiniscript.link.outcomes import Event, ShownEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
+from tiniscript.link.requests import OK, Reply
+from tiniscript.vm.runner import run as run_code
+
+TINIBOT = robots.load("tinibot")
+NAMES, LAMP = ("X", "Y", "Z"), "READY"
+MARK = as_text(BOOKKEEPING_MARK)
+BUTTON_RUN = 999  # of a program that the button has started
+FIRST_LINE = "X = 1; Y = 2; Z = 3; READY = TRUE"
+DEF_NAMES = "DASH", "HOP", "JIG"  # in an order in which each calls only earlier ones
+ROOMY, NARROW = 2000, 24  # bytes of code that a robot accepts at once
+
+
+# -- a plain model of what lines do --------------------------------------------------------------
+
+
+class Fault(Exception):
+    """A program's own fault."""
+
+
+class State:
+    """What a session knows, and what a line has shown so far."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, int | bool] = {"X": 1, "Y": 2, "Z": 3, LAMP: True}
+        self.defs: dict[str, list[Step]] = {}
+        self.shown: list[str] = []
+
+    def show(self, value: int | bool) -> None:
+        self.shown.append(f"SHOW {str(value).upper()}")
+
+
+class Step(NamedTuple):
+    """An instruction, and what it does."""
+
+    text: str
+    do: Callable[[State], None]
+
+
+def text_of(steps: list[Step]) -> str:
+    return "; ".join(step.text for step in steps)
+
+
+def do_all(steps: list[Step], state: State) -> None:
+    for step in steps:
+        step.do(state)
+
+
+def drawn_step(rng: random.Random, callable_names: list[str], depth: int = 0) -> Step:
+    def assign(name: str, value_of: Callable[[State], int | bool]) -> Callable[[State], None]:
+        return lambda state: state.values.update({name: value_of(state)})
+
+    def fail(_: State) -> None:
+        raise Fault
+
+    name, other, number = rng.choice(NAMES), rng.choice(NAMES), rng.randint(1, 9)
+    kind = rng.choice(["set", "add", "not", "show", "show", "lamp", *["call"] * 4, "if", "loop"])
+    if kind == "call" and callable_names:
+        called_name = rng.choice(callable_names)
+        return Step(called_name, lambda state: do_all(state.defs[called_name], state))
+    if kind in ("if", "loop") and depth < 1:
+        inner = drawn_step(rng, callable_names, depth + 1)
+        if kind == "if":
+            return Step(
+                f"IF({LAMP}); {inner.text}; ENDIF",
+                lambda state: inner.do(state) if state.values[LAMP] else None,
+            )
+        return Step(f"LOOP(2); {inner.text}; END_LOOP", lambda state: do_all([inner, inner], state))
+    if kind == "set":
+        return Step(f"{name} = {number}", assign(name, lambda _: number))
+    if kind == "add":
+        return Step(
+            f"{name} = {other} - {number}", assign(name, lambda state: state.values[other] - number)
+        )
+    if kind == "not":
+        return Step(f"{LAMP} = NOT {LAMP}", assign(LAMP, lambda state: not state.values[LAMP]))
+    if kind == "lamp":
+        return Step(f"SHOW({LAMP})", lambda state: state.show(state.values[LAMP]))
+    if rng.random() < 0.1:
+        return Step(f"SHOW(1 / ({name} - {name}))", fail)
+    if rng.random() < 0.1:  # by chance
+        return Step(f"SHOW({MARK})", lambda state: state.shown.append(f"SHOW {MARK}"))
+    return Step(f"SHOW({name})", lambda state: state.show(state.values[name]))
+
+
+class Line(NamedTuple):
+    """A line with a new DEF, or without one, and then `steps`."""
+
+    text: str
+    new_def: dict[str, list[Step]]
+    steps: list[Step]
+
+
+def drawn_line(rng: random.Random, known_names: list[str]) -> Line:
+    steps = [drawn_step(rng, known_names) for _ in range(rng.randint(1, 3))]
+    if rng.random() < 0.4:
+        return Line(text_of(steps), {}, steps)
+    name = rng.choice(DEF_NAMES)
+    earlier_names = [known for known in known_names if known < name]  # none calls itself
+    body = [drawn_step(rng, earlier_names) for _ in range(rng.randint(1, 2))]
+    text = f"DEF {name}; {text_of(body)}; END_DEF"
+    if rng.random() < 0.6:
+        return Line(text, {name: body}, [])
+    # A known DEF that calls the new one would have to stand behind it.
+    steps = [drawn_step(rng, [*earlier_names, name]) for _ in range(rng.randint(1, 3))]
+    return Line(f"{text}; {text_of(steps)}", {name: body}, steps)
+
+
+# -- a robot that does lines ---------------------------------------------------------------------
+
+
+class LiveRobot:
+    """A connection to a robot that runs code on the machine in Python. `presses_after` is the
+    number of events of the next run after which somebody presses Ctrl-C, if anybody does."""
+
+    def __init__(self) -> None:
+        self.language, self.port = "en", "p"
+        self.profile = TINIBOT
+        self.device_info = SimpleNamespace(values=SimpleNamespace(features=0))
+        self.simulator = None
+        self.is_time_over = False
+        self.wait_notice: Any = SimpleNamespace(
+            poll=None, note_other_output=lambda: None, with_sentence=lambda _: self.wait_notice
+        )
+        self.room = ROOMY
+        self.events: deque[Event] = deque()
+        self.presses_after: int | None = None
+        self.stop_count = self.run = 0
+        self.failure: CommandError | None = None  # of the next line, or the next stop
+        self._events_left: int | None = None  # before the press, in a run
+
+    def meet(self) -> None:
+        pass
+
+    def text(self, key: str) -> str:
+        return key
+
+    def print_text(self, key: str) -> None:
+        pass
+
+    def event(self, _: float = 0) -> tuple[int, Event] | None:
+        if self._events_left == 0:
+            self._events_left = None
+            raise KeyboardInterrupt
+        if not self.events:
+            return None
+        event = self.events.popleft()
+        if self._events_left is not None:
+            self._events_left = None if event.name in ("DONE", "FAULT") else self._events_left - 1
+        return 0, event
+
+    def stop(self) -> bool:
+        self.stop_count += 1
+        self._fail()
+        self.events = deque(
+            event for event in self.events if getattr(event, "run", 0) == BUTTON_RUN
+        )
+        self.events.append(StoppedEvent(0))
+        return True
+
+    def _fail(self) -> None:
+        failure, self.failure = self.failure, None
+        if failure is not None:
+            raise failure
+
+    def request(self, make_request: Callable[[Any], Reply[Any]]) -> Reply[Any]:
+        return make_request(self)
+
+    def live(self, code: bytes, kit: int, halts: bool) -> Reply[Any]:
+        self._fail()
+        assert len(code) <= self.room
+        self.run += 1
+        self.events += [StartedEvent(self.run, 0), *events_of(code, self.run)]
+        self._events_left, self.presses_after = self.presses_after, None
+        return Reply(OK, 0, SimpleNamespace(run=self.run, program=0))
+
+
+def events_of(code: bytes, run: int) -> Iterator[Event]:
+    """Run code; return what its robot says, but not from where in the code."""
+    for event in run_code(code, TINIBOT.kit, Senses(TINIBOT.kit, {})):
+        if isinstance(event, Ending):
+            yield DoneEvent(run) if event.kind == "DONE" else FaultEvent(run, 1, event.offset, 0)
+        elif event.kind == "SHOW":
+            yield ShownEvent(event.values[0], event.text.endswith("E"), run)
+
+
+class Session:
+    """A session at the prompt. `steps` yields what the person types: a text, or an exception."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.robot = LiveRobot()
+        monkeypatch.setattr(live, "_history", lambda _: contextlib.nullcontext())
+        monkeypatch.setattr(live, "short_bytes", lambda _: self.robot.room)
+        monkeypatch.setattr(own_kit, "use_answering_profile", lambda *_: False)
+        monkeypatch.setattr(source_map, "remember", lambda *_: None)
+        self.repl = live.Repl(
+            cast(Connection, self.robot), LiveState(TINIBOT.kit), Namespace(breaks=[])
+        )
+        self.monkeypatch = monkeypatch
+
+    def run(self, typed: Iterator[str | BaseException]) -> int:
+        def read(_: str) -> str:
+            text = next(typed)
+            if isinstance(text, BaseException):
+                raise text
+            return text
+
+        self.monkeypatch.setattr("builtins.input", read)
+        return self.repl.run_prompt()
+
+
+@pytest.mark.sampled("seed", keep=3)
+@pytest.mark.parametrize("seed", range(10))
+def test_a_line_does_the_same_whatever_came_before_it(
+    seed: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A line that fails, is stopped, or is too long leaves what the lines before it have set. What
+    a robot shows between two lines is printed before the second one's."""
+    rng = random.Random(seed)
+    state, session, has_left = State(), Session(monkeypatch), False
+    robot, wanted_stops = session.robot, 0
+
+    def take_output() -> tuple[list[str], str]:
+        out, err = capsys.readouterr()
+        return [row for row in out.splitlines() if row.startswith("SHOW")], err
+
+    def typed() -> Iterator[str | BaseException]:
+        nonlocal wanted_stops, has_left
+        yield FIRST_LINE
+        for _ in range(25):
+            line, line_state = drawn_line(rng, sorted(state.defs)), State()
+            line_state.values, line_state.defs = {**state.values}, {**state.defs, **line.new_def}
+            is_faulty = False
+            try:
+                do_all(line.steps, line_state)
+            except Fault:
+                is_faulty = True
+            wanted_rows = []
+            if rng.random() < 0.2:
+                values = 7000, *([BOOKKEEPING_MARK, 5000] if rng.random() < 0.5 else [])
+                robot.events += [ShownEvent(value, False, BUTTON_RUN) for value in values]
+                wanted_rows.append("SHOW 7")  # the others are of another session's line
+            if rng.random() < 0.2:
+                if rng.random() < 0.5:
+                    yield "LOOP(2)"  # it is dropped
+                robot.failure = rng.choice((None, None, CommandError(3, "not_confirmed", port="p")))
+                yield KeyboardInterrupt()
+                wanted_stops += 1
+            robot.room = NARROW if rng.random() < 0.2 else ROOMY
+            presses_after = rng.randrange(8) if line.steps and rng.random() < 0.3 else None
+            robot.presses_after = presses_after
+            if line.steps and presses_after is None and rng.random() < 0.1:
+                robot.failure = CommandError(3, "link_lost", port="p")
+            may_fail = robot.failure is not None
+            stops_before = robot.stop_count
+            yield line.text
+            rows, err = take_output()
+            is_stopped, robot.presses_after = robot.stop_count > stops_before, None
+            has_failed, robot.failure = may_fail and robot.failure is None, None
+            assert err or not has_failed
+            is_refused, is_forgotten = "room for" in err, "are lost" in err
+            assert robot.room == NARROW or not (is_refused or is_forgotten)
+            if is_stopped:
+                assert presses_after is not None
+                wanted_stops += 1
+                shown_rows = line_state.shown[: max(0, presses_after - 1)]  # after the start
+                if f"SHOW {MARK}" in shown_rows:  # the values after it may be a line's variables
+                    shown_rows = rows[len(wanted_rows) :]
+                wanted_rows += shown_rows
+            elif not (is_refused or has_failed):
+                wanted_rows += line_state.shown
+                if not is_faulty:
+                    state.defs = line_state.defs
+                    state.values = state.values if is_forgotten else line_state.values
+            assert (rows, robot.stop_count) == (wanted_rows, wanted_stops), line.text + err
+        robot.room = ROOMY
+        yield "; ".join(f"SHOW({name})" for name in state.values)
+        assert take_output()[0] == [f"SHOW {str(value).upper()}" for value in state.values.values()]
+        has_left = True
+        yield rng.choice((EOFError(), "exit"))
+        pytest.fail("it goes on")
+
+    assert session.run(typed()) == 0 and has_left
+
+
+@pytest.mark.parametrize("key", ["port_gone", "radio_gone", "holder_ended"])
+def test_a_session_whose_port_is_gone_ends(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session(monkeypatch)
+
+    def typed() -> Iterator[str | BaseException]:
+        yield FIRST_LINE
+        session.robot.failure = CommandError(3, key, port="p")
+        yield "SHOW(X)"
+        pytest.fail("it goes on")
+
+    with pytest.raises(CommandError) as exception_info:
+        session.run(typed())
+    assert exception_info.value.key == key
