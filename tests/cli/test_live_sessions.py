@@ -303,9 +303,10 @@ def test_a_line_does_the_same_whatever_came_before_it(
                 assert presses_after is not None
                 wanted_stops += 1
                 shown_rows = line_state.shown[: max(0, presses_after - 1)]  # after the start
-                if f"SHOW {MARK}" in shown_rows:  # the values after it may be a line's variables
-                    shown_rows = rows[len(wanted_rows) :]
-                wanted_rows += shown_rows
+                own_rows = rows[len(wanted_rows) :]
+                held_rows = shown_rows[len(own_rows) :]  # perhaps the values of its variables
+                assert not held_rows or held_rows[0] == f"SHOW {MARK}"
+                wanted_rows += shown_rows[: len(own_rows)]
             elif not (is_refused or has_failed):
                 wanted_rows += line_state.shown
                 if not is_faulty:

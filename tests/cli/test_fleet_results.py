@@ -1,0 +1,314 @@
+"""Commands for many robots: whatever becomes of each robot, its lines are printed before its row,
+its row once, and the exit code and the sum count it.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import threading
+from argparse import Namespace
+from collections.abc import Sequence
+from functools import partial
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import pytest
+
+from tests.support.waiting import HANG_LIMIT_S
+from tiniscript import robots
+from tiniscript.base.bell import Bell
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot import fleet as fleet_of
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.fleet import (
+    ABSENT_REASONS,
+    NO_ROBOT_REASONS,
+    STRANGER_TIMEOUT_S,
+    Reconnect,
+    run_together,
+)
+from tiniscript.cli.robot.member import Member, Result, Target
+from tiniscript.cli.terminal import fleet_table
+from tiniscript.cli.texts import text
+from tiniscript.library import opening
+
+TINIBOT = robots.load("tinibot")
+POLLS_OF_SLOW = 3  # after the time for strangers has passed
+OTHER_REASONS = "link_lost", "restarted"
+
+
+class Course(NamedTuple):
+    """What becomes of a robot. `kind` is done, bad, stopped, unstopped, silent, or a reason."""
+
+    target: Target
+    kind: str
+    has_answered: bool
+    line_count: int
+    reconnect_count: int
+    is_slow: bool
+
+    @property
+    def is_stranger(self) -> bool:
+        return not (self.has_answered or self.target.is_named or self.target.is_known)
+
+    @property
+    def is_absent(self) -> bool:
+        if self.kind == "silent":
+            return True
+        is_without_robot = self.kind in NO_ROBOT_REASONS and not self.target.is_known
+        return (self.kind in ABSENT_REASONS or is_without_robot) and not self.target.is_named
+
+    @property
+    def said(self) -> str:
+        if self.kind in ("done", "bad"):
+            return self.kind
+        if self.kind == "stopped":
+            return text("robot_stopped", "en")
+        if self.kind == "silent":
+            return text("port_quiet", "en")
+        return error_of(self).plain_sentence("en")
+
+    @property
+    def lines(self) -> list[str]:
+        return [f"{self.target.port} says {k}" for k in range(self.line_count)]
+
+
+def error_of(course: Course) -> CommandError:
+    key = "not_confirmed" if course.kind == "unstopped" else course.kind
+    values = dict.fromkeys(
+        ("others", "verb", "who", "name", "ports", "found", "what", "known", "why"), "x"
+    )
+    return CommandError(3, key, **{**values, "port": course.target.port})
+
+
+def drawn_course(rng: random.Random, port: str, is_named: bool) -> Course:
+    target = Target(port, rng.choice(("", "OLD")), is_named, not is_named and rng.random() < 0.5)
+    reasons = *ABSENT_REASONS, "link_silent", "port_busy", *OTHER_REASONS
+    kind = rng.choice((*("done", "bad", "stopped", "unstopped", "silent"), *reasons))
+    course = Course(
+        target, kind, rng.random() < 0.5, rng.randrange(3), rng.randrange(3), rng.random() < 0.3
+    )
+    if kind == "silent" and not course.is_stranger:
+        course = course._replace(kind="done", is_slow=True)
+    return course._replace(is_slow=course.is_slow and not course.is_stranger)
+
+
+class Screen:
+    """A terminal that keeps what is printed on it; each frame lets the robots go on."""
+
+    def __init__(self) -> None:
+        self.rows: list[str] = []
+        self.picture: list[str] = []
+        self.begin_count = self.end_count = 0
+
+    def begin(self) -> None:
+        self.begin_count += 1
+
+    def end(self) -> None:
+        self.end_count += 1
+
+    def print_line(self, line: str) -> None:
+        self.rows.append(line)
+
+    def draw(self, table: Any, now_ms: float) -> None:
+        self.picture = [line.plain for line in table.lines(300, 50, now_ms)]
+
+
+class Room:
+    """Robots that go their courses, on a clock that waits until all that end by themselves have
+    ended."""
+
+    def __init__(self, courses: Sequence[Course]) -> None:
+        self.course_by_port = {course.target.port: course for course in courses}
+        self.quick_left = sum(not course.is_slow and course.kind != "silent" for course in courses)
+        self.polls = self.late_polls = 0
+        self.may_end, self.is_over = threading.Event(), threading.Event()
+        self.lock = threading.Lock()
+        self.remembered: list[tuple[str, str, bool]] = []
+        self.tries = dict.fromkeys(self.course_by_port, 0)
+        self.screen = Screen()
+
+    def monotonic(self) -> float:
+        return STRANGER_TIMEOUT_S + 1 if self.polls and not self.quick_left else 0.0
+
+    def poll(self) -> None:
+        self.polls += 1
+        assert self.polls < 2_000, "it never ends"
+        if not self.quick_left:  # the time has passed
+            self.late_polls += 1
+            if self.late_polls > POLLS_OF_SLOW:
+                self.may_end.set()
+
+    def connect(self, options: Namespace, *_: object, is_one_of_many: bool) -> Any:
+        assert is_one_of_many
+        course = self.course_by_port[options.port]
+        return FakeConnection(self, course)
+
+    def work(self, connection: Connection, member: Member) -> Result:
+        course = self.course_by_port[member.target.port]
+        self.tries[member.target.port] += 1
+        if self.tries[member.target.port] <= course.reconnect_count:
+            raise Reconnect
+        if course.has_answered:
+            member.meet_robot(connection)
+        if course.kind == "silent":
+            self.is_over.wait(HANG_LIMIT_S)
+            return Result(False, "")
+        if course.is_slow:
+            self.may_end.wait(HANG_LIMIT_S)
+        for line in course.lines:
+            member.queue_line(line)
+        try:
+            if course.kind in ("done", "bad"):
+                return Result(course.kind == "done", course.kind, {"more": 5})
+            if course.kind in ("stopped", "unstopped"):
+                raise KeyboardInterrupt
+            raise error_of(course)
+        finally:
+            connection.leaving = True  # type: ignore[attr-defined]
+
+
+class FakeConnection:
+    def __init__(self, room: Room, course: Course) -> None:
+        self.room, self.course = room, course
+        self.port = course.target.port
+        self.connection = SimpleNamespace(robot=None)
+        self.name = self.port.upper()
+        self.device_info = SimpleNamespace(name=self.name)
+        self.leaving = False
+
+    def __enter__(self) -> FakeConnection:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.leaving and not self.course.is_slow and self.course.kind != "silent":
+            with self.room.lock:
+                self.room.quick_left -= 1
+
+    def meet(self) -> None:
+        self.connection.robot = self.device_info
+
+    def interrupt(self) -> None:
+        pytest.fail("nobody has pressed Ctrl-C")
+
+    def stop(self) -> bool:
+        return self.course.kind == "stopped"
+
+
+@pytest.mark.sampled("seed", keep=4)
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("output", ["lines", "json", "a table"])
+def test_each_robot_has_its_row_whatever_becomes_of_the_others(
+    output: str, seed: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rng = random.Random(seed)
+    is_named = rng.random() < 0.4
+    courses = [
+        drawn_course(rng, f"p{k}", is_named) for k in rng.sample(range(12), rng.randint(1, 6))
+    ]
+    room, attend_count = Room(courses), 0
+
+    class PolledBell(Bell):
+        def wait(self, timeout_s: float) -> bool:
+            room.poll()
+            return super().wait(min(timeout_s, 0.005))
+
+    def attend() -> None:
+        nonlocal attend_count
+        attend_count += 1
+
+    def draw(table: Any) -> None:
+        room.poll()
+        threading.Event().wait(0.002)
+        table.screen.draw(table, 0)
+
+    options = Namespace(verb="upload", detach=True, json=output == "json", attend=attend)
+    monkeypatch.setattr(fleet_of, "targets", lambda _: [course.target for course in courses])
+    monkeypatch.setattr(fleet_of, "Connection", room.connect)
+    monkeypatch.setattr(fleet_of, "Bell", PolledBell)
+    monkeypatch.setattr(fleet_of, "monotonic", room.monotonic)
+    monkeypatch.setattr(fleet_table, "Screen", lambda: room.screen)
+    monkeypatch.setattr(fleet_table.FleetTable, "draw", draw)
+    monkeypatch.setattr(opening, "remember", lambda port, name, is_used: room.remembered.append(
+        (port, name, is_used)
+    ))  # fmt: skip
+    monkeypatch.setattr("sys.stderr.isatty", lambda: output == "a table")
+    run = partial(run_together, options, TINIBOT, "en", room.work)
+    absent = [course for course in courses if course.is_absent]
+    present = [course for course in courses if not course.is_absent]
+    try:
+        if present:
+            assert run() == (0 if all(course.kind == "done" for course in present) else 3)
+        else:
+            with pytest.raises(CommandError) as exception_info:
+                run()
+            assert exception_info.value.key == "no_robots"
+    finally:
+        room.is_over.set()
+    out, err = capsys.readouterr()
+    rows = room.screen.rows if output == "a table" else out.splitlines()
+    check_rows(output, rows, courses)
+    if output == "a table":
+        assert room.screen.picture == [] and room.screen.begin_count == 1
+        assert room.screen.end_count >= 1
+    if output == "json" or not present:
+        assert err == ""
+    else:
+        done_count = sum(course.kind == "done" for course in present)
+        sum_line, *absent_lines = err.splitlines()
+        assert sum_line == text("crew_sum", "en").format(done=done_count, all=len(present))
+        ports = sorted((course.target.port for course in absent), key=lambda port: int(port[1:]))
+        wanted_line = text("crew_absent", "en").format(ports=", ".join(ports))
+        assert absent_lines == [wanted_line] * bool(absent)
+    assert attend_count >= room.polls
+    assert sorted(room.remembered) == sorted(
+        (course.target.port, course.target.port.upper(), False)
+        for course in courses
+        if course.has_answered
+    )
+
+
+def check_rows(output: str, rows: Sequence[str], courses: Sequence[Course]) -> None:
+    left = list(rows)
+    for course in courses:
+        port = course.target.port
+        name = port.upper() if course.has_answered else course.target.name
+        row = f"{name} ({port}): {course.said}" if name else f"{port}: {course.said}"
+        if output == "json":
+            fields = {"more": 5} if course.kind in ("done", "bad") else {}
+            row = json.dumps({
+                "event": "RESULT", "port": port, "robot": name or None,
+                "is_done": course.kind == "done", "is_absent": course.is_absent,
+                "said": course.said, **fields,
+            })  # fmt: skip
+        wanted_rows = [*(course.lines if course.kind != "silent" else []), row]
+        if output != "json" and course.is_absent:
+            wanted_rows.pop()
+        assert [row for row in rows if row in wanted_rows] == wanted_rows
+        left = [row for row in left if row not in wanted_rows]
+    assert left == []
+    if output == "a table":
+        present = [course for course in courses if not course.is_absent]
+        marks = [next(
+            (course.kind == "done" for course in present if row.endswith(f"): {course.said}")
+             or row.startswith(f"{course.target.port}: ")), None
+        ) for row in rows if " says " not in row]  # fmt: skip
+        assert marks == sorted(marks, key=lambda is_done: not is_done), "failures are last"
+
+
+def test_a_bug_in_one_thread_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    targets = [Target(port, "", True, True) for port in ("p1", "p2", "p3")]
+    room = Room([Course(target, "done", True, 0, 0, False) for target in targets])
+
+    def work(connection: Connection, member: Member) -> Result:
+        if member.target.port == "p2":
+            raise ZeroDivisionError
+        return room.work(connection, member)
+
+    options = Namespace(verb="stop", json=True)
+    monkeypatch.setattr(fleet_of, "targets", lambda _: targets)
+    monkeypatch.setattr(fleet_of, "Connection", room.connect)
+    monkeypatch.setattr(opening, "remember", lambda *_, **__: None)
+    with pytest.raises(ZeroDivisionError):
+        run_together(options, TINIBOT, "en", work)
