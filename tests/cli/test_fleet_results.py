@@ -8,6 +8,7 @@ import json
 import random
 import threading
 from argparse import Namespace
+from collections import deque
 from collections.abc import Sequence
 from functools import partial
 from types import SimpleNamespace
@@ -30,12 +31,16 @@ from tiniscript.cli.robot.fleet import (
 )
 from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal import fleet_table
+from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 
 TINIBOT = robots.load("tinibot")
 POLLS_OF_SLOW = 3  # after the time for strangers has passed
-OTHER_REASONS = "link_lost", "restarted"
+ABSENT_KINDS = "silent", *ABSENT_REASONS
+KINDS = *("done", "bad", "stopped", "unstopped", "link_lost"), *ABSENT_KINDS, "link_silent"
+MIXED_KINDS = "done", "bad", "silent"
+KINDS_OF_FLEETS = MIXED_KINDS, KINDS, MIXED_KINDS, ("done",), MIXED_KINDS, ABSENT_KINDS
 
 
 class Course(NamedTuple):
@@ -82,16 +87,13 @@ def error_of(course: Course) -> CommandError:
     return CommandError(3, key, **{**values, "port": course.target.port})
 
 
-def drawn_course(rng: random.Random, port: str, is_named: bool) -> Course:
-    target = Target(port, rng.choice(("", "OLD")), is_named, not is_named and rng.random() < 0.5)
-    reasons = *ABSENT_REASONS, "link_silent", "port_busy", *OTHER_REASONS
-    kind = rng.choice((*("done", "bad", "stopped", "unstopped", "silent"), *reasons))
-    course = Course(
-        target, kind, rng.random() < 0.5, rng.randrange(3), rng.randrange(3), rng.random() < 0.3
-    )
-    if kind == "silent" and not course.is_stranger:
-        course = course._replace(kind="done", is_slow=True)
-    return course._replace(is_slow=course.is_slow and not course.is_stranger)
+def drawn_course(rng: random.Random, port: str, is_named: bool, kinds: Sequence[str]) -> Course:
+    kind = rng.choice([kind for kind in kinds if kind != "silent" or not is_named])
+    is_silent = kind == "silent"  # and a stranger
+    target = Target(port, rng.choice(("", "OLD")), is_named, not is_silent and rng.random() < 0.5)
+    has_answered = not is_silent and rng.random() < 0.5
+    course = Course(target, kind, has_answered, rng.randrange(3), rng.randrange(3), False)
+    return course._replace(is_slow=not course.is_stranger and rng.random() < 0.5)
 
 
 class Screen:
@@ -196,7 +198,34 @@ class FakeConnection:
         return self.course.kind == "stopped"
 
 
-@pytest.mark.sampled("seed", keep=4)
+def use_room(room: Room, monkeypatch: pytest.MonkeyPatch, is_terminal: bool) -> None:
+    """Make the fleet of a command consist of these robots."""
+
+    class PolledBell(Bell):
+        def wait(self, timeout_s: float) -> bool:
+            room.poll()
+            return super().wait(min(timeout_s, 0.005))
+
+    def draw(table: Any) -> None:
+        room.poll()
+        threading.Event().wait(0.002)
+        table.screen.draw(table, 0)
+
+    def remember(port: str, name: str, is_used: bool) -> None:
+        room.remembered.append((port, name, is_used))
+
+    monkeypatch.setattr(
+        fleet_of, "targets", lambda _: [course.target for course in room.course_by_port.values()]
+    )
+    monkeypatch.setattr(fleet_of, "Connection", room.connect)
+    monkeypatch.setattr(fleet_of, "Bell", PolledBell)
+    monkeypatch.setattr(fleet_of, "monotonic", room.monotonic)
+    monkeypatch.setattr(fleet_table, "Screen", lambda: room.screen)
+    monkeypatch.setattr(FleetTable, "draw", draw)
+    monkeypatch.setattr(opening, "remember", remember)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: is_terminal)
+
+
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("output", ["lines", "json", "a table"])
 def test_each_robot_has_its_row_whatever_becomes_of_the_others(
@@ -204,36 +233,17 @@ def test_each_robot_has_its_row_whatever_becomes_of_the_others(
 ) -> None:
     rng = random.Random(seed)
     is_named = rng.random() < 0.4
-    courses = [
-        drawn_course(rng, f"p{k}", is_named) for k in rng.sample(range(12), rng.randint(1, 6))
-    ]
+    kinds = KINDS_OF_FLEETS[seed % len(KINDS_OF_FLEETS)]
+    ports = [f"p{number}" for number in rng.sample(range(12), rng.randint(1, 6))]
+    courses = [drawn_course(rng, port, is_named, kinds) for port in ports]
     room, attend_count = Room(courses), 0
-
-    class PolledBell(Bell):
-        def wait(self, timeout_s: float) -> bool:
-            room.poll()
-            return super().wait(min(timeout_s, 0.005))
 
     def attend() -> None:
         nonlocal attend_count
         attend_count += 1
 
-    def draw(table: Any) -> None:
-        room.poll()
-        threading.Event().wait(0.002)
-        table.screen.draw(table, 0)
-
     options = Namespace(verb="upload", detach=True, json=output == "json", attend=attend)
-    monkeypatch.setattr(fleet_of, "targets", lambda _: [course.target for course in courses])
-    monkeypatch.setattr(fleet_of, "Connection", room.connect)
-    monkeypatch.setattr(fleet_of, "Bell", PolledBell)
-    monkeypatch.setattr(fleet_of, "monotonic", room.monotonic)
-    monkeypatch.setattr(fleet_table, "Screen", lambda: room.screen)
-    monkeypatch.setattr(fleet_table.FleetTable, "draw", draw)
-    monkeypatch.setattr(opening, "remember", lambda port, name, is_used: room.remembered.append(
-        (port, name, is_used)
-    ))  # fmt: skip
-    monkeypatch.setattr("sys.stderr.isatty", lambda: output == "a table")
+    use_room(room, monkeypatch, output == "a table")
     run = partial(run_together, options, TINIBOT, "en", room.work)
     absent = [course for course in courses if course.is_absent]
     present = [course for course in courses if not course.is_absent]
@@ -258,8 +268,10 @@ def test_each_robot_has_its_row_whatever_becomes_of_the_others(
         done_count = sum(course.kind == "done" for course in present)
         sum_line, *absent_lines = err.splitlines()
         assert sum_line == text("crew_sum", "en").format(done=done_count, all=len(present))
-        ports = sorted((course.target.port for course in absent), key=lambda port: int(port[1:]))
-        wanted_line = text("crew_absent", "en").format(ports=", ".join(ports))
+        absent_ports = sorted(
+            (course.target.port for course in absent), key=lambda port: int(port[1:])
+        )
+        wanted_line = text("crew_absent", "en").format(ports=", ".join(absent_ports))
         assert absent_lines == [wanted_line] * bool(absent)
     assert attend_count >= room.polls
     assert sorted(room.remembered) == sorted(
@@ -297,7 +309,9 @@ def check_rows(output: str, rows: Sequence[str], courses: Sequence[Course]) -> N
         assert marks == sorted(marks, key=lambda is_done: not is_done), "failures are last"
 
 
-def test_a_bug_in_one_thread_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("is_terminal", [False, True])
+def test_a_bug_in_one_thread_is_raised(is_terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The terminal is left as it was."""
     targets = [Target(port, "", True, True) for port in ("p1", "p2", "p3")]
     room = Room([Course(target, "done", True, 0, 0, False) for target in targets])
 
@@ -306,9 +320,29 @@ def test_a_bug_in_one_thread_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
             raise ZeroDivisionError
         return room.work(connection, member)
 
-    options = Namespace(verb="stop", json=True)
-    monkeypatch.setattr(fleet_of, "targets", lambda _: targets)
-    monkeypatch.setattr(fleet_of, "Connection", room.connect)
-    monkeypatch.setattr(opening, "remember", lambda *_, **__: None)
+    use_room(room, monkeypatch, is_terminal)
     with pytest.raises(ZeroDivisionError):
-        run_together(options, TINIBOT, "en", work)
+        run_together(Namespace(verb="stop", json=False), TINIBOT, "en", work)
+    assert room.screen.begin_count == is_terminal and room.screen.end_count >= is_terminal
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_low_table_shows_what_is_not_done_and_moves_no_column_back(seed: int) -> None:
+    rng = random.Random(seed)
+    members = [Member(Target(f"p{k}", "", False, True), deque()) for k in range(9)]
+    table, column = FleetTable(members, "en"), 0
+    for _ in range(30):
+        member, height = rng.choice(members), rng.randint(3, 12)
+        member.name = "N" * rng.randint(1, 9)
+        member.result = rng.choice((None, None, Result(True, "ok"), Result(False, "no")))
+        rows = [line.plain for line in table.lines(200, height, 0)][1:]
+        shown_count = len(members) if len(members) < height else height - 2
+        unready = [member for member in members if member.mark != "ok"]
+        ready = [member for member in members if member.mark == "ok"]
+        shown = [*unready, *ready][:shown_count]
+        if shown_count == len(members):
+            shown = members
+        assert [row.split()[1] for row in rows[:shown_count]] == [it.target.port for it in shown]
+        columns = {row.index(it.state_text("en")) for row, it in zip(rows, shown, strict=False)}
+        assert len(columns) == 1 and min(columns) >= column
+        column = min(columns)
