@@ -6,23 +6,28 @@ from __future__ import annotations
 
 import contextlib
 import random
+import sys
 from argparse import Namespace
 from collections import deque
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, NamedTuple, cast
+from typing import Any, ClassVar, NamedTuple, cast
 
 import pytest
 
 from tiniscript import robots
+from tiniscript.base import files
 from tiniscript.base.fixed_point import as_text
 from tiniscript.base.trace import Ending, Senses
 from tiniscript.cli.commands import live
 from tiniscript.cli.errors import CommandError
-from tiniscript.cli.robot import own_kit
+from tiniscript.cli.robot import own_kit, remote_keys
 from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.live_state import LiveState
+from tiniscript.cli.robot.run_monitor import DONE, FAULTY, INTERRUPTED
+from tiniscript.cli.texts import text
 from tiniscript.library import source_map
 from tiniscript.link.outcomes import Event, ShownEvent, StartedEvent
 from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
@@ -145,8 +150,13 @@ class LiveRobot:
         self.language, self.port = "en", "p"
         self.profile = TINIBOT
         self.device_info = SimpleNamespace(values=SimpleNamespace(features=0))
-        self.simulator = None
+        self.simulator = SimpleNamespace(
+            print_line=print, print_error=lambda line: print(line, file=sys.stderr),
+            start_drawing=lambda: self._draw(True), stop_drawing=lambda: self._draw(False),
+        )  # fmt: skip
+        self.is_drawing = False
         self.is_time_over = False
+        self.timeouts_s: list[float] = []  # of waits for an event
         self.wait_notice: Any = SimpleNamespace(
             poll=None, note_other_output=lambda: None, with_sentence=lambda _: self.wait_notice
         )
@@ -162,13 +172,18 @@ class LiveRobot:
     def meet(self) -> None:
         pass
 
+    def _draw(self, is_drawing: bool) -> None:
+        self.is_drawing = is_drawing
+
     def text(self, key: str) -> str:
         return key
 
     def print_text(self, key: str) -> None:
         pass
 
-    def event(self, _: float = 0) -> tuple[int, Event] | None:
+    def event(self, timeout_s: float = 0) -> tuple[int, Event] | None:
+        self.timeouts_s.append(timeout_s)
+        assert len(self.timeouts_s) < 10_000, "it never ends"
         if self._events_left == 0:
             self._events_left = None
             raise KeyboardInterrupt
@@ -227,14 +242,23 @@ class Session:
         monkeypatch.setattr(live, "_history", lambda _: contextlib.nullcontext())
         monkeypatch.setattr(live, "short_bytes", lambda _: self.robot.room)
         monkeypatch.setattr(own_kit, "use_answering_profile", lambda *_: False)
-        monkeypatch.setattr(source_map, "remember", lambda *_: None)
+        self.remembered_count = 0
+        monkeypatch.setattr(source_map, "remember", self.remember)
         self.repl = live.Repl(
             cast(Connection, self.robot), LiveState(TINIBOT.kit), Namespace(breaks=[])
         )
         self.monkeypatch = monkeypatch
 
+    def remember(self, *_: object) -> None:
+        self.remembered_count += 1
+
     def run(self, typed: Iterator[str | BaseException]) -> int:
-        def read(_: str) -> str:
+        """Run the prompt. In front of it nothing is drawn, and nothing waits to be printed."""
+
+        def read(prompt: str) -> str:
+            self.prompt = prompt
+            assert not self.robot.is_drawing
+            assert not self.robot.events or prompt != live.PROMPT
             text = next(typed)
             if isinstance(text, BaseException):
                 raise text
@@ -262,6 +286,9 @@ def test_a_line_does_the_same_whatever_came_before_it(
     def typed() -> Iterator[str | BaseException]:
         nonlocal wanted_stops, has_left
         yield FIRST_LINE
+        yield "LOOP(2); F(2 80)"
+        assert session.prompt == live.PROMPT, "the mistake is said before the end of the block"
+        assert "comma" in take_output()[1]
         for _ in range(25):
             line, line_state = drawn_line(rng, sorted(state.defs)), State()
             line_state.values, line_state.defs = {**state.values}, {**state.defs, **line.new_def}
@@ -279,8 +306,12 @@ def test_a_line_does_the_same_whatever_came_before_it(
                 if rng.random() < 0.5:
                     yield "LOOP(2)"  # it is dropped
                 robot.failure = rng.choice((None, None, CommandError(3, "not_confirmed", port="p")))
+                wanted_sentence = "not confirmed" if robot.failure else "has confirmed"
                 yield KeyboardInterrupt()
                 wanted_stops += 1
+                rows, err = take_output()
+                assert rows == wanted_rows and wanted_sentence in err
+                wanted_rows = []
             robot.room = NARROW if rng.random() < 0.2 else ROOMY
             presses_after = rng.randrange(8) if line.steps and rng.random() < 0.3 else None
             robot.presses_after = presses_after
@@ -323,6 +354,7 @@ def test_a_line_does_the_same_whatever_came_before_it(
         pytest.fail("it goes on")
 
     assert session.run(typed()) == 0 and has_left
+    assert session.remembered_count >= robot.run
 
 
 @pytest.mark.parametrize("key", ["port_gone", "radio_gone", "holder_ended"])
@@ -338,3 +370,156 @@ def test_a_session_whose_port_is_gone_ends(key: str, monkeypatch: pytest.MonkeyP
     with pytest.raises(CommandError) as exception_info:
         session.run(typed())
     assert exception_info.value.key == key
+
+
+# A virtual robot's time is over before a line, or while one runs.
+@pytest.mark.parametrize("is_inside", [False, True])
+@pytest.mark.parametrize("way", ["prompt", "file", "keys"])
+def test_a_time_limit_ends_a_session_and_is_said_once(
+    way: str, is_inside: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session = Session(monkeypatch)
+    robot = session.robot
+    live_line = robot.live
+
+    def over(*words: Any) -> Reply[Any]:
+        robot.is_time_over = True
+        return live_line(*words)
+
+    def lines() -> Iterator[str]:
+        yield FIRST_LINE
+        if is_inside:
+            monkeypatch.setattr(robot, "live", over)
+        else:
+            robot.is_time_over = True
+        yield "SHOW(X)"
+        pytest.fail("it goes on")
+
+    if way == "keys":
+        monkeypatch.setattr(live, "TerminalRemote", RemoteKeys)
+        robot.is_time_over = not is_inside
+        monkeypatch.setattr(robot, "live", over)
+        exit_code = session.repl.drive_by_keys("W(1)" if is_inside else None)
+    elif way == "file":
+        exit_code = session.repl.run_lines(lines())
+    else:
+        exit_code = session.run(lines())
+    assert exit_code == 0
+    assert capsys.readouterr().out.count(text("time_over", "en")) == 1
+    assert robot.run == (way != "keys") + is_inside
+
+
+class RemoteKeys:
+    """The keys of a terminal, of which `q` or Ctrl-C is pressed at the `presses_at`-th look."""
+
+    quits = False
+    presses_at: int | None = None
+    calls: ClassVar[list[str]] = []
+
+    def __init__(self, connection: object) -> None:
+        self.has_quit, self.polls = False, 0
+
+    def __enter__(self) -> RemoteKeys:
+        self.calls.append("open")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.calls.append("close")
+
+    def poll(self) -> None:
+        self.polls += 1
+        if self.polls == self.presses_at:
+            self.has_quit = self.quits
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("line", [None, "SHOW(5)", "SHOW(1 / (TIME - TIME))"])
+@pytest.mark.parametrize("quits", [False, True])
+@pytest.mark.parametrize("presses_at", [1, 2, 9])
+@pytest.mark.parametrize("is_stop_lost", [False, True])
+def test_a_terminal_as_a_remote_control_says_how_it_ended(
+    line: str | None, quits: bool, presses_at: int, is_stop_lost: bool,
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """Whatever happens, the terminal is left, and what the robot shows is printed."""
+    session = Session(monkeypatch)
+    monkeypatch.setattr(live, "TerminalRemote", RemoteKeys)
+    monkeypatch.setattr(RemoteKeys, "calls", [])
+    monkeypatch.setattr(RemoteKeys, "quits", quits)
+    monkeypatch.setattr(RemoteKeys, "presses_at", presses_at)
+    if line is None:
+        session.robot.events.append(ShownEvent(5000, False, BUTTON_RUN))
+    is_pressed = line is None or presses_at < 3  # the start, and the next event
+    exit_code = 0 if quits else INTERRUPTED
+    if not is_pressed:
+        exit_code = DONE if line == "SHOW(5)" else FAULTY
+    if is_stop_lost and is_pressed:
+        monkeypatch.setattr(session.robot, "stop", lambda: False)
+        with pytest.raises(CommandError, match="not_confirmed"):
+            session.repl.drive_by_keys(line)
+    else:
+        assert session.repl.drive_by_keys(line) == exit_code
+    assert RemoteKeys.calls == ["open", "close"] and not session.robot.is_drawing
+    assert ("SHOW 5" in capsys.readouterr().out) == (
+        line in (None, "SHOW(5)") and not (line and is_pressed)
+    )
+    assert max(session.robot.timeouts_s) <= remote_keys.POLL_S
+
+
+# -- what a terminal remembers -------------------------------------------------------------------
+
+
+class Readline:
+    """GNU readline with a history, as far as it is used."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.length = -1
+
+    def read_history_file(self, path: Path) -> None:
+        self.lines += path.read_text(encoding="utf-8").splitlines()
+
+    def set_history_length(self, length: int) -> None:
+        self.length = length
+
+    def write_history_file(self, path: Path) -> None:
+        kept_lines = self.lines if self.length < 0 else self.lines[-self.length :]
+        path.write_text("".join(f"{line}\n" for line in kept_lines), encoding="utf-8")
+
+    def set_completer(self, complete: Callable[[str, int], str | None]) -> None:
+        self.complete = complete
+
+    def set_completer_delims(self, _: str) -> None:
+        pass
+
+    parse_and_bind = set_completer_delims
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="its console has a history of its own")
+def test_the_lines_of_earlier_sessions_come_back_and_no_disk_ends_a_session(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    folder, typed_lines = tmp_path / "cache", list[str]()
+    monkeypatch.setattr(files, "cache_folder", lambda: folder)
+    state = LiveState(TINIBOT.kit)
+    for k in range(6):
+        readline = Readline()
+        monkeypatch.setitem(sys.modules, "readline", readline)
+        is_unwritable = k in (2, 5)
+        if is_unwritable:  # another file is in its place
+            saved_folder = folder.rename(tmp_path / "saved")
+            folder.write_bytes(b"")
+        with contextlib.suppress(KeyboardInterrupt), live._history(state):
+            assert readline.lines == ([] if is_unwritable else typed_lines[-500:])
+            readline.lines += (new_lines := [f"SHOW({k * 1000 + number})" for number in range(300)])
+            state.text_by_def[f"ZIG{k}"] = ""
+            assert readline.complete(f"zig{k}", 0) == f"ZIG{k}"
+            assert readline.complete("DIST", 0) == "DISTANCE"
+            assert readline.complete("DIST", 1) is None
+            if k == 1:
+                raise KeyboardInterrupt
+        if is_unwritable:
+            folder.unlink()
+            saved_folder.rename(folder)
+        else:
+            typed_lines += new_lines
