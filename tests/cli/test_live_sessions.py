@@ -16,6 +16,7 @@ from typing import Any, ClassVar, NamedTuple, cast
 
 import pytest
 
+from tests.support.command import Tsc
 from tiniscript import robots
 from tiniscript.base import files
 from tiniscript.base.fixed_point import as_text
@@ -29,6 +30,7 @@ from tiniscript.cli.robot.live_state import LiveState
 from tiniscript.cli.robot.run_monitor import DONE, FAULTY, INTERRUPTED
 from tiniscript.cli.texts import text
 from tiniscript.library import source_map
+from tiniscript.link.messages import STATUSES
 from tiniscript.link.outcomes import Event, ShownEvent, StartedEvent
 from tiniscript.link.payloads import DoneEvent, FaultEvent, StoppedEvent
 from tiniscript.link.requests import OK, Reply
@@ -207,6 +209,10 @@ class LiveRobot:
         failure, self.failure = self.failure, None
         if failure is not None:
             raise failure
+
+    def error_for_reply(self, reply: Reply[Any]) -> CommandError:
+        assert reply.status == STATUSES["NO_REMOTE"]
+        return CommandError(3, "refused")
 
     def request(self, make_request: Callable[[Any], Reply[Any]]) -> Reply[Any]:
         return make_request(self)
@@ -523,3 +529,23 @@ def test_the_lines_of_earlier_sessions_come_back_and_no_disk_ends_a_session(
             saved_folder.rename(folder)
         else:
             typed_lines += new_lines
+
+
+# -- lines that are not sent ---------------------------------------------------------------------
+
+
+def test_wrong_use_is_reported(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    tsc("live", "S", "-e", "S").gives(2)
+    tsc("live", "S", "--keys").gives(2, "not a terminal")
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+    tsc("live", "-", "--keys").gives(2, "not a terminal")
+    tsc("live", "S", "--keys", "--break", "1").gives(2, "--break")
+
+
+def test_a_line_for_a_remote_control_is_refused_where_there_is_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    session = Session(monkeypatch)
+    with pytest.raises(CommandError, match="refused"):
+        session.repl.run_line("SHOW(KEY_UP)")
+    assert session.robot.run == 0
