@@ -12,15 +12,17 @@ from collections import deque
 from collections.abc import Sequence
 from functools import partial
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import pytest
 
 from tests.support.waiting import HANG_LIMIT_S
 from tiniscript import robots
 from tiniscript.base.bell import Bell
+from tiniscript.cli import images
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import fleet as fleet_of
+from tiniscript.cli.robot import fleet_upload, program_upload
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import (
     ABSENT_REASONS,
@@ -32,6 +34,7 @@ from tiniscript.cli.robot.fleet import (
 from tiniscript.cli.robot.member import Member, Result, Target
 from tiniscript.cli.terminal import fleet_table
 from tiniscript.cli.terminal.fleet_table import FleetTable
+from tiniscript.cli.terminal.progress import MOST_PERCENT
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
 
@@ -346,3 +349,62 @@ def test_a_low_table_shows_what_is_not_done_and_moves_no_column_back(seed: int) 
         columns = {row.index(it.state_text("en")) for row, it in zip(rows, shown, strict=False)}
         assert len(columns) == 1 and min(columns) >= column
         column = min(columns)
+
+
+# -- uploads -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("is_json", [False, True])
+@pytest.mark.parametrize("is_terminal", [False, True])
+def test_the_row_of_an_upload_says_the_end_and_the_table_the_last_value(
+    is_json: bool, is_terminal: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: is_terminal)
+    member = Member(Target("p1", "OLD", True, True), deque())
+    ready_program = SimpleNamespace(program_map=None)
+    connection = SimpleNamespace(language="en", port="p1")
+    printer = fleet_upload.MemberPrinter(
+        cast(Connection, connection), cast(Any, ready_program), member, is_json, 0
+    )
+    for value in (5, 6):
+        printer.print_values(0, "SHOW", str(value), value=value)
+        assert member.value == f"SHOW {value}"
+    printer.print_values(0, "FAULT", "x", "It failed.\n  In line 1.", is_bad=True)
+    printer.print_values(0, "SAVED", "1", "Saved.", slot=1)
+    assert (printer.end_text, member.value) == ("It failed.  In line 1.", "SHOW 6")
+    events = [json.loads(line)["event"] for line in member.lines] if is_json else []
+    assert events == ["SHOW", "SHOW", "FAULT", "SAVED"] * is_json
+    if not is_json:
+        assert [*member.lines] == ["OLD (p1): SHOW 5", "OLD (p1): SHOW 6"] * (not is_terminal)
+
+
+def test_an_upload_to_many_keeps_its_map_and_learns_their_names(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The map is kept before anything is sent."""
+    kept: list[object] = []
+    ready_program: Any = SimpleNamespace(
+        image=SimpleNamespace(start="SB", code=bytes(10)), program_map=None
+    )
+    member = Member(Target("p1", "OLD", True, True), deque())
+    connection: Any = SimpleNamespace(meet=lambda: None, name="NEW", port="p1", language="en")
+    receipt = {"checksum": "1", "code_bytes": 10}
+
+    def send_program(*words: Any) -> Any:
+        for done_bytes, percent in ((0, 0), (5, 50), (10, MOST_PERCENT)):
+            words[-1](done_bytes)
+            assert member.state == ("crew_sending", {"percent": percent})
+        return SimpleNamespace(program=1, run=1, saved=0)
+
+    monkeypatch.setattr(images, "keep_map", kept.append)
+    monkeypatch.setattr(fleet_upload, "run_together", lambda *words: words[-1](connection, member))
+    monkeypatch.setattr(fleet_upload, "Saving", lambda *_: None)
+    monkeypatch.setattr(program_upload, "send_program", send_program)
+    monkeypatch.setattr(program_upload, "receipt_fields", lambda *_: receipt)
+    monkeypatch.setattr(program_upload, "is_running", lambda *_: False)
+    monkeypatch.setattr(program_upload, "follow_run", lambda *_: 0)
+    options = Namespace(json=True, detach=False, verbose=False)
+    result = cast(Result, fleet_upload.upload_to_many(options, TINIBOT, "en", ready_program, ""))
+    assert kept == [ready_program] and member.name == "NEW"
+    assert result.is_done and result.fields == {"checksum": "1"}
+    assert [json.loads(line) for line in member.lines] == [receipt]
