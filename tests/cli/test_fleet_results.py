@@ -23,6 +23,7 @@ from tiniscript.cli import images
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import fleet as fleet_of
 from tiniscript.cli.robot import fleet_upload, program_upload
+from tiniscript.cli.robot import member as member_of
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import (
     ABSENT_REASONS,
@@ -37,6 +38,8 @@ from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.cli.terminal.progress import MOST_PERCENT
 from tiniscript.cli.texts import text
 from tiniscript.library import opening
+from tiniscript.link import known_ports, ports
+from tiniscript.virtual import directory
 
 TINIBOT = robots.load("tinibot")
 POLLS_OF_SLOW = 3  # after the time for strangers has passed
@@ -408,3 +411,41 @@ def test_an_upload_to_many_keeps_its_map_and_learns_their_names(
     assert kept == [ready_program] and member.name == "NEW"
     assert result.is_done and result.fields == {"checksum": "1"}
     assert [json.loads(line) for line in member.lines] == [receipt]
+
+
+# -- which robots --------------------------------------------------------------------------------
+
+PORTS = "/dev/a", "/dev/b", "ble://Tini 1", "BLE://tini 1", "ble://Tini 2", "tcp://one", "TCP://One"
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_each_port_that_may_have_a_robot_is_a_target_once(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However many ways lead to it; the user's own spelling counts."""
+    rng = random.Random(seed)
+
+    def some() -> list[str]:
+        return rng.sample(PORTS, rng.randint(0, 4))
+
+    held, listed, running, named, missing, gone = (some() for _ in range(6))
+    remembered = {port: f"R{number}" for number, port in enumerate(some())}
+    is_all = rng.random() < 0.6
+    monkeypatch.setattr(member_of, "find_all", lambda: [SimpleNamespace(port=it) for it in held])
+    monkeypatch.setattr(member_of, "exists", lambda port: port not in missing)
+    monkeypatch.setattr(directory, "is_gone", lambda port: port in gone)
+    monkeypatch.setattr(ports, "list_ports", lambda: [ports.ListedPort(it, "") for it in listed])
+    robots_here = [SimpleNamespace(address=address) for address in running]
+    monkeypatch.setattr(directory, "running_robots", lambda: robots_here)
+    monkeypatch.setattr(
+        known_ports, "remembered_ports", lambda: SimpleNamespace(name_by_port=remembered)
+    )
+    known = [port for port in remembered if port not in (*missing, *gone)]
+    candidates = [*held, *known, *listed, *running] if is_all else named
+    wanted: dict[str, Target] = {}
+    for port in candidates:
+        name = next((name for it, name in remembered.items() if it.lower() == port.lower()), None)
+        target = Target(port, name or "", not is_all, name is not None)
+        wanted.setdefault(port.lower(), target)
+    options = Namespace(all=is_all, ports=[] if is_all else named)
+    assert sorted(member_of.targets(options)) == sorted(wanted.values())
