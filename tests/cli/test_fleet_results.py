@@ -129,21 +129,31 @@ class Room:
 
     def __init__(self, courses: Sequence[Course]) -> None:
         self.course_by_port = {course.target.port: course for course in courses}
-        self.quick_left = sum(not course.is_slow and course.kind != "silent" for course in courses)
+        self.quick_ports = [
+            course.target.port
+            for course in courses
+            if not course.is_slow and course.kind != "silent"
+        ]
+        self.member_by_port: dict[str, Member] = {}
         self.polls = self.late_polls = 0
         self.may_end, self.is_over = threading.Event(), threading.Event()
-        self.lock = threading.Lock()
         self.remembered: list[tuple[str, str, bool]] = []
         self.tries = dict.fromkeys(self.course_by_port, 0)
         self.screen = Screen()
 
     def monotonic(self) -> float:
-        return STRANGER_TIMEOUT_S + 1 if self.polls and not self.quick_left else 0.0
+        return STRANGER_TIMEOUT_S + 1 if self.is_late() else 0.0
+
+    def is_late(self) -> bool:
+        return self.polls > 0 and all(
+            port in self.member_by_port and self.member_by_port[port].result is not None
+            for port in self.quick_ports
+        )
 
     def poll(self) -> None:
         self.polls += 1
         assert self.polls < 2_000, "it never ends"
-        if not self.quick_left:  # the time has passed
+        if self.is_late():
             self.late_polls += 1
             if self.late_polls > POLLS_OF_SLOW:
                 self.may_end.set()
@@ -155,6 +165,7 @@ class Room:
 
     def work(self, connection: Connection, member: Member) -> Result:
         course = self.course_by_port[member.target.port]
+        self.member_by_port[member.target.port] = member
         self.tries[member.target.port] += 1
         if self.tries[member.target.port] <= course.reconnect_count:
             raise Reconnect
@@ -167,14 +178,11 @@ class Room:
             self.may_end.wait(HANG_LIMIT_S)
         for line in course.lines:
             member.queue_line(line)
-        try:
-            if course.kind in ("done", "bad"):
-                return Result(course.kind == "done", course.kind, {"more": 5})
-            if course.kind in ("stopped", "unstopped"):
-                raise KeyboardInterrupt
-            raise error_of(course)
-        finally:
-            connection.leaving = True  # type: ignore[attr-defined]
+        if course.kind in ("done", "bad"):
+            return Result(course.kind == "done", course.kind, {"more": 5})
+        if course.kind in ("stopped", "unstopped"):
+            raise KeyboardInterrupt
+        raise error_of(course)
 
 
 class FakeConnection:
@@ -184,15 +192,12 @@ class FakeConnection:
         self.connection = SimpleNamespace(robot=None)
         self.name = self.port.upper()
         self.device_info = SimpleNamespace(name=self.name)
-        self.leaving = False
 
     def __enter__(self) -> FakeConnection:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self.leaving and not self.course.is_slow and self.course.kind != "silent":
-            with self.room.lock:
-                self.room.quick_left -= 1
+        pass
 
     def meet(self) -> None:
         self.connection.robot = self.device_info
@@ -313,6 +318,18 @@ def check_rows(output: str, rows: Sequence[str], courses: Sequence[Course]) -> N
              or row.startswith(f"{course.target.port}: ")), None
         ) for row in rows if " says " not in row]  # fmt: skip
         assert marks == sorted(marks, key=lambda is_done: not is_done), "failures are last"
+
+
+def test_a_row_that_comes_as_the_time_for_strangers_ends_is_printed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    times_s = iter((0.0,))
+    monkeypatch.setattr(fleet_of, "monotonic", lambda: next(times_s, STRANGER_TIMEOUT_S + 1))
+    options = Namespace(verb="stop", json=False)
+    fleet = fleet_of.Fleet([Target("p1", "", False, False)], options, TINIBOT, "en")
+    fleet.members[0].result = Result(False, "It is broken.")
+    fleet.print_until_done(None)
+    assert capsys.readouterr().out == "p1: It is broken.\n"
 
 
 @pytest.mark.parametrize("is_terminal", [False, True])

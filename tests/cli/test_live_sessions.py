@@ -42,7 +42,7 @@ NAMES, LAMP = ("X", "Y", "Z"), "READY"
 MARK = as_text(BOOKKEEPING_MARK)
 BUTTON_RUN = 999  # of a program that the button has started
 FIRST_LINE = "X = 1; Y = 2; Z = 3; READY = TRUE"
-DEF_NAMES = "DASH", "HOP", "JIG"  # in an order in which each calls only earlier ones
+DEF_NAMES = "DASH", "HOP", "JIG"  # each calls only those before it
 ROOMY, NARROW = 2000, 24  # bytes of code that a robot accepts at once
 
 
@@ -241,7 +241,7 @@ def events_of(code: bytes, run: int) -> Iterator[Event]:
 
 
 class Session:
-    """A session at the prompt. `steps` yields what the person types: a text, or an exception."""
+    """A session at the prompt, where a person types texts, and presses keys that are exceptions."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.robot = LiveRobot()
