@@ -73,8 +73,12 @@ def test_without_a_terminal_each_halt_is_reported_and_the_program_continues(
 
 
 def test_a_fault_after_a_halt_is_the_exit_code(pty_robot: PtyRobot) -> None:
-    result = on(pty_robot, "upload", "-e", "SI|X = 0;SHOW(1 / X)", "--break", "1").gives(1)
-    assert "Halted before line 1" in result.out
+    words = "--break", "1"
+    for result in (
+        on(pty_robot, "upload", "-e", "SI|X = 0;SHOW(1 / X)", *words),
+        on(pty_robot, "live", "X = 0;SHOW(1 / X)", *words),
+    ):
+        assert "Halted before line 1" in result.gives(1).out
 
 
 def test_json_has_the_values_in_their_types(pty_robot: PtyRobot, program: Path) -> None:

@@ -323,3 +323,22 @@ def test_explain_prints_the_explanation_of_a_code(tsc: Tsc) -> None:
         # A title names the mistake, not the alternative.
         assert vague not in tsc("check", "--explain", "--lang", language).gives(0, out="TS076").out
     assert tsc("check", "--explain", "TS999").code == 2
+
+
+def test_a_run_says_which_reading_nobody_has_given_and_how_it_ended(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """This holds each time, on either machine."""
+    from tiniscript.cli.commands import run
+
+    for count in (1, 2):
+        result = tsc("run", "-e", "SI|SHOW(DISTANCE + LIGHT_L)", "--sensor", "DISTANCE=5").gives(0)
+        assert "LIGHT_L" in result.err and "DISTANCE" not in result.err, count
+        assert tsc("run", "-e", "SI|SHOW(DISTANCE)", "--sensor", "DISTANCE=5").gives(0).err == ""
+        tsc("run", "-e", "SI|X = 0;SHOW(1 / X)").gives(1)
+    tsc("run", "-e", "SI|S", "--world", "line").gives(2)
+    machines: list[object] = []
+    monkeypatch.setattr(run, "_cpp_machine", lambda *words: machines.append(words))
+    for machine in ("python", "cpp"):
+        tsc("run", "-e", "SI|S", "--machine", machine).gives(0)
+        assert len(machines) == (machine == "cpp")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import signal
+from argparse import Namespace
+from contextlib import nullcontext
 from pathlib import Path
 from random import Random
 from types import SimpleNamespace
@@ -14,9 +16,13 @@ import pytest
 from tests.support.command import Command, run_in_process
 from tests.support.pty_robot import PtyRobot, on
 from tests.support.terminal import Terminal
+from tiniscript.cli.commands import monitor
 from tiniscript.cli.commands.monitor_hold import _Log
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.bookkeeping import BOOKKEEPING_MARK
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.link.outcomes import LOST, Event, LostEvent
+from tiniscript.link.outcomes import LOST, Event, LostEvent, ShownEvent
+from tiniscript.link.payloads import DoneEvent
 from tiniscript.link.requests import OK
 
 
@@ -48,6 +54,22 @@ def test_monitor_keeps_the_last_rows_if_no_robot_answers(tmp_path: Path) -> None
     run_in_process(
         "monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1"
     ).gives(3)
+    assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
+
+
+def test_a_silent_robot_leaves_the_last_rows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = tmp_path / "rows.csv"
+    rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
+
+    def meet() -> None:
+        raise CommandError(3, "link_silent")
+
+    connection = nullcontext(SimpleNamespace(meet=meet))
+    monkeypatch.setattr(monitor, "connect", lambda *_: connection)
+    with pytest.raises(CommandError, match="link_silent"):
+        monitor.run(Namespace(max_time=None, csv=str(rows), plot=False, json=False), "en")
     assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
 
 
@@ -94,10 +116,16 @@ def test_monitor_survives_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> No
 def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
     capsys: pytest.CaptureFixture[str], seed: int
 ) -> None:
-    """This holds for any number of losses and unanswered searches; each robot is found once."""
+    """This holds for any number of losses and unanswered searches; each robot is found once.
+    Values that `tsc live` makes it show are not printed."""
     rng = Random(seed)
     searches: list[Any] = []
     is_reachable, losses, wait_count = True, 0, 0
+    # The last one comes first: a value, the mark and a value after it, and a value of the next run.
+    values = 8000, None, 5000, BOOKKEEPING_MARK, 7000
+    bookkeeping: list[Event] = [
+        DoneEvent(1) if value is None else ShownEvent(value, False) for value in values
+    ]
 
     class Over(Exception):
         pass
@@ -111,7 +139,9 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
             if losses < 5 and rng.random() < 0.1:
                 is_reachable, losses = False, losses + 1
                 return wait_count, LostEvent()
-            return None
+            if losses < 5 or not bookkeeping:
+                return None
+            return wait_count, bookkeeping.pop()
         questions = [search for search in searches if search.outcome is None]
         assert len(questions) == 1, "nobody looks for it"
         if rng.random() < 0.3:
@@ -128,4 +158,4 @@ def test_a_robot_that_is_lost_is_found_whenever_it_comes_back(
         _Log(cast(Connection, connection), is_json=True).print_events()
     event_names = [json.loads(line)["event"] for line in capsys.readouterr().out.splitlines()]
     assert losses == 5
-    assert event_names == ["LINKED", *["LOST", "FOUND"] * 5]
+    assert event_names == ["LINKED", *["LOST", "FOUND"] * 5, "SHOW", "DONE", "SHOW"]

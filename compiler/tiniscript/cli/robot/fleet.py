@@ -250,7 +250,8 @@ class Fleet:
         """Give up the ports on which no robot has ever answered."""
         sentence = text("port_quiet", self.language)
         for member in strangers:
-            member.result = Result(False, sentence, {}, is_absent=True)
+            if member.result is None:
+                member.result = Result(False, sentence, {}, is_absent=True)
 
     def sorted_members(self) -> list[Member]:
         """Return the robots by their ports, `COM9` before `COM10`."""

@@ -119,23 +119,28 @@ class LiveState:
         )
 
     def _definitions_for(self, text: str, def_texts: dict[str, str]) -> tuple[str, str]:
-        """Return the variables and the DEFs that a line needs, as text."""
+        """Return the variables and the DEFs that a line needs, as text; a DEF comes after those
+        that it calls."""
         used_names: set[str] = set()
-        texts_left = [text]
-        while texts_left:
-            words = {token.text for token in scan(texts_left.pop()).tokens if token.kind is WORD}
-            texts_left += [
-                self.text_by_def[name] for name in words - used_names if name in self.text_by_def
-            ]
-            used_names |= words
+        defs: list[str] = []
+
+        def collect(needing_text: str) -> None:
+            for token in scan(needing_text).tokens:
+                name = token.text
+                if token.kind is not WORD or name in used_names:
+                    continue
+                used_names.add(name)
+                if name in self.text_by_def and name not in def_texts:
+                    collect(self.text_by_def[name])
+                    defs.append(f"{self.text_by_def[name]}\n")
+
+        collect(text)
         values = "".join(
             f"{name} = {value_text(*value)}\n"
             for name, value in self.value_by_name.items()
             if name in used_names
         )
-        defs = "".join(f"{value}\n" for name, value in self.text_by_def.items()
-                       if name in used_names and name not in def_texts)  # fmt: skip
-        return values, defs
+        return values, "".join(defs)
 
 
 def _assigned_variables(compilation: Compilation, start: int) -> tuple[str, ...]:

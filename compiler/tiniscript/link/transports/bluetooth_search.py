@@ -82,6 +82,10 @@ class _Scan:
         return self
 
     async def __aexit__(self, *_: object) -> None:
+        # A cancelled search leaves the scan, too; otherwise it would go on as long as the process.
+        await asyncio.shield(self._leave())
+
+    async def _leave(self) -> None:
         async with self._lock:
             self._search_count -= 1
             if self._search_count == 0:
