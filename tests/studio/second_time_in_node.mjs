@@ -2616,13 +2616,15 @@ const PARTS = {
         if (isAnswered && isGood && JSON.stringify(shown()).includes(text('stops_gone'))) throw new Error('it says that nobody has heard it, and all have');
       }
       if (!isGood && random() < 0.5) { // whatever gets lost, each that confirms is counted; where all is, that is said
-        await passes(15_000);
+        await passes(12_000);
         const hasNotice = JSON.stringify(shown()).includes(text('stops_gone'));
         if (isAnswered === hasNotice) throw new Error(`it is ${isAnswered ? 'heard' : 'lost'}, and it says ${shown()}`);
         if (!isAnswered && lossRate < 0.5) throw new Error('it is not asked again');
         if (!isAnswered) return { ends: ['unheard'], seen };
         const confirmedCount = robots.filter((item) => item.late_ms < 1e6).length;
         if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
+        await passes(20_000); // a robot that has not confirmed may drive; that all stood says nothing of now
+        if (place.hidden === confirmedCount < robots.length) throw new Error(`${confirmedCount} have confirmed, and later it is ${place.hidden ? 'hidden' : `said: ${shown()}`}`);
       }
       return { ends: [isGood ? 'over' : robots.some((item) => item.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };

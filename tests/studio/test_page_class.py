@@ -191,7 +191,7 @@ def test_three_pupils_share_a_robot(
     big.locator("[data-text=class_stop_all]").click()
     robot.until(lambda: not robot.moves, "the teacher stops it")
     wait_for_link(ana, "Stopped: the robot has confirmed the stop.")
-    teacher.locator("#stops").filter(has_text="STOP: 1 of 1 robots have confirmed it.").wait_for()
+    teacher.locator("#stops").filter(has_text="STOP: 1 of 1 connected robots have confirmed it.").wait_for()
     assert not teacher.locator("#stops .wrong").count()
     time.sleep(LATCH_S)
     start_drive(ana, robot)
@@ -504,7 +504,7 @@ def test_a_robot_that_does_not_confirm_a_stop_is_red_until_the_next_stop(
     teacher.keyboard.press("Escape")
     red = teacher.locator("#stops .wrong")
     red.filter(has_text=f"Not confirmed: {robot.port}. If one moves, lift it").wait_for()
-    assert "STOP: 0 of 1 robots" in teacher.locator("#stops").inner_text()
+    assert "STOP: 0 of 1 connected robots" in teacher.locator("#stops").inner_text()
     robot.switch_on()
     teacher.keyboard.press("Escape")  # the next stop replaces this one
     red.wait_for(state="detached")
@@ -729,9 +729,17 @@ def ends(pages: Pages, class_: Class, erases: bool) -> None:
     teacher.click("#class_settings")
     if erases:
         teacher.check("#class_window input[type=checkbox]")
-    teacher.dblclick("button[data-text=class_end]")
-    teacher.click("[data-text=class_end_sure]")
+    end_button = teacher.locator("button[data-text=class_end]")
+    end_button.scroll_into_view_if_needed()
+    box = end_button.bounding_box()
+    end_button.dblclick()
+    sure_button = teacher.locator("[data-text=class_end_sure]")
+    sure_box = sure_button.bounding_box()
+    assert box is not None and sure_box is not None
+    assert (sure_box["x"], sure_box["y"]) == (box["x"], box["y"]), "it is pressed where it was"
+    sure_button.click()
     teacher.locator("[data-teacher=class_over]").wait_for(state="attached")
+    assert teacher.locator("#class_come").is_hidden()
     assert teacher.locator("#class").inner_text().strip() == "The class is over."
     ana.locator(f"[data-pupil={'class_erased' if erases else 'class_kept'}]").wait_for(
         state="attached"

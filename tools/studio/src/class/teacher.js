@@ -151,8 +151,10 @@ export class Teacher {
       makeElement('section', '', makeElement('h3', 'class_work'), makeElement('p', 'class_work_told'),
         makeElement('p', '', makeButton('class_save', () => this.#saveClassWork()), makeButton('class_open', () => this.#fileInput.click()), this.#fileInput)),
       makeElement('section', '', makeElement('h3', 'class_code'),
-        makeElement('p', '', makeButton('class_new_code', () => this.#request({ do: 'class_code' })), makeConfirmedButton('class_anew', () => this.#request({ do: 'class_anew' })))),
-      makeElement('section', '', makeElement('h3', 'class_end'), makeElement('p', '', makeElement('label', '', this.#erasesInput, makeElement('span', 'class_erases')), this.#endButton)));
+        // Each button that is pressed twice has a row: its second text is longer, and stays where the first was.
+        makeElement('p', '', makeButton('class_new_code', () => this.#request({ do: 'class_code' }))), makeElement('p', '', makeConfirmedButton('class_anew', () => this.#request({ do: 'class_anew' })))),
+      makeElement('section', '', makeElement('h3', 'class_end'), makeElement('p', '', makeElement('span', 'class_end_told'), makeButton('class_save', () => this.#saveClassWork())),
+        makeElement('p', '', makeElement('label', '', this.#erasesInput, makeElement('span', 'class_erases'))), makeElement('p', '', this.#endButton)));
     document.body.append(this.#settingsWindow);
   }
 

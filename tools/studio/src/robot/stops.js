@@ -13,6 +13,7 @@ import { LINK } from '../page/words.js';
 const POLL_MS = 200;
 const LATE_MS = 1000; // after which a robot that has not confirmed is red
 const NOTICE_MS = 3000; // after which it is said that nobody has heard it
+const SEEN_MS = 15_000; // for which it is seen that all have confirmed: later it says nothing of what drives now
 
 let newestStop = 0;
 
@@ -32,6 +33,7 @@ export async function stopAll() {
     const elapsed_ms = performance.now() - began_ms;
     const isOver = elapsed_ms > 2 * LINK.confirm_ms || robots.every(({ stop }) => stop !== 'asked');
     showStops(robots, isOver || elapsed_ms > LATE_MS);
+    if (isOver && robots.every(({ stop }) => stop === 'confirmed')) setTimeout(() => stopNumber === newestStop && hideStops(), SEEN_MS);
     if (isOver) return;
     await pause(POLL_MS);
     robots = (await requestStops('stops')) ?? robots;
@@ -45,6 +47,13 @@ async function requestStops(action) {
   } catch {
     return null;
   }
+}
+
+function hideStops() {
+  const target = element('stops', HTMLElement);
+  target.hidden = true;
+  target.replaceChildren();
+  delete target.dataset['confirmed'];
 }
 
 /** @param {RobotStop[] | null} robots @param {boolean} isLate */
