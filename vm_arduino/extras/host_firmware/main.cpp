@@ -315,7 +315,7 @@ void answer_trim(RequestReader* request, Writer* answer) {
   answer->u8(is_sound(trim));
   for (int power = -128; power < 128; power++) {
     const int8_t percent = static_cast<int8_t>(power);
-    const Levels levels = trimmed(trim, percent, percent);
+    const Levels levels = trimmed_levels(trim, percent, percent);
     answer->u16(static_cast<uint16_t>(levels.left));
     answer->u16(static_cast<uint16_t>(levels.right));
   }

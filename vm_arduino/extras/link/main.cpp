@@ -19,8 +19,8 @@ using namespace tiniscript;
 namespace {
 
 struct TestedSeal : Seal {
-  void heard(uint32_t counter) { heard_ = counter; }
-  void sent(uint32_t counter) { sent_ = counter; }
+  void heard(uint32_t counter) { received_counter_ = counter; }
+  void sent(uint32_t counter) { sent_counter_ = counter; }
 };
 
 Receiver receiver;

@@ -152,7 +152,7 @@ uint8_t* port_text_room(uint16_t* room) {
 bool port_may_prepare_upload(bool) { return !port.is_busy; }
 bool port_reads_keys() { return false; }
 
-bool port_text_is_beside(bool) { return false; }
+bool port_text_is_separate(bool) { return false; }
 
 void port_take_text(uint8_t* image, bool is_for_button) {
   const std::string whole = sealed(text_of(image));
@@ -243,12 +243,12 @@ Answer port_keep_key(uint8_t kind, const uint8_t* key) {
 
 void port_identify() { say("IDENTIFY"); }
 
-Answer port_tune(const Tuning& wanted, bool has_pace) {
+Answer port_tune(const Tuning& new_tuning, bool has_pace) {
   if (port.is_busy) return Answer::kBusy;
-  if (wanted.trim.least > kMostLeast) return Answer::kBadValue;
-  port.tuning.trim = wanted.trim;
-  if (has_pace) port.tuning.pace = wanted.pace;
-  say("TRIM %u", wanted.trim.wheels);
+  if (new_tuning.trim.least > kMostLeast) return Answer::kBadValue;
+  port.tuning.trim = new_tuning.trim;
+  if (has_pace) port.tuning.pace = new_tuning.pace;
+  say("TRIM %u", new_tuning.trim.wheels);
   return port.is_saving ? Answer::kSaving : Answer::kOk;
 }
 

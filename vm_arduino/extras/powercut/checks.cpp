@@ -58,7 +58,7 @@ const char* run_checks() {
 
   // a save waits for the motors, and says so
   expect(store.begin_save(a.data()) && !store.begin_save(b.data()));
-  expect(!store.begin_keep(Area::kFault, record.data()));
+  expect(!store.begin_save_record(Area::kFault, record.data()));
   run(&store, false, 2000);
   expect(store.state() == StoreState::kSaving && store.is_busy());
   start(&later);
@@ -181,12 +181,12 @@ const char* run_checks() {
   expect(has(store, b) && save(&store, a) && save(&store, b));
 
   // records: apart from each other and from programs
-  expect(store.begin_keep(Area::kIdentity, record.data()));
+  expect(store.begin_save_record(Area::kIdentity, record.data()));
   run(&store, true);
   expect(record == same_record && read(store, Area::kIdentity) == record);
   expect(read(store, Area::kFault).empty() && has(store, b));
   record[kNameAt] = static_cast<uint8_t>(record[kNameAt] + 1);
-  expect(store.begin_keep(Area::kFault, record.data()));
+  expect(store.begin_save_record(Area::kFault, record.data()));
   run(&store, true);
   expect(record != same_record);
   start(&store);

@@ -57,7 +57,7 @@ Content some_record(Area area) {
 
 bool begin(Store* store, Area area, Content* content) {
   if (area == Area::kProgram) return store->begin_save(content->data());
-  return store->begin_keep(area, content->data());
+  return store->begin_save_record(area, content->data());
 }
 
 Content read(const Store& store, Area area) {

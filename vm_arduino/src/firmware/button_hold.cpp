@@ -42,11 +42,11 @@ void confirm() {
 void pass_button_hold(uint16_t passed_ms) {
   Hold* const it = near(&hold);
   if (it->phase == Phase::kUp) return;
-  const uint16_t before_ms = it->down_ms;
+  const uint16_t previous_ms = it->down_ms;
   it->down_ms =
-      passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
+      passed_ms < kMostMs - previous_ms ? static_cast<uint16_t>(previous_ms + passed_ms) : kMostMs;
   if (!kHasOwners) return;
-  if (it->phase == Phase::kDown && before_ms < kClaimMs && it->down_ms >= kClaimMs) confirm();
+  if (it->phase == Phase::kDown && previous_ms < kClaimMs && it->down_ms >= kClaimMs) confirm();
   // Tried again until the store is free.
   if (it->phase == Phase::kDownSinceReset && it->down_ms >= kForgetMs && forget_keys()) {
     it->phase = Phase::kUp;

@@ -48,8 +48,8 @@ void fault(uint8_t number, uint16_t at) {
   board_faulted();
 }
 
-void abort_run(LinkFault why) {
-  stop_run(static_cast<uint8_t>(why));
+void abort_run(LinkFault cause) {
+  stop_run(static_cast<uint8_t>(cause));
   link.faulted();
 }
 
@@ -191,12 +191,12 @@ const uint8_t* port_run_image() { return run_image; }
 bool firmware_runs(Place* place) {
   if (!is_running()) return false;
   const uint8_t* const image = run_image;
-  const uint16_t most = image == live ? kLiveImageBytes : kImageBytes;
+  const uint16_t limit = image == live ? kLiveImageBytes : kImageBytes;
   const uint16_t length = image_length(image);
   if (kHasBreakpoints && are_traps_in()) {  // then it has its checksum
     place->program = get32(image + kChecksumAt);
   } else {
-    place->program = image_checksum(image, length < most ? length : most);
+    place->program = image_checksum(image, length < limit ? length : limit);
   }
   place->at = machine.offset();
   return true;
@@ -219,7 +219,7 @@ int32_t remote_reading(uint8_t number) {
 }
 
 void robot_motors(int8_t left, int8_t right) {
-  const Levels levels = trimmed(port_tuning().trim, left, right);
+  const Levels levels = trimmed_levels(port_tuning().trim, left, right);
   has_motors_on = (left | right) != 0;
   if (kHasDiscs) guide_end(has_motors_on);
   board_motors(levels.left, levels.right);

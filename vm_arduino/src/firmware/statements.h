@@ -19,13 +19,13 @@ struct Statement {
   uint16_t target;  // or kNoPlace
 };
 
-struct FoundStatement {
+struct StatementInfo {
   Statement statement;
   bool returns;      // it goes on after the call that has led here
   bool is_in_check;  // it is part of one
 };
 
 // Finds the statement that begins at a place. False: none begins there.
-bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, FoundStatement* found);
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, StatementInfo* info);
 
 }  // namespace tiniscript

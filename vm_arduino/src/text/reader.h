@@ -62,7 +62,7 @@ class Reader {
   }
 
   // After kMore: the word for which it waits, or ')'.
-  uint8_t awaited() const;
+  uint8_t awaited_word() const;
 
   // After kProgram: how the program starts, and the length of its code in the buffer, which the
   // machine's verifier accepts.

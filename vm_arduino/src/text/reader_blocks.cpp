@@ -72,7 +72,7 @@ Problem Reader::close(uint8_t type) {
   return Problem::kNone;
 }
 
-uint8_t Reader::awaited() const {
+uint8_t Reader::awaited_word() const {
   if (brackets_ != 0) return ')';
   const uint8_t type = top()->type & kBlockType;
   if (kReadsDefs && type == kTaskBlock) return kWordEndTask;

@@ -55,7 +55,7 @@ tini_noinline void Drive::leave_move(TaskRecord* task) {
 inline void Drive::stand_still(TaskRecord* task) {
   if (task->measures()) {
     int32_t rest;
-    if (robot_going(&rest) == Going::kThere || rest <= 0) return leave_move(task);
+    if (robot_move_state(&rest) == MoveState::kArrived || rest <= 0) return leave_move(task);
   } else if (!task->is_forever()) {
     const uint32_t left_ms = task->rest_ms - late_ms(task);
     if (static_cast<int32_t>(left_ms) <= 0) return leave_move(task);
@@ -153,7 +153,7 @@ void Drive::go_way() {
   if (on_way == me) return robot_go_on(left, right);
   if (on_way != nullptr && on_way->is(kIsMoving)) {
     int32_t rest = 0;
-    robot_going(&rest);
+    robot_move_state(&rest);
     on_way->rest_ms = static_cast<uint32_t>(rest);
   }
   on_way = me;
@@ -163,16 +163,16 @@ void Drive::go_way() {
 // False: it is there, and its move is over, or a wheel does not turn.
 bool Drive::continues_way() {
   constexpr uint8_t kGoBytes = 2;
-  static_assert(static_cast<Fault>(Going::kStuckRight) == Fault::kStuckRight, "a Fault");
+  static_assert(static_cast<Fault>(MoveState::kStuckRight) == Fault::kStuckRight, "a Fault");
   int32_t rest;
-  const Going going = robot_going(&rest);
-  if (going == Going::kOn) return true;
-  if (going == Going::kThere) {
+  const MoveState state = robot_move_state(&rest);
+  if (state == MoveState::kMoving) return true;
+  if (state == MoveState::kArrived) {
     end_move();
     return false;
   }
   offset_ = static_cast<uint16_t>(task_.me->check - kGoBytes);  // an UNTIL sets its own later
-  return goes_on(static_cast<Fault>(going));
+  return goes_on(static_cast<Fault>(state));
 }
 
 // At the end of a move, or at a look at one that is measured. False: it goes on.
@@ -234,10 +234,10 @@ tini_noinline void Drive::take_motors() {
 // For a robot without discs.
 __attribute__((weak)) bool robot_measures() { return false; }
 __attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
-__attribute__((weak)) Going robot_going(int32_t*) { return Going::kThere; }
+__attribute__((weak)) MoveState robot_move_state(int32_t*) { return MoveState::kArrived; }
 __attribute__((weak)) void robot_go_on(int8_t left, int8_t right) {
   int32_t rest = 0;
-  robot_going(&rest);
+  robot_move_state(&rest);
   robot_go(left, right, rest);
 }
 

@@ -210,7 +210,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t*) { return nullptr; }
-bool port_text_is_beside(bool) { return false; }
+bool port_text_is_separate(bool) { return false; }
 bool port_may_prepare_upload(bool) { return true; }
 void port_take_text(uint8_t*, bool) {}
 bool port_reads_keys() { return false; }

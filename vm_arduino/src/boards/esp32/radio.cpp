@@ -118,7 +118,7 @@ void take(Transport transport, Pipe* pipe) {
   for (uint8_t left = kBytesATurn; left > 0 && firmware_has_room(transport); left--) {
     if (!pipe->take_rx(&item)) return;
     if (item == Pipe::kParted) {
-      firmware_on_part(transport);
+      firmware_on_client_left(transport);
     } else {
       on_rx_byte(transport, static_cast<uint8_t>(item));
     }

@@ -47,7 +47,7 @@ class StopFinder {
   enum class Mode : uint8_t { kText, kBegin, kLine, kFrame };
   enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome };
 
-  bool is_typed() const { return typed_.found() != TypedStop::kNone; }
+  bool is_typed() const { return typed_.kind() != TypedStop::kNone; }
   static bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
 
   void begin_line() {
@@ -109,7 +109,7 @@ class StopFinder {
   }
 
   StopKind take_frame_byte(uint8_t byte) {
-    const bool is_stop = ends_line(byte) && typed_.found() == TypedStop::kStrict;
+    const bool is_stop = ends_line(byte) && typed_.kind() == TypedStop::kStrict;
     if ((byte < ' ' && byte != '\t') || byte == kDelete) {
       typed_.begin();
     } else {
