@@ -65,7 +65,7 @@ KNOWN: tuple[Known, ...] = (
           "if stat_result is not None and not stat.S_ISREG(stat_result.st_mode):", "if False:",
           "tests/cli/test_files.py::test_another_hard_link_keeps_the_old_content_and_a_pipe_stays_a_pipe"),
     Known("room for a word", "vm_arduino/src/text/reader_code.cpp",
-          "< kTight + letters_", "< kTight",
+          "< kTightRoom + letters_", "< kTightRoom",
           "tests/firmware/test_text_small.py::test_a_wrong_line_that_needed_the_room_reports_the_lost_program"),
     Known("what stands after a loop", "compiler/tiniscript/lessons/text_judging.py",
           "body = open_loops.pop()", "pass",
@@ -82,7 +82,7 @@ KNOWN: tuple[Known, ...] = (
           "(Number(\"within_cm\", 1, 500, 6), Number(\"at_least_cm\", 0, LARGEST_NUMBER))",
           "tests/lessons/test_reader.py::test_a_refused_lesson_gives_the_reason"),
     Known("a reading of an UNTIL", "vm_arduino/src/text/reader_parser.cpp",
-          "known_ = 0;", "known_ = 1;",
+          "known_sensors_ = 0;", "known_sensors_ = 1;",
           "tests/text/test_reader.py::test_an_until_reads_at_each_check"),
     Known("a range of more than 15 bits", "vm_arduino/src/boards/ranges.cpp",
           "range >>= 1;", "range >>= 2;",
@@ -137,7 +137,7 @@ KNOWN: tuple[Known, ...] = (
           "  has_stalled = false;\n", "",
           "tests/firmware/test_uno_watchdog.py::test_a_main_loop_that_stalled_briefly_runs_the_next_program"),
     Known("a look at an UNTIL below who has the motors", "vm_arduino/src/vm/turns.cpp",
-          "  if (!me->is(kHasBegun) && blocks()) return false;\n", "",
+          "  if (!task->is(kHasBegun) && blocks()) return false;\n", "",
           "tests/vm/test_slow_readings.py::test_a_check_awaiting_an_echo_ends_when_the_motors_are_taken"),
 )
 # fmt: on

@@ -219,12 +219,12 @@ def test_state_kept_by_both_machines_has_one_name() -> None:
         "state": "wait, is_watching",
         "rest_ms": "move_ms",
         "depth": "stack",
-        "framed": "counters, calls",
+        "frame_count": "counters, calls",
         "frames": "counters, calls",
         "is_late": "(numbers do not wrap around)",
-        "me": "(the task itself)",
+        "current": "(the task itself)",
         "start": "(tasks)",
-        "set": "(tasks)",
+        "own_powers": "(tasks)",
     }
     python = attributes_in_python("vm/state.py", "Task")
     assert python - cpp == {

@@ -36,15 +36,15 @@ int main() {
   Reader* const its = near(&reader);
   for (uint16_t left = request.u16(); left != 0; left = request.u16()) {
     its->begin(buffer, room);
-    Text found = Text::kNothing;
+    TextState state = TextState::kNothing;
     for (; left != 0; left--) {
       const uint8_t byte = request.u8();
-      if (found == Text::kProblem && its->has_problem()) continue;  // no later line mends it
-      const Text now = its->put(byte);
-      if (now != Text::kGoesOn && found != Text::kProblem) found = now;
+      if (state == TextState::kProblem && its->has_problem()) continue;  // no later line mends it
+      const TextState next_state = its->put(byte);
+      if (next_state != TextState::kOpenLine && state != TextState::kProblem) state = next_state;
     }
-    const bool is_problem = found == Text::kProblem;
-    say("found", static_cast<uint8_t>(found));
+    const bool is_problem = state == TextState::kProblem;
+    say("found", static_cast<uint8_t>(state));
     say("what", is_problem ? static_cast<uint8_t>(its->problem()) : its->start());
     say("how much", is_problem ? its->column() : its->length());
     const uint8_t length = is_problem ? 0 : its->length();

@@ -27,10 +27,10 @@ struct SanitizedReader {
 
   void begin() { reader.begin(buffer.get(), room); }
 
-  void say(Text found) const {
-    if (found == Text::kMore) {
+  void say(TextState state) const {
+    if (state == TextState::kOpenBlock) {
       puts("MORE");
-    } else if (found == Text::kProblem) {
+    } else if (state == TextState::kProblem) {
       printf("NO %d %d\n", static_cast<int>(reader.problem()), reader.column());
     } else {
       printf("OK %d ", reader.start());
@@ -49,13 +49,13 @@ void read_lines(SanitizedReader* read) {
   read->begin();
   bool is_blank = true;
   for (int byte = getchar(); byte >= 0; byte = getchar()) {
-    const Text found = read->reader.put(static_cast<uint8_t>(byte));
-    if (found == Text::kGoesOn) {
+    const TextState state = read->reader.put(static_cast<uint8_t>(byte));
+    if (state == TextState::kOpenLine) {
       if (byte != '\n') is_blank = false;
       continue;
     }
-    if (!is_blank) read->say(found);
-    if (is_blank || found != Text::kMore) read->begin();
+    if (!is_blank) read->say(state);
+    if (is_blank || state != TextState::kOpenBlock) read->begin();
     is_blank = true;
   }
 }
@@ -67,13 +67,13 @@ void read_texts(SanitizedReader* read) {
     if (fread(text.data(), 1, text.size(), stdin) != text.size()) return;
     if (text.empty() || (text.back() != '\n' && text.back() != '\r')) text.push_back('\n');
     read->begin();
-    Text found = Text::kNothing;
+    TextState state = TextState::kNothing;
     for (const uint8_t byte : text) {
-      const Text now = read->reader.put(byte);
-      if (now != Text::kGoesOn) found = now;
-      if (now == Text::kProblem && read->reader.has_problem()) break;
+      const TextState next_state = read->reader.put(byte);
+      if (next_state != TextState::kOpenLine) state = next_state;
+      if (next_state == TextState::kProblem && read->reader.has_problem()) break;
     }
-    read->say(found);
+    read->say(state);
   }
 }
 

@@ -115,7 +115,7 @@ const int32_t* watched_tasks() {
   if (!is_running() || !machine.has_tasks()) return found;
   const Task& task = machine.task();
   for (const TaskRecord& record : task.records) {
-    const uint16_t at = &record == task.me ? task.pc : record.pc;
+    const uint16_t at = &record == task.current ? task.pc : record.pc;
     if (record.state != 0 && at != 0) found[++found[0]] = at - 1;
   }
 #endif
@@ -126,7 +126,7 @@ uint32_t watched_driver() {
 #ifdef tiniscript_has_tasks
   if (!is_running() || !machine.has_tasks() || !is_driving()) return kNowhere;
   const Task& task = machine.task();
-  const uint16_t at = task.holder == task.me ? task.pc : task.holder->pc;
+  const uint16_t at = task.holder == task.current ? task.pc : task.holder->pc;
   if (at != 0) return at - 1u;
 #endif
   return kNowhere;

@@ -247,28 +247,28 @@ bool Console::find_room() {
 inline Console::Act Console::end_line(bool is_heard) {
   if (refusal_ != Remark::kNone && !is_heard) refuse();
   if (!is_open_) return Act::kNone;
-  const Text text = reader_.put(kLineEnd);
+  const TextState text = reader_.put(kLineEnd);
   const bool has_setup = reader_.has_setup();
   const bool was_waiting = is_waiting_;
   const uint8_t length_before = length_;
   length_ = reader_.length();
-  is_waiting_ = is_open_ = text == Text::kMore;
+  is_waiting_ = is_open_ = text == TextState::kOpenBlock;
   // With a comment after it, S is no typed stop, but stops all the same.
-  if (text == Text::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
+  if (text == TextState::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
   if (is_ignored()) {
     is_open_ = is_waiting_ = false;
-    if (is_discarding_ && text != Text::kNothing && !has_told_pause_) {
+    if (is_discarding_ && text != TextState::kNothing && !has_told_pause_) {
       has_told_pause_ = true;
       tell(Remark::kPause, is_heard);
     }
     return Act::kNone;
   }
   switch (text) {
-    case Text::kMore:
+    case TextState::kOpenBlock:
       awaited_word_ = reader_.awaited_word();
       if (reader_.is_stop_after(length_before)) return Act::kEnd;
       break;
-    case Text::kProgram:
+    case TextState::kProgram:
       is_ignoring_ = false;
       is_talking_ = true;
       if (reader_.start() == kStartPing) {
@@ -280,7 +280,7 @@ inline Console::Act Console::end_line(bool is_heard) {
         refuse();
       }
       break;
-    case Text::kProblem:
+    case TextState::kProblem:
       is_ignoring_ = has_setup || was_waiting;
       if (!has_mark_ && first_byte_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
         // after a SETUP word a module's word is a wrong one: it begins no program
@@ -293,8 +293,8 @@ inline Console::Act Console::end_line(bool is_heard) {
         mistakes_++;
       }
       break;
-    case Text::kGoesOn:
-    case Text::kNothing:
+    case TextState::kOpenLine:
+    case TextState::kNothing:
       break;
   }
   return Act::kNone;

@@ -127,7 +127,7 @@ bool Console::put_words() {
     word = put_word(word);
     put(' ');
     // After a word of the kit there is no letter.
-    if (flash_byte(word) < 'A') word = behind_device(word);
+    if (flash_byte(word) < 'A') word = after_device(word);
   }
   next_help_word_ = word;
   return true;

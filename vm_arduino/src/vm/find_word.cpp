@@ -15,8 +15,8 @@ uint8_t find_word(const uint8_t* table, const uint8_t* word, uint8_t length) {
     do {
       letter = flash_byte(table++);
       if (is_same) {
-        const uint8_t its = word[at++];
-        is_same = letter == (at == length ? its | kLastLetter : its);
+        const uint8_t word_letter = word[at++];
+        is_same = letter == (at == length ? word_letter | kLastLetter : word_letter);
       }
     } while ((letter & kLastLetter) == 0);
     if (is_same) break;

@@ -31,13 +31,13 @@ void Machine::check_layout() {
   lies_at(now_ms_, tini_now_at);
   lies_at(task_.pc, tini_pc_at);
   lies_at(task_.depth, tini_depth_at);
-  lies_at(task_.framed, tini_framed_at);
+  lies_at(task_.frame_count, tini_frame_count_at);
   lies_at(task_.variables, tini_variables_at);
   lies_at(task_.stack, tini_stack_at);
   lies_at(task_.frames, tini_frames_at);
-  lies_in_task(others, tini_others_at);
+  lies_in_task(other_tasks, tini_other_tasks_at);
   lies_in_task(is_quiet, tini_is_quiet_at);
-  lies_in_task(me, tini_me_at);
+  lies_in_task(current, tini_current_at);
   lies_in_task(after, tini_after_at);
   lies_in_task(holder, tini_holder_at);
   static_assert(offsetof(TaskOf<true>, records) - offsetof(TaskOf<true>, variables) ==
@@ -45,13 +45,13 @@ void Machine::check_layout() {
   lies_in_record(state, 0);
   lies_in_record(code, tini_task_code_at);
   lies_in_record(power, tini_task_power_at);
-  lies_in_record(framed, tini_task_framed_at);
+  lies_in_record(frame_count, tini_task_frame_count_at);
   lies_in_record(pc, tini_task_pc_at);
   lies_in_record(start, tini_task_start_at);
   lies_in_record(check, tini_task_check_at);
   lies_in_record(clock_ms, tini_clock_at);
   lies_in_record(rest_ms, tini_task_rest_at);
-  lies_in_record(set, tini_task_set_at);
+  lies_in_record(own_powers, tini_task_own_powers_at);
   static_assert(sizeof(TaskRecord) == tini_record_bytes, "TaskRecord");
   is_bit(kIsMoving, tini_is_moving_bit);
   is_bit(kHasTime, tini_has_time_bit);

@@ -45,7 +45,7 @@ struct Memory {
   Def defs[kDefs];               // that are closed
 };
 
-bool in_range(Byte kind, uint8_t value) {
+bool is_in_range(Byte kind, uint8_t value) {
   const uint8_t* const range = kRanges[static_cast<uint8_t>(kind)];
   return static_cast<uint8_t>(value - flash_byte(range)) <= flash_byte(range + 1);
 }
@@ -55,7 +55,7 @@ bool is_push_read(Family family) {
 }
 
 // Adds a device to the hash: bytecode_spec.md defines it.
-uint16_t with_device(uint16_t hash, uint16_t device) {
+uint16_t add_device(uint16_t hash, uint16_t device) {
   const uint16_t carry = hash & 0x8000 ? kDevicesPolynomial : 0;
   return static_cast<uint16_t>(hash << 1) ^ carry ^ robot_device_hash(device);
 }
@@ -133,13 +133,13 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       const Byte kind = static_cast<Byte>(kinds & 15);
       // a one-byte instruction holds its operand in its code
       const uint8_t value = form.size() == 1 ? code[at] % kShorts : *++operand;
-      if (!in_range(kind, value)) return {Rule::kBadOperand, at};
+      if (!is_in_range(kind, value)) return {Rule::kBadOperand, at};
       if (kind < Byte::kSensor) continue;
       if (value >= (kind == Byte::kSensor ? sensors : actuators)) {
         return {Rule::kNoSuchDevice, at};
       }
       const uint16_t first = kind == Byte::kSensor ? 0 : sensors;
-      memory->devices = with_device(memory->devices, static_cast<uint16_t>(first + value));
+      memory->devices = add_device(memory->devices, static_cast<uint16_t>(first + value));
     }
 
     // stack
@@ -148,9 +148,9 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (depth > kStackValues) return {Rule::kStackOverflow, at};
 
     // the target of a jump comes from the last one or two bytes
-    const uint8_t* last = code + after - 1;
-    uint16_t distance = *last;
-    if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
+    const uint8_t* operand_byte = code + after - 1;
+    uint16_t distance = *operand_byte;
+    if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--operand_byte);
     uint16_t target = static_cast<uint16_t>(after + distance);
     if (target < after) target = kFarAway;
     // a target before the code wraps to more than `after`, where nothing starts
@@ -225,19 +225,19 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case ControlRole::kBreak:
       case ControlRole::kDrop: {  // close, leave
         const bool closes = role <= ControlRole::kNext;
-        const uint16_t its_end = closes ? after : target;
+        const uint16_t loop_end = closes ? after : target;
         Block* loop = top;
         if (closes && loop->kind == Kind::kIf) return {Rule::kStillOpen, at};
         while (loop->kind == Kind::kIf) loop--;
         if (loop->kind != kind) return {Rule::kNotOpen, at};
-        if (its_end > length) return {Rule::kBadTarget, at};
+        if (loop_end > length) return {Rule::kBadTarget, at};
         if (closes) {
           if (target != loop[-1].end) return {Rule::kBadLoopStart, at};
           if (kind == Kind::kCount) counters--;
           top -= 2;
         }
-        if (loop->end == 0) loop->end = its_end;
-        if (loop->end != its_end) return {Rule::kBadLoopEnd, at};
+        if (loop->end == 0) loop->end = loop_end;
+        if (loop->end != loop_end) return {Rule::kBadLoopEnd, at};
         continue;
       }
 
