@@ -88,7 +88,7 @@ KNOWN: tuple[Known, ...] = (
           "range >>= 1;", "range >>= 2;",
           "tests/firmware/test_board_devices.py::test_fan_and_active_low_lamp_are_set"),
     Known("a connection that ends", "vm_arduino/src/boards/esp32/broker.cpp",
-          "  line_end();\n  part();", "  part();",
+          "  line_end();\n  drop_peer();", "  drop_peer();",
           "tests/firmware/test_esp32_broker.py::test_setting_the_same_broker_repeatedly_keeps_one_connection"),
     Known("events that nobody takes", "compiler/tiniscript/virtual/robot.py",
           "        del self._traced_robot.events[:-MOST_EVENTS]\n", "",

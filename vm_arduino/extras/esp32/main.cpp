@@ -276,8 +276,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
 // G: whether a connection that begins so is for a robot.
 void answer_sniffed(RequestReader* request, Writer* answer) {
   const std::string bytes = request->text();
-  answer->u8(
-      static_cast<uint8_t>(sniffed(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
+  answer->u8(static_cast<uint8_t>(
+      sniff_protocol(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
 }
 
 // M: how many turns of the main loop, and nanoseconds of this computer, the last step took until a

@@ -42,8 +42,8 @@ void forget() {
   is_loaded = false;
   is_open = false;
   chip.nvs_handles = 0;
-  its_slot = kSlots;
-  waits = false;
+  blob_slot = kSlots;
+  is_dirty = false;
   __builtin_memset(blob, 0, sizeof blob);
 }
 

@@ -326,7 +326,7 @@ tini_exported("fault") uint32_t module_fault() { return port_status().fault; }
 // Where the instruction that runs begins; all ones while no program runs.
 tini_exported("at") uint32_t module_at() {
   Place place;
-  return firmware_runs(&place) ? place.at : 0xffffffff;
+  return firmware_runs(&place) ? place.offset : 0xffffffff;
 }
 
 tini_exported("tasks") const int32_t* module_tasks() { return watched_tasks(); }

@@ -43,10 +43,10 @@ Press button_read(bool is_down, uint32_t now_ms) {
     return Press::kPressed;
   }
   if (it->steady_ms < kDebounceMs || (is_down && it->state == State::kDown)) return Press::kNothing;
-  const State before = it->state;
+  const State previous_state = it->state;
   it->state = is_down ? State::kDown : State::kUp;
   if (is_down) return Press::kDown;
-  return before == State::kDown ? Press::kReleased : Press::kNothing;
+  return previous_state == State::kDown ? Press::kReleased : Press::kNothing;
 }
 
 }  // namespace tiniscript

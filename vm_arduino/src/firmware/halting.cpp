@@ -110,7 +110,7 @@ bool port_report_task(uint8_t task, TaskReport* report) {
   if (task > kTasks) return false;
   const TaskRecord& record = machine_of_run().task().records[task];
   const int32_t left_ms = static_cast<int32_t>(record.clock_ms - machine_ms());
-  report->at = machine_of_run().place_of(task);
+  report->offset = machine_of_run().place_of(task);
   report->left_ms = left_ms > 0 ? static_cast<uint32_t>(left_ms) : 0;
   report->state = record.state == 0       ? TaskState::kEnded
                   : record.is(kDrives)    ? TaskState::kDriving

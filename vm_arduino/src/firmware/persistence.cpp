@@ -46,8 +46,8 @@ void load_fault() {
   Place place;
   if (board_take_hang(&place)) {
     robot_status.fault = static_cast<uint8_t>(LinkFault::kStall);
-    robot_status.fault_at = place.at;
-    robot_status.fault_program = place.program;
+    robot_status.fault_at = place.offset;
+    robot_status.fault_program = place.checksum;
     return keep_fault();
   }
   if (is_stored) copy_bytes(record + kFaultAt, &robot_status.fault, kFaultBytes);

@@ -194,11 +194,11 @@ bool firmware_runs(Place* place) {
   const uint16_t limit = image == live ? kLiveImageBytes : kImageBytes;
   const uint16_t length = image_length(image);
   if (kHasBreakpoints && are_traps_in()) {  // then it has its checksum
-    place->program = get32(image + kChecksumAt);
+    place->checksum = get32(image + kChecksumAt);
   } else {
-    place->program = image_checksum(image, length < limit ? length : limit);
+    place->checksum = image_checksum(image, length < limit ? length : limit);
   }
-  place->at = machine.offset();
+  place->offset = machine.offset();
   return true;
 }
 

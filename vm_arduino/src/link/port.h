@@ -182,7 +182,7 @@ const uint8_t* port_run_image();
 // A task, as READ_TASKS sends it: how long until its clock is reached, or 0.
 struct tini_packed TaskReport {
   TaskState state;
-  uint16_t at;
+  uint16_t offset;
   uint32_t left_ms;
 };
 

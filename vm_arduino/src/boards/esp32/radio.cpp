@@ -39,14 +39,14 @@ const Radio kBrokerRadio = {"tini mqtt", nullptr, broker_turn, kTlsStackBytes};
 Pipe pipes[kTransports - kFirst];
 RadioName name;
 bool has_begun;
-uint32_t rested_ms;
+uint32_t last_rest_ms;
 bool has_broker;
 bool has_broker_failed;  // to begin its task
 uint32_t broker_failed_ms;
 
 // A task: when the radio blocks, only this task waits.
-void run(void* of) {
-  const Radio& radio = *static_cast<const Radio*>(of);
+void run(void* argument) {
+  const Radio& radio = *static_cast<const Radio*>(argument);
   if (radio.begin != nullptr) radio.begin();
   for (;;) {
     radio.turn();
@@ -84,8 +84,8 @@ void begin_broker() {
 // tasks leave behind.
 void rest() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
-  if (portNUM_PROCESSORS > 1 || now_ms - rested_ms < kRestMs) return;
-  rested_ms = now_ms;
+  if (portNUM_PROCESSORS > 1 || now_ms - last_rest_ms < kRestMs) return;
+  last_rest_ms = now_ms;
   vTaskDelay(1);
 }
 
@@ -115,9 +115,10 @@ namespace {
 // Bytes wait in the pipe while there is no room for text: a person pastes faster than it is read.
 void take(Transport transport, Pipe* pipe) {
   uint16_t item;
-  for (uint8_t left = kBytesATurn; left > 0 && firmware_has_room(transport); left--) {
+  for (uint8_t bytes_left = kBytesATurn; bytes_left > 0 && firmware_has_room(transport);
+       bytes_left--) {
     if (!pipe->take_rx(&item)) return;
-    if (item == Pipe::kParted) {
+    if (item == Pipe::kClientLeft) {
       firmware_on_client_left(transport);
     } else {
       on_rx_byte(transport, static_cast<uint8_t>(item));
@@ -138,11 +139,11 @@ void radio_poll() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
-    Place running;
-    const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running);
+    Place running_place;
+    const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running_place);
     if (pipe.take_stop() || stops_run) stop(transport);
     take(transport, &pipe);
-    if (pipe.has_run_stop() && firmware_runs(&running)) stop(transport);
+    if (pipe.has_run_stop() && firmware_runs(&running_place)) stop(transport);
     firmware_await_stop(transport, pipe.has_stop());
   }
 }

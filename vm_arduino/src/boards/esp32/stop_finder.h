@@ -45,7 +45,7 @@ class StopFinder {
 
  private:
   enum class Mode : uint8_t { kText, kBegin, kLine, kFrame };
-  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome };
+  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kBegun };
 
   bool is_typed() const { return typed_.kind() != TypedStop::kNone; }
   static bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
@@ -59,13 +59,13 @@ class StopFinder {
 
   void end_silence() {
     mode_ = Mode::kText;
-    if (line_ != Line::kSome) line_ = Line::kNothing;
+    if (line_ != Line::kBegun) line_ = Line::kNothing;
     typed_.begin();
   }
 
   // Whether it ends a line that is a typed stop.
   bool put_zero() {
-    const bool is_line = mode_ == Mode::kLine || line_ == Line::kSome;
+    const bool is_line = mode_ == Mode::kLine || line_ == Line::kBegun;
     const bool is_stop = is_line && is_printable_ && is_typed();
     begin_line();
     mode_ = Mode::kBegin;
@@ -86,15 +86,15 @@ class StopFinder {
   StopKind put_text(uint8_t byte) {
     if (ends_line(byte)) return end_line(line_ == Line::kHeld || is_typed());
     if (keys_.put(byte)) {
-      if (line_ != Line::kSome) line_ = Line::kSkipped;
+      if (line_ != Line::kBegun) line_ = Line::kSkipped;
       return StopKind::kNothing;
     }
-    if (line_ != Line::kSome) {
+    if (line_ != Line::kBegun) {
       if (byte <= ' ' || byte == kDelete) {
         line_ = byte == kControlC && line_ <= Line::kHeld ? Line::kHeld : Line::kSkipped;
         return StopKind::kNothing;
       }
-      line_ = Line::kSome;
+      line_ = Line::kBegun;
       is_printable_ = true;
     }
     if (!is_printable(byte)) is_printable_ = false;
