@@ -75,17 +75,17 @@ int main() {
   simulated::begin();
   TCCR1B = _BV(CS11);  // a count in eight cycles
   const uint16_t ticks = request.u16();
-  const Request first = request;
+  const Request first_request = request;
   start();
   read_image();
   save(0xffff);
   start();
-  request = first;
+  request = first_request;
   read_image();
   read_image();
   save(ticks);
   start();
-  request = first;
+  request = first_request;
   read_image();
   read_image();
   save(0xffff);

@@ -63,8 +63,8 @@ struct SimulatedChip {
   uint32_t erase_ms = 0;  // how long a write stops the chip
   NvsFault nvs_fault = NvsFault::kNone;
   size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
-  uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
-  TornEntry torn = TornEntry::kOld;
+  uint32_t cut_write = 0;               // the power fails at this write; 0: it does not
+  TornEntry torn_entry = TornEntry::kOld;
   bool is_off = false;  // since then nothing is written
 
   uint32_t restart_ms = 0;  // of the task watchdog; 0: it does not run
@@ -89,8 +89,8 @@ struct SimulatedChip {
 extern SimulatedChip chip;
 
 // Ends the program with "MISUSE" and what it was, unless it is so.
-void expect(bool is_so, const char* what);
-void expect_free(const char* what);  // of a critical section
+void expect(bool condition, const char* message);
+void expect_free(const char* message);  // of a critical section
 
 // Lets time pass; what is due meanwhile happens at its microsecond.
 void pass_us(uint64_t us);

@@ -10,8 +10,8 @@ namespace {
 constexpr uint16_t kNever = 0xffff;  // ticks
 
 // Ticks until nothing is to be done, or so many times. The memory is ready in every third tick.
-void run(Store* store, bool may_commit, uint16_t most = kNever) {
-  for (uint16_t k = 0; k < most && store->is_busy(); k++) {
+void run(Store* store, bool may_commit, uint16_t max_ticks = kNever) {
+  for (uint16_t k = 0; k < max_ticks && store->is_busy(); k++) {
     memory.is_writing = memory.is_writing && k % 3 != 0;
     store->tick(may_commit);
   }
@@ -38,11 +38,11 @@ bool has(const Store& store, const Content& image) { return read(store, Area::kP
   if (!(what)) return #what
 
 const char* run_checks() {
-  const Content a = some_image(20);
-  const Content b = some_image(20);
-  const Content c = some_image(kStoredCodeBytes);
-  const Content large = some_image(kStoredCodeBytes + 1);
-  Content record = some_record(Area::kFault);
+  const Content a = random_image(20);
+  const Content b = random_image(20);
+  const Content c = random_image(kStoredCodeBytes);
+  const Content large = random_image(kStoredCodeBytes + 1);
+  Content record = random_record(Area::kFault);
   const Content same_record = record;
   Store store;
   Store later;
@@ -203,10 +203,10 @@ const char* run_checks() {
 
   // a byte that has changed by itself: the one before counts, and where that has changed too, none
   expect(save(&store, a));
-  for (const Content& left : {b, Content()}) {
+  for (const Content& expected : {b, Content()}) {
     memory.cells[place_of(store.used(Area::kProgram)) + kBodyAt + 20] = {1, 1};
     start(&store);
-    expect(has(store, left));
+    expect(has(store, expected));
   }
   return nullptr;
 }
