@@ -57,7 +57,7 @@ void robot_go_on(int8_t left, int8_t right);
 // Its place on that way; `*rest` is the rest of it, 0 or more. From kStuck on, it is the number of
 // a fault.
 enum class MoveState : uint8_t { kMoving, kArrived, kStuck = 4, kStuckLeft, kStuckRight };
-MoveState robot_move_state(int32_t* rest);
+MoveState robot_move_state(int32_t* remaining);
 
 // The hash of a device of the kit by its number: first all readings, then the actuators.
 // `bytecode_spec.md` defines it.

@@ -47,7 +47,8 @@ void start() {
   store.boot();
   run(0xffff, &longest_start);
   uint16_t count = 0;
-  uint16_t end = store.used(Area::kProgram) == kNoSlot ? 0 : kHeaderBytes;  // what this saves
+  uint16_t end =
+      store.current_slot(Area::kProgram) == kNoSlot ? 0 : kHeaderBytes;  // what this saves
   uint32_t crc = 0;
   while (count != end) {
     uint8_t byte = 0;

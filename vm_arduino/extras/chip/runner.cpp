@@ -67,7 +67,7 @@ uint32_t run(const Image& image, const Limits& limits) {
     const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
     robot.must_wait = false;
     const Status status = machine.tick(now_ms + limits.begin_ms, budget);
-    const uint8_t executed = static_cast<uint8_t>(budget - machine.left());
+    const uint8_t executed = static_cast<uint8_t>(budget - machine.budget_left());
     steps += executed;
     steps_left -= executed;
     if (status >= Status::kDone) {
@@ -77,7 +77,7 @@ uint32_t run(const Image& image, const Limits& limits) {
       say_end(status);
       return steps;
     }
-    if (status == Status::kWaiting || (robot.was_slow && machine.left() != 0)) {
+    if (status == Status::kWaiting || (robot.was_slow && machine.budget_left() != 0)) {
       const uint32_t wake_ms = next_call_ms(machine.wake_ms() - limits.begin_ms);
       if (wake_ms > limits.max_ms) {
         robot.now_ms = limits.max_ms;

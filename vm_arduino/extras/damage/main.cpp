@@ -50,7 +50,9 @@ class Draw {
   }
 
   // 0 to `count` - 1
-  uint32_t below(size_t count) { return static_cast<uint32_t>((next() >> 32) * count >> 32); }
+  uint32_t number_below(size_t count) {
+    return static_cast<uint32_t>((next() >> 32) * count >> 32);
+  }
   char byte() { return static_cast<char>(next()); }
 
  private:
@@ -79,16 +81,17 @@ std::string failure;  // what must not be, or nothing
 // few values, so that COBS has much to do.
 std::string next_frame(uint32_t number, Draw* draw, bool may_repeat) {
   uint8_t frame[kWireBytes] = {};
-  const uint8_t payload = static_cast<uint8_t>(kNumberBytes + draw->below(kPayloadBytes - kNumberBytes + 1));
+  const uint8_t payload =
+      static_cast<uint8_t>(kNumberBytes + draw->number_below(kPayloadBytes - kNumberBytes + 1));
   const uint8_t begin = payload_at(static_cast<uint8_t>(kPayloadAt + payload));
   const uint8_t end = static_cast<uint8_t>(begin + payload);
-  frame[kTypeAt] = kTypes[draw->below(sizeof kTypes)];
+  frame[kTypeAt] = kTypes[draw->number_below(sizeof kTypes)];
   frame[kSeqAt] = static_cast<uint8_t>(draw->byte());
   frame[kEpochAt] = static_cast<uint8_t>(draw->byte());
   memcpy(frame + begin, &number, kNumberBytes);
-  const bool repeats = may_repeat && draw->below(4) == 0;
+  const bool repeats = may_repeat && draw->number_below(4) == 0;
   for (uint8_t k = static_cast<uint8_t>(begin + kNumberBytes); k < end; k++) {
-    frame[k] = repeats ? "\0\0\1S\n"[draw->below(5)] : static_cast<uint8_t>(draw->byte());
+    frame[k] = repeats ? "\0\0\1S\n"[draw->number_below(5)] : static_cast<uint8_t>(draw->byte());
   }
   SentFrame* const sent_frame = &sent_frames[number];
   sent_frame->length = static_cast<uint8_t>(end - kTypeAt);
@@ -115,18 +118,18 @@ enum class Damage : uint8_t {
 constexpr uint8_t kDamages = static_cast<uint8_t>(Damage::kTalkedOver) + 1;
 
 void damage_once(std::string* bytes, Draw* draw) {
-  const size_t place = draw->below(bytes->size());
-  const size_t between = draw->below(bytes->size() + 1);
+  const size_t place = draw->number_below(bytes->size());
+  const size_t between = draw->number_below(bytes->size() + 1);
   char& byte = (*bytes)[place];
-  switch (static_cast<Damage>(draw->below(kDamages))) {
+  switch (static_cast<Damage>(draw->number_below(kDamages))) {
     case Damage::kLost:
       bytes->erase(place, 1);
       break;
     case Damage::kChanged:
-      byte = static_cast<char>(byte ^ static_cast<char>(1 + draw->below(255)));
+      byte = static_cast<char>(byte ^ static_cast<char>(1 + draw->number_below(255)));
       break;
     case Damage::kBit:
-      byte = static_cast<char>(byte ^ 1 << draw->below(8));
+      byte = static_cast<char>(byte ^ 1 << draw->number_below(8));
       break;
     case Damage::kZero:
       byte = 0;
@@ -141,23 +144,24 @@ void damage_once(std::string* bytes, Draw* draw) {
       bytes->insert(between, 1, draw->byte());
       break;
     case Damage::kCut:
-      bytes->erase(place, 1 + draw->below(19));
+      bytes->erase(place, 1 + draw->number_below(19));
       break;
     case Damage::kJoined:
       bytes->pop_back();
       break;
     case Damage::kBurst:
-      for (size_t k = place, end = place + 2 + draw->below(7); k < end && k < bytes->size(); k++) {
+      for (size_t k = place, end = place + 2 + draw->number_below(7); k < end && k < bytes->size();
+           k++) {
         (*bytes)[k] = draw->byte();
       }
       break;
     case Damage::kNoise:
-      for (uint32_t count = 1 + draw->below(12); count > 0; count--) {
+      for (uint32_t count = 1 + draw->number_below(12); count > 0; count--) {
         bytes->insert(between, 1, draw->byte());
       }
       break;
     case Damage::kTalkedOver:
-      bytes->insert(between, kTexts[draw->below(sizeof kTexts / sizeof *kTexts)]);
+      bytes->insert(between, kTexts[draw->number_below(sizeof kTexts / sizeof *kTexts)]);
       break;
   }
 }
@@ -166,21 +170,21 @@ void damage_once(std::string* bytes, Draw* draw) {
 // frames are damaged: one to three times, half of them or none.
 uint32_t send_line(uint64_t seed, bool may_damage = true, bool may_repeat = true) {
   Draw draw(seed);
-  uint32_t damaged = 0;
+  uint32_t damaged_count = 0;
   stream.assign(1, '\0');
   for (uint32_t number = 0; number < kFrames; number++) {
     const std::string frame = next_frame(number, &draw, may_repeat);
     std::string damaged_frame = frame;
-    if (may_damage && draw.below(2) == 0) {
-      const uint8_t times = "\1\1\2\3"[draw.below(4)];
+    if (may_damage && draw.number_below(2) == 0) {
+      const uint8_t times = "\1\1\2\3"[draw.number_below(4)];
       for (uint8_t k = 0; k < times && !damaged_frame.empty(); k++)
         damage_once(&damaged_frame, &draw);
     }
     sent_frames[number].is_damaged = damaged_frame != frame;
-    damaged += sent_frames[number].is_damaged;
+    damaged_count += sent_frames[number].is_damaged;
     stream += damaged_frame;
   }
-  return damaged;
+  return damaged_count;
 }
 
 // -- what arrives -----------------------------------------------------------------------------------
@@ -235,20 +239,20 @@ void judge_line(uint64_t seed) {
 // arrive, or after a frame that is not whole.
 uint32_t count_typed_stops() {
   Receiver receiver = Receiver();
-  uint32_t stops = 0;
+  uint32_t stop_count = 0;
   uint8_t text;
   for (const char byte : stream) {
     const bool are_zeros = receiver.count_zeros(static_cast<uint8_t>(byte), 0);
-    if (receiver.keep_and_find_stop(static_cast<uint8_t>(byte), 0) && !are_zeros) stops++;
+    if (receiver.keep_and_find_stop(static_cast<uint8_t>(byte), 0) && !are_zeros) stop_count++;
     while (receiver.has_text() && receiver.take_text(&text)) {
     }
     if (!receiver.has_frame()) continue;
     const bool may_stop = receiver.frame_may_stop();
-    if (decode_frame(receiver.bytes(), receiver.length()) == 0 && may_stop) stops++;
+    if (decode_frame(receiver.bytes(), receiver.length()) == 0 && may_stop) stop_count++;
     receiver.let_frame();
     receiver.release();
   }
-  return stops;
+  return stop_count;
 }
 
 // A byte and how long nothing came before it.
@@ -265,13 +269,13 @@ const char* const kWords[] = {"s", "stop", "stopnow", "alto", "para", "parar", "
 
 bool is_end(uint8_t byte) { return byte == '\r' || byte == '\n'; }
 bool is_printable(uint8_t byte) { return byte >= ' ' && byte <= '~'; }
-bool ends_with(const std::string& all, const char* end) {
+bool ends_with(const std::string& text, const char* end) {
   const size_t length = strlen(end);
-  return all.size() >= length && all.compare(all.size() - length, length, end) == 0;
+  return text.size() >= length && text.compare(text.size() - length, length, end) == 0;
 }
 
 // The bytes without cursor keys, and without the beginning of one.
-std::string without_keys(const std::string& bytes) {
+std::string remove_keys(const std::string& bytes) {
   std::string text;
   for (size_t k = 0; k < bytes.size(); k++) {
     if (bytes[k] != 0x1b) {
@@ -347,13 +351,13 @@ bool is_strict(const std::string& packet) {
 // What the law says of the last of these bytes, by all of them and no state: see the head of
 // `receiver.h`. Bytes before `restart` have stopped what runs.
 Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_running) {
-  const size_t last = bytes_so_far.size() - 1;
-  const uint8_t byte = bytes_so_far[last].byte;
-  size_t silence_start = last;  // where the last silence has been
+  const size_t last_index = bytes_so_far.size() - 1;
+  const uint8_t byte = bytes_so_far[last_index].byte;
+  size_t silence_start = last_index;  // where the last silence has been
   while (silence_start > 0 && bytes_so_far[silence_start].pause_ms < kSilenceMs) silence_start--;
   size_t packet_start = silence_start;  // where the packet begins
   bool is_framed = false;
-  for (size_t k = last; k-- > silence_start;) {
+  for (size_t k = last_index; k-- > silence_start;) {
     if (bytes_so_far[k].byte != 0) continue;
     packet_start = k + 1;
     is_framed = true;
@@ -366,11 +370,11 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
   };
   if (is_framed) {
     size_t end = packet_start;
-    while (end < last && is_printable(bytes_so_far[end].byte)) end++;
-    if (end < last) {
+    while (end < last_index && is_printable(bytes_so_far[end].byte)) end++;
+    if (end < last_index) {
       if (end == packet_start || !is_end(bytes_so_far[end].byte)) {  // a frame
         const bool is_held =
-            is_end(byte) && is_strict(between(std::max(packet_start, restart), last));
+            is_end(byte) && is_strict(between(std::max(packet_start, restart), last_index));
         return is_held ? Law::kInFrame : Law::kNone;
       }
     } else if (end == packet_start && !is_printable(byte)) {
@@ -379,19 +383,20 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
       return Law::kNone;  // it is a frame
     }
   }
-  size_t line = last;
+  size_t line = last_index;
   while (line > packet_start && !is_end(bytes_so_far[line - 1].byte)) line--;
-  const std::string bytes = without_keys(between(std::max(line, restart), last));
+  const std::string bytes = remove_keys(between(std::max(line, restart), last_index));
   const bool is_after_zero = is_framed && line == packet_start;
   // A line of text that has begun before a silence is the same one for some: a control byte in it, say.
   size_t blank_start = line;
   while (line == silence_start && blank_start > 0 && bytes_so_far[blank_start - 1].byte != 0 &&
          !is_end(bytes_so_far[blank_start - 1].byte))
     blank_start--;
-  const bool is_new = std::all_of(bytes_so_far.begin() + static_cast<long>(blank_start),
-                                  bytes_so_far.begin() + static_cast<long>(line),
-                                  [](const TypedByte& typed) { return typed.byte <= ' '; });
-  const std::string whole_line = between(line, is_end(byte) ? last : last + 1);
+  const bool is_new =
+      std::all_of(bytes_so_far.begin() + static_cast<long>(blank_start),
+                  bytes_so_far.begin() + static_cast<long>(line),
+                  [](const TypedByte& typed_byte) { return typed_byte.byte <= ' '; });
+  const std::string whole_line = between(line, is_end(byte) ? last_index : last_index + 1);
   if (!whole_line.empty() && whole_line.find_first_not_of('\3') == std::string::npos) {
     return is_new ? Law::kWaits : Law::kEither;
   }
@@ -401,11 +406,12 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
     return law == Law::kStop && is_after_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
   if (byte != 0) {
-    return is_running ? law_of_open_line(without_keys(between(std::max(line, restart), last + 1)))
-                      : Law::kNone;
+    return is_running
+               ? law_of_open_line(remove_keys(between(std::max(line, restart), last_index + 1)))
+               : Law::kNone;
   }
   bool has_begun = false;
-  for (const char letter : without_keys(between(line, last))) {
+  for (const char letter : remove_keys(between(line, last_index))) {
     const bool is_skipped = static_cast<uint8_t>(letter) <= ' ' || letter == 0x7f;
     if (!has_begun && is_skipped) continue;
     has_begun = true;
@@ -433,7 +439,7 @@ const char* const kLoose[] = {"SS",       "S.",   "Stop.", "stop!",  "S()",     
 
 template <typename Item, size_t kCount>
 Item pick(const Item (&items)[kCount], Draw* draw) {
-  return items[draw->below(kCount)];
+  return items[draw->number_below(kCount)];
 }
 
 // So many typed stops after bytes that are anything: each byte does what `law_of` says, by a
@@ -448,7 +454,7 @@ void judge_typed(uint64_t seed) {
   std::string first_failure;
   bool was_held = false;  // a stop in the frame that has begun
   Law law = Law::kNone;
-  const bool is_running = draw.below(2) == 0;
+  const bool is_running = draw.number_below(2) == 0;
   status.state = is_running ? State::kRunning : State::kIdle;
   // Notes what was wrong first, and after which bytes.
   const auto note = [&](const char* complaint) {
@@ -511,8 +517,8 @@ void judge_typed(uint64_t seed) {
     }
     receiver.take_stop();
   };
-  const bool reads_text = draw.below(4) != 0;   // otherwise its ring is soon full
-  const bool reads_frames = draw.below(4) != 0;
+  const bool reads_text = draw.number_below(4) != 0;  // otherwise its ring is soon full
+  const bool reads_frames = draw.number_below(4) != 0;
   const auto look = [&] {
     if (reads_text) take();
     if (!reads_frames || !receiver.has_frame()) return;
@@ -521,32 +527,33 @@ void judge_typed(uint64_t seed) {
     receiver.let_frame();
     receiver.release();
   };
-  for (uint32_t parts = draw.below(6); parts > 0; parts--) {
-    if (draw.below(2) == 0) {
-      if (draw.below(4) == 0) put(0, 0);
+  for (uint32_t parts = draw.number_below(6); parts > 0; parts--) {
+    if (draw.number_below(2) == 0) {
+      if (draw.number_below(4) == 0) put(0, 0);
       for (const char* letter = pick(kPrefixes, &draw); *letter != 0; letter++)
         put(static_cast<uint8_t>(*letter), 0);
     } else {
-      for (uint32_t k = draw.below(80); k > 0; k--) {
-        const bool is_odd = draw.below(4) != 0;
-        put(static_cast<uint8_t>(is_odd ? "\0\1S\n s;T\r\x1b[OPp\t5\3SsS/.\b"[draw.below(25)] : draw.byte()),
-            static_cast<uint16_t>(draw.below(200) == 0 ? 1000 + draw.below(500) : 0));
+      for (uint32_t k = draw.number_below(80); k > 0; k--) {
+        const bool is_odd = draw.number_below(4) != 0;
+        put(static_cast<uint8_t>(is_odd ? "\0\1S\n s;T\r\x1b[OPp\t5\3SsS/.\b"[draw.number_below(25)]
+                                        : draw.byte()),
+            static_cast<uint16_t>(draw.number_below(200) == 0 ? 1000 + draw.number_below(500) : 0));
         look();
       }
     }
     look();
   }
-  const uint32_t start = draw.below(sizeof kLineStarts / sizeof *kLineStarts + 2);
+  const uint32_t start = draw.number_below(sizeof kLineStarts / sizeof *kLineStarts + 2);
   const bool is_silent = start >= sizeof kLineStarts / sizeof *kLineStarts;
   uint16_t pause_ms = 0;
   if (is_silent) {
-    pause_ms = static_cast<uint16_t>(kSilenceMs + draw.below(3));
+    pause_ms = static_cast<uint16_t>(kSilenceMs + draw.number_below(3));
   } else {
     for (const char* letter = kLineStarts[start]; *letter != 0; letter++)
       put(static_cast<uint8_t>(*letter), 0);
     if (*kLineStarts[start] == 0) put(0, 0);
   }
-  const bool is_loose = draw.below(2) == 0;
+  const bool is_loose = draw.number_below(2) == 0;
   const std::string spelling = is_loose ? pick(kLoose, &draw) : pick(kStops, &draw);
   const size_t old_restart = restart;
   for (const char letter : spelling) {
@@ -555,8 +562,8 @@ void judge_typed(uint64_t seed) {
     look();
   }
   const bool is_over = restart != old_restart;  // it has not waited for its line's end
-  const bool ends_with_zero = start == kZeroStart && is_loose && draw.below(2) == 0;
-  put(ends_with_zero ? 0 : static_cast<uint8_t>("\r\n"[draw.below(2)]), 0);
+  const bool ends_with_zero = start == kZeroStart && is_loose && draw.number_below(2) == 0;
+  put(ends_with_zero ? 0 : static_cast<uint8_t>("\r\n"[draw.number_below(2)]), 0);
   if (!is_over) {
     const bool is_sure = is_silent || start == kZeroStart;
     const bool is_seen = law == Law::kStop || law == Law::kWaits;
@@ -567,13 +574,14 @@ void judge_typed(uint64_t seed) {
     }
   }
   if (law == Law::kInFrame && receiver.is_held()) {  // its packet ends in another way than whole
-    const bool is_cut = draw.below(2) == 0;
+    const bool is_cut = draw.number_below(2) == 0;
     bool has_stopped = false;
     for (uint32_t k = is_cut ? 1 : 80 * 4; k > 0 && receiver.is_held(); k--) {
       has_stopped = put(is_cut ? 0 : 1, 0);
     }
-    const bool waits = receiver.has_frame() && receiver.frame_may_stop();
-    if (receiver.is_held() || (!has_stopped && !waits && reads_frames)) note("a stop in a frame is forgotten");
+    const bool is_waiting = receiver.has_frame() && receiver.frame_may_stop();
+    if (receiver.is_held() || (!has_stopped && !is_waiting && reads_frames))
+      note("a stop in a frame is forgotten");
   }
   if (receiver.has_frame()) receiver.release();
   take();
@@ -591,13 +599,13 @@ uint64_t read_seed(RequestReader* request) {
 // J: the seed of a line, and how many lines: how many frames were damaged, and what was wrong.
 void answer_judged(RequestReader* request, Writer* answer) {
   uint64_t seed = read_seed(request);
-  uint32_t damaged = 0;
+  uint32_t damaged_count = 0;
   failure.clear();
   for (uint32_t lines = request->u32(); lines > 0 && failure.empty(); lines--, seed++) {
-    damaged += send_line(seed);
+    damaged_count += send_line(seed);
     judge_line(seed);
   }
-  answer->u32(damaged);
+  answer->u32(damaged_count);
   answer->text(failure);
 }
 
@@ -607,15 +615,15 @@ void answer_false_stops(RequestReader* request, Writer* answer) {
   uint64_t seed = read_seed(request);
   const bool may_damage = request->u8() != 0;
   const bool may_repeat = request->u8() != 0;
-  uint32_t stops = 0;
+  uint32_t stop_count = 0;
   uint32_t frames = 0;
   for (uint32_t lines = request->u32(); lines > 0; lines--, seed++) {
-    const uint32_t damaged = send_line(seed, may_damage, may_repeat);
-    frames += may_damage ? damaged : kFrames;
-    stops += count_typed_stops();
+    const uint32_t damaged_count = send_line(seed, may_damage, may_repeat);
+    frames += may_damage ? damaged_count : kFrames;
+    stop_count += count_typed_stops();
   }
   answer->u32(frames);
-  answer->u32(stops);
+  answer->u32(stop_count);
 }
 
 // T: the seed of a prefix, and how many prefixes: what was wrong.

@@ -78,7 +78,7 @@ void answer_begin(RequestReader* request, Writer*) {
   look();
 }
 
-void turns(uint32_t count) {
+void run_turns(uint32_t count) {
   turns_begun = 0;
   step_start = Watch::now();
   for (uint32_t k = 0; k < count; k++) {
@@ -109,12 +109,12 @@ void answer_step(RequestReader* request, Writer* answer) {
   receive(bytes, 0, bytes.length);
   if ((flags & 1) != 0) set_button(true);
   if ((flags & 2) != 0) set_button(false);
-  turns(count);
-  answer->text(chip.sent);
+  run_turns(count);
+  answer->text(chip.sent_bytes);
   answer->text(log_of_robot);
   answer->u8(light_is_on());
   answer->u8(motors_are_stopped());
-  chip.sent.clear();
+  chip.sent_bytes.clear();
   log_of_robot.clear();
 }
 
@@ -134,17 +134,17 @@ void answer_wait(RequestReader* request, Writer* answer) {
     const size_t offset = is_spread || k == 0 ? std::min<size_t>(k, bytes.length) : bytes.length;
     const size_t bytes_left = bytes.length - offset;
     receive(bytes, offset, is_spread ? std::min<size_t>(1, bytes_left) : bytes_left);
-    turns(count);
+    run_turns(count);
     log += with_times(first_ms + k, log_of_robot);
     log_of_robot.clear();
     stopped_flags += static_cast<char>(motors_are_stopped());
-    if (mode == 2 && !chip.sent.empty()) break;
+    if (mode == 2 && !chip.sent_bytes.empty()) break;
   }
-  answer->text(chip.sent);
+  answer->text(chip.sent_bytes);
   answer->text(log);
   answer->u8(light_is_on());
   answer->text(stopped_flags);
-  chip.sent.clear();
+  chip.sent_bytes.clear();
 }
 
 // E: what a reset leaves alone.

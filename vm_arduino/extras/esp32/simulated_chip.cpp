@@ -583,7 +583,7 @@ int HardwareSerial::read() {
 size_t HardwareSerial::write(uint8_t byte) {
   const size_t room = kFifoBytes + chip.send_room / kRingBytes;
   expect(chip.sending < room, "a byte that a serial port without room makes wait");
-  chip.sent += static_cast<char>(byte);
+  chip.sent_bytes += static_cast<char>(byte);
   chip.sending++;
   return 1;
 }

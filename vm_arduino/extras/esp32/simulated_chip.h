@@ -49,7 +49,7 @@ struct SimulatedChip {
   uint64_t mac = 0;  // its first byte is the lowest
 
   std::string received;  // waits for the firmware
-  std::string sent;
+  std::string sent_bytes;
   size_t receive_room = 256;
   size_t send_room = 0;  // behind the UART's own 128 bytes
   size_t sending = 0;    // bytes that the UART has still to send

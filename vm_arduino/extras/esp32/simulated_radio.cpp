@@ -344,7 +344,7 @@ void network_searches(uint32_t new_search_ms) {
 
 void radio_logs() {
   if (log_level >= ESP_LOG_ERROR) {
-    chip.sent += "E (15234) wifi:sta is connecting, cannot set config\r\n";
+    chip.sent_bytes += "E (15234) wifi:sta is connecting, cannot set config\r\n";
   }
 }
 
@@ -696,8 +696,8 @@ struct hostent* lwip_gethostbyname(const char* name) {
   }
   if (wait_ms != 0) vTaskDelay(wait_ms);
   const Lock lock(guard);
-  const auto known = addresses.find(name);
-  if (known == addresses.end() || inet_aton(known->second.c_str(), &address) == 0) return nullptr;
+  const auto entry = addresses.find(name);
+  if (entry == addresses.end() || inet_aton(entry->second.c_str(), &address) == 0) return nullptr;
   return &host;
 }
 int lwip_listen(int s, int backlog) { return listen(s, backlog); }

@@ -213,7 +213,7 @@ int main(int, char** words) {
     loop();
     pass_us(50);
     chip.sending = 0;
-    chip.sent.clear();
+    chip.sent_bytes.clear();
   }
   is_over = true;
   for (std::thread& thread : threads) thread.join();

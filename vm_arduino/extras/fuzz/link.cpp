@@ -103,13 +103,13 @@ void happen(uint8_t event, Input* input) {
     case 2:
       if (is_running) {
         port.robot_status.state = State::kIdle;
-        link_half.done();
+        link_half.on_done();
       }
       break;
     case 3:
       if (is_running) {
         port_stop(1);
-        link_half.faulted();
+        link_half.on_faulted();
       }
       break;
     case 4:
@@ -117,7 +117,7 @@ void happen(uint8_t event, Input* input) {
       break;
     case 5:
       port_stop(0);
-      link_half.stopped(Cause::kButton);
+      link_half.on_stopped(Cause::kButton);
       break;
     case 6:
       port.is_busy = !port.is_busy;

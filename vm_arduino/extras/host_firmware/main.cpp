@@ -185,7 +185,7 @@ std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* data, size_t le
   table.now_ms = now_ms;
   table.wheels[0].pass_millisecond(table.left);
   table.wheels[1].pass_millisecond(table.right);
-  std::string sent;
+  std::string sent_bytes;
   size_t index = 0;
   for (uint16_t k = 0; k < ticks || index < length; k++) {
     if (index < length) firmware_on_rx_byte(data[index++], static_cast<uint16_t>(now_ms));
@@ -195,12 +195,12 @@ std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* data, size_t le
     if (table.line_ticks != 0) table.line_ticks--;
     uint8_t byte = 0;
     while (table.line_ticks == 0 && firmware_next_tx_byte(&byte)) {
-      sent += static_cast<char>(byte);
+      sent_bytes += static_cast<char>(byte);
       table.line_ticks = table.send_ticks;
     }
   }
   check_signs();
-  return sent;
+  return sent_bytes;
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
@@ -237,7 +237,7 @@ void answer_wait(RequestReader* request, Writer* answer) {
   const uint8_t mode = request->u8();
   const bool is_spread = mode == 1;
   const Bytes bytes = request->bytes();
-  std::string sent;
+  std::string sent_bytes;
   std::string whole_log;
   std::string latched_flags;
   for (uint32_t k = 0; k < count; k++) {
@@ -245,12 +245,12 @@ void answer_wait(RequestReader* request, Writer* answer) {
     const size_t bytes_left = bytes.length - begin;
     const size_t length = is_spread ? std::min<size_t>(1, bytes_left) : bytes_left;
     table.log.clear();
-    sent += pass(first_ms + k, ticks, bytes.data.get() + begin, length);
+    sent_bytes += pass(first_ms + k, ticks, bytes.data.get() + begin, length);
     whole_log += with_times(first_ms + k, table.log);
     latched_flags += static_cast<char>(table.is_latched);
-    if (mode == 2 && !sent.empty()) break;
+    if (mode == 2 && !sent_bytes.empty()) break;
   }
-  answer->text(sent);
+  answer->text(sent_bytes);
   answer->text(whole_log);
   answer->u8(table.is_lit);
   answer->text(latched_flags);

@@ -86,18 +86,18 @@ void answer_robot(RequestReader* request, Writer* answer) {
   switch (event) {
     case 'd':
       port.robot_status.state = State::kIdle;
-      link_half.done();
+      link_half.on_done();
       break;
     case 'f':
       port_stop(static_cast<uint8_t>(value));
-      link_half.faulted();
+      link_half.on_faulted();
       break;
     case 's':
       is_taken = link_half.show(static_cast<int32_t>(value), false);
       break;
     case 'b':
       port_stop(0);
-      link_half.stopped(Cause::kButton);
+      link_half.on_stopped(Cause::kButton);
       break;
     case 'r':
       port_release();

@@ -72,7 +72,7 @@ LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
 Answer port_prepare_upload(bool is_live) {
-  std::unique_ptr<uint8_t[]>& previous_memory = is_live ? port.previous_live : port.image_before;
+  std::unique_ptr<uint8_t[]>& previous_memory = is_live ? port.old_live : port.old_image;
   if (port.is_busy) {
     if (previous_memory != nullptr) previous_memory.swap(is_live ? port.live : port.image);
     previous_memory.reset();
@@ -94,7 +94,7 @@ void port_forget() { hold(port.stored_image, Saved::kStored); }
 uint8_t* port_memory(uint16_t length, bool is_live) {
   if (length > kHeaderBytes + port.room) return nullptr;
   std::unique_ptr<uint8_t[]>& memory = is_live ? port.live : port.image;
-  memory.swap(is_live ? port.previous_live : port.image_before);
+  memory.swap(is_live ? port.old_live : port.old_image);
   const size_t size = static_cast<size_t>(length + kEndBytes);
   memory.reset(new uint8_t[size]);
   for (size_t k = 0; k < size; k++) memory[k] = 0xa5;  // what was there before

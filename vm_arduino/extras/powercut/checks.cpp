@@ -54,7 +54,7 @@ const char* run_checks() {
   expect(!store.begin_save(a.data()));
   run(&store, true);
   expect(store.state() == StoreState::kIdle && memory.writes == 0);
-  expect(store.used(Area::kProgram) == kNoSlot && has(store, {}));
+  expect(store.current_slot(Area::kProgram) == kNoSlot && has(store, {}));
 
   // a save waits for the motors, and says so
   expect(store.begin_save(a.data()) && !store.begin_save(b.data()));
@@ -136,7 +136,7 @@ const char* run_checks() {
 
   // a verdict that is taken back
   expect(save(&store, a));
-  const uint8_t slot = store.used(Area::kProgram);
+  const uint8_t slot = store.current_slot(Area::kProgram);
   store.refuse();
   expect(has(store, b));
   store.readmit(slot);
@@ -166,7 +166,7 @@ const char* run_checks() {
   expect(save(&store, b));
 
   // where a byte of it has changed by itself it is written anew, all of it
-  memory.cells[place_of(store.used(Area::kProgram) ^ 1) + kBodyAt + 20] = {1, 1};
+  memory.cells[place_of(store.current_slot(Area::kProgram) ^ 1) + kBodyAt + 20] = {1, 1};
   expect(save(&store, a));
   start(&store);
   expect(has(store, a) && save(&store, b));
@@ -193,18 +193,19 @@ const char* run_checks() {
   expect(read(store, Area::kIdentity) == same_record && read(store, Area::kFault) == record);
 
   // a byte that is worn out
-  memory.dead = static_cast<uint16_t>(place_of(store.used(Area::kProgram) ^ 1) + kBodyAt + 30);
+  memory.dead_place =
+      static_cast<uint16_t>(place_of(store.current_slot(Area::kProgram) ^ 1) + kBodyAt + 30);
   expect(store.begin_save(c.data()));
   run(&store, true);
   expect(store.state() == StoreState::kFailed && has(store, b));
   start(&store);
   expect(has(store, b));
-  memory.dead = kMemoryBytes;
+  memory.dead_place = kMemoryBytes;
 
   // a byte that has changed by itself: the one before counts, and where that has changed too, none
   expect(save(&store, a));
   for (const Content& expected : {b, Content()}) {
-    memory.cells[place_of(store.used(Area::kProgram)) + kBodyAt + 20] = {1, 1};
+    memory.cells[place_of(store.current_slot(Area::kProgram)) + kBodyAt + 20] = {1, 1};
     start(&store);
     expect(has(store, expected));
   }

@@ -33,8 +33,8 @@ uint32_t random_below(uint32_t end) {
 
 Content with_checksum(Content image) {
   const uint32_t head = crc32(0, image.data(), kChecksumAt);
-  const uint16_t rest = static_cast<uint16_t>(image.size() - kAfterChecksum);
-  put(&image, kChecksumAt, crc32(head, image.data() + kAfterChecksum, rest));
+  const uint16_t length = static_cast<uint16_t>(image.size() - kAfterChecksum);
+  put(&image, kChecksumAt, crc32(head, image.data() + kAfterChecksum, length));
   return image;
 }
 
@@ -50,8 +50,8 @@ Content random_image(uint16_t code_bytes) {
 Content random_record(Area area) {
   Content record(area == Area::kOwner ? kOwnerBytes : kRecordBytes);
   for (uint8_t& byte : record) byte = any_byte();
-  const uint16_t rest = static_cast<uint16_t>(record.size() - kCheckBytes);
-  put(&record, 0, crc32(0, record.data() + kCheckBytes, rest));
+  const uint16_t length = static_cast<uint16_t>(record.size() - kCheckBytes);
+  put(&record, 0, crc32(0, record.data() + kCheckBytes, length));
   return record;
 }
 
@@ -62,7 +62,7 @@ bool begin(Store* store, Area area, Content* content) {
 
 Content read(const Store& store, Area area) {
   Content content;
-  if (store.used(area) == kNoSlot) return content;
+  if (store.current_slot(area) == kNoSlot) return content;
   size_t length = area == Area::kOwner ? kOwnerBytes : kRecordBytes;
   if (area == Area::kProgram) length = kHeaderBytes;
   content.reserve(kHeaderBytes);

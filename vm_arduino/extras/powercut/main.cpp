@@ -268,7 +268,7 @@ World world_after_give_up(World world, Content content, uint8_t marks) {
 // while its generation does. It must not come back.
 void tear_emptied(World world) {
   history = "what was given up is emptied";
-  const uint16_t place = place_of(world.store.used(Area::kProgram) ^ 1);
+  const uint16_t place = place_of(world.store.current_slot(Area::kProgram) ^ 1);
   const uint8_t generation = world.memory.cells[place].value;
   const uint8_t mark = generation ^ 0xa5;
   memory = world.memory;
@@ -295,8 +295,8 @@ void programs(uint16_t size, uint32_t stride) {
   const Task record = {Area::kFault, random_record(Area::kFault)};
   const Task identity = {Area::kIdentity, random_record(Area::kIdentity)};
   const Task owner = {Area::kOwner, random_record(Area::kOwner)};
-  std::vector<Task> many;
-  for (uint8_t k = 0; k < 62; k++) many.push_back({area, k % 2 == 0 ? a : b});
+  std::vector<Task> saves;
+  for (uint8_t k = 0; k < 62; k++) saves.push_back({area, k % 2 == 0 ? a : b});
 
   cut_everything("the first save", world_after(0xff, {}), {area, a}, {b, a}, stride);
   cut_everything("the second save", world_after(0xff, {identity, {area, a}}), {area, b}, {c, b, a},
@@ -311,11 +311,11 @@ void programs(uint16_t size, uint32_t stride) {
                  stride);
   cut_everything("a longer one", world_after(0xff, {{area, d}, {area, b}}), {area, a}, {c, a, d},
                  stride);
-  cut_everything("the 63rd save", world_after(0xff, many), {area, c}, {d, b}, stride);
-  many.push_back({area, a});
-  cut_everything("the 64th save", world_after(0xff, many), {area, c}, {d, a}, stride);
-  many.push_back({area, b});
-  cut_everything("the 65th save", world_after(0xff, many), {area, c}, {d, b}, stride);
+  cut_everything("the 63rd save", world_after(0xff, saves), {area, c}, {d, b}, stride);
+  saves.push_back({area, a});
+  cut_everything("the 64th save", world_after(0xff, saves), {area, c}, {d, a}, stride);
+  saves.push_back({area, b});
+  cut_everything("the 65th save", world_after(0xff, saves), {area, c}, {d, b}, stride);
   cut_everything("a memory of zeros", world_after(0, {}), {area, a}, {b, a}, stride);
   cut_everything("a memory of anything", world_after(1, {}), {area, a}, {b, a}, stride);
   const World two = world_after(0xff, {{area, a}, {area, b}});

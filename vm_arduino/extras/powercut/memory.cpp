@@ -36,7 +36,7 @@ void write(uint16_t place, uint8_t value) {
   if (memory.is_off) return;
   memory.is_writing = true;
   memory.writes++;
-  if (place == memory.dead) return;
+  if (place == memory.dead_place) return;
   Memory::Cell& cell = memory.cells[place];
   if (!memory.is_cut_next) {
     cell = {value, value};

@@ -36,7 +36,7 @@ struct Memory {
   TornByte torn_byte;
   bool is_off;  // since then nothing is written
   uint16_t cut_place;
-  uint16_t dead = kMemoryBytes;  // a byte that keeps what it is
+  uint16_t dead_place = kMemoryBytes;  // a byte that keeps what it is
   uint32_t writes;
 
   void fill(uint8_t value);

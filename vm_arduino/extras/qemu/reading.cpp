@@ -28,15 +28,15 @@ void say(TextState state) {
 }
 
 // A text ends as a line does.
-uint8_t byte_of(size_t begun, uint32_t length, uint32_t k) {
-  return k < length ? request_byte(begun + k) : uint8_t{'\n'};
+uint8_t byte_of(size_t text_start, uint32_t length, uint32_t k) {
+  return k < length ? request_byte(text_start + k) : uint8_t{'\n'};
 }
 
-void read(size_t begun, uint32_t length, uint16_t room) {
+void read(size_t text_start, uint32_t length, uint16_t room) {
   reader.begin(buffer, room);
   TextState state = TextState::kNothing;
   for (uint32_t k = 0; k <= length; k++) {
-    const TextState next_state = reader.put(byte_of(begun, length, k));
+    const TextState next_state = reader.put(byte_of(text_start, length, k));
     if (next_state != TextState::kOpenLine) state = next_state;
     if (next_state == TextState::kProblem && reader.has_problem()) break;
   }

@@ -16,7 +16,7 @@ namespace {
 
 uint8_t marks[kImageBytes];  // bits for each offset of the code
 uint8_t wanted_marks;        // a program is held at the marks that have one of these bits
-uint8_t budget_left;         // of the budget of the tick in which it is held
+uint8_t held_budget;         // of the budget of the tick in which it is held
 bool is_held;
 bool has_held;                       // since `watched_begin`
 bool is_passing;                     // the instruction in front of which it was held
@@ -35,20 +35,20 @@ class HeldMachine : public Machine {
                       uint32_t seed, uint32_t now_ms) {
     is_held = false;
     is_passing = false;
-    budget_left = 0;
+    held_budget = 0;
     is_reset = false;
     Machine::start_prepared(code, length, readings, sensors, seed, now_ms);
   }
 
   Status tick(uint32_t now_ms, uint8_t budget) {
     if (is_held) return status();
-    if (budget_left != 0) budget = budget_left;
-    budget_left = 0;
+    if (held_budget != 0) budget = held_budget;
+    held_budget = 0;
     Status result;
     if (wanted_marks == 0) {
       result = Machine::tick(now_ms, budget);
-      is_passing =
-          is_passing && left() == budget;  // where nothing is wanted now, something may be later
+      is_passing = is_passing &&
+                   budget_left() == budget;  // where nothing is wanted now, something may be later
       return result;
     }
     do {
@@ -56,13 +56,13 @@ class HeldMachine : public Machine {
       if (is_marked(now_ms)) {
         is_held = true;
         has_held = true;
-        budget_left = budget;
+        held_budget = budget;
         return Status::kRunning;
       }
       result = Machine::tick(now_ms, 1);
-      budget = static_cast<uint8_t>(budget - 1 + left());
-      is_passing = is_passing && left() != 0;  // a SHOW that waits for room to be sent
-    } while (budget != 0 && result == Status::kRunning && left() == 0);
+      budget = static_cast<uint8_t>(budget - 1 + budget_left());
+      is_passing = is_passing && budget_left() != 0;  // a SHOW that waits for room to be sent
+    } while (budget != 0 && result == Status::kRunning && budget_left() == 0);
     return result;
   }
 

@@ -74,24 +74,25 @@ tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t then_us) {
 }
 
 void on_change() {
-  Sonar* const it = near(&sonar);
+  Sonar* const near_sonar = near(&sonar);
   const uint16_t now_us = clock_us();
-  const EchoState state = it->echo_state;
+  const EchoState state = near_sonar->echo_state;
   if (is_high(ultrasonic_at(pinged_sensor()).echo.pin)) {
     if (state == EchoState::kNothing) {
-      it->rose_us = now_us;
-      it->echo_state = EchoState::kHigh;
-    } else if (state == EchoState::kEnded && elapsed_us(now_us, it->fell_us) < kGlitchUs) {
-      it->high_again_us = now_us;
-      it->echo_state = EchoState::kHighAgain;
+      near_sonar->rose_us = now_us;
+      near_sonar->echo_state = EchoState::kHigh;
+    } else if (state == EchoState::kEnded && elapsed_us(now_us, near_sonar->fell_us) < kGlitchUs) {
+      near_sonar->high_again_us = now_us;
+      near_sonar->echo_state = EchoState::kHighAgain;
     }
   } else if (state == EchoState::kHigh) {
-    it->fell_us = now_us;
-    it->echo_state =
-        elapsed_us(now_us, it->rose_us) < kGlitchUs ? EchoState::kNothing : EchoState::kEnded;
+    near_sonar->fell_us = now_us;
+    near_sonar->echo_state = elapsed_us(now_us, near_sonar->rose_us) < kGlitchUs
+                                 ? EchoState::kNothing
+                                 : EchoState::kEnded;
   } else if (state == EchoState::kHighAgain) {
-    if (elapsed_us(now_us, it->high_again_us) >= kGlitchUs) it->fell_us = now_us;
-    it->echo_state = EchoState::kEnded;
+    if (elapsed_us(now_us, near_sonar->high_again_us) >= kGlitchUs) near_sonar->fell_us = now_us;
+    near_sonar->echo_state = EchoState::kEnded;
   }
 }
 
@@ -152,21 +153,21 @@ void listen(bool is_on) {
 }
 
 void lower_trigger() {
-  Sonar* const it = near(&sonar);
+  Sonar* const near_sonar = near(&sonar);
   write(ultrasonic_at(pinged_sensor()).trigger, false);
-  it->ping_us = clock_us();
+  near_sonar->ping_us = clock_us();
   is_spaced = false;
-  it->readings[pinged_sensor()].age = 0;
+  near_sonar->readings[pinged_sensor()].age = 0;
 }
 
 // Continues the current ping. Returns whether it is over, and puts the sample into `*us`.
 bool end_ping(uint16_t* us) {
-  Sonar* const it = near(&sonar);
-  if (it->ping == Ping::kTriggered) {
-    if (elapsed_us(clock_us(), it->begun_us) < kTriggerUs) return false;
+  Sonar* const near_sonar = near(&sonar);
+  if (near_sonar->ping == Ping::kTriggered) {
+    if (elapsed_us(clock_us(), near_sonar->begun_us) < kTriggerUs) return false;
     listen(true);
     lower_trigger();
-    it->ping = Ping::kListening;
+    near_sonar->ping = Ping::kListening;
     return false;
   }
   EchoState echo_state;
@@ -174,28 +175,28 @@ bool end_ping(uint16_t* us) {
   uint16_t fell_us;
   {
     const CriticalSection critical;
-    echo_state = it->echo_state;
-    rose_us = it->rose_us;
-    fell_us = it->fell_us;
+    echo_state = near_sonar->echo_state;
+    rose_us = near_sonar->rose_us;
+    fell_us = near_sonar->fell_us;
   }
   const uint16_t now_us = clock_us();
-  const uint16_t since_ping_us = elapsed_us(now_us, it->ping_us);
+  const uint16_t since_ping_us = elapsed_us(now_us, near_sonar->ping_us);
   const uint16_t echo_us = elapsed_us(fell_us, rose_us);
   const uint16_t quiet_us = elapsed_us(now_us, fell_us);
   const bool has_ended = echo_state == EchoState::kEnded;
   if (since_ping_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
-  it->ping = Ping::kNone;
+  near_sonar->ping = Ping::kNone;
   if (has_ended && echo_us < kLimitUs) *us = echo_us;
   return true;
 }
 
 void begin(uint8_t number) {
-  Sonar* const it = near(&sonar);
-  if (kUltrasonics != 1) it->last_pinged = number;
+  Sonar* const near_sonar = near(&sonar);
+  if (kUltrasonics != 1) near_sonar->last_pinged = number;
   write(ultrasonic_at(number).trigger, true);
-  it->begun_us = clock_us();
-  it->ping = Ping::kTriggered;
+  near_sonar->begun_us = clock_us();
+  near_sonar->ping = Ping::kTriggered;
 }
 
 // Notes and returns whether kSpacingUs have passed since the last ping of any sensor.
@@ -206,12 +207,12 @@ bool note_spacing() {
 
 // Goes on with the pings. Returns whether the value of a sensor is fresh, if it has one.
 bool measure(uint8_t number) {
-  Sonar* const it = near(&sonar);
-  Reading& reading = it->readings[number];
+  Sonar* const near_sonar = near(&sonar);
+  Reading& reading = near_sonar->readings[number];
   uint8_t sensor = number;
   uint16_t us = kLimitUs;
   bool is_awaited = true;
-  if (it->ping != Ping::kNone) {
+  if (near_sonar->ping != Ping::kNone) {
     sensor = pinged_sensor();
     if (!end_ping(&us)) return sensor != number && reading.age <= kFreshAge;
     is_awaited = !is_spaced && sensor == number;  // an echo found so late was not awaited
@@ -220,7 +221,7 @@ bool measure(uint8_t number) {
     // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
     const bool is_busy = is_high(ultrasonic_at(number).echo.pin);
     if (!is_busy) {
-      it->is_held = false;
+      near_sonar->is_held = false;
       if (note_spacing()) {
         if (reading.age >= kOldAge) reading.sample_us = kNothing;
         begin(number);
@@ -229,13 +230,13 @@ bool measure(uint8_t number) {
     }
     if (reading.age <= kFreshAge) return true;
     if (!is_busy) return false;
-    if (!it->is_held) {
-      it->is_held = true;
-      it->begun_us = clock_us();
+    if (!near_sonar->is_held) {
+      near_sonar->is_held = true;
+      near_sonar->begun_us = clock_us();
       return false;
     }
-    if (elapsed_us(clock_us(), it->begun_us) < kLimitUs) return false;
-    it->is_held = false;
+    if (elapsed_us(clock_us(), near_sonar->begun_us) < kLimitUs) return false;
+    near_sonar->is_held = false;
     if (reading.age >= kOldAge) {
       revive(ultrasonic_at(number).echo);
       reading.echo_us = 0;
@@ -243,7 +244,7 @@ bool measure(uint8_t number) {
       return true;
     }
   }
-  add_sample(it->readings[sensor], us);
+  add_sample(near_sonar->readings[sensor], us);
   return is_awaited;
 }
 
@@ -257,11 +258,11 @@ void ultrasonic_begin() {
 
 void ultrasonic_tick() {
   if (!is_spaced) note_spacing();
-  Sonar* const it = near(&sonar);
-  const uint8_t passed_ms = (clock_8_ms() - it->ages_ms) & 0xfe;
-  it->ages_ms = static_cast<uint8_t>(it->ages_ms + passed_ms);
+  Sonar* const near_sonar = near(&sonar);
+  const uint8_t passed_ms = (clock_8_ms() - near_sonar->ages_ms) & 0xfe;
+  near_sonar->ages_ms = static_cast<uint8_t>(near_sonar->ages_ms + passed_ms);
   for (uint8_t number = 0; number < kUltrasonics; number++) {
-    Reading& reading = it->readings[number];
+    Reading& reading = near_sonar->readings[number];
     const uint8_t age = static_cast<uint8_t>(reading.age + passed_ms / 2);
     reading.age = age < reading.age ? 0xff : age;
   }
@@ -279,13 +280,13 @@ bool ultrasonic_read(uint8_t number, int32_t* distance) {
 }
 
 void ultrasonic_forget() {
-  Sonar* const it = near(&sonar);
-  if (it->ping == Ping::kTriggered) lower_trigger();
-  if (it->ping == Ping::kListening) listen(false);
-  it->ping = Ping::kNone;
-  it->is_held = false;
+  Sonar* const near_sonar = near(&sonar);
+  if (near_sonar->ping == Ping::kTriggered) lower_trigger();
+  if (near_sonar->ping == Ping::kListening) listen(false);
+  near_sonar->ping = Ping::kNone;
+  near_sonar->is_held = false;
   for (uint8_t number = 0; number < kUltrasonics; number++) {
-    it->readings[number].echo_us = it->readings[number].sample_us = kNothing;
+    near_sonar->readings[number].echo_us = near_sonar->readings[number].sample_us = kNothing;
   }
 }
 

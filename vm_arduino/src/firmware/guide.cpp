@@ -38,7 +38,7 @@ enum class Phase : uint8_t {
 
 struct Wheel {
   int32_t edges;              // that it has gone in the direction of the move
-  uint16_t counted;           // by the board, when it was last asked
+  uint16_t edge_count;        // by the board, when it was last asked
   uint16_t edge_ms;           // when the last edge came,
   uint16_t previous_edge_ms;  // and the one before
   uint16_t two_edges_ms;      // how long the last two took; 0: not known
@@ -125,10 +125,10 @@ int32_t roll(const Wheel& wheel) {
   return static_cast<int32_t>(uint32_t{guide.roll_ms} * (2 * kEdge) / wheel.two_edges_ms);
 }
 
-void count(Wheel* wheel, uint16_t counted, bool has_two) {
-  int16_t edges = static_cast<int16_t>(counted - wheel->counted);
+void count(Wheel* wheel, uint16_t edge_count, bool has_two) {
+  int16_t edges = static_cast<int16_t>(edge_count - wheel->edge_count);
   if (edges == 0) return;
-  wheel->counted = counted;
+  wheel->edge_count = edge_count;
   const int16_t steps = edges < 0 ? static_cast<int16_t>(-edges) : edges;
   if (wheel->is_standing) {
     wheel->noise = static_cast<uint8_t>(wheel->noise + steps);
@@ -253,14 +253,14 @@ void drive() {
   const int32_t left_position = position(*left);
   const int32_t right_position = position(*right);
   const int32_t lead = left_position - right_position;
-  const int32_t rest = guide.target - (left_position + right_position) / 2;
-  if (rest <= (roll(*left) + roll(*right)) / 2) return turn_off();
+  const int32_t remaining = guide.target - (left_position + right_position) / 2;
+  if (remaining <= (roll(*left) + roll(*right)) / 2) return turn_off();
   if (lead <= kFar && lead >= -kFar) {  // more is no motor's: somebody holds the other wheel
     guide.lead_sum = static_cast<int16_t>(clamp(guide.lead_sum + lead, 24000));
   }
   // in 256ths of the power
   const int32_t correction = clamp((lead * 12 + guide.lead_sum / 8) / 64, 64);
-  int32_t power = guide.min_power + (rest / kEdge - 2) * 4;
+  int32_t power = guide.min_power + (remaining / kEdge - 2) * 4;
   if (power < guide.min_power) power = guide.min_power;
   if (power > guide.max_power) power = guide.max_power;
   int32_t left_power = power * (256 - correction);
@@ -279,7 +279,7 @@ void drive() {
 void begin_to_drive(uint16_t stood_ms) {
   for (uint8_t k = 0; k < kWheels; k++) {
     Wheel& wheel = guide.wheels[k];
-    wheel.counted = board_edges(k != 0);
+    wheel.edge_count = board_edges(k != 0);
     wheel.edge_ms = static_cast<uint16_t>(now_ms);
     wheel.previous_edge_ms = static_cast<uint16_t>(now_ms - stood_ms);
     wheel.two_edges_ms = 0;
@@ -354,12 +354,12 @@ void guide_go(int8_t left, int8_t right, int32_t distance) {
   const Discs discs = board_discs();
   guide.edge = (left ^ right) < 0 ? discs.degrees : discs.cm;
   uint32_t target = static_cast<uint32_t>(distance) / guide.edge;
-  uint32_t rest = static_cast<uint32_t>(distance) % guide.edge;
+  uint32_t remainder = static_cast<uint32_t>(distance) % guide.edge;
   for (uint8_t k = 0; k < 12; k++) {  // 64ths of each
-    rest += rest;
+    remainder += remainder;
     target += target;
-    if (rest >= guide.edge) {
-      rest -= guide.edge;
+    if (remainder >= guide.edge) {
+      remainder -= guide.edge;
       target++;
     }
   }
@@ -383,12 +383,12 @@ void guide_go_on() {
   begin_to_drive(kStillMs);
 }
 
-MoveState guide_move_state(int32_t* rest) {
+MoveState guide_move_state(int32_t* remaining) {
   if (guide.phase == Phase::kDriven) coast();
   const int32_t missing = guide.target - (position(guide.wheels[0]) + position(guide.wheels[1])) / 2;
-  const uint32_t remaining = missing > 0 ? static_cast<uint32_t>(missing) : 0;
-  *rest = static_cast<int32_t>((remaining >> 12) * guide.edge +
-                               (((remaining & 4095) >> 2) * guide.edge >> 10));
+  const uint32_t target_distance = missing > 0 ? static_cast<uint32_t>(missing) : 0;
+  *remaining = static_cast<int32_t>((target_distance >> 12) * guide.edge +
+                                    (((target_distance & 4095) >> 2) * guide.edge >> 10));
   return guide.state;
 }
 
@@ -452,7 +452,7 @@ void robot_go_on(int8_t left, int8_t right) {
   guide_go_on();
 }
 
-MoveState robot_move_state(int32_t* rest) { return guide_move_state(rest); }
+MoveState robot_move_state(int32_t* remaining) { return guide_move_state(remaining); }
 
 }  // namespace tiniscript
 

@@ -33,9 +33,9 @@ uint8_t* code_of(const uint8_t* image) {
 // Whether the machine runs now: time stops for a halted one.
 bool runs_on() {
   if (!breakpoints.is_halted()) return true;
-  const uint16_t now = static_cast<uint16_t>(now_ms);
-  held_ms += static_cast<uint16_t>(now - halted_ms);
-  halted_ms = now;
+  const uint16_t now_16_ms = static_cast<uint16_t>(now_ms);
+  held_ms += static_cast<uint16_t>(now_16_ms - halted_ms);
+  halted_ms = now_16_ms;
   if (!resuming.goes_on) return false;
   resuming.goes_on = false;
   return true;
@@ -75,7 +75,7 @@ void end_tick(Status status) {
     return;
   halted_ms = static_cast<uint16_t>(now_ms);
   robot_motors(0, 0);
-  link.halted();
+  link.on_halted();
 }
 
 bool are_traps_in() { return breakpoints.has_traps(); }

@@ -143,7 +143,7 @@ void tick_persistence() {
   }
   if (!is_busy && current_save == kProgramBit) {
     robot_status.saved = is_saved ? Saved::kStored : Saved::kMemory;
-    if (is_saved) robot_status.slot = store.used(Area::kProgram);
+    if (is_saved) robot_status.slot = store.current_slot(Area::kProgram);
   } else if (((due_saves | current_save) & kProgramBit) != 0) {
     tell_saving();
   }
@@ -180,7 +180,7 @@ Answer identity_save_answer() {
 
 bool fetch_key(uint8_t kind, uint8_t* key) {
   if (!has_booted() && boot <= Boot::kSettling) return false;
-  const bool is_stored = store.used(Area::kOwner) != kNoSlot;
+  const bool is_stored = store.current_slot(Area::kOwner) != kNoSlot;
   for (uint8_t k = 0; k < kKeyRoom; k++) {
     key[k] = 0;
     const uint16_t at = static_cast<uint16_t>(kKeysAt + kind * kKeyRoom + k);

@@ -50,7 +50,7 @@ void fault(uint8_t number, uint16_t at) {
 
 void abort_run(LinkFault cause) {
   stop_run(static_cast<uint8_t>(cause));
-  link.faulted();
+  link.on_faulted();
 }
 
 void go_on() {
@@ -58,11 +58,11 @@ void go_on() {
   if (status == Status::kDone) {
     end_run(State::kIdle, true);
     board_finished();
-    link.done();
+    link.on_done();
   } else if (status == Status::kFault) {
     end_run(State::kFaulted);
     fault(static_cast<uint8_t>(machine.fault()), machine.offset());
-    link.faulted();
+    link.on_faulted();
   } else if (!link.is_attached() && now_ms - machine.task().started_ms >= board_max_run_ms()) {
     abort_run(LinkFault::kMaxRun);
   }
@@ -150,7 +150,7 @@ void press() {
   may_start = !is_running();
   if (may_start) return;
   end_run(State::kStopped);
-  link.stopped(Cause::kButton);
+  link.on_stopped(Cause::kButton);
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ void firmware_on_disconnect() {
   link.expire();
   if (!is_running() || !link.is_attached()) return;
   end_run(State::kStopped);
-  link.stopped(Cause::kCable);
+  link.on_stopped(Cause::kCable);
 }
 
 MachineOfRun& machine_of_run() { return machine; }

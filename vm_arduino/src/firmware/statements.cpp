@@ -29,12 +29,12 @@ bool jumps(ControlRole role) {
   }
 }
 
-// The target of an instruction whose last operand, one byte or two, ends before `after`.
-uint16_t target_of(const uint8_t* code, uint16_t after, const DecodeForm& form) {
-  const uint8_t* operand = code + after - 1;
+// The target of an instruction whose last operand, one byte or two, ends before `operand_end`.
+uint16_t target_of(const uint8_t* code, uint16_t operand_end, const DecodeForm& form) {
+  const uint8_t* operand = code + operand_end - 1;
   uint16_t distance = *operand;
   if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--operand);
-  return static_cast<uint16_t>(form.jumps_back() ? after - distance : after + distance);
+  return static_cast<uint16_t>(form.jumps_back() ? operand_end - distance : operand_end + distance);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ void firmware_on_client_left(Transport transport) {
   is_awaited[static_cast<uint8_t>(transport)] = false;  // the mark goes with the waiting bytes
   if (!link.end_session(transport) || !is_running()) return;
   end_run(State::kStopped);
-  link.stopped(Cause::kCable);
+  link.on_stopped(Cause::kCable);
 }
 
 WifiReport port_wifi_report(WifiStep step) { return board_wifi(step); }

@@ -27,8 +27,8 @@ int16_t level(int8_t power, uint8_t low, int8_t reduction) {
   if (reduction > 0)
     missing = static_cast<uint8_t>(missing + level_of(static_cast<uint8_t>(reduction)));
   if (missing != 0) {
-    const uint16_t rest = static_cast<uint16_t>((size_level << 8) - size_level * missing);
-    size_level = static_cast<uint8_t>(low + (rest >> 8));
+    const uint16_t scaled = static_cast<uint16_t>((size_level << 8) - size_level * missing);
+    size_level = static_cast<uint8_t>(low + (scaled >> 8));
   }
   return power < 0 ? static_cast<int16_t>(-size_level) : size_level;
 }

@@ -92,7 +92,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
       // A 0x00 is reported a moment later, unless a client comes.
       tail_ = is_chatter() ? Remark::kNone : Remark::kNoZero;
       drop();
-      if (receiver->take_lost()) {
+      if (receiver->take_is_lost()) {
         is_ignoring_ = true;  // the line may have opened a block
         tell(Remark::kCut, is_heard);
         tail_ = Remark::kNone;
@@ -169,9 +169,9 @@ inline void Console::take(uint8_t byte, bool is_heard) {
   tail_ = Remark::kEnter;
   read(byte);
   const uint8_t previous = previous_letter_;
-  const uint8_t last = last_letter_;
+  const uint8_t last_letter = last_letter_;
   if (byte <= ' ') return;
-  previous_letter_ = last;
+  previous_letter_ = last_letter;
   last_letter_ = byte & kCapital;
   const bool is_ping = previous == 'N';
   if (byte != '|' || !is_open_ || (previous != 'S' && !is_ping)) return;
@@ -187,7 +187,7 @@ inline void Console::take(uint8_t byte, bool is_heard) {
     read('I');
   }
   read(previous);
-  read(last);
+  read(last_letter);
   read(byte);
 }
 

@@ -50,7 +50,7 @@ class FrameCheck {
 
   // The number of bytes up to the next zero or the end; more than any frame has if that position
   // has passed.
-  uint8_t left() const { return static_cast<uint8_t>(zero_ - taken_count_); }
+  uint8_t remaining() const { return static_cast<uint8_t>(zero_ - taken_count_); }
 
   // Whether the bytes taken so far are a whole frame.
   bool is_whole() const;

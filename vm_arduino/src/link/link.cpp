@@ -43,7 +43,7 @@ void Link::pass(uint16_t now_ms) {
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
   const bool is_line = receiver_->has_open_line();
-  const bool has_heard = receiver_->take_heard();
+  const bool has_heard = receiver_->take_has_heard();
   const uint16_t previous_silence_ms = left_ms_[kSilence];
   run_down(left_ms_, kTimes, passed_ms);
   if (kTellsReadings) pass_readings(passed_ms);
@@ -93,10 +93,10 @@ void Link::turn() {
   if ((is_attached_ || owns_halt()) && is_dead_man_over() &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
-    faulted();
+    on_faulted();
   }
   if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
-  if (owns_halt() && left_ms_[kHaltedAgain] == 0) halted();
+  if (owns_halt() && left_ms_[kHaltedAgain] == 0) on_halted();
 }
 
 void Link::send_due() {
@@ -135,7 +135,7 @@ tini_noinline void Link::stop(Cause cause) {
   const bool has_stale_frame = cause != Cause::kMessage && receiver_->has_frame();
   note_stop();
   if (!was_stopped || has_stale_frame) {
-    stopped(cause);
+    on_stopped(cause);
   } else {
     confirm(cause);
   }
@@ -144,7 +144,7 @@ tini_noinline void Link::stop(Cause cause) {
 
 // Takes the bytes of a packet that have arrived; a LIVE is made when all of its payload has.
 inline void Link::take_arrived() {
-  if (receiver_->take_begun()) {
+  if (receiver_->take_has_begun()) {
     check_.begin();
     ahead_end_ = 0;
   }
@@ -152,7 +152,7 @@ inline void Link::take_arrived() {
   if (length == check_.taken_count()) return;
   asm volatile("" ::: "memory");  // barrier: the interrupt has written the bytes before the length
   check_.take(receiver_->bytes(), length < kPacketBytes ? length : kPacketBytes);
-  if (check_.left() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) make_ahead();
+  if (check_.remaining() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) make_ahead();
 }
 
 // Answers a frame.
@@ -201,12 +201,12 @@ tini_noinline void Link::handle(uint8_t end) {
   const uint8_t length = static_cast<uint8_t>(end - payload_start);
   const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
 
-  Reply& last = this->last();
+  Reply& last_reply = this->last_reply();
   uint8_t& last_epoch = this->last_epoch();
-  const bool is_last = seq == last.seq && type == last.number && epoch == last_epoch;
+  const bool is_last = seq == last_reply.seq && type == last_reply.number && epoch == last_epoch;
   const bool is_repeat = is_last && is_marked == is_sealed();
   if (is_open_ && is_repeat && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
-    reply_ = last;
+    reply_ = last_reply;
     left_ms_[kFrameSent] = 0;  // it is repeated
     return;
   }
@@ -247,7 +247,7 @@ tini_noinline void Link::handle(uint8_t end) {
     reply_.status = answer(static_cast<Message>(type), payload, length);
   }
   if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && reply_.status == kOkStatus)) {
-    last = reply_;
+    last_reply = reply_;
     last_epoch = epoch;
   }
 }

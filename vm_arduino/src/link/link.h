@@ -71,10 +71,10 @@ class Link {
 
   // Events. The first three are sent when there is room; a value that finds no room is rejected,
   // and the caller tries again.
-  void done();
-  void faulted();  // port_status() has the record
-  void stopped(Cause cause);
-  void halted();
+  void on_done();
+  void on_faulted();  // port_status() has the record
+  void on_stopped(Cause cause);
+  void on_halted();
   // Whether a program may halt: a client is there to continue it.
   bool may_halt() const { return is_listened_to() && !is_dead_man_over(); }
   bool show(int32_t value, bool is_yes_no);
@@ -154,7 +154,7 @@ class Link {
 
   // Whether a stop came since the last call, even if the robot was stopped already: text typed
   // before that, in any session, is discarded.
-  bool take_stopped() {
+  bool take_was_stopped() {
     const bool was_stopped = was_stopped_;
     was_stopped_ = false;
     return was_stopped;
@@ -284,7 +284,7 @@ class Link {
   void forget_answer() {
     if (kMaySeal) last_sealed_reply_.number = 0;
   }
-  Reply& last() { return is_sealed() ? last_sealed_reply_ : last_reply_; }
+  Reply& last_reply() { return is_sealed() ? last_sealed_reply_ : last_reply_; }
   uint8_t& last_epoch() { return is_sealed() ? last_sealed_epoch_ : last_epoch_; }
   uint16_t dead_man_ms() const {
     return left_ms_[kMaySeal && is_run_sealed_ ? kSealHeard : kListen];

@@ -41,7 +41,7 @@ void Link::forget_breakpoints() {
   has_breakpoints_ = owns_halt_ = false;
 }
 
-void Link::halted() {
+void Link::on_halted() {
   owns_halt_ = true;
   due_ |= kDueHalted;
   left_ms_[kHaltedAgain] = kHaltedAgainMs;

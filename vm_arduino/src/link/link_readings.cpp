@@ -28,9 +28,9 @@ bool Link::is_free_without_readings() const {
 }
 
 void Link::catch_up() {
-  const bool waits = (due_ & ~kDueText) != 0 || has_late_value_;
+  const bool is_waiting = (due_ & ~kDueText) != 0 || has_late_value_;
   const uint8_t max_lag = static_cast<uint8_t>(bytes_left_ + kPortBytes);
-  if (!waits && max_lag < lag_bytes_) lag_bytes_ = max_lag;
+  if (!is_waiting && max_lag < lag_bytes_) lag_bytes_ = max_lag;
 }
 
 // The bytes in the port are sent in the next milliseconds.

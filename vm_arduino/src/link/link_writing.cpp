@@ -38,9 +38,9 @@ uint16_t word_of(uint8_t first, uint8_t second) {
 
 }  // namespace
 
-void Link::done() { note_end(kDueDone); }
+void Link::on_done() { note_end(kDueDone); }
 
-void Link::faulted() {
+void Link::on_faulted() {
   renew();
   note_end(kDueFault);
 }
@@ -52,7 +52,7 @@ void Link::note_end(uint8_t due) {
   due_ = static_cast<uint8_t>((due_ & ~(kDueFault | kDueDone)) | due);
 }
 
-void Link::stopped(Cause cause) {
+void Link::on_stopped(Cause cause) {
   renew();
   cause_ = cause;
   left_ms_[kAgain] = 0;

@@ -21,9 +21,9 @@ void Links::begin(uint8_t epoch) {
 }
 
 void Links::pass_time(uint16_t now_ms) {
-  const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
+  const uint16_t passed_ms = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  run_down(&driving_ms_, 1, passed);
+  run_down(&driving_ms_, 1, passed_ms);
   for (Link& link : links_) link.pass_time(now_ms);
   if (!is_driven()) driver_ = kNobody;
 }
@@ -60,15 +60,15 @@ void Links::spread_events(State previous_state) {
   const State state = port_status().state;
   Link& current_link = links_[current_place_];
   const bool is_held_back = current_link.is_held_back();
-  const bool was_stopped = current_link.take_stopped();
+  const bool was_stopped = current_link.take_was_stopped();
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current_place_) continue;
     Link& link = links_[place];
     if (is_held_back != is_held_back_) link.hold_back(is_held_back);
     if (was_stopped) link.discard_text();
     if (state == previous_state) continue;
-    if (state == State::kStopped) link.stopped(current_link.cause());
-    if (state == State::kFaulted) link.faulted();
+    if (state == State::kStopped) link.on_stopped(current_link.cause());
+    if (state == State::kFaulted) link.on_faulted();
   }
   is_held_back_ = is_held_back;
 }
@@ -99,16 +99,16 @@ bool Links::stop_is_due() const {
   return false;
 }
 
-void Links::done() {
-  for (Link& link : links_) link.done();
+void Links::on_done() {
+  for (Link& link : links_) link.on_done();
 }
 
-void Links::faulted() {
-  for (Link& link : links_) link.faulted();
+void Links::on_faulted() {
+  for (Link& link : links_) link.on_faulted();
 }
 
-void Links::stopped(Cause cause) {
-  for (Link& link : links_) link.stopped(cause);
+void Links::on_stopped(Cause cause) {
+  for (Link& link : links_) link.on_stopped(cause);
 }
 
 void Links::cancel_and_detach() {
@@ -196,9 +196,9 @@ bool Links::may_halt() const {
   return place != kNobody && links_[place].may_halt();
 }
 
-void Links::halted() {
+void Links::on_halted() {
   const uint8_t place = listener();
-  if (place != kNobody) links_[place].halted();
+  if (place != kNobody) links_[place].on_halted();
 }
 
 bool Links::end_session(Transport transport) {
@@ -221,7 +221,7 @@ bool Links::is_driven() const {
 
 // Whether the last driver keeps the others away: one that runs nothing and changes nothing gives
 // way, even if its open page is heard.
-bool Links::keeps_wheel() const {
+bool Links::keeps_control() const {
   return driver_ != kNobody && (driving_ms_ != 0 || port_status().state == State::kRunning);
 }
 
@@ -250,7 +250,7 @@ Answer Links::may_drive(uint8_t type) {
     return Answer::kOk;
   }
   if (type == number_of(Message::kClear) && is_held_back_ && is_teacher()) return Answer::kOk;
-  if (driver_ != current_place_ && keeps_wheel()) return Answer::kOtherDriver;
+  if (driver_ != current_place_ && keeps_control()) return Answer::kOtherDriver;
   if (type == number_of(Message::kKeys)) return Answer::kOk;
   is_asking_ = true;
   is_asking_by_text_ = is_text;
@@ -259,7 +259,7 @@ Answer Links::may_drive(uint8_t type) {
 
 bool Links::may_press() const {
   if (is_network(static_cast<Transport>(current_place_))) return false;
-  return driver_ == current_place_ || !keeps_wheel();
+  return driver_ == current_place_ || !keeps_control();
 }
 
 bool Links::take_text_memory() {

@@ -27,10 +27,10 @@ class Links {
   void write_checksum();
   bool has_due_live() const;
   bool stop_is_due() const;
-  void done();
-  void faulted();
-  void stopped(Cause cause);
-  void halted();
+  void on_done();
+  void on_faulted();
+  void on_stopped(Cause cause);
+  void on_halted();
   bool may_halt() const;
   void cancel_and_detach();
   bool is_attached() const;
@@ -81,7 +81,7 @@ class Links {
 
   static uint8_t place_of(Transport transport) { return static_cast<uint8_t>(transport); }
   bool is_driven() const;
-  bool keeps_wheel() const;
+  bool keeps_control() const;
   uint8_t listener() const;
   void drive();
   void enter(uint8_t place);

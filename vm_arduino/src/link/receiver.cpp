@@ -160,7 +160,7 @@ void Receiver::begin_packet() {
   may_be_line_ = true;
   is_dropping_ = input_kinds_[write_place()] != InputKind::kNone;
   if (is_dropping_) {
-    dropped_ = static_cast<uint8_t>(dropped_ + 1);
+    dropped_count_ = static_cast<uint8_t>(dropped_count_ + 1);
     return;
   }
   length_[write_place()] = 0;
@@ -189,7 +189,7 @@ bool Receiver::end_packet(InputKind kind) {
     if (kind == InputKind::kFrame) advance_write();
     return true;
   }
-  dropped_ = static_cast<uint8_t>(dropped_ + 1);
+  dropped_count_ = static_cast<uint8_t>(dropped_count_ + 1);
   return false;
 }
 
@@ -230,12 +230,12 @@ void Receiver::disconnect() {
   for (uint8_t k = 0; k < kWindow; k++)
     is_stop |= input_kinds_[k] == InputKind::kFrame && may_stop_[k];
   const Cause cause = is_stop ? Cause::kText : due_stop_;
-  const uint8_t damaged = damaged_;
-  const uint8_t dropped = dropped_;
+  const uint8_t damaged_count = damaged_count_;
+  const uint8_t dropped_count = dropped_count_;
   *this = Receiver();
   due_stop_ = cause;
-  damaged_ = damaged;
-  dropped_ = dropped;
+  damaged_count_ = damaged_count;
+  dropped_count_ = dropped_count;
 }
 
 bool Receiver::take_text(uint8_t* byte) {

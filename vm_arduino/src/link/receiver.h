@@ -150,23 +150,23 @@ class Receiver : private PacketPlaces<kWindow> {
   bool take_text(uint8_t* byte);
 
   // Whether bytes of a line have been lost since the last call. A kLineCut tells where.
-  bool take_lost() {
+  bool take_is_lost() {
     const bool is_lost = is_lost_;
     is_lost_ = false;
     return is_lost;
   }
 
   // Whether any byte has arrived since the last call, which forgets it.
-  bool take_heard() {
+  bool take_has_heard() {
     if (!has_heard_) return false;
     has_heard_ = false;
     return true;
   }
 
-  // Bytes of an unfinished packet may be read up to `length`. `take_begun` says whether another
+  // Bytes of an unfinished packet may be read up to `length`. `take_has_begun` says whether another
   // packet has begun since the last call: call it before `length`. A packet that begins between the
   // two calls counts as begun, too.
-  bool take_begun() {
+  bool take_has_begun() {
     if (!has_begun_) return false;
     has_begun_ = false;
     return true;
@@ -180,8 +180,8 @@ class Receiver : private PacketPlaces<kWindow> {
   void take_stop() { due_stop_ = Cause::kNone; }
 
   // The number of damaged and dropped packets. It wraps around to 0.
-  uint8_t damaged() const { return damaged_; }
-  uint8_t dropped() const { return dropped_; }
+  uint8_t damaged() const { return damaged_count_; }
+  uint8_t dropped() const { return dropped_count_; }
 
  private:
   // Read where the interrupt may write.
@@ -202,7 +202,7 @@ class Receiver : private PacketPlaces<kWindow> {
   bool end_packet(InputKind kind);
   void cut_line();
   void lose_line();
-  void count_damaged() { damaged_ = static_cast<uint8_t>(damaged_ + 1); }
+  void count_damaged() { damaged_count_ = static_cast<uint8_t>(damaged_count_ + 1); }
 
   // Whether no frame waits before the packet that is being filled.
   bool is_first() const { return write_place() == read_place(); }
@@ -230,8 +230,8 @@ class Receiver : private PacketPlaces<kWindow> {
   volatile bool may_stop_[kWindow];
   volatile uint8_t marks_;
   uint8_t marks_taken_;
-  volatile uint8_t damaged_;
-  volatile uint8_t dropped_;
+  volatile uint8_t damaged_count_;
+  volatile uint8_t dropped_count_;
   uint8_t taken_bytes_;  // bytes of the line in `bytes_`
   volatile uint8_t length_[kWindow];
   TextRing text_;

@@ -211,14 +211,14 @@ bool Store::begin_save_record(Area area, uint8_t* record) {
 }
 
 void Store::refuse() {
-  const uint8_t slot = used(Area::kProgram);
+  const uint8_t slot = current_slot(Area::kProgram);
   if (slot != kNoSlot) slot_states_[slot] |= kRefusedBit;
 }
 
 void Store::readmit(uint8_t slot) { slot_states_[slot] &= static_cast<uint8_t>(~kRefusedBit); }
 
 bool Store::fetch(Area area, uint16_t offset, uint8_t* byte) const {
-  const uint8_t slot = used(area);
+  const uint8_t slot = current_slot(area);
   if (slot == kNoSlot || !nvm_is_ready()) return false;
   *byte = body_byte(start_of(slot), offset);
   return true;
@@ -231,7 +231,7 @@ bool Store::fetch_first(Area area, uint8_t* bytes, uint16_t length) const {
   return true;
 }
 
-uint8_t Store::used(Area area) const { return newest_slot(area, kRefusedBit); }
+uint8_t Store::current_slot(Area area) const { return newest_slot(area, kRefusedBit); }
 
 tini_noinline void Store::select_slot(uint8_t slot) {
   slot_ = slot;
@@ -245,7 +245,7 @@ void Store::select_other_slot(Area area, uint8_t slot) {
 
 tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
   if (is_busy_ || !nvm_is_ready()) return false;
-  const uint8_t slot = used(area);
+  const uint8_t slot = current_slot(area);
   if (slot != kNoSlot && is_in(slot, bytes, is_program(slot) ? kHeaderBytes : kCheckBytes)) {
     state_ = StoreState::kSaved;
     return true;

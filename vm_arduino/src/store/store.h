@@ -58,7 +58,7 @@ class Store {
   bool begin_save_record(Area area, uint8_t* record);
 
   // The slot of the current data, or kNoSlot. Undefined while settling.
-  uint8_t used(Area area) const;
+  uint8_t current_slot(Area area) const;
 
   // The current program does not suit this robot: the one before it, or none, is now current. This
   // writes nothing; after `boot` the program is offered again.

@@ -126,14 +126,14 @@ class Reader {
   Problem end_assignment(uint8_t token);
 
   // blocks, in reader_blocks.cpp
-  void open(uint8_t type, uint8_t ends);
+  void open(uint8_t type, uint8_t end_operand);
   void emit_open(uint8_t op, uint8_t type);
   Problem close(uint8_t type);
   Problem next_arm();
   Problem leave_loop();
 
   // DEFs, tasks and ways, in reader_defs.cpp
-  void open_routine(uint8_t type, uint8_t ends);
+  void open_routine(uint8_t type, uint8_t end_operand);
   void close_routine(Block* block);
   Problem define(uint8_t token);
   Problem def_head(uint8_t token);
@@ -162,7 +162,7 @@ class Reader {
   void emit(uint8_t byte);
   void emit_numbered(uint8_t op, uint8_t first_short, uint8_t number);
   void emit_number(bool is_minus);
-  void link(uint8_t* ends);
+  void link(uint8_t* end_operand);
   void resolve(uint8_t at);
   void read_first();
   tini_noinline void insert(uint8_t byte);
@@ -225,16 +225,16 @@ class Reader {
   // DEFs, tasks and ways
   tini_with_defs uint8_t defs_;
   tini_with_defs uint8_t tasks_;
-  tini_with_defs uint8_t max_blocks_;     // blocks open at once in this routine
-  tini_with_defs uint8_t calls_;          // calls open at once in it
-  tini_with_defs uint8_t other_blocks_;   // both in the other tasks, all of them together
+  tini_with_defs uint8_t max_blocks_;    // blocks open at once in this routine
+  tini_with_defs uint8_t calls_;         // calls open at once in it
+  tini_with_defs uint8_t other_blocks_;  // both in the other tasks, all of them together
   tini_with_defs uint8_t other_calls_;
-  tini_with_defs Def* def_;                // the DEF that is open, or null
-  tini_with_defs uint16_t callee_;         // the DEF that is called, from the end of the buffer, or 0
-  tini_with_defs uint8_t missing_values_;  // values that this call still wants
-  tini_with_defs bool is_in_task_;         // whether a task is open
-  tini_with_defs uint16_t main_defs_;      // DEFs with values that the main task reaches,
-  tini_with_defs uint16_t task_defs_;      // this task,
+  tini_with_defs Def* def_;                     // the DEF that is open, or null
+  tini_with_defs uint16_t callee_;              // the called DEF, from the buffer's end, or 0
+  tini_with_defs uint8_t missing_values_;       // values that this call still wants
+  tini_with_defs bool is_in_task_;              // whether a task is open
+  tini_with_defs uint16_t main_defs_;           // DEFs with values that the main task reaches,
+  tini_with_defs uint16_t task_defs_;           // this task,
   tini_with_defs uint16_t ended_task_defs_;     // and those that have ended: a bit for each
   tini_with_defs uint8_t lone_forever_column_;  // of a FOREVER that wants tasks, or 0
   tini_with_defs bool is_by_distance_;          // whether this move goes one

@@ -4,8 +4,8 @@
 
 namespace tiniscript {
 
-// Opens a block whose first code is the next one. `ends`: an operand that wants its end, or 0.
-void Reader::open(uint8_t type, uint8_t ends) {
+// Opens a block whose first code is the next one. `end_operand`: one that wants its end, or 0.
+void Reader::open(uint8_t type, uint8_t end_operand) {
   if (!kReadsDefs || (type & kBlockType) < kDefBlock) {
     blocks_++;
     const uint8_t other_blocks = kReadsDefs ? other_blocks_ : uint8_t{0};
@@ -16,7 +16,7 @@ void Reader::open(uint8_t type, uint8_t ends) {
   stack_ -= sizeof(Block);
   Block* const block = top();
   block->type = type;
-  block->ends = ends;
+  block->ends = end_operand;
   block->code_start = length_;
   block->read_before = read_sensors_;
   block->read_after = static_cast<SensorBits>(~SensorBits{0});

@@ -33,9 +33,9 @@ void Reader::move(uint8_t* buffer, uint16_t room) {
 }
 
 // Emits an operand that leads to an end that is not known yet.
-void Reader::link(uint8_t* ends) {
-  emit(*ends);
-  *ends = static_cast<uint8_t>(length_ - 1);
+void Reader::link(uint8_t* end_operand) {
+  emit(*end_operand);
+  *end_operand = static_cast<uint8_t>(length_ - 1);
 }
 
 // Puts a reading before the code of this instruction, unless it has one.

@@ -9,8 +9,8 @@ namespace tiniscript {
 
 // Opens a DEF or a task, which runs in parallel with the main task. The depths of that wait in its
 // block.
-void Reader::open_routine(uint8_t type, uint8_t ends) {
-  open(type, ends);
+void Reader::open_routine(uint8_t type, uint8_t end_operand) {
+  open(type, end_operand);
   if (problem_ != Problem::kNone) return;
   Block* const block = top();
   block->read_after = static_cast<SensorBits>(max_blocks_ | calls_ << 8);

@@ -47,15 +47,16 @@ void Drive::forget_way() { measured_task = nullptr; }
 
 // Ends a move that drives, of whatever task. It goes on after the move, and after its UNTIL.
 tini_noinline void Drive::leave_move(TaskRecord* task) {
-  if (!task->is(kToItsEnd)) task->pc = task_.after;
+  if (!task->is(kToItsEnd)) task->pc = task_.move_end;
   end_move_of(task);
 }
 
 // A move that drives loses the motors.
 inline void Drive::stand_still(TaskRecord* task) {
   if (task->measures()) {
-    int32_t rest;
-    if (robot_move_state(&rest) == MoveState::kArrived || rest <= 0) return leave_move(task);
+    int32_t remaining;
+    if (robot_move_state(&remaining) == MoveState::kArrived || remaining <= 0)
+      return leave_move(task);
   } else if (!task->is_forever()) {
     const uint32_t left_ms = task->rest_ms - late_ms(task);
     if (static_cast<int32_t>(left_ms) <= 0) return leave_move(task);
@@ -127,7 +128,7 @@ tini_noinline bool Drive::go_on() {
   }
   if (task->is(kDrives)) {
     if (looks_back) {
-      task_.after = task_.pc;
+      task_.move_end = task_.pc;
     } else {
       task->state |= kToItsEnd;
     }
@@ -152,9 +153,9 @@ void Drive::go_way() {
   const int8_t right = static_cast<int8_t>(powers >> 8);
   if (measured_task == task) return robot_go_on(left, right);
   if (measured_task != nullptr && measured_task->is(kIsMoving)) {
-    int32_t rest = 0;
-    robot_move_state(&rest);
-    measured_task->rest_ms = static_cast<uint32_t>(rest);
+    int32_t remaining = 0;
+    robot_move_state(&remaining);
+    measured_task->rest_ms = static_cast<uint32_t>(remaining);
   }
   measured_task = task;
   robot_go(left, right, static_cast<int32_t>(task->rest_ms));
@@ -164,8 +165,8 @@ void Drive::go_way() {
 bool Drive::continues_way() {
   constexpr uint8_t kGoBytes = 2;
   static_assert(static_cast<Fault>(MoveState::kStuckRight) == Fault::kStuckRight, "a Fault");
-  int32_t rest;
-  const MoveState state = robot_move_state(&rest);
+  int32_t remaining;
+  const MoveState state = robot_move_state(&remaining);
   if (state == MoveState::kMoving) return true;
   if (state == MoveState::kArrived) {
     end_move();
@@ -236,9 +237,9 @@ __attribute__((weak)) bool robot_measures() { return false; }
 __attribute__((weak)) void robot_go(int8_t, int8_t, int32_t) {}
 __attribute__((weak)) MoveState robot_move_state(int32_t*) { return MoveState::kArrived; }
 __attribute__((weak)) void robot_go_on(int8_t left, int8_t right) {
-  int32_t rest = 0;
-  robot_move_state(&rest);
-  robot_go(left, right, rest);
+  int32_t remaining = 0;
+  robot_move_state(&remaining);
+  robot_go(left, right, remaining);
 }
 
 }  // namespace tiniscript

@@ -223,7 +223,7 @@ leave:
     lsr r18
     std Z+tini_depth_at, r18
     std Z+tini_frame_count_at, frame_count
-    std Z+tini_left_at, budget
+    std Z+tini_budget_left_at, budget
     rcall store_frame
     in r28, SPL
     in r29, SPH

@@ -54,7 +54,7 @@ tini_always_inline uint8_t pushed_number(uint8_t code) {
 //
 // Operands are read one after the other: when a `case` returns, `next_` is after the last one.
 tini_always_inline bool InnerLoop::step() {
-  if (kCountsInstructions) left_--;
+  if (kCountsInstructions) budget_left_--;
   const uint8_t* const bytes = next_;
   start_ = bytes;
   if (static_cast<uint32_t>(bytes - machine_.code_) > machine_.length_) return fail(Fault::kBadCode);
@@ -274,7 +274,7 @@ bool Machine::execute(uint8_t budget) {
   return goes_on;
 }
 
-bool Machine::run_turn() { return execute(left_); }
+bool Machine::run_turn() { return execute(budget_left_); }
 
 bool Machine::reach_instruction(uint32_t now_ms) {
   if (status_ >= Status::kDone) return false;

@@ -24,7 +24,7 @@ class InnerLoop {
   bool step();
 
   // Whether the budget is used up.
-  bool is_over() const { return left_ == 0; }
+  bool is_over() const { return budget_left_ == 0; }
 
   // Leaves its position in the machine.
   void end();
@@ -72,7 +72,7 @@ class InnerLoop {
   const uint8_t* start_;  // where the instruction begins
   const uint8_t* next_;   // its next operand, then the next instruction
   int32_t* top_;          // after the topmost value of the stack
-  uint8_t left_;          // of the budget
+  uint8_t budget_left_;   // of the budget
 };
 
 tini_always_inline InnerLoop::InnerLoop(Machine* machine, uint8_t budget)
@@ -80,11 +80,11 @@ tini_always_inline InnerLoop::InnerLoop(Machine* machine, uint8_t budget)
       start_(machine->code_ + machine->task_.pc),
       next_(start_),
       top_(machine->task_.stack + machine->task_.depth),
-      left_(budget) {}
+      budget_left_(budget) {}
 
 tini_always_inline void InnerLoop::end() {
   machine_.offset_ = offset(start_);
-  machine_.left_ = left_;
+  machine_.budget_left_ = budget_left_;
   machine_.task_.pc = offset(next_);
   machine_.task_.depth = static_cast<uint8_t>(top_ - machine_.task_.stack);
 }
@@ -128,7 +128,7 @@ tini_always_inline bool InnerLoop::jump(uint16_t distance) {
 }
 
 tini_always_inline bool InnerLoop::jump_back(uint16_t distance) {
-  if (!kCountsInstructions) left_--;
+  if (!kCountsInstructions) budget_left_--;
   next_ -= distance;
   return true;
 }

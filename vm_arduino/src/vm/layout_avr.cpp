@@ -24,7 +24,7 @@ void Machine::check_layout() {
   lies_at(fault_, tini_fault_at);
   lies_at(sensors_, tini_sensors_at);
   lies_at(offset_, tini_at_at);
-  lies_at(left_, tini_left_at);
+  lies_at(budget_left_, tini_budget_left_at);
   lies_at(length_, tini_length_at);
   lies_at(code_, tini_code_at);
   lies_at(readings_, tini_readings_at);
@@ -38,7 +38,7 @@ void Machine::check_layout() {
   lies_in_task(other_tasks, tini_other_tasks_at);
   lies_in_task(is_quiet, tini_is_quiet_at);
   lies_in_task(current, tini_current_at);
-  lies_in_task(after, tini_after_at);
+  lies_in_task(move_end, tini_move_end_at);
   lies_in_task(holder, tini_holder_at);
   static_assert(offsetof(TaskOf<true>, records) - offsetof(TaskOf<true>, variables) ==
                     tini_records_at - tini_variables_at, "records");

@@ -18,7 +18,7 @@
 #define tini_fault_at 1
 #define tini_sensors_at 2
 #define tini_at_at 3
-#define tini_left_at 5
+#define tini_budget_left_at 5
 #define tini_length_at 6
 #define tini_code_at 8
 #define tini_readings_at 10
@@ -29,7 +29,7 @@
 #define tini_other_tasks_at 29
 #define tini_is_quiet_at 30
 #define tini_current_at 31
-#define tini_after_at 33
+#define tini_move_end_at 33
 #define tini_holder_at 35
 #define tini_records_at (tini_variables_at + 128)
 #ifdef tiniscript_has_tasks

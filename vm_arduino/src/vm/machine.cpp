@@ -56,7 +56,7 @@ bool Machine::wake(uint32_t now_ms) {
 }
 
 Status Machine::tick(uint32_t now_ms, uint8_t budget) {
-  left_ = budget;
+  budget_left_ = budget;
   if (status_ >= Status::kDone || budget == 0) return status_;
   if (!is_stuck() && wake(now_ms)) {
     if (has_tasks()) {

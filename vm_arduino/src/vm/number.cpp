@@ -95,8 +95,8 @@ Fault scale(Op op, int32_t* pair) {
   if (second == 0) return Fault::kDivideByZero;
   if (op == Op::kDiv) return finish(divide_and_round(first, kOne, second), signs_differ, pair);
   // The exact remainder has the sign of the divisor.
-  const uint32_t rest = first % second;
-  return finish(rest != 0 && signs_differ ? second - rest : rest, is_negative, pair);
+  const uint32_t remainder = first % second;
+  return finish(remainder != 0 && signs_differ ? second - remainder : remainder, is_negative, pair);
 }
 
 // Rounds the first of a pair to the number of decimals in the second.
@@ -177,9 +177,9 @@ uint32_t next_random(uint32_t state) {
 Fault random_between(int32_t* pair, uint32_t state) {
   const int32_t low = whole(pair[0]);
   const int32_t high = whole(pair[1]);
-  const int32_t least = low < high ? low : high;
+  const int32_t lower_bound = low < high ? low : high;
   const uint32_t count = magnitude(high - low) + 1;
-  const int32_t units = least + static_cast<int32_t>(state % count);
+  const int32_t units = lower_bound + static_cast<int32_t>(state % count);
   return finish(divide(magnitude(units), kOne, 1).quotient, units < 0, pair);
 }
 

@@ -121,7 +121,7 @@ struct TaskOf<true> {
   uint8_t other_tasks;  // bits, see above
   bool is_quiet;        // in this millisecond a round has gone by without a turn
   TaskRecord* current;  // whose turn it is; null: a round is over
-  uint16_t after;       // after the move that drives, where its UNTIL looks again before
+  uint16_t move_end;    // after the move that drives, where its UNTIL looks again before
   TaskRecord* holder;   // who has the motors; where nobody wants them, the main task
   int32_t variables[kVariables];
   TaskRecord records[kTasks + 1];  // in the order of rank; the last one is the main task
@@ -178,7 +178,7 @@ class Execution {
   Fault fault_;
   uint8_t sensors_;
   uint16_t offset_;
-  uint8_t left_;
+  uint8_t budget_left_;
   uint16_t length_;
   const uint8_t* code_;
   int32_t* readings_;

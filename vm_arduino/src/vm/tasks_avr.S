@@ -47,7 +47,7 @@ _ZN10tiniscript7Machine9run_roundEv:
     push r28
     push r29
     movw r28, r24
-    ldd budget, Y+tini_left_at
+    ldd budget, Y+tini_budget_left_at
     ldd current, Y+tini_current_at
     ldd current1, Y+tini_current_at+1
     cp current, r1
@@ -173,7 +173,7 @@ go_on_with_turn:
     ld r24, Y
     cpi r24, tini_done
     breq return
-    ldd r25, Y+tini_left_at
+    ldd r25, Y+tini_budget_left_at
     tst r25
     brne has_stopped
     ; the inner loop leaves at each jump back, where a loop may wait, and at each call
@@ -200,7 +200,7 @@ go_on_with_turn:
 1:  sbis GPIOR0, tini_event_bit
     rjmp go_on_with_turn
 return:
-    std Y+tini_left_at, budget
+    std Y+tini_budget_left_at, budget
     pop r29
     pop r28
     pop current1
@@ -458,8 +458,8 @@ go_on_with_move:
     rjmp 4f
     ldd r24, Y+tini_pc_at
     ldd r25, Y+tini_pc_at+1
-    std Y+tini_after_at, r24
-    std Y+tini_after_at+1, r25
+    std Y+tini_move_end_at, r24
+    std Y+tini_move_end_at+1, r25
 4:  rcall go_to_check
     rjmp 8f
 5:  ; its end
@@ -629,8 +629,8 @@ leave_move:
     rcall forget_move
     sbrc r24, tini_to_its_end_bit
     ret
-    ldd r24, Y+tini_after_at
-    ldd r25, Y+tini_after_at+1
+    ldd r24, Y+tini_move_end_at
+    ldd r25, Y+tini_move_end_at+1
 2:  std Z+tini_task_pc_at, r24
     std Z+tini_task_pc_at+1, r25
     ret

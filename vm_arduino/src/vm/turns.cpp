@@ -10,12 +10,12 @@ namespace tiniscript {
 
 namespace {
 
-// Moves the first `count` of `all` frames after the others.
-void rotate_frames(Frame* frames, uint8_t count, uint8_t all) {
+// Moves the first `count` of `total` frames after the others.
+void rotate_frames(Frame* frames, uint8_t count, uint8_t total) {
   for (; count != 0; count--) {
     Frame* frame = frames;
     const Frame first = *frame;
-    for (uint8_t remaining = all; remaining > 1; remaining--, frame++) *frame = frame[1];
+    for (uint8_t remaining = total; remaining > 1; remaining--, frame++) *frame = frame[1];
     *frame = first;
   }
 }
@@ -23,7 +23,7 @@ void rotate_frames(Frame* frames, uint8_t count, uint8_t all) {
 }  // namespace
 
 void Machine::run_round() {
-  for (bool is_over = false; finds_turn(is_over) && left_ != 0; is_over = true) {
+  for (bool is_over = false; finds_turn(is_over) && budget_left_ != 0; is_over = true) {
     if (run_turn() || fault_ != Fault::kNone || status_ == Status::kDone) return;
     // before all others the main task waits for a reading, too
     if (!has_had_turn() && status_ == Status::kRunning) return;

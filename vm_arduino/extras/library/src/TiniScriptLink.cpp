@@ -66,9 +66,9 @@ void TiniLink::tick(uint32_t now_ms) {
       end(fault != 0 ? State::kFaulted : State::kIdle);
       if (fault != 0) {
         record(fault);
-        link_.faulted();
+        link_.on_faulted();
       } else {
-        link_.done();
+        link_.on_done();
       }
     }
   }

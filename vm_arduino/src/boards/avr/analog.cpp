@@ -68,30 +68,30 @@ void analog_begin() {
 }
 
 bool analog_read(uint8_t channel, int32_t* value) {
-  Converter* const it = near(&converter);
+  Converter* const near_converter = near(&converter);
   if (kHasOthers) {
-    const uint8_t last_channel = it->last_channel;
+    const uint8_t last_channel = near_converter->last_channel;
     if (last_channel < kBandGap && !is_converting()) {
-      it->counts[last_channel] = ADC;
-      it->fresh_channels |= it->bit;
-      it->last_channel = kNoChannel;
+      near_converter->counts[last_channel] = ADC;
+      near_converter->fresh_channels |= near_converter->bit;
+      near_converter->last_channel = kNoChannel;
     }
     const Channels bit = static_cast<Channels>(1 << channel);
-    if ((it->fresh_channels & bit) != 0) {
-      *value = it->counts[channel];
+    if ((near_converter->fresh_channels & bit) != 0) {
+      *value = near_converter->counts[channel];
       return true;
     }
-    if (it->last_channel != kNoChannel) return false;
-    it->bit = bit;
+    if (near_converter->last_channel != kNoChannel) return false;
+    near_converter->bit = bit;
   } else {
-    if (is_converting() || it->last_channel == kBandGap) return false;
-    if (it->last_channel == channel) {
-      it->last_channel = kNoChannel;
+    if (is_converting() || near_converter->last_channel == kBandGap) return false;
+    if (near_converter->last_channel == channel) {
+      near_converter->last_channel = kNoChannel;
       *value = ADC;
       return true;
     }
   }
-  it->last_channel = channel;
+  near_converter->last_channel = channel;
   ADMUX = static_cast<uint8_t>(kFromSupply | (channel % kChannels));
 #ifdef MUX5
   ADCSRB = channel >= kChannels ? 1 << MUX5 : 0;
@@ -101,27 +101,27 @@ bool analog_read(uint8_t channel, int32_t* value) {
 }
 
 void analog_forget() {
-  Converter* const it = near(&converter);
+  Converter* const near_converter = near(&converter);
   if (kHasOthers) {
-    it->fresh_channels = it->bit = 0;
+    near_converter->fresh_channels = near_converter->bit = 0;
   } else {
-    it->last_channel = kNoChannel;
+    near_converter->last_channel = kNoChannel;
   }
 }
 
 Supply analog_supply() {
-  Converter* const it = near(&converter);
-  it->is_supply_wanted = true;
+  Converter* const near_converter = near(&converter);
+  near_converter->is_supply_wanted = true;
   if (is_converting()) return Supply::kMeasuring;
-  if (it->last_channel != kBandGap) {
-    it->last_channel = kBandGap;
-    it->tries = kSupplyTries;
+  if (near_converter->last_channel != kBandGap) {
+    near_converter->last_channel = kBandGap;
+    near_converter->tries = kSupplyTries;
     ADMUX = kFromSupply | kBandGap;
 #ifdef MUX5
     ADCSRB = 0;
 #endif
-  } else if (--it->tries == 0) {
-    it->last_channel = kNoChannel;
+  } else if (--near_converter->tries == 0) {
+    near_converter->last_channel = kNoChannel;
     return ADC > kMostCount ? Supply::kLow : Supply::kEnough;
   }
   convert();
@@ -129,16 +129,17 @@ Supply analog_supply() {
 }
 
 void analog_tick() {
-  Converter* const it = near(&converter);
+  Converter* const near_converter = near(&converter);
   if (kHasOthers) {
-    const Channels kept_channels =
-        static_cast<Channels>((it->fresh_channels | it->bit) & ~it->aging_channels);
-    it->fresh_channels &= kept_channels;
-    it->bit &= kept_channels;
-    it->aging_channels = kept_channels;
+    const Channels kept_channels = static_cast<Channels>(
+        (near_converter->fresh_channels | near_converter->bit) & ~near_converter->aging_channels);
+    near_converter->fresh_channels &= kept_channels;
+    near_converter->bit &= kept_channels;
+    near_converter->aging_channels = kept_channels;
   }
-  if (it->last_channel == kBandGap && !it->is_supply_wanted) it->last_channel = kNoChannel;
-  it->is_supply_wanted = false;
+  if (near_converter->last_channel == kBandGap && !near_converter->is_supply_wanted)
+    near_converter->last_channel = kNoChannel;
+  near_converter->is_supply_wanted = false;
 }
 
 }  // namespace tiniscript

@@ -72,7 +72,7 @@ class Topic {
     text_[length_] = 0;
     return *this;
   }
-  Topic& of_robot() { return add(radio_name().id); }
+  Topic& add_id() { return add(radio_name().id); }
   const char* text() const { return text_; }
 
  private:
@@ -81,7 +81,7 @@ class Topic {
 };
 
 // The rest of a topic after `start`, or nullptr.
-const char* rest_of(const char* topic, const char* start) {
+const char* suffix_after(const char* topic, const char* start) {
   while (*start != 0) {
     if (*topic++ != *start++) return nullptr;
   }
@@ -146,11 +146,11 @@ void hang_up(WifiState state = WifiState::kSearching) {
 
 // The moment of the next try differs from robot to robot: a broker that is back gets them in turn.
 uint32_t retry_delay_ms() {
-  uint32_t spread = 0;
+  uint32_t id_hash = 0;
   for (const char* digit = radio_name().id; *digit != 0; digit++) {
-    spread = spread * 31 + static_cast<uint8_t>(*digit);
+    id_hash = id_hash * 31 + static_cast<uint8_t>(*digit);
   }
-  return kAgainMs + spread % 1000;
+  return kAgainMs + id_hash % 1000;
 }
 
 void begin() {
@@ -169,7 +169,7 @@ void connect() {
   char will[kNameBytes + 2] = {kOffline};
   __builtin_memcpy(will + 1, radio_name().name, kNameBytes + 1);
   MqttWriter writer(out, sizeof out);
-  writer.connect(client, kKeepAliveS, Topic().of_robot().text(), will, settings.user,
+  writer.connect(client, kKeepAliveS, Topic().add_id().text(), will, settings.user,
                  settings.password);
   out_length = writer.length();
   out_sent = 0;
@@ -181,7 +181,7 @@ void connect() {
 void subscribe() {
   set_phase(Phase::kSubscribing);
   MqttWriter writer(out, sizeof out);
-  writer.subscribe(1, Topic().of_robot().add("/in/+").text(), Topic().add("stop").text());
+  writer.subscribe(1, Topic().add_id().add("/in/+").text(), Topic().add("stop").text());
   out_length = writer.length();
   out_sent = 0;
 }
@@ -193,7 +193,7 @@ void announce() {
   char presence[kNameBytes + 2] = {kOnline};
   __builtin_memcpy(presence + 1, radio_name().name, kNameBytes + 1);
   MqttWriter writer(out, sizeof out);
-  writer.publish(Topic().of_robot().text(), reinterpret_cast<const uint8_t*>(presence),
+  writer.publish(Topic().add_id().text(), reinterpret_cast<const uint8_t*>(presence),
                  length_of(presence), true);
   out_length = writer.length();
   out_sent = 0;
@@ -232,7 +232,7 @@ void on_message() {
     if (is_stop(reader.payload(), reader.length())) pass_on(reader.payload(), reader.length());
     return;
   }
-  const char* const sender = rest_of(reader.topic(), Topic().of_robot().add("/in/").text());
+  const char* const sender = suffix_after(reader.topic(), Topic().add_id().add("/in/").text());
   if (sender != nullptr && is_peer(sender)) on_peer(sender, reader.payload(), reader.length());
 }
 
@@ -281,9 +281,9 @@ void write_next() {
   size_t length = 0;
   while (peer[0] != 0 && length < sizeof bytes && pipe().take(bytes + length)) length++;
   if (length != 0) {
-    writer.publish(Topic().of_robot().add("/out/").add(peer).text(), bytes, length, false);
+    writer.publish(Topic().add_id().add("/out/").add(peer).text(), bytes, length, false);
   } else if (refused_peer[0] != 0) {
-    writer.publish(Topic().of_robot().add("/out/").add(refused_peer).text(), nullptr, 0, false);
+    writer.publish(Topic().add_id().add("/out/").add(refused_peer).text(), nullptr, 0, false);
     refused_peer[0] = 0;
   } else if (now_ms() - sent_ms >= kPingMs) {
     writer.ping();
@@ -295,10 +295,10 @@ void write_next() {
 void say() {
   if (out_sent == out_length && phase == Phase::kReady) write_next();
   if (out_sent == out_length) return;
-  const int sent = line_send(out + out_sent, out_length - out_sent);
-  if (sent == kEnded) return hang_up();
-  if (sent == kNothingYet) return;
-  out_sent += static_cast<size_t>(sent);
+  const int sent_length = line_send(out + out_sent, out_length - out_sent);
+  if (sent_length == kEnded) return hang_up();
+  if (sent_length == kNothingYet) return;
+  out_sent += static_cast<size_t>(sent_length);
   sent_ms = now_ms();
 }
 

@@ -63,9 +63,9 @@ int line_receive(uint8_t* bytes, size_t room) {
 
 int line_send(const uint8_t* bytes, size_t length) {
   if (is_shaking) return tls_send(bytes, length);
-  const ssize_t sent = lwip_send(connection, bytes, length, MSG_DONTWAIT);
-  if (sent > 0) return static_cast<int>(sent);
-  return sent == 0 || may_come_later() ? kNothingYet : kEnded;
+  const ssize_t sent_length = lwip_send(connection, bytes, length, MSG_DONTWAIT);
+  if (sent_length > 0) return static_cast<int>(sent_length);
+  return sent_length == 0 || may_come_later() ? kNothingYet : kEnded;
 }
 
 void line_end() {

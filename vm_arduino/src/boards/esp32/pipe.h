@@ -162,8 +162,8 @@ class Pipe {
   }
 
   // Whether a stop waits in the unread bytes, or one for the current run.
-  bool has_stop() const { return waits(stop_end_); }
-  bool has_run_stop() const { return waits(run_stop_end_); }
+  bool has_stop() const { return is_unread(stop_end_); }
+  bool has_run_stop() const { return is_unread(run_stop_end_); }
 
   bool has_room() const { return rings()->out.room() != 0; }  // of a connected client
   void put_tx(uint8_t byte) { rings()->out.put(byte); }
@@ -187,7 +187,7 @@ class Pipe {
     Ring<uint8_t, kOutPlaces> out;
   };
 
-  bool waits(const uint32_t& place) const {
+  bool is_unread(const uint32_t& place) const {
     const uint32_t distance = __atomic_load_n(&place, __ATOMIC_ACQUIRE) - taken_count_;
     return distance != 0 && distance <= kInPlaces;
   }

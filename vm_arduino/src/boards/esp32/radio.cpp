@@ -82,7 +82,7 @@ void begin_broker() {
 
 // On a chip with one core, the main loop would leave no time for the idle task, which frees what
 // tasks leave behind.
-void rest() {
+void yield_to_idle_task() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (portNUM_PROCESSORS > 1 || now_ms - last_rest_ms < kRestMs) return;
   last_rest_ms = now_ms;
@@ -150,7 +150,7 @@ void radio_poll() {
 
 // Bytes meant for nobody are discarded.
 void radio_send() {
-  rest();
+  yield_to_idle_task();
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
@@ -164,9 +164,9 @@ void radio_send() {
 }
 
 uint8_t radio_lost() {
-  uint8_t lost = 0;
-  for (const Pipe& pipe : pipes) lost = static_cast<uint8_t>(lost + pipe.lost());
-  return lost;
+  uint8_t lost_bytes = 0;
+  for (const Pipe& pipe : pipes) lost_bytes = static_cast<uint8_t>(lost_bytes + pipe.lost());
+  return lost_bytes;
 }
 
 }  // namespace tiniscript

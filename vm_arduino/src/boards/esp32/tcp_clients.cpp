@@ -184,10 +184,10 @@ void say(Client* client) {
   }
   const size_t bytes_left = client->out_length - client->out_sent;
   if (bytes_left == 0) return;
-  const ssize_t sent =
+  const ssize_t sent_length =
       lwip_send(client->socket, client->out + client->out_sent, bytes_left, MSG_DONTWAIT);
-  if (sent > 0) client->out_sent += static_cast<size_t>(sent);
-  if (sent < 0 && !may_come_later()) close_client(client);
+  if (sent_length > 0) client->out_sent += static_cast<size_t>(sent_length);
+  if (sent_length < 0 && !may_come_later()) close_client(client);
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ int fill(void*, unsigned char* bytes, size_t length) {
 }
 
 int send(void*, const unsigned char* bytes, size_t length) {
-  const ssize_t sent = lwip_send(tls_socket, bytes, length, MSG_DONTWAIT);
-  if (sent >= 0) return static_cast<int>(sent);
+  const ssize_t sent_length = lwip_send(tls_socket, bytes, length, MSG_DONTWAIT);
+  if (sent_length >= 0) return static_cast<int>(sent_length);
   return may_come_later() ? MBEDTLS_ERR_SSL_WANT_WRITE : MBEDTLS_ERR_SSL_CONN_EOF;
 }
 

@@ -79,7 +79,7 @@ Reset cause_of(esp_reset_reason_t reason) {
 
 // A supply that sags deeply comes back as power-on. The bytes of a chip that has been without power
 // are lost; that they are there says that it was gone for a moment.
-Reset cause_now() {
+Reset current_cause() {
   const Reset reset = cause_of(esp_reset_reason());
   const bool has_sagged = reset == Reset::kPower && run_mark == kRunMark;
   run_mark = 0;
@@ -121,7 +121,7 @@ void begin_restart() {
 
 void watchdog_begin() {
   panic_begin();
-  cause = cause_now();
+  cause = current_cause();
   has_hung = cause == Reset::kWatchdog && hang_record.mark == hang_mark();
   hang_record.mark = 0;
   write_to(&is_fed, true);

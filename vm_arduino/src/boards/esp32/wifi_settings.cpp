@@ -28,7 +28,7 @@ constexpr uint8_t kReady = static_cast<uint8_t>(WifiState::kReady);
 constexpr uint32_t kJoinAgainMs = 15000;  // between two tries to join
 constexpr uint32_t kYoungMs = 20000;      // a restart so soon after WiFi began counts
 constexpr uint8_t kMostRestarts = 3;      // in a row: then WiFi rests
-constexpr uint8_t kRests = 0x80;          // flag of a mode
+constexpr uint8_t kRestsFlag = 0x80;      // flag of a mode
 
 // The layout in NVS. Texts end with a 0.
 struct Settings {
@@ -36,8 +36,8 @@ struct Settings {
   char network[kNetworkBytes + 1];
   char password[kPasswordBytes + 1];
 
-  WifiMode mode() const { return static_cast<WifiMode>(kept_mode & ~kRests); }
-  bool rests() const { return (kept_mode & kRests) != 0; }
+  WifiMode mode() const { return static_cast<WifiMode>(kept_mode & ~kRestsFlag); }
+  bool rests() const { return (kept_mode & kRestsFlag) != 0; }
   size_t kept_bytes() const { return sizeof *this; }
   bool is_sound() const {
     return mode() <= WifiMode::kAccessPoint && network[kNetworkBytes] == 0 &&
@@ -75,10 +75,10 @@ bool is_refused() {
 
 // Survives a restart, and has any value after power-on: whether WiFi has begun lately, and how many
 // of the starts before have ended in a restart soon after that.
-constexpr uint32_t kStarts = 0x5a3c1d00;
-constexpr uint32_t kYoung = 0x80;
-constexpr uint32_t kRestarts = 0x7f;
-RTC_NOINIT_ATTR uint32_t starts;  // changed in a critical section
+constexpr uint32_t kRecordMagic = 0x5a3c1d00;
+constexpr uint32_t kYoungFlag = 0x80;
+constexpr uint32_t kRestartMask = 0x7f;
+RTC_NOINIT_ATTR uint32_t restart_record;  // changed in a critical section
 
 KeptSettings<Settings> kept_settings("wifi");
 Settings new_settings;  // the main loop's: received so far
@@ -103,7 +103,7 @@ void clear(Settings* settings) { __builtin_memset(settings, 0, sizeof *settings)
 // The network's task.
 void set_young(bool is_now_young, uint32_t kept_bits) {
   const CriticalSection critical;
-  starts = (starts & kept_bits) | kStarts | (is_now_young ? kYoung : 0);
+  restart_record = (restart_record & kept_bits) | kRecordMagic | (is_now_young ? kYoungFlag : 0);
   is_young = is_now_young;
 }
 
@@ -111,11 +111,11 @@ void set_young(bool is_now_young, uint32_t kept_bits) {
 bool count_restart() {
   const Reset cause = watchdog_reset_cause();
   const bool is_failure = cause == Reset::kBrownOut || cause == Reset::kWatchdog;
-  const bool is_known = (starts & ~(kYoung | kRestarts)) == kStarts;
-  uint32_t restarts = is_known ? starts & kRestarts : 0;
-  if (is_known && is_failure && (starts & kYoung) != 0) restarts++;
+  const bool is_known = (restart_record & ~(kYoungFlag | kRestartMask)) == kRecordMagic;
+  uint32_t restarts = is_known ? restart_record & kRestartMask : 0;
+  if (is_known && is_failure && (restart_record & kYoungFlag) != 0) restarts++;
   const bool is_too_often = restarts >= kMostRestarts;
-  starts = kStarts | (is_too_often ? 0 : restarts);
+  restart_record = kRecordMagic | (is_too_often ? 0 : restarts);
   return is_too_often;
 }
 
@@ -126,7 +126,7 @@ Answer keep() {
   clear(&new_settings);
   firmware_wifi_rests(false);
   const CriticalSection critical;
-  starts &= ~kRestarts;
+  restart_record &= ~kRestartMask;
   return answer;
 }
 
@@ -145,7 +145,7 @@ void leave() {
   WiFi.mode(WIFI_OFF);  // and no more: softAPdisconnect would start an access point first
   set_state(used_settings.rests() ? WifiState::kRests : WifiState::kOff);
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
-  set_young(false, kRestarts);
+  set_young(false, kRestartMask);
 }
 
 // There may be no memory for it in addition to Bluetooth.
@@ -179,7 +179,7 @@ void begin() {
   set_state(WifiState::kSearching);
   __atomic_store_n(&disconnect_reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
   last_try_ms = began_ms = static_cast<uint32_t>(millis());
-  set_young(true, kRestarts);
+  set_young(true, kRestartMask);
   if (used_settings.mode() == WifiMode::kAccessPoint) {
     host();
   } else {
@@ -215,7 +215,7 @@ void wifi_load() {
   Settings settings = kept_settings.current();
   const bool has_restarted_too_often = count_restart();
   if (has_restarted_too_often && settings.mode() != WifiMode::kOff) {
-    settings.kept_mode |= kRests;
+    settings.kept_mode |= kRestsFlag;
     if (kept_settings.keep(settings) != Answer::kOk) kept_settings.use(settings);
   }
   firmware_wifi_rests(kept_settings.current().rests());
