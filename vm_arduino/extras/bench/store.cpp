@@ -28,7 +28,7 @@ uint32_t longest_save;
 
 void read_image() {
   length = request.u16();
-  for (uint16_t at = 0; at < length; at++) image[at] = request.u8();
+  for (uint16_t index = 0; index < length; index++) image[index] = request.u8();
 }
 
 // Ticks so many times, or to the end.

@@ -83,14 +83,14 @@ std::string next_frame(uint32_t number, Draw* draw, bool may_repeat) {
   uint8_t frame[kWireBytes] = {};
   const uint8_t payload =
       static_cast<uint8_t>(kNumberBytes + draw->number_below(kPayloadBytes - kNumberBytes + 1));
-  const uint8_t begin = payload_at(static_cast<uint8_t>(kPayloadAt + payload));
-  const uint8_t end = static_cast<uint8_t>(begin + payload);
+  const uint8_t start = payload_at(static_cast<uint8_t>(kPayloadAt + payload));
+  const uint8_t end = static_cast<uint8_t>(start + payload);
   frame[kTypeAt] = kTypes[draw->number_below(sizeof kTypes)];
   frame[kSeqAt] = static_cast<uint8_t>(draw->byte());
   frame[kEpochAt] = static_cast<uint8_t>(draw->byte());
-  memcpy(frame + begin, &number, kNumberBytes);
+  memcpy(frame + start, &number, kNumberBytes);
   const bool repeats = may_repeat && draw->number_below(4) == 0;
-  for (uint8_t k = static_cast<uint8_t>(begin + kNumberBytes); k < end; k++) {
+  for (uint8_t k = static_cast<uint8_t>(start + kNumberBytes); k < end; k++) {
     frame[k] = repeats ? "\0\0\1S\n"[draw->number_below(5)] : static_cast<uint8_t>(draw->byte());
   }
   SentFrame* const sent_frame = &sent_frames[number];
@@ -363,9 +363,9 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
     is_framed = true;
     break;
   }
-  const auto between = [&](size_t begin, size_t end) {
+  const auto between = [&](size_t start, size_t end) {
     std::string part;
-    for (size_t k = begin; k < end; k++) part += static_cast<char>(bytes_so_far[k].byte);
+    for (size_t k = start; k < end; k++) part += static_cast<char>(bytes_so_far[k].byte);
     return part;
   };
   if (is_framed) {

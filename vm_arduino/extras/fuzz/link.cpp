@@ -35,11 +35,11 @@ uint8_t epoch;
 std::string sent_bytes;
 
 void check_sent() {
-  size_t begin = 0;
+  size_t start = 0;
   for (size_t k = 0; k < sent_bytes.size(); k++) {
     if (sent_bytes[k] != 0) continue;
-    const std::string packet = sent_bytes.substr(begin, k - begin);
-    begin = k + 1;
+    const std::string packet = sent_bytes.substr(start, k - start);
+    start = k + 1;
     if (packet.empty()) continue;
     if (packet.size() > 1 && (packet[1] & kReply) == 0) continue;  // text
     uint8_t bytes[kPacketBytes];
@@ -49,7 +49,7 @@ void check_sent() {
     must((bytes[kTypeAt] & kReply) != 0);
     epoch = bytes[kEpochAt];
   }
-  sent_bytes.erase(0, begin);
+  sent_bytes.erase(0, start);
 }
 
 void turn() {
@@ -83,9 +83,9 @@ void send_frame(uint8_t type, Input* input) {
   frame[kSeqAt] = ++seq;
   frame[kEpochAt] = epoch;
   if (length > kSmallFrame - kHeadBytes - kCrcBytes) end++;  // the 0 of a large one
-  const uint8_t begin = end;
-  while (end - begin < length) frame[end++] = input->u8();
-  if (type == static_cast<uint8_t>(Message::kHello) && length != 0) frame[begin] = kLinkMajor;
+  const uint8_t start = end;
+  while (end - start < length) frame[end++] = input->u8();
+  if (type == static_cast<uint8_t>(Message::kHello) && length != 0) frame[start] = kLinkMajor;
   const uint8_t size = encode_frame(frame, end);
   arrive(0);
   for (uint8_t k = 0; k < size; k++) arrive(frame[k]);

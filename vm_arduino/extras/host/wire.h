@@ -77,9 +77,9 @@ class Writer {
 // Returns lines, each after the time of all.
 inline std::string with_times(uint32_t ms, const std::string& lines) {
   std::string timed_lines;
-  for (size_t at = 0, end; at < lines.size(); at = end) {
-    end = lines.find('\n', at) + 1;
-    timed_lines += std::to_string(ms) + " " + lines.substr(at, end - at);
+  for (size_t start = 0, end; start < lines.size(); start = end) {
+    end = lines.find('\n', start) + 1;
+    timed_lines += std::to_string(ms) + " " + lines.substr(start, end - start);
   }
   return timed_lines;
 }

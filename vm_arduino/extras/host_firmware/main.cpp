@@ -102,8 +102,8 @@ int8_t percent_of(int16_t level) { return static_cast<int8_t>(lround(level / 2.5
 // Whether a byte is a commit byte: a mark of a slot other than 0.
 bool is_mark(uint16_t place, uint8_t value) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
-    const int at = place - place_of(slot);
-    if (at > 0 && at <= kMarks && value != 0 && value != 0xff) return true;
+    const int offset = place - place_of(slot);
+    if (offset > 0 && offset <= kMarks && value != 0 && value != 0xff) return true;
   }
   return false;
 }
@@ -241,11 +241,11 @@ void answer_wait(RequestReader* request, Writer* answer) {
   std::string whole_log;
   std::string latched_flags;
   for (uint32_t k = 0; k < count; k++) {
-    const size_t begin = is_spread || k == 0 ? std::min<size_t>(k, bytes.length) : bytes.length;
-    const size_t bytes_left = bytes.length - begin;
+    const size_t start = is_spread || k == 0 ? std::min<size_t>(k, bytes.length) : bytes.length;
+    const size_t bytes_left = bytes.length - start;
     const size_t length = is_spread ? std::min<size_t>(1, bytes_left) : bytes_left;
     table.log.clear();
-    sent_bytes += pass(first_ms + k, ticks, bytes.data.get() + begin, length);
+    sent_bytes += pass(first_ms + k, ticks, bytes.data.get() + start, length);
     whole_log += with_times(first_ms + k, table.log);
     latched_flags += static_cast<char>(table.is_latched);
     if (mode == 2 && !sent_bytes.empty()) break;

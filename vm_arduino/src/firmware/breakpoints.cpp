@@ -13,7 +13,7 @@ bool may_be_next(const Statement& statement, uint16_t offset) {
 }
 
 bool contains(const Statement& statement, uint16_t offset) {
-  return statement.begin != kNoPlace && offset >= statement.begin && offset < statement.end;
+  return statement.start != kNoPlace && offset >= statement.start && offset < statement.end;
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ void Breakpoints::begin(uint8_t* code, uint16_t length) {
 void Breakpoints::end() {
   is_halted_ = is_stepping_ = has_open_statement_ = false;
   passed_place_ = step_end_ = kNoPlace;
-  for (Statement& statement : statements_) statement.begin = kNoPlace;
+  for (Statement& statement : statements_) statement.start = kNoPlace;
 }
 
 bool Breakpoints::is_place(uint16_t offset) const {
@@ -70,7 +70,7 @@ void Breakpoints::exchange(uint16_t length) {
   if (is_stepping_) exchange_at(step_end_, length, byte++);
   if (has_open_statement_) {
     for (const Statement& statement : statements_) {
-      if (statement.begin == kNoPlace) continue;
+      if (statement.start == kNoPlace) continue;
       exchange_at(statement.end, length, byte++);
       exchange_at(statement.target, length, byte++);
     }
@@ -93,13 +93,13 @@ void Breakpoints::note_left_statements(const Machine& machine) {
   has_open_statement_ = false;
   for (uint8_t task = 0; task < kAllTasks; task++) {
     Statement& statement = statements_[task];
-    if (statement.begin == kNoPlace) continue;
+    if (statement.start == kNoPlace) continue;
     const uint16_t offset = machine.place_of(task);
     if (contains(statement, offset)) {
       has_open_statement_ = true;
       continue;
     }
-    statement.begin = kNoPlace;
+    statement.start = kNoPlace;
     if (!is_stepping_ || task != stepper_) continue;
     StatementInfo info;
     const bool is_in_check =
@@ -118,11 +118,11 @@ bool Breakpoints::remove_traps(Machine* machine, Status status, bool may_halt) {
   const uint16_t offset = machine->offset();
   const uint8_t task = machine->turn();
   Statement& statement = statements_[task];
-  const bool is_new = statement.begin != offset;
-  const bool was_in = statement.begin != kNoPlace;
+  const bool is_new = statement.start != offset;
+  const bool was_in = statement.start != kNoPlace;
   const bool ends_step = is_stepping_ && task == stepper_ &&
                          (was_in ? may_be_next(statement, offset) : offset == step_end_);
-  if (is_new) statement.begin = kNoPlace;
+  if (is_new) statement.start = kNoPlace;
   if (may_halt && (ends_step || (is_new && is_place(offset)))) {
     enter(*machine);
     is_halted_ = true;

@@ -69,7 +69,7 @@ class Breakpoints {
   uint8_t stepper_;                  // the task that steps
   uint16_t step_end_;                // where that ends, if the task is in no statement
   uint16_t passed_place_;            // where there is no trap in the next tick
-  Statement statements_[kAllTasks];  // where each task has halted; its begin may be kNoPlace
+  Statement statements_[kAllTasks];  // where each task has halted; its start may be kNoPlace
   // The original instructions where the traps are: of each place, of the step's end, and of both
   // ways on from each statement. It is kTrap if there is none.
   uint8_t bytes_[kMostPlaces + 1 + 2 * kAllTasks];

@@ -183,8 +183,8 @@ bool fetch_key(uint8_t kind, uint8_t* key) {
   const bool is_stored = store.current_slot(Area::kOwner) != kNoSlot;
   for (uint8_t k = 0; k < kKeyRoom; k++) {
     key[k] = 0;
-    const uint16_t at = static_cast<uint16_t>(kKeysAt + kind * kKeyRoom + k);
-    if (is_stored && !store.fetch(Area::kOwner, at, key + k)) return false;
+    const uint16_t offset = static_cast<uint16_t>(kKeysAt + kind * kKeyRoom + k);
+    if (is_stored && !store.fetch(Area::kOwner, offset, key + k)) return false;
   }
   return true;
 }

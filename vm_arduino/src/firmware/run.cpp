@@ -39,10 +39,10 @@ Status tick_machine() {
 }
 
 // Records a fault.
-void fault(uint8_t number, uint16_t at) {
+void fault(uint8_t number, uint16_t offset) {
   link.write_checksum();  // the record contains the checksum of its image
   robot_status.fault = number;
-  robot_status.fault_at = at;
+  robot_status.fault_at = offset;
   robot_status.fault_program = get32(run_image + kChecksumAt);
   keep_fault();
   board_faulted();

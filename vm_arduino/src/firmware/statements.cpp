@@ -45,24 +45,24 @@ bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statem
   bool is_check = false;       // of an UNTIL or a WHEN
   uint8_t depth = 0;           // values on the stack
   uint16_t join_end = 0;       // where the last AND_THEN or OR_ELSE ends that is open
-  for (uint16_t at = 0; at < length;) {
-    const bool is_statement_start = depth == 0 && at >= join_end;
+  for (uint16_t offset = 0; offset < length;) {
+    const bool is_statement_start = depth == 0 && offset >= join_end;
     if (is_inside && is_statement_start && !is_check) {
-      info->statement.end = at;
+      info->statement.end = offset;
       return true;
     }
-    if (at == place) {
+    if (offset == place) {
       if (!is_statement_start) return false;
       is_inside = true;
       info->is_in_check = is_check;
     }
-    const DecodeForm form = decode_form_of(code[at]);  // a prefix has one byte, and no effect
+    const DecodeForm form = decode_form_of(code[offset]);  // a prefix has one byte, and no effect
     const ControlRole role = form.role();
-    at = static_cast<uint16_t>(at + form.size());
-    if (code[at - form.size()] == static_cast<uint8_t>(Op::kEscape)) continue;
+    offset = static_cast<uint16_t>(offset + form.size());
+    if (code[offset - form.size()] == static_cast<uint8_t>(Op::kEscape)) continue;
     depth = static_cast<uint8_t>(depth - form.pops() + form.pushes());
     if (role == ControlRole::kJoin) {
-      const uint16_t target = target_of(code, at, form);
+      const uint16_t target = target_of(code, offset, form);
       if (target > join_end) join_end = target;
     } else if (role == ControlRole::kWatch || role == ControlRole::kWhen) {
       is_check = true;
@@ -70,7 +70,7 @@ bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, Statem
       is_check = false;
     }
     if (!is_inside) continue;
-    if (jumps(role)) info->statement.target = target_of(code, at, form);
+    if (jumps(role)) info->statement.target = target_of(code, offset, form);
     if (role == ControlRole::kReturn) info->returns = true;
   }
   return is_inside;

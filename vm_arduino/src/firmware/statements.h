@@ -14,7 +14,7 @@ constexpr uint16_t kNoPlace = 0xffff;
 
 // It goes on at its end, or where it jumps to: no statement has two jumps.
 struct Statement {
-  uint16_t begin;
+  uint16_t start;
   uint16_t end;     // where the next one begins that is no check, or the code's length
   uint16_t target;  // or kNoPlace
 };

@@ -96,14 +96,14 @@ tini_noinline void put_number(int32_t value) {
   }
   uint8_t* const point = line + kWireBytes - 3;
   uint8_t* end = point + 3;
-  uint8_t* at = end;
+  uint8_t* cursor = end;
   do {
-    *--at = static_cast<uint8_t>('0' + cut_digit(&remaining));
-  } while (remaining != 0 || at >= point);
+    *--cursor = static_cast<uint8_t>('0' + cut_digit(&remaining));
+  } while (remaining != 0 || cursor >= point);
   while (end != point && end[-1] == '0') end--;
-  for (; at != end; at++) {
-    if (at == point) put('.');
-    put(*at);
+  for (; cursor != end; cursor++) {
+    if (cursor == point) put('.');
+    put(*cursor);
   }
 }
 

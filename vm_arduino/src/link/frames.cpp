@@ -45,12 +45,12 @@ uint8_t encode_frame(uint8_t* bytes, uint8_t end) {
   uint8_t* const end_zero = bytes + end + kCrcBytes;
   *end_zero = 0;
   uint8_t* zero = bytes;  // the last one
-  uint8_t* at = bytes;
+  uint8_t* cursor = bytes;
   do {
-    if (*++at != 0) continue;
-    *zero = static_cast<uint8_t>(at - zero);
-    zero = at;
-  } while (at != end_zero);
+    if (*++cursor != 0) continue;
+    *zero = static_cast<uint8_t>(cursor - zero);
+    zero = cursor;
+  } while (cursor != end_zero);
   return static_cast<uint8_t>(end + kCrcBytes + 1);
 }
 

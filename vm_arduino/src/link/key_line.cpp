@@ -48,11 +48,11 @@ void KeyLine::skip_blanks() {
 
 // Takes a word that lies in flash, if it comes next.
 bool KeyLine::takes(const char* word) {
-  const uint8_t* at = cursor_;
-  for (uint8_t letter; (letter = letter_at(word)) != 0; word++, at++) {
-    if (*at != letter && (*at & kCapital) != letter) return false;
+  const uint8_t* cursor = cursor_;
+  for (uint8_t letter; (letter = letter_at(word)) != 0; word++, cursor++) {
+    if (*cursor != letter && (*cursor & kCapital) != letter) return false;
   }
-  cursor_ = at;
+  cursor_ = cursor;
   return true;
 }
 

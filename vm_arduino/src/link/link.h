@@ -203,7 +203,7 @@ class Link {
     int32_t value;
     bool is_yes_no;
     uint8_t run;
-    uint16_t at;
+    uint16_t offset;
   };
 
   // A reply before it is written. The detail follows a status other than OK.

@@ -27,15 +27,14 @@ bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !p
 tini_noinline void Link::make_ahead() {
   uint8_t* const bytes = receiver_->bytes();
   const uint8_t end = check_.decode(bytes);  // of too few bytes it wraps around, and is very large
-  const uint8_t begin = payload_at(end);
-  if (end == ahead_end_ || end <= begin || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
+  const uint8_t start = payload_at(end);
+  if (end == ahead_end_ || end <= start || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
       (is_large(end) && bytes[kPayloadAt] != 0) || due_ != 0 || !is_open_ ||
       is_forbidden(kLiveByte) || console_.is_open() || !port_may_write_ahead()) {
     return;
   }
   ahead_end_ = end;
-  is_ready_ =
-      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kOkStatus;
+  is_ready_ = fill(Use::kAhead, bytes + start, static_cast<uint8_t>(end - start)) == kOkStatus;
 }
 
 // Runs the image that was made ahead. False: this frame does not allow it.

@@ -2,9 +2,9 @@
 // meanwhile.
 //
 // A reading delays no program. While it is being sent, a SHOW finds room where it would without:
-// its value waits here instead. `lag_bytes_` is the number of bytes by which the line lags one without
-// readings: the rest of a reading and the port's share of it, at the moment when another message
-// began to wait for it.
+// its value waits here instead. `lag_bytes_` is the number of bytes by which the line lags one
+// without readings: the rest of a reading and the port's share of it, at the moment when another
+// message began to wait for it.
 
 #include "../vm/build.h"
 #include "link.h"

@@ -215,8 +215,8 @@ void Link::fetch() {
     out_[first] = 0;
   }
   put16(length);
-  for (uint16_t at = reply_.detail; at < length && size_ < max_size; at++) {
-    const Answer answer = port_image_byte(at, out_ + size_++);
+  for (uint16_t offset = reply_.detail; offset < length && size_ < max_size; offset++) {
+    const Answer answer = port_image_byte(offset, out_ + size_++);
     if (answer != Answer::kOk) {
       size_ = first;
       put(byte_of(answer));

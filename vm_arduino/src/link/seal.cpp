@@ -73,12 +73,12 @@ void Seal::cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const {
   uint8_t stream[kHashBytes];
   copy_bytes(counter, text, sizeof(uint32_t));
   for (uint8_t k = 0; k < length; k++) {
-    const uint8_t at = k % kHashBytes;
-    if (at == 0) {
+    const uint8_t index = k % kHashBytes;
+    if (index == 0) {
       text[sizeof(uint32_t)] = static_cast<uint8_t>(k / kHashBytes);
       siphash(key_, text, sizeof text, stream);
     }
-    bytes[k] ^= stream[at];
+    bytes[k] ^= stream[index];
   }
 }
 

@@ -81,7 +81,7 @@ class Reader {
 
   // After kRange: the number in thousandths, and the least (0) or the most (4) that goes there.
   int32_t value() const { return static_cast<int32_t>(value_); }
-  int32_t limit(uint8_t at) const;
+  int32_t limit(uint8_t offset) const;
 
  private:
   struct Block;
@@ -163,7 +163,7 @@ class Reader {
   void emit_numbered(uint8_t op, uint8_t first_short, uint8_t number);
   void emit_number(bool is_minus);
   void link(uint8_t* end_operand);
-  void resolve(uint8_t at);
+  void resolve(uint8_t offset);
   void read_first();
   tini_noinline void insert(uint8_t byte);
   void push(uint8_t byte);

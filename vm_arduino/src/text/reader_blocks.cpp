@@ -82,10 +82,10 @@ uint8_t Reader::awaited_word() const {
 
 // BREAK leaves the innermost loop.
 Problem Reader::leave_loop() {
-  uint8_t* at = stack_;
-  for (;; at += sizeof(Block)) {
-    if (at == names_) return Problem::kBreak;
-    Block* const block = reinterpret_cast<Block*>(at);
+  uint8_t* cursor = stack_;
+  for (;; cursor += sizeof(Block)) {
+    if (cursor == names_) return Problem::kBreak;
+    Block* const block = reinterpret_cast<Block*>(cursor);
     if (block->type == kIfBlock) continue;
     if (kReadsDefs && (block->type & kBlockType) >= kDefBlock) return Problem::kBreak;
     emit(byte_of(block->type == kLoopBlock ? Op::kBreakLoop : Op::kBreak));

@@ -55,9 +55,9 @@ void Reader::read_first() {
 // Puts a byte of a reading where the code of this instruction begins.
 void Reader::insert(uint8_t byte) {
   emit(0);
-  for (uint8_t at = code_start_; at < length_; at++) {
-    const uint8_t following = buffer_[at];
-    buffer_[at] = byte;
+  for (uint8_t offset = code_start_; offset < length_; offset++) {
+    const uint8_t following = buffer_[offset];
+    buffer_[offset] = byte;
     byte = following;
   }
   code_start_++;

@@ -47,12 +47,12 @@ void Reader::push(uint8_t byte) {
 
 uint8_t Reader::pop() { return *stack_++; }
 
-// Lets the operand at `at`, and those that it names one after the other, lead here.
-void Reader::resolve(uint8_t at) {
-  while (at != 0) {
-    const uint8_t next = buffer_[at];
-    buffer_[at] = static_cast<uint8_t>(length_ - at - 1);
-    at = next;
+// Lets the operand at `offset`, and those that it names one after the other, lead here.
+void Reader::resolve(uint8_t offset) {
+  while (offset != 0) {
+    const uint8_t next = buffer_[offset];
+    buffer_[offset] = static_cast<uint8_t>(length_ - offset - 1);
+    offset = next;
   }
 }
 
@@ -108,15 +108,15 @@ void Reader::emit_number(bool is_minus) {
 // Whether the word is the one at `entry`, which then moves past it.
 bool Reader::matches(const uint8_t** entry, bool in_flash) {
   const uint8_t* word = buffer_ + length_;
-  const uint8_t* at = *entry;
+  const uint8_t* cursor = *entry;
   bool is_same = true;
   uint8_t letter;
   do {
-    letter = in_flash ? flash_byte(at) : *at;
-    at++;
+    letter = in_flash ? flash_byte(cursor) : *cursor;
+    cursor++;
     if (is_same && letter != *word++) is_same = false;
   } while ((letter & kLastLetter) == 0);
-  *entry = at;
+  *entry = cursor;
   return is_same;
 }
 

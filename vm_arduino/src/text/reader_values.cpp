@@ -203,9 +203,9 @@ void Reader::apply(uint8_t op) {
   }
   value_kinds_ = static_cast<uint16_t>((value_kinds_ & 0xfffe) | is_yes_no);
   if (op > byte_of(Op::kNot)) {
-    const uint8_t at = static_cast<uint8_t>(code_start_ + pop());
-    buffer_[at] = 0;
-    resolve(at);
+    const uint8_t offset = static_cast<uint8_t>(code_start_ + pop());
+    buffer_[offset] = 0;
+    resolve(offset);
   } else {
     emit(op);
   }
@@ -224,10 +224,10 @@ Problem Reader::end_value() {
   return Problem::kNone;
 }
 
-tini_noinline int32_t Reader::limit(uint8_t at) const {
+tini_noinline int32_t Reader::limit(uint8_t offset) const {
   const uint8_t kind = kinds_ & 15;
   const uint8_t* const range = kind == kDeviceRange ? entry_ : kArgumentRanges[kind - kFirstRange];
-  return flash_long(range + at);
+  return flash_long(range + offset);
 }
 
 }  // namespace tiniscript

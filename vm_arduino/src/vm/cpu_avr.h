@@ -39,13 +39,13 @@ inline Type* near(Type* object) {
   return object;
 }
 
-inline void clear(void* at, uint8_t fours) {
+inline void clear(void* start, uint8_t fours) {
   // The compiler's own loop clears one byte at a time or takes more registers.
   asm volatile(
       "1: st %a0+, __zero_reg__\n\tst %a0+, __zero_reg__\n\t"
       "st %a0+, __zero_reg__\n\tst %a0+, __zero_reg__\n\t"
       "dec %1\n\tbrne 1b"
-      : "+e"(at), "+r"(fours)
+      : "+e"(start), "+r"(fours)
       :
       : "memory");
 }

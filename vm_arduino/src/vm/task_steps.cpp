@@ -16,13 +16,13 @@ void Scheduler::find_tasks() {
   TaskRecord* task = task_.records;
   ControlRole kind = ControlRole::kWhen;
   for (;;) {
-    for (uint16_t at = 0; at < length_;) {
-      const DecodeForm form = decode_form_of(code_[at]);
-      at = static_cast<uint16_t>(at + form.size());
+    for (uint16_t offset = 0; offset < length_;) {
+      const DecodeForm form = decode_form_of(code_[offset]);
+      offset = static_cast<uint16_t>(offset + form.size());
       if (form.role() != kind || task == task_.main_task()) continue;
       task->state = kAtFirst;
-      task->pc = at;
-      if (kind == ControlRole::kWhen) task->start = at;
+      task->pc = offset;
+      if (kind == ControlRole::kWhen) task->start = offset;
       task++;
       task_.other_tasks = static_cast<uint8_t>((task_.other_tasks + kOneOther) | kHasOthers);
     }

@@ -60,8 +60,8 @@ uint16_t room_of(uint8_t slot) {
 // The slot of a place.
 uint8_t slot_of(uint16_t place) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
-    const uint16_t begin = place_of(slot);
-    if (place >= begin && place - begin < kBodyAt + room_of(slot)) return slot;
+    const uint16_t start = place_of(slot);
+    if (place >= start && place - start < kBodyAt + room_of(slot)) return slot;
   }
   return kSlots;
 }

@@ -36,15 +36,16 @@ bool is_of_method(uint8_t byte) {
   return false;
 }
 
-size_t skip_blanks(Span line, size_t at) {
-  while (line.has(at) && is_blank(line.bytes[at])) at++;
-  return at;
+size_t skip_blanks(Span line, size_t index) {
+  while (line.has(index) && is_blank(line.bytes[index])) index++;
+  return index;
 }
 
 // Whether these letters are at a place, in upper or lower case.
-bool is_at(Span line, size_t at, const char* word) {
-  for (; *word != 0; word++, at++) {
-    if (!line.has(at) || lower(line.bytes[at]) != lower(static_cast<uint8_t>(*word))) return false;
+bool is_at(Span line, size_t index, const char* word) {
+  for (; *word != 0; word++, index++) {
+    if (!line.has(index) || lower(line.bytes[index]) != lower(static_cast<uint8_t>(*word)))
+      return false;
   }
   return true;
 }
@@ -68,10 +69,10 @@ bool is_known_request(Span line, size_t method_end, size_t target) {
 
 // METHOD TARGET HTTP/
 bool is_request(Span line, size_t target) {
-  size_t at = target;
-  while (line.has(at) && line.bytes[at] > ' ') at++;
-  const size_t version_start = skip_blanks(line, at);
-  return at != target && version_start != at && is_at(line, version_start, "HTTP/");
+  size_t target_end = target;
+  while (line.has(target_end) && line.bytes[target_end] > ' ') target_end++;
+  const size_t version_start = skip_blanks(line, target_end);
+  return target_end != target && version_start != target_end && is_at(line, version_start, "HTTP/");
 }
 
 Protocol sniff_text(const uint8_t* bytes, size_t length) {
