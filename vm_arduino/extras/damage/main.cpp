@@ -119,7 +119,7 @@ constexpr uint8_t kDamages = static_cast<uint8_t>(Damage::kTalkedOver) + 1;
 
 void damage_once(std::string* bytes, Draw* draw) {
   const size_t place = draw->number_below(bytes->size());
-  const size_t between = draw->number_below(bytes->size() + 1);
+  const size_t insert_index = draw->number_below(bytes->size() + 1);
   char& byte = (*bytes)[place];
   switch (static_cast<Damage>(draw->number_below(kDamages))) {
     case Damage::kLost:
@@ -141,7 +141,7 @@ void damage_once(std::string* bytes, Draw* draw) {
       if (place + 1 < bytes->size()) std::swap(byte, (*bytes)[place + 1]);
       break;
     case Damage::kInserted:
-      bytes->insert(between, 1, draw->byte());
+      bytes->insert(insert_index, 1, draw->byte());
       break;
     case Damage::kCut:
       bytes->erase(place, 1 + draw->number_below(19));
@@ -157,11 +157,11 @@ void damage_once(std::string* bytes, Draw* draw) {
       break;
     case Damage::kNoise:
       for (uint32_t count = 1 + draw->number_below(12); count > 0; count--) {
-        bytes->insert(between, 1, draw->byte());
+        bytes->insert(insert_index, 1, draw->byte());
       }
       break;
     case Damage::kTalkedOver:
-      bytes->insert(between, kTexts[draw->number_below(sizeof kTexts / sizeof *kTexts)]);
+      bytes->insert(insert_index, kTexts[draw->number_below(sizeof kTexts / sizeof *kTexts)]);
       break;
   }
 }
@@ -363,7 +363,7 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
     is_framed = true;
     break;
   }
-  const auto between = [&](size_t start, size_t end) {
+  const auto text_between = [&](size_t start, size_t end) {
     std::string part;
     for (size_t k = start; k < end; k++) part += static_cast<char>(bytes_so_far[k].byte);
     return part;
@@ -374,7 +374,7 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
     if (end < last_index) {
       if (end == packet_start || !is_end(bytes_so_far[end].byte)) {  // a frame
         const bool is_held =
-            is_end(byte) && is_strict(between(std::max(packet_start, restart), last_index));
+            is_end(byte) && is_strict(text_between(std::max(packet_start, restart), last_index));
         return is_held ? Law::kInFrame : Law::kNone;
       }
     } else if (end == packet_start && !is_printable(byte)) {
@@ -385,7 +385,7 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
   }
   size_t line = last_index;
   while (line > packet_start && !is_end(bytes_so_far[line - 1].byte)) line--;
-  const std::string bytes = remove_keys(between(std::max(line, restart), last_index));
+  const std::string bytes = remove_keys(text_between(std::max(line, restart), last_index));
   const bool is_after_zero = is_framed && line == packet_start;
   // A line of text that has begun before a silence is the same one for some: a control byte in it, say.
   size_t blank_start = line;
@@ -396,7 +396,7 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
       std::all_of(bytes_so_far.begin() + static_cast<long>(blank_start),
                   bytes_so_far.begin() + static_cast<long>(line),
                   [](const TypedByte& typed_byte) { return typed_byte.byte <= ' '; });
-  const std::string whole_line = between(line, is_end(byte) ? last_index : last_index + 1);
+  const std::string whole_line = text_between(line, is_end(byte) ? last_index : last_index + 1);
   if (!whole_line.empty() && whole_line.find_first_not_of('\3') == std::string::npos) {
     return is_new ? Law::kWaits : Law::kEither;
   }
@@ -406,12 +406,12 @@ Law law_of(const std::vector<TypedByte>& bytes_so_far, size_t restart, bool is_r
     return law == Law::kStop && is_after_zero && !is_strict(bytes) ? Law::kWaits : law;
   }
   if (byte != 0) {
-    return is_running
-               ? law_of_open_line(remove_keys(between(std::max(line, restart), last_index + 1)))
-               : Law::kNone;
+    return is_running ? law_of_open_line(
+                            remove_keys(text_between(std::max(line, restart), last_index + 1)))
+                      : Law::kNone;
   }
   bool has_begun = false;
-  for (const char letter : remove_keys(between(line, last_index))) {
+  for (const char letter : remove_keys(text_between(line, last_index))) {
     const bool is_skipped = static_cast<uint8_t>(letter) <= ' ' || letter == 0x7f;
     if (!has_begun && is_skipped) continue;
     has_begun = true;

@@ -96,7 +96,7 @@ void run_turns(uint32_t count) {
 // A millisecond begins, in which bytes arrive.
 void receive(const Bytes& data, size_t offset, size_t count) {
   chip.received.append(reinterpret_cast<const char*>(data.data.get()) + offset, count);
-  chip.sending = chip.sending > kBytesPerMs ? chip.sending - kBytesPerMs : 0;
+  chip.unsent_bytes = chip.unsent_bytes > kBytesPerMs ? chip.unsent_bytes - kBytesPerMs : 0;
 }
 
 // S: bytes arrive, the button goes down (1) or up (2), so many turns follow. Says what the robot

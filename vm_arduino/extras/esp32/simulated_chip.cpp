@@ -569,7 +569,7 @@ int HardwareSerial::available() {
 // Behind the UART's FIFO the driver may have a ring. Then the core adds all of that ring, full or not;
 // a byte takes 32 of it, with its length and two heads, and waits where there is no room.
 int HardwareSerial::availableForWrite() {
-  const size_t waiting = chip.sending < kFifoBytes ? chip.sending : kFifoBytes;
+  const size_t waiting = chip.unsent_bytes < kFifoBytes ? chip.unsent_bytes : kFifoBytes;
   return static_cast<int>(kFifoBytes - waiting + chip.send_room);
 }
 
@@ -582,8 +582,8 @@ int HardwareSerial::read() {
 
 size_t HardwareSerial::write(uint8_t byte) {
   const size_t room = kFifoBytes + chip.send_room / kRingBytes;
-  expect(chip.sending < room, "a byte that a serial port without room makes wait");
+  expect(chip.unsent_bytes < room, "a byte that a serial port without room makes wait");
   chip.sent_bytes += static_cast<char>(byte);
-  chip.sending++;
+  chip.unsent_bytes++;
   return 1;
 }

@@ -51,8 +51,8 @@ struct SimulatedChip {
   std::string received;  // waits for the firmware
   std::string sent_bytes;
   size_t receive_room = 256;
-  size_t send_room = 0;  // behind the UART's own 128 bytes
-  size_t sending = 0;    // bytes that the UART has still to send
+  size_t send_room = 0;     // behind the UART's own 128 bytes
+  size_t unsent_bytes = 0;  // bytes that the UART has still to send
   bool has_uart = false;
   bool tells_framing = false;
   bool is_line_held = false;  // low

@@ -124,8 +124,8 @@ void serve(int connection) {
   if (id == std::string::npos || id + 13 > greeting.size()) return;
   std::string topic = "tiniscript/aula/" + greeting.substr(id + 5, 8) + "/in/0badcafe";
   topic = std::string({0, static_cast<char>(topic.size())}) + topic;
-  const std::string accepted = mqtt(0x20, std::string(2, 0)) + mqtt(0x90, std::string("\0\1\0\0", 4));
-  send(connection, accepted.data(), accepted.size(), MSG_NOSIGNAL);
+  const std::string acks = mqtt(0x20, std::string(2, 0)) + mqtt(0x90, std::string("\0\1\0\0", 4));
+  send(connection, acks.data(), acks.size(), MSG_NOSIGNAL);
   const std::string* const messages[] = {&kFrame, &kDamaged, &kLine, &kStop};
   for (unsigned turn = 0; turn < 200 && is_there && !is_over; turn++) {
     const bool leaves = turn % 50 == 49;
@@ -212,7 +212,7 @@ int main(int, char** words) {
     if (turn == 0 || (turn % 4000 >= 2000 && turn % 4000 < 2200)) use_broker();
     loop();
     pass_us(50);
-    chip.sending = 0;
+    chip.unsent_bytes = 0;
     chip.sent_bytes.clear();
   }
   is_over = true;

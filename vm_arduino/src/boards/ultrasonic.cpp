@@ -60,7 +60,7 @@ struct Sonar {
   uint8_t ages_ms;      // when the ages were right
   uint8_t last_pinged;  // the sensor of the current ping
   uint16_t ping_us;     // when the last ping of any sensor was sent
-  uint16_t begun_us;    // when the trigger, or a stale echo, went high
+  uint16_t start_us;    // when the trigger, or a stale echo, went high
   Reading readings[kUltrasonics];
 };
 
@@ -69,8 +69,8 @@ Sonar sonar;
 // With only one sensor, the compiler knows which one.
 tini_always_inline uint8_t pinged_sensor() { return kUltrasonics == 1 ? 0 : sonar.last_pinged; }
 
-tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t then_us) {
-  return static_cast<uint16_t>(now_us - then_us);
+tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t earlier_us) {
+  return static_cast<uint16_t>(now_us - earlier_us);
 }
 
 void on_change() {
@@ -164,7 +164,7 @@ void lower_trigger() {
 bool end_ping(uint16_t* us) {
   Sonar* const near_sonar = near(&sonar);
   if (near_sonar->ping == Ping::kTriggered) {
-    if (elapsed_us(clock_us(), near_sonar->begun_us) < kTriggerUs) return false;
+    if (elapsed_us(clock_us(), near_sonar->start_us) < kTriggerUs) return false;
     listen(true);
     lower_trigger();
     near_sonar->ping = Ping::kListening;
@@ -195,7 +195,7 @@ void begin(uint8_t number) {
   Sonar* const near_sonar = near(&sonar);
   if (kUltrasonics != 1) near_sonar->last_pinged = number;
   write(ultrasonic_at(number).trigger, true);
-  near_sonar->begun_us = clock_us();
+  near_sonar->start_us = clock_us();
   near_sonar->ping = Ping::kTriggered;
 }
 
@@ -232,10 +232,10 @@ bool measure(uint8_t number) {
     if (!is_busy) return false;
     if (!near_sonar->is_held) {
       near_sonar->is_held = true;
-      near_sonar->begun_us = clock_us();
+      near_sonar->start_us = clock_us();
       return false;
     }
-    if (elapsed_us(clock_us(), near_sonar->begun_us) < kLimitUs) return false;
+    if (elapsed_us(clock_us(), near_sonar->start_us) < kLimitUs) return false;
     near_sonar->is_held = false;
     if (reading.age >= kOldAge) {
       revive(ultrasonic_at(number).echo);

@@ -60,7 +60,7 @@ struct Guide {
   int8_t min_power;       // power that moves a wheel
   uint8_t roll_ms;        // a wheel rolls on as far as it would go in this time
   uint16_t turn_ms;       // when the controller last did something
-  uint16_t begun_ms;      // when the move began
+  uint16_t start_ms;      // when the move began
   uint16_t off_ms;        // when both motors were turned off, or other driving or a correction began
   uint16_t off_position;  // where both wheels were then, together, modulo 2^16,
   uint16_t off_roll;      // and how far they were to roll
@@ -72,8 +72,8 @@ struct Guide {
 
 Guide guide;
 
-uint16_t elapsed_ms(uint16_t then_ms) {
-  return static_cast<uint16_t>(static_cast<uint16_t>(now_ms) - then_ms);
+uint16_t elapsed_ms(uint16_t earlier_ms) {
+  return static_cast<uint16_t>(static_cast<uint16_t>(now_ms) - earlier_ms);
 }
 
 int32_t clamp(int32_t value, int32_t limit) {
@@ -111,9 +111,9 @@ uint16_t distance_after(uint16_t time_ms) {
 // compared with that of the third: wheels speed up as they roll on.
 void find_first_edge(Wheel* wheel) {
   const uint16_t first_distance =
-      distance_after(static_cast<uint16_t>(wheel->previous_edge_ms - guide.begun_ms));
+      distance_after(static_cast<uint16_t>(wheel->previous_edge_ms - guide.start_ms));
   const uint16_t next_distance =
-      static_cast<uint16_t>(distance_after(elapsed_ms(guide.begun_ms)) - first_distance);
+      static_cast<uint16_t>(distance_after(elapsed_ms(guide.start_ms)) - first_distance);
   const uint32_t first =
       next_distance == 0 ? kEdge : uint32_t{first_distance} * (2 * kEdge) / next_distance;
   wheel->first = first < kEdge ? static_cast<uint8_t>(first) : kEdge;
@@ -237,12 +237,12 @@ void let_roll(Wheel* wheel) {
 
 // The distance that the wheels would have rolled by now without other driving is part of the move.
 void coast() {
-  uint16_t rolled_ms = elapsed_ms(guide.off_ms);
-  if (rolled_ms > 2 * guide.roll_ms) rolled_ms = static_cast<uint16_t>(2 * guide.roll_ms);
+  uint16_t coast_ms = elapsed_ms(guide.off_ms);
+  if (coast_ms > 2 * guide.roll_ms) coast_ms = static_cast<uint16_t>(2 * guide.roll_ms);
   for (Wheel& wheel : guide.wheels) {
     if (wheel.two_edges_ms == 0) continue;
     put(&wheel, rest_position(wheel) +
-                    static_cast<int32_t>(uint32_t{rolled_ms} * kEdge / wheel.two_edges_ms));
+                    static_cast<int32_t>(uint32_t{coast_ms} * kEdge / wheel.two_edges_ms));
     wheel.two_edges_ms = 0;
   }
 }
@@ -276,12 +276,12 @@ void drive() {
 }
 
 // Lets the wheels be driven from now on, and counts from here.
-void begin_to_drive(uint16_t stood_ms) {
+void begin_to_drive(uint16_t standstill_ms) {
   for (uint8_t k = 0; k < kWheels; k++) {
     Wheel& wheel = guide.wheels[k];
     wheel.edge_count = board_edges(k != 0);
     wheel.edge_ms = static_cast<uint16_t>(now_ms);
-    wheel.previous_edge_ms = static_cast<uint16_t>(now_ms - stood_ms);
+    wheel.previous_edge_ms = static_cast<uint16_t>(now_ms - standstill_ms);
     wheel.two_edges_ms = 0;
     wheel.is_returning = wheel.is_standing = false;
     wheel.spare_edges = 0;
@@ -307,10 +307,11 @@ void settle() {
     if (missing >= kEdge || missing <= -kEdge) misses_target = true;
     place_of_both = static_cast<uint16_t>(place_of_both + rest_position(wheel));
   }
-  const int16_t rolled = static_cast<int16_t>(place_of_both - guide.off_position);
-  if (guide.off_roll > 0 && rolled > 0) {  // the next move knows better
+  const int16_t measured_roll = static_cast<int16_t>(place_of_both - guide.off_position);
+  if (guide.off_roll > 0 && measured_roll > 0) {  // the next move knows better
     const int32_t expected_roll = guide.off_roll;
-    const int32_t new_roll_ms = guide.roll_ms * (3 * expected_roll + rolled) / (4 * expected_roll);
+    const int32_t new_roll_ms =
+        guide.roll_ms * (3 * expected_roll + measured_roll) / (4 * expected_roll);
     guide.roll_ms = static_cast<uint8_t>(new_roll_ms < kLeastRollMs  ? kLeastRollMs
                                          : new_roll_ms > kMostRollMs ? kMostRollMs
                                                                      : new_roll_ms);
@@ -374,7 +375,7 @@ void guide_go(int8_t left, int8_t right, int32_t distance) {
   }
   guide.wheels[0].is_backward = left < 0;
   guide.wheels[1].is_backward = right < 0;
-  guide.begun_ms = static_cast<uint16_t>(now_ms);
+  guide.start_ms = static_cast<uint16_t>(now_ms);
   begin_to_drive(0);
 }
 

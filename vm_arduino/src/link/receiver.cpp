@@ -35,7 +35,7 @@ inline void Receiver::end_silence() {
   }
   line_ = line_ >= Line::kBegun ? Line::kPaused : Line::kNothing;
   keys_.begin();
-  typed_.begin();
+  typed_stop_.begin();
 }
 
 // Frames come from here on. A 0x00 ends a frame, or a line that is cut: a typed stop counts all the
@@ -47,7 +47,7 @@ inline bool Receiver::put_zero() {
     is_stop = !end_packet(InputKind::kFrame) && mode_ == Mode::kStopInFrame;
     is_cut_ = false;
   } else if (mode_ == Mode::kLine || line_ >= Line::kBegun) {
-    is_stop = is_line_printable_ && typed_.kind() != TypedStop::kNone;
+    is_stop = is_line_printable_ && typed_stop_.kind() != TypedStop::kNone;
     is_cut_ = true;
     if (!is_stop) cut_line();
     if (is_stop && mode_ == Mode::kLine && line_ != Line::kHeld) {
@@ -98,15 +98,15 @@ inline bool Receiver::put_text(uint8_t byte) {
 
 // Looks for a stop that does not wait for the end of its line.
 inline bool Receiver::watch(uint8_t byte) {
-  typed_.put(byte);
-  if (!typed_.is_urgent() || !is_running()) return false;
-  typed_.begin();
+  typed_stop_.put(byte);
+  if (!typed_stop_.is_urgent() || !is_running()) return false;
+  typed_stop_.begin();
   return stop_at_mark(mode_ == Mode::kText);
 }
 
 // A line has ended; `is_there`: all of it waits to be read. After a 0x00 only S and STOP stop at once.
 bool Receiver::end_line(bool is_there) {
-  const TypedStop::Kind kind = typed_.kind();
+  const TypedStop::Kind kind = typed_stop_.kind();
   const bool was_text = mode_ < Mode::kBegin;
   begin_line();
   mode_ = Mode::kText;
@@ -140,12 +140,12 @@ inline bool Receiver::put_packet(uint8_t byte) {
 inline bool Receiver::put_frame(uint8_t byte) {
   if (ends_line(byte)) {
     may_be_line_ = true;
-    if (typed_.kind() == TypedStop::kStrict) mode_ = Mode::kStopInFrame;
+    if (typed_stop_.kind() == TypedStop::kStrict) mode_ = Mode::kStopInFrame;
   }
   if (is_control(byte)) {
-    typed_.begin();
+    typed_stop_.begin();
   } else {
-    typed_.put(byte);
+    typed_stop_.put(byte);
   }
   if (mode_ != Mode::kStopInFrame || !is_dropping_) return false;
   mode_ = Mode::kFrame;  // what is dropped is never whole
@@ -198,7 +198,7 @@ bool Receiver::end_packet(InputKind kind) {
 void Receiver::begin_line() {
   line_ = Line::kNothing;
   keys_.begin();
-  typed_.begin();
+  typed_stop_.begin();
 }
 
 // Leaves a mark after a typed stop, where all before it waits to be read. A stop that finds no place

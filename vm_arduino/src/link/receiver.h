@@ -115,7 +115,9 @@ class Receiver : private PacketPlaces<kWindow> {
   bool is_held() const { return mode() == Mode::kStopInFrame || line() == Line::kHeld; }
 
   // Whether the line so far would be a typed stop if it ended here.
-  bool is_at_stop() const { return mode() < Mode::kFrame && typed_.kind() != TypedStop::kNone; }
+  bool is_at_stop() const {
+    return mode() < Mode::kFrame && typed_stop_.kind() != TypedStop::kNone;
+  }
 
   // Whether a second of silence may end a person's line: all of it is printable, or CR or LF is in
   // it.
@@ -223,7 +225,7 @@ class Receiver : private PacketPlaces<kWindow> {
   bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
   bool is_dropping_;  // the packet finds no place
   bool may_be_line_;  // the packet may be a person's
-  TypedStop typed_;
+  TypedStop typed_stop_;
   KeySequence keys_;
   volatile bool is_lost_;
   volatile bool has_heard_;

@@ -323,8 +323,8 @@ tini_noinline uint8_t Store::newest_slot(Area area, uint8_t end) const {
   const uint8_t first = slot_states_[slot];
   const uint8_t second = slot_states_[slot + 1];
   if (second >= end) return first >= end ? kNoSlot : slot;
-  const uint8_t ahead = static_cast<uint8_t>(second - first);
-  const bool is_first = first < end && ahead % kGenerations >= kGenerations / 2;
+  const uint8_t difference = static_cast<uint8_t>(second - first);
+  const bool is_first = first < end && difference % kGenerations >= kGenerations / 2;
   return is_first ? slot : slot ^ 1;
 }
 

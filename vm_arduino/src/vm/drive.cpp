@@ -187,9 +187,9 @@ tini_noclone bool Drive::comes_to_end() {
 // still.
 tini_noinline void Drive::end_move() {
   TaskRecord* const task = task_.current;
-  const bool drove = task->is(kDrives);
+  const bool was_driving = task->is(kDrives);
   end_move_of(task);
-  if (drove) set_motors(kMotorsOff);
+  if (was_driving) set_motors(kMotorsOff);
 }
 
 // Waits for the motors where its move needs them and a higher task has them.

@@ -53,8 +53,8 @@ tini_always_inline void next_pulse() {
     return;
   }
   cli();
-  const uint16_t soon = static_cast<uint16_t>(TCNT1 + kSoonTicks);
-  OCR1A = soon < kFrameTicks ? kFrameTicks : soon;
+  const uint16_t earliest = static_cast<uint16_t>(TCNT1 + kSoonTicks);
+  OCR1A = earliest < kFrameTicks ? kFrameTicks : earliest;
 }
 
 }  // namespace

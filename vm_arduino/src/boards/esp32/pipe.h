@@ -45,9 +45,10 @@ class Ring {
   // Leaves out all bytes before a place that `end` has given, if that is still to come.
   void drop_to(uint16_t place) {
     const uint16_t write_index = __atomic_load_n(&write_index_, __ATOMIC_ACQUIRE);
-    const uint16_t dropped = static_cast<uint16_t>((place + kPlaces - read_index_) % kPlaces);
-    const uint16_t unread = static_cast<uint16_t>((write_index + kPlaces - read_index_) % kPlaces);
-    if (dropped <= unread) __atomic_store_n(&read_index_, place, __ATOMIC_RELEASE);
+    const uint16_t dropped_count = static_cast<uint16_t>((place + kPlaces - read_index_) % kPlaces);
+    const uint16_t unread_count =
+        static_cast<uint16_t>((write_index + kPlaces - read_index_) % kPlaces);
+    if (dropped_count <= unread_count) __atomic_store_n(&read_index_, place, __ATOMIC_RELEASE);
   }
 
   // Anybody's: the place of the next byte.

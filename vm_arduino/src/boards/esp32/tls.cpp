@@ -115,10 +115,10 @@ WifiState tls_begin(int socket, const BrokerSettings& settings) {
   mbedtls_ssl_init(&connection);
   mbedtls_ssl_config_init(&config);
   mbedtls_x509_crt_init(&trusted_certificate);
-  const int parsed =
+  const int parse_status =
       mbedtls_x509_crt_parse_der(&trusted_certificate, settings.trust, settings.trust_bytes);
-  if (parsed != 0) {
-    const bool is_memory = parsed == MBEDTLS_ERR_X509_ALLOC_FAILED;
+  if (parse_status != 0) {
+    const bool is_memory = parse_status == MBEDTLS_ERR_X509_ALLOC_FAILED;
     return is_memory ? WifiState::kNoTls : WifiState::kUntrusted;
   }
   if (mbedtls_ssl_config_defaults(&config, MBEDTLS_SSL_IS_CLIENT, MBEDTLS_SSL_TRANSPORT_STREAM,

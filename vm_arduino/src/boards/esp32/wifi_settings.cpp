@@ -88,7 +88,7 @@ uint32_t address;  // its bytes in their order
 
 // The network's task.
 uint32_t last_try_ms;
-uint32_t began_ms;
+uint32_t start_ms;
 bool is_young;
 bool is_announced;
 bool is_host;  // its access point is there
@@ -178,7 +178,7 @@ void begin() {
   WiFi.setHostname(radio_name().host);
   set_state(WifiState::kSearching);
   __atomic_store_n(&disconnect_reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
-  last_try_ms = began_ms = static_cast<uint32_t>(millis());
+  last_try_ms = start_ms = static_cast<uint32_t>(millis());
   set_young(true, kRestartMask);
   if (used_settings.mode() == WifiMode::kAccessPoint) {
     host();
@@ -226,7 +226,7 @@ bool wifi_is_there() { return __atomic_load_n(&state, __ATOMIC_RELAXED) == kRead
 bool wifi_turn() {
   if (kept_settings.take_change(&used_settings)) begin();
   if (used_settings.mode() == WifiMode::kOff || used_settings.rests()) return false;
-  if (is_young && static_cast<uint32_t>(millis()) - began_ms >= kYoungMs) set_young(false, 0);
+  if (is_young && static_cast<uint32_t>(millis()) - start_ms >= kYoungMs) set_young(false, 0);
   if (used_settings.mode() == WifiMode::kAccessPoint) {
     if (!is_host && begin_try()) host();
     if (!is_host) return false;
