@@ -67,9 +67,9 @@ uint32_t run(const Image& image, const Limits& limits) {
     const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
     robot.must_wait = false;
     const Status status = machine.tick(now_ms + limits.begin_ms, budget);
-    const uint8_t executed = static_cast<uint8_t>(budget - machine.budget_left());
-    steps += executed;
-    steps_left -= executed;
+    const uint8_t used_budget = static_cast<uint8_t>(budget - machine.budget_left());
+    steps += used_budget;
+    steps_left -= used_budget;
     if (status >= Status::kDone) {
       if (!robot.is_off) robot.say("NOT OFF\n");
       // nothing happens any more

@@ -286,7 +286,7 @@ void answer_protocol(RequestReader* request, Writer* answer) {
 void answer_motion_time(RequestReader*, Writer* answer) {
   answer->u32(turns_until_motion);
   answer->u32(static_cast<uint32_t>(motion_ns));
-  answer->u32(chip.rests);
+  answer->u32(chip.sleep_count);
 }
 
 // C: the line of the cable goes high (0) or low (1), or spoils the next byte (2).

@@ -95,7 +95,7 @@ uint64_t next_event() {
   if (echo_falls_us < next_us) next_us = echo_falls_us;
   if (next_task_us != nullptr && next_task_us() < next_us) next_us = next_task_us();
   if (chip.restart_ms != 0) {
-    const uint64_t restart_us = chip.fed_us + chip.restart_ms * uint64_t{1000};
+    const uint64_t restart_us = chip.last_feed_us + chip.restart_ms * uint64_t{1000};
     if (restart_us < next_us) next_us = restart_us;
   }
   return next_us;
@@ -466,13 +466,13 @@ esp_err_t esp_task_wdt_delete(TaskHandle_t handle) {
 esp_err_t esp_task_wdt_add(TaskHandle_t) {
   expect(chip.restart_ms != 0, "the task watchdog before it has begun");
   chip.is_watched = true;
-  chip.fed_us = chip.now_us;
+  chip.last_feed_us = chip.now_us;
   return ESP_OK;
 }
 
 esp_err_t esp_task_wdt_reset(void) {
   expect(chip.is_watched, "the task watchdog fed by who is not watched");
-  chip.fed_us = chip.now_us;
+  chip.last_feed_us = chip.now_us;
   return ESP_OK;
 }
 

@@ -68,12 +68,12 @@ struct SimulatedChip {
   bool is_off = false;  // since then nothing is written
 
   uint32_t restart_ms = 0;  // of the task watchdog; 0: it does not run
-  uint64_t fed_us = 0;
+  uint64_t last_feed_us = 0;
   bool is_watched = false;   // the main loop, by it
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
-  uint32_t slept_us = 0;  // by the main loop, and not yet counted as turns of it
-  uint32_t rests = 0;     // how many times it slept
+  uint32_t slept_us = 0;     // by the main loop, and not yet counted as turns of it
+  uint32_t sleep_count = 0;  // how many times it slept
 
   bool is_heap_full = false;  // no stack finds room
   std::atomic<bool> has_wifi{false};

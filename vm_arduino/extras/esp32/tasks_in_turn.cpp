@@ -98,7 +98,7 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const,
 void vTaskDelay(const TickType_t xTicksToDelay) {
   expect_free("vTaskDelay in a critical section");
   if (current == &main_loop) {
-    chip.rests++;
+    chip.sleep_count++;
     chip.slept_us += xTicksToDelay * 1000;
     return pass_us(uint64_t{xTicksToDelay} * 1000);
   }

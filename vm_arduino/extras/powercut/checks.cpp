@@ -41,11 +41,11 @@ const char* run_checks() {
   const Content a = random_image(20);
   const Content b = random_image(20);
   const Content c = random_image(kStoredCodeBytes);
-  const Content large = random_image(kStoredCodeBytes + 1);
+  const Content large_image = random_image(kStoredCodeBytes + 1);
   Content record = random_record(Area::kFault);
   const Content same_record = record;
   Store store;
-  Store later;
+  Store later_store;
   memory.fill(0xff);
 
   // an empty memory
@@ -61,8 +61,8 @@ const char* run_checks() {
   expect(!store.begin_save_record(Area::kFault, record.data()));
   run(&store, false, 2000);
   expect(store.state() == StoreState::kSaving && store.is_busy());
-  start(&later);
-  expect(has(later, {}));
+  start(&later_store);
+  expect(has(later_store, {}));
   memory.fill(0xff);
   start(&store);
   expect(save(&store, a) && save(&store, b));
@@ -73,7 +73,7 @@ const char* run_checks() {
   expect(store.begin_save(c.data()));
   run(&store, false, 5000);
   expect(has(store, b));
-  later = store;
+  later_store = store;
   run(&store, true);
   expect(store.state() == StoreState::kSaved && has(store, c));
 
@@ -86,8 +86,8 @@ const char* run_checks() {
   expect(store.is_ready_to_commit() && !store.is_committing());
   store.give_up();
   expect(!store.is_busy() && has(store, c) && !store.is_ready_to_commit());
-  start(&later);
-  expect(has(later, c));
+  start(&later_store);
+  expect(has(later_store, c));
   expect(store.begin_save(a.data()));
   run(&store, false, 5000);
   store.tick(true);
@@ -98,8 +98,8 @@ const char* run_checks() {
   expect(!store.is_committing());
   store.give_up();
   expect(!store.is_busy() && has(store, c));
-  start(&later);
-  expect(has(later, a));
+  start(&later_store);
+  expect(has(later_store, a));
   memory.is_writing = false;
   start(&store);
   expect(save(&store, c) && save(&store, b) && save(&store, c));
@@ -107,7 +107,7 @@ const char* run_checks() {
   // what is stored already costs nothing
   uint32_t writes = memory.writes;
   expect(save(&store, c) && memory.writes == writes);
-  expect(!store.begin_save(large.data()));
+  expect(!store.begin_save(large_image.data()));
 
   // the largest program; then what was there before the last, of which hardly a byte has changed
   start(&store);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint8_t kMostReadings = 12;  // on a slow line they delay the end of a run by that much
 constexpr uint8_t kSensorsOfKits = 32;
-constexpr uint8_t kAll = kSensorsOfKits + kRemoteRoom;
+constexpr uint8_t kAllSensors = kSensorsOfKits + kRemoteRoom;
 
 // A bit for each sensor.
 class Sensors {
@@ -27,17 +27,17 @@ class Sensors {
   void clear() {
     for (uint8_t& byte : bytes_) byte = 0;
   }
-  // The first one, or kAll.
+  // The first one, or kAllSensors.
   uint8_t first() const {
     uint8_t sensor = 0;
-    while (sensor < kAll && !has(sensor)) sensor++;
+    while (sensor < kAllSensors && !has(sensor)) sensor++;
     return sensor;
   }
 
  private:
   static uint8_t bit(uint8_t sensor) { return static_cast<uint8_t>(1 << sensor % 8); }
 
-  uint8_t bytes_[(kAll + 7) / 8];
+  uint8_t bytes_[(kAllSensors + 7) / 8];
 };
 
 ReadingReport reports[kMostReadings];
@@ -73,7 +73,7 @@ void port_tell_readings(bool is_on) {
   if (!were_noted) begin_readings();
 }
 
-bool port_has_reading() { return count != 0 || dropped_sensors.first() != kAll; }
+bool port_has_reading() { return count != 0 || dropped_sensors.first() != kAllSensors; }
 
 ReadingReport port_next_reading() {
   if (count == 0) {

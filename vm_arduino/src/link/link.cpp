@@ -297,7 +297,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kStop:
       stop(Cause::kMessage);
-      if (kHasOwners && may(is_teacher())) rights_ |= kHeldBack;
+      if (kHasOwners && is_authorized(is_teacher())) rights_ |= kHeldBack;
       break;
     case Message::kClear:
       answer = clear();
@@ -354,7 +354,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
 }
 
 Answer Link::clear() {
-  if ((rights_ & kHeldBack) != 0 && !may(is_teacher())) return Answer::kHeldBack;
+  if ((rights_ & kHeldBack) != 0 && !is_authorized(is_teacher())) return Answer::kHeldBack;
   rights_ &= static_cast<uint8_t>(~kHeldBack);
   port_release();
   return Answer::kOk;

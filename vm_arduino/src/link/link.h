@@ -251,7 +251,7 @@ class Link {
 
   // owners: `link_owners.cpp`
   bool is_forbidden(uint8_t type) const;
-  bool may(bool has_right) const;
+  bool is_authorized(bool has_right) const;
   Answer claim(const uint8_t* payload, uint8_t length);
   uint8_t authenticate(const uint8_t* payload, uint8_t length);
   Answer allow_text(const uint8_t* payload);
@@ -379,7 +379,7 @@ class Link {
   uint16_t length_;                  // number of bytes after the checksum
   uint16_t next_;                    // offset of the next one
   uint8_t* image_without_checksum_;  // the taken image without a checksum yet, or nullptr
-  uint8_t* made_image_;              // the image that was made last
+  uint8_t* last_image_;              // the image that was made last
   uint8_t ahead_end_;                // end of the payload of an image made ahead, or 0
   bool is_ready_;                    // it is `made_image_`, and may start if the frame ends there
   // Output.

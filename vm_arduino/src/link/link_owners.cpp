@@ -43,7 +43,7 @@ bool Link::is_forbidden(uint8_t type) const {
 }
 
 // Whether the sender of the current frame has a right: under a seal, only sealed frames have it.
-bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
+bool Link::is_authorized(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
 
 tini_noinline void Link::expire() {
   Identity& identity = port_identity();
@@ -73,7 +73,8 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
   Answer answer = port_key(kind, key);
   if (answer != Answer::kOk) return answer;
   const bool is_teachers = kind == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
-  const bool is_allowed = is_teachers ? may(is_teacher()) : !has(kOwned) || may(has(kYours));
+  const bool is_allowed =
+      is_teachers ? is_authorized(is_teacher()) : !has(kOwned) || is_authorized(has(kYours));
   const bool is_given = is_key(new_key);
   // A claim that is repeated because its answer was lost comes without authority.
   if (are_equal(key, new_key, kKeyBytes) && (is_given || is_allowed)) {

@@ -50,7 +50,7 @@ bool Link::go_live() {
   reply_.seq = last_reply_.seq = bytes[kSeqAt];
   reply_.status = last_reply_.status = kOkStatus;
   last_epoch_ = epoch_;
-  image_without_checksum_ = made_image_;
+  image_without_checksum_ = last_image_;
   finish(kRun, true);
   return true;
 }
@@ -82,7 +82,7 @@ uint8_t Link::make_room(Use use, uint16_t length) {
     const Answer answer = port_prepare_upload(is_live);
     if (answer != Answer::kOk) return refuse(answer, 0);
   }
-  made_image_ = image;
+  last_image_ = image;
   drop_ahead();
   image[kMagicAt] = 'T';
   image[kMagicAt + 1] = 'S';
@@ -117,7 +117,7 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   }
   const uint8_t refusal = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
   if (refusal != kOkStatus) return refusal;
-  uint8_t* const image = made_image_;
+  uint8_t* const image = last_image_;
   image[kIsaMajorAt] = kIsaMajor;
   image[kIsaMinorAt] = verdict.minor();
   image[kStartAt] = start;
@@ -135,7 +135,7 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
 uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t refusal = fill(is_live ? Use::kLive : Use::kStored, payload, length);
   if (refusal != kOkStatus) return refusal;
-  image_without_checksum_ = made_image_;
+  image_without_checksum_ = last_image_;
   const uint8_t mode = payload[kProgramModeAt];
   finish(mode, is_live);
   if (kHasBreakpoints && is_live && (mode & kHalts) != 0) {
@@ -159,8 +159,8 @@ uint8_t Link::begin_program(const uint8_t* payload) {
   const uint16_t length = static_cast<uint16_t>(header[kHeaderLengthAt - kFirstAt] + code_length);
   refusal = make_room(Use::kStored, length);
   if (refusal != kOkStatus) return refusal;
-  copy_bytes(header, made_image_ + kFirstAt, kChecksumAt - kFirstAt);
-  image_ = made_image_;
+  copy_bytes(header, last_image_ + kFirstAt, kChecksumAt - kFirstAt);
+  image_ = last_image_;
   mode_ = mode;
   length_ = static_cast<uint16_t>(length - kAfterChecksum);
   next_ = 0;

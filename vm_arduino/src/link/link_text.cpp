@@ -51,7 +51,7 @@ Remark Link::start_text(const Console& console) {
            reader->length(), false) != static_cast<uint8_t>(Answer::kOk)) {
     return Remark::kRefused;
   }
-  uint8_t* const image = made_image_;
+  uint8_t* const image = last_image_;
   port_take_text(image, start != 0);
   image_without_checksum_ = image;  // its first instruction does not wait for the checksum
   note_typed(true);

@@ -80,7 +80,7 @@ void listen() {
 // not identified itself yet; so an owner's stop is never kept out. Owners keep theirs while they
 // speak.
 Client* free_place() {
-  Client* evicted = nullptr;
+  Client* evicted_client = nullptr;
   uint32_t highest_rank = 0;
   for (Client& client : clients) {
     if (client.socket == kNoSocket) return &client;
@@ -92,11 +92,11 @@ Client* free_place() {
                                                         : UINT32_MAX;
     if (eviction_rank > highest_rank) {
       highest_rank = eviction_rank;
-      evicted = &client;
+      evicted_client = &client;
     }
   }
-  if (evicted != nullptr) close_client(evicted);
-  return evicted;
+  if (evicted_client != nullptr) close_client(evicted_client);
+  return evicted_client;
 }
 
 void accept_next() {

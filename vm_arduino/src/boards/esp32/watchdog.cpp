@@ -45,8 +45,8 @@ bool has_stalled;
 uint8_t missed_looks;  // the timer's: how many times it has looked since
 
 template <class Value>
-Value read(const Value& from) {
-  return __atomic_load_n(&from, __ATOMIC_ACQUIRE);
+Value read(const Value& source) {
+  return __atomic_load_n(&source, __ATOMIC_ACQUIRE);
 }
 
 template <class Value>
