@@ -69,7 +69,7 @@ MACHINES = Twins(
     in_cpp={
         **dict.fromkeys(("start", "prepare", "start_prepared"), "(the constructor)"),
         **dict.fromkeys(("comes_to_end", "end_in_fault", "execute", "is_due", "wake"), "tick"),
-        "left": "steps",
+        "budget_left": "steps",
         **dict.fromkeys(("late_ms", "next_check_ms"), "until"),
         **dict.fromkeys(("go_on", "keep_move"), "drive, watch"),
         **dict.fromkeys(("end_move", "set_motors_of_move"), "tick, until"),
@@ -91,7 +91,7 @@ MACHINES = Twins(
         "go_back": "(of the class Scheduler)",
         "now_ms": "(of the class Execution)",
         "robot": "(`robot.h`)",
-        "steps": "left",
+        "steps": "budget_left",
     },
     has_attributes=True,
 )  # fmt: skip
@@ -110,8 +110,8 @@ RECEIVERS = Twins(
         # bytes wait until the main loop looks at them, in the memory of the receiver
         **dict.fromkeys(
             ("bytes", "dropped", "has_frame", "has_room", "has_text",
-             "is_first", "length", "put_frame", "release", "take_begun", "take_heard",
-             "take_lost", "take_text"), "take"),
+             "is_first", "length", "put_frame", "release", "take_has_begun", "take_has_heard",
+             "take_is_lost", "take_text"), "take"),
         "damaged": "(an attribute)",
         "begin_line": "_end_line",
         "count_damaged": "_cut_packet",
@@ -219,12 +219,12 @@ def test_state_kept_by_both_machines_has_one_name() -> None:
         "state": "wait, is_watching",
         "rest_ms": "move_ms",
         "depth": "stack",
-        "framed": "counters, calls",
+        "frame_count": "counters, calls",
         "frames": "counters, calls",
         "is_late": "(numbers do not wrap around)",
-        "me": "(the task itself)",
+        "current": "(the task itself)",
         "start": "(tasks)",
-        "set": "(tasks)",
+        "own_powers": "(tasks)",
     }
     python = attributes_in_python("vm/state.py", "Task")
     assert python - cpp == {

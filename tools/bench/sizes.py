@@ -137,7 +137,7 @@ LINK = """{ static Link link;
         link.pass_time(sink); link.tick(); sink = link.has_tx_byte();
         link.send_due(); link.write_checksum();
         uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
-        link.done(); link.faulted(); link.stopped(Cause::kButton);
+        link.on_done(); link.on_faulted(); link.on_stopped(Cause::kButton);
         link.expire(); sink = link.confirm_claim(); sink = link.show(sink, sink); }"""
 READER = """
 #include "text/kit_words.h"

@@ -48,7 +48,7 @@ bool robot_measures();
 
 // Sets both motors, not to 0, until it has gone a way: thousandths of a centimetre, or of a degree
 // where the signs differ. It stops by itself; `robot_motors` and `robot_off` end it.
-void robot_go(int8_t left, int8_t right, int32_t way);
+void robot_go(int8_t left, int8_t right, int32_t distance);
 
 // Goes on with that way, which `robot_motors` has ended: with what is left of it now. The distance
 // counts as far as the wheels have rolled since then, or would have without other powers.
@@ -56,8 +56,8 @@ void robot_go_on(int8_t left, int8_t right);
 
 // Its place on that way; `*rest` is the rest of it, 0 or more. From kStuck on, it is the number of
 // a fault.
-enum class Going : uint8_t { kOn, kThere, kStuck = 4, kStuckLeft, kStuckRight };
-Going robot_going(int32_t* rest);
+enum class MoveState : uint8_t { kMoving, kArrived, kStuck = 4, kStuckLeft, kStuckRight };
+MoveState robot_move_state(int32_t* remaining);
 
 // The hash of a device of the kit by its number: first all readings, then the actuators.
 // `bytecode_spec.md` defines it.

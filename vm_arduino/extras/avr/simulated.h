@@ -31,8 +31,8 @@ inline void begin() {
 }
 
 // A line of a word and a number.
-inline void say(const char* what, int32_t value) {
-  tiniscript::put_text(what);
+inline void say(const char* name, int32_t value) {
+  tiniscript::put_text(name);
   tiniscript::put(' ');
   tiniscript::put_number(value);
   tiniscript::put('\n');

@@ -42,7 +42,7 @@ int32_t any_number() {
 }
 
 // The second value of an operation: of ROUND, every other time from -8 to 8 decimals.
-int32_t second(uint8_t op, int32_t b) {
+int32_t second_operand(uint8_t op, int32_t b) {
   const bool is_places = op == static_cast<uint8_t>(Op::kRound) && (b & 1) != 0;
   return is_places ? (b & 0x3fff) - 0x2000 : b;
 }
@@ -58,7 +58,7 @@ uint8_t* put_push(uint8_t* code, int32_t value) {
 
 // Puts the result into `*result`, 0 where there is a fault, which it returns. END, which calculates
 // nothing, stands for `whole`.
-Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
+Fault run_operation(uint8_t op, int32_t a, int32_t b, int32_t* result) {
   if (op == static_cast<uint8_t>(Op::kEnd)) {
     *result = whole(a);
     return Fault::kNone;
@@ -67,52 +67,52 @@ Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
                          op != static_cast<uint8_t>(Op::kAbs) &&
                          op != static_cast<uint8_t>(Op::kNot);
   static uint8_t code[12 + kEndBytes];
-  uint8_t* at = put_push(code, a);
-  if (takes_two) at = put_push(at, b);
-  *at++ = op;
-  *at++ = static_cast<uint8_t>(Op::kShow);
-  for (uint8_t k = 0; k < kEndBytes; k++) at[k] = static_cast<uint8_t>(Op::kEnd);
+  uint8_t* next = put_push(code, a);
+  if (takes_two) next = put_push(next, b);
+  *next++ = op;
+  *next++ = static_cast<uint8_t>(Op::kShow);
+  for (uint8_t k = 0; k < kEndBytes; k++) next[k] = static_cast<uint8_t>(Op::kEnd);
   // `b` is the seed of RANDOM too: as good as any
-  machine.start(code, static_cast<uint16_t>(at - code), nullptr, 0, static_cast<uint32_t>(b) | 1,
+  machine.start(code, static_cast<uint16_t>(next - code), nullptr, 0, static_cast<uint32_t>(b) | 1,
                 0);
-  shows = 0;
-  shown[0] = 0;
+  show_count = 0;
+  shown_values[0] = 0;
   machine.tick(0, 10);
-  *result = shown[0];
+  *result = shown_values[0];
   return machine.fault();
 }
 
 void answer() {
   state = request.u32();
   const uint16_t blocks = request.u16();
-  const uint16_t block = request.u16();  // operations of each
-  const uint16_t detailed =
-      request.u16();  // this one result by result, and none after it
+  const uint16_t block = request.u16();           // operations of each
+  const uint16_t detailed_block = request.u16();  // this one result by result, and none after it
   op_count = request.u8();
   for (uint8_t k = 0; k < op_count; k++) ops[k] = request.u8();
   edge_count = request.u8();
   for (uint8_t k = 0; k < edge_count; k++) edges[k] = static_cast<int32_t>(request.u32());
   uint8_t next_op = 0;
-  for (uint16_t number = 0; number < blocks && number <= detailed; number++) {
+  for (uint16_t number = 0; number < blocks && number <= detailed_block; number++) {
     uint32_t checksum = 0;
     for (uint16_t k = 0; k < block; k++) {
       const int32_t a = any_number();
-      const int32_t b = second(ops[next_op], any_number());
+      const int32_t b = second_operand(ops[next_op], any_number());
       int32_t result;
-      const uint8_t fault = static_cast<uint8_t>(calculated(ops[next_op], a, b, &result));
+      const uint8_t fault = static_cast<uint8_t>(run_operation(ops[next_op], a, b, &result));
       if (++next_op == op_count) next_op = 0;
       const uint32_t bits = static_cast<uint32_t>(result);
-      const uint8_t said[] = {fault, static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8),
-                              static_cast<uint8_t>(bits >> 16), static_cast<uint8_t>(bits >> 24)};
-      checksum = crc32(checksum, said, sizeof said);
-      if (number == detailed) {
+      const uint8_t result_bytes[] = {
+          fault, static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8),
+          static_cast<uint8_t>(bits >> 16), static_cast<uint8_t>(bits >> 24)};
+      checksum = crc32(checksum, result_bytes, sizeof result_bytes);
+      if (number == detailed_block) {
         put_number(fault);
         put(' ');
         put_number(result);
         put('\n');
       }
     }
-    if (number != detailed) {
+    if (number != detailed_block) {
       put_size(checksum);
       put('\n');
     }

@@ -18,7 +18,7 @@ constexpr uint16_t kCodeBytes = 512;
 
 uint8_t code[kCodeBytes + kEndBytes];
 Machine machine;
-int32_t kept[8];
+int32_t machine_readings[8];
 
 void run() {
   const uint8_t budget = request.u8();
@@ -27,9 +27,9 @@ void run() {
   const uint16_t length = request.u16();
   for (uint16_t k = 0; k < length; k++) code[k] = request.u8();
   for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
-  machine.start(code, length, kept, 8, 1, 0);
+  machine.start(code, length, machine_readings, 8, 1, 0);
 
-  const uint32_t nothing = counter::begin();
+  const uint32_t overhead = counter::begin();
   uint32_t total = 0;
   uint32_t longest = 0;
   uint32_t now_ms = 0;
@@ -37,12 +37,12 @@ void run() {
   do {
     counter::start();
     status = machine.tick(now_ms, budget);
-    const uint32_t cycles = counter::cycles() - nothing;
+    const uint32_t cycles = counter::cycles() - overhead;
     total += cycles;
     if (cycles > longest) longest = cycles;
     if (status == Status::kWaiting) now_ms++;
   } while (status < Status::kDone && longest < counter::kLongest);
-  for (uint8_t k = 0; k < shows; k++) say("SHOW", shown[k]);
+  for (uint8_t k = 0; k < show_count; k++) say("SHOW", shown_values[k]);
   say("CYCLES", static_cast<int32_t>(total));
   say("STATUS", static_cast<uint8_t>(status));
 }

@@ -11,23 +11,23 @@ namespace tiniscript {
 constexpr uint8_t kMostValues = 8;
 
 int32_t readings[kMostValues];
-uint8_t taken = 0;
-int32_t shown[kMostValues];
-uint8_t shows = 0;
+uint8_t next_reading = 0;
+int32_t shown_values[kMostValues];
+uint8_t show_count = 0;
 
 void robot_motors(int8_t, int8_t) {}
 
 void robot_off() {}
 
 bool robot_read(uint8_t, int32_t* value) {
-  *value = readings[taken++ % kMostValues];
+  *value = readings[next_reading++ % kMostValues];
   return true;
 }
 
 void robot_beep(uint16_t, uint32_t) {}
 
 bool robot_show(int32_t value, bool) {
-  shown[shows++ % kMostValues] = value;
+  shown_values[show_count++ % kMostValues] = value;
   return true;
 }
 

@@ -28,7 +28,7 @@ uint32_t longest_save;
 
 void read_image() {
   length = request.u16();
-  for (uint16_t at = 0; at < length; at++) image[at] = request.u8();
+  for (uint16_t index = 0; index < length; index++) image[index] = request.u8();
 }
 
 // Ticks so many times, or to the end.
@@ -47,7 +47,8 @@ void start() {
   store.boot();
   run(0xffff, &longest_start);
   uint16_t count = 0;
-  uint16_t end = store.used(Area::kProgram) == kNoSlot ? 0 : kHeaderBytes;  // what this saves
+  uint16_t end =
+      store.current_slot(Area::kProgram) == kNoSlot ? 0 : kHeaderBytes;  // what this saves
   uint32_t crc = 0;
   while (count != end) {
     uint8_t byte = 0;
@@ -75,17 +76,17 @@ int main() {
   simulated::begin();
   TCCR1B = _BV(CS11);  // a count in eight cycles
   const uint16_t ticks = request.u16();
-  const Request first = request;
+  const Request first_request = request;
   start();
   read_image();
   save(0xffff);
   start();
-  request = first;
+  request = first_request;
   read_image();
   read_image();
   save(ticks);
   start();
-  request = first;
+  request = first_request;
   read_image();
   read_image();
   save(0xffff);

@@ -26,10 +26,10 @@ class Request {
 
   // Skips a text; returns where its length stands.
   size_t text() {
-    const size_t begun = place_;
+    const size_t start = place_;
     const size_t length = static_cast<size_t>(u32());
     skip(length);
-    return begun;
+    return start;
   }
 
  private:

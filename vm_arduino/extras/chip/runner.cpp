@@ -35,8 +35,8 @@ uint32_t next_call_ms(uint32_t wake_ms) {
 }
 
 // Adds the last line of an answer.
-void end(const char* what, uint32_t first, uint32_t second) {
-  put_text(what);
+void end(const char* word, uint32_t first, uint32_t second) {
+  put_text(word);
   put(' ');
   put_size(first);
   put(' ');
@@ -59,17 +59,17 @@ uint32_t run(const Image& image, const Limits& limits) {
   machine.start(image.code, image.code_length, readings, robot.sensor_count, limits.seed,
                 limits.begin_ms);
   robot.has_tasks = machine.has_tasks();
-  const bool is_at_once = robot.pace.every_ms == 1 && robot.pace.slow == 0;
+  const bool is_at_once = robot.pace.every_ms == 1 && robot.pace.slow_sensors == 0;
   uint32_t steps = 0;
-  uint32_t left = limits.max_steps;  // before the clock must move
+  uint32_t steps_left = limits.max_steps;  // before the clock must move
   for (;;) {
-    const uint8_t budget = left < kSlice ? static_cast<uint8_t>(left) : kSlice;
+    const uint8_t budget = steps_left < kSlice ? static_cast<uint8_t>(steps_left) : kSlice;
     const uint32_t now_ms = static_cast<uint32_t>(robot.now_ms);
     robot.must_wait = false;
     const Status status = machine.tick(now_ms + limits.begin_ms, budget);
-    const uint8_t ran = static_cast<uint8_t>(budget - machine.left());
-    steps += ran;
-    left -= ran;
+    const uint8_t used_budget = static_cast<uint8_t>(budget - machine.budget_left());
+    steps += used_budget;
+    steps_left -= used_budget;
     if (status >= Status::kDone) {
       if (!robot.is_off) robot.say("NOT OFF\n");
       // nothing happens any more
@@ -77,21 +77,21 @@ uint32_t run(const Image& image, const Limits& limits) {
       say_end(status);
       return steps;
     }
-    if (status == Status::kWaiting || (robot.was_slow && machine.left() != 0)) {
+    if (status == Status::kWaiting || (robot.was_slow && machine.budget_left() != 0)) {
       const uint32_t wake_ms = next_call_ms(machine.wake_ms() - limits.begin_ms);
       if (wake_ms > limits.max_ms) {
         robot.now_ms = limits.max_ms;
-        left = 0;
+        steps_left = 0;
       } else {
         if (wake_ms > now_ms) {
-          left = limits.max_steps;
+          steps_left = limits.max_steps;
           // a tick that is too early changes nothing
           if (is_at_once) machine.tick(wake_ms - 1 + limits.begin_ms, kSlice);
         }
         robot.now_ms = wake_ms;
       }
     }
-    if (left == 0) {
+    if (steps_left == 0) {
       robot.say("LIMIT\n");
       return steps;
     }
@@ -143,7 +143,7 @@ void answer_run(Request request, bool is_verified, const Pace& pace) {
 void answer_run_at_pace(Request request) {
   Pace pace;
   pace.every_ms = request.u32();
-  pace.slow = request.u32();
+  pace.slow_sensors = request.u32();
   pace.period_ms = request.u32();
   pace.from_ms = request.u32();
   pace.to_ms = request.u32();

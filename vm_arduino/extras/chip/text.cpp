@@ -37,11 +37,11 @@ void put_value(int32_t value, bool is_yes_no) {
   if (is_yes_no) return put_text(value != 0 ? "TRUE" : "FALSE");
   const uint32_t size = put_sign(value);
   put_size(size / kOne);
-  uint16_t rest = static_cast<uint16_t>(size % kOne);
-  if (rest != 0) put('.');
-  for (uint16_t unit = 100; rest != 0; unit /= 10) {
-    put(static_cast<char>('0' + rest / unit));
-    rest %= unit;
+  uint16_t fraction = static_cast<uint16_t>(size % kOne);
+  if (fraction != 0) put('.');
+  for (uint16_t unit = 100; fraction != 0; unit /= 10) {
+    put(static_cast<char>('0' + fraction / unit));
+    fraction %= unit;
   }
 }
 

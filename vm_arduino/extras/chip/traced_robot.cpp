@@ -13,7 +13,8 @@ namespace {
 // Adds the name of a device and what it reads or is set to, and ends the line.
 void put_device(size_t name, int32_t value, bool is_yes_no) {
   Request letters(name);
-  for (uint32_t left = letters.u32(); left != 0; left--) put(static_cast<char>(letters.u8()));
+  for (uint32_t remaining = letters.u32(); remaining != 0; remaining--)
+    put(static_cast<char>(letters.u8()));
   put(' ');
   put_value(value, is_yes_no);
   put('\n');
@@ -32,7 +33,7 @@ bool TracedRobot::read(Request* request) {
     sensor.is_yes_no = request->u8() != 0;
     sensor.hash = request->u16();
     sensor.count = request->u16();
-    sensor.taken = 0;
+    sensor.next_reading = 0;
     sensor.readings = request->place();
     request->skip(sizeof(int32_t) * sensor.count);
   }
@@ -49,29 +50,29 @@ bool TracedRobot::read(Request* request) {
   speed = request->u32();
   turn = request->u32();
   not_ready = request->u32();
-  asked = 0;
+  questions = 0;
   pace = kAtOnce;
   return true;
 }
 
 bool TracedRobot::is_ready() {
   if (must_wait && !has_tasks) say("ASKED AGAIN AT ONCE\n");
-  must_wait = not_ready != 0 && ++asked % not_ready == 0;
+  must_wait = not_ready != 0 && ++questions % not_ready == 0;
   return !must_wait;
 }
 
 bool TracedRobot::is_slow(uint8_t sensor) {
-  if (sensor >= 32 || (pace.slow >> sensor & 1) == 0) return false;
+  if (sensor >= 32 || (pace.slow_sensors >> sensor & 1) == 0) return false;
   const uint32_t at_ms = static_cast<uint32_t>(now_ms) % pace.period_ms;
-  const bool is = pace.from_ms <= at_ms && at_ms < pace.to_ms;
-  was_slow |= is;
-  return is;
+  const bool is_slow_now = pace.from_ms <= at_ms && at_ms < pace.to_ms;
+  was_slow |= is_slow_now;
+  return is_slow_now;
 }
 
-void TracedRobot::say(const char* what) const {
+void TracedRobot::say(const char* word) const {
   put_size(now_ms);
   put(' ');
-  put_text(what);
+  put_text(word);
 }
 
 void robot_motors(int8_t left, int8_t right) {
@@ -88,13 +89,13 @@ void robot_off() { robot.is_off = true; }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
   if (!robot.is_ready() || robot.is_slow(sensor)) return false;
-  TracedRobot::Sensor& from = robot.sensors[sensor];
-  const uint16_t last = static_cast<uint16_t>(from.count - 1);
-  const uint16_t index = from.taken < last ? from.taken : last;
-  from.taken++;
-  *value = from.count == 0 ? 0 : Request(from.readings + sizeof(int32_t) * index).i32();
+  TracedRobot::Sensor& device = robot.sensors[sensor];
+  const uint16_t last_index = static_cast<uint16_t>(device.count - 1);
+  const uint16_t index = device.next_reading < last_index ? device.next_reading : last_index;
+  device.next_reading++;
+  *value = device.count == 0 ? 0 : Request(device.readings + sizeof(int32_t) * index).i32();
   robot.say("READ ");
-  put_device(from.name, *value, from.is_yes_no);
+  put_device(device.name, *value, device.is_yes_no);
   return true;
 }
 
@@ -126,14 +127,16 @@ uint16_t robot_device_hash(uint16_t device) {
 
 void robot_set(uint8_t actuator, int32_t value) {
   if (actuator >= robot.actuator_count) return;  // the code was not verified
-  const TracedRobot::Actuator& to = robot.actuators[actuator];
-  if (!to.is_yes_no) {
+  const TracedRobot::Actuator& device = robot.actuators[actuator];
+  if (!device.is_yes_no) {
     // its limits are whole units, and within them a product has 32 bits
     const int32_t units = whole(value);
-    value = units <= to.low / kOne ? to.low : units >= to.high / kOne ? to.high : units * kOne;
+    value = units <= device.low / kOne    ? device.low
+            : units >= device.high / kOne ? device.high
+                                          : units * kOne;
   }
   robot.say("SET ");
-  put_device(to.name, value, to.is_yes_no);
+  put_device(device.name, value, device.is_yes_no);
 }
 
 }  // namespace tiniscript

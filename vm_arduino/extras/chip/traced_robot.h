@@ -21,7 +21,7 @@ constexpr uint8_t kMostActuators = 255;
 // numbers, are slow: not ready from one time to another in each period.
 struct Pace {
   uint32_t every_ms;
-  uint32_t slow;
+  uint32_t slow_sensors;
   uint32_t period_ms;
   uint32_t from_ms;
   uint32_t to_ms;
@@ -34,7 +34,7 @@ struct TracedRobot {
     size_t name;      // where it begins in the request
     size_t readings;  // where they begin
     uint16_t count;
-    uint16_t taken;
+    uint16_t next_reading;
     uint16_t hash;
     bool is_yes_no;
   };
@@ -48,7 +48,7 @@ struct TracedRobot {
 
   unsigned long now_ms;  // on Linux and macOS it does not wrap around
   uint32_t not_ready;  // every so many questions the robot is not ready; 0: always ready
-  uint32_t asked;
+  uint32_t questions;
   Pace pace;
   uint32_t speed;
   uint32_t turn;
@@ -70,7 +70,7 @@ struct TracedRobot {
   bool is_slow(uint8_t sensor);
 
   // Begins a line of the trace; the caller adds the rest.
-  void say(const char* what) const;
+  void say(const char* word) const;
 };
 
 // The one robot of this program.

@@ -23,31 +23,32 @@ constexpr uint32_t kTurnUs = 50;    // of the main loop
 constexpr size_t kBytesPerMs = 12;  // at 115200 baud
 
 std::string log_of_robot;
-PartOutputs shown;
+PartOutputs last_outputs;
 
 // Since the last request began: turns of the main loop, and those until a motor pin has changed.
 typedef std::chrono::steady_clock Watch;
 uint32_t turns_begun;
-Watch::time_point begun;
-uint32_t turns_until_moved;
-uint64_t moved_ns;
+Watch::time_point step_start;
+uint32_t turns_until_motion;
+uint64_t motion_ns;
 
 void say(const std::string& line) { log_of_robot += line + "\n"; }
 
 void look() {
-  const PartOutputs now = part_outputs();
-  if (now.left != shown.left || now.right != shown.right) {
-    say("MOTORS " + std::to_string(now.left) + " " + std::to_string(now.right));
-    turns_until_moved = turns_begun;
-    const Watch::duration took = Watch::now() - begun;
-    moved_ns = static_cast<uint64_t>(std::chrono::nanoseconds(took).count());
+  const PartOutputs outputs = part_outputs();
+  if (outputs.left != last_outputs.left || outputs.right != last_outputs.right) {
+    say("MOTORS " + std::to_string(outputs.left) + " " + std::to_string(outputs.right));
+    turns_until_motion = turns_begun;
+    const Watch::duration turn_time = Watch::now() - step_start;
+    motion_ns = static_cast<uint64_t>(std::chrono::nanoseconds(turn_time).count());
   }
-  if (now.hertz != shown.hertz) say("TONE " + std::to_string(now.hertz));
-  for (uint8_t k = 0; k < now.servos; k++) {
-    const uint32_t us = now.pulse_us[k];
-    if (us != shown.pulse_us[k]) say("SERVO " + std::to_string(k) + " " + std::to_string(us));
+  if (outputs.hertz != last_outputs.hertz) say("TONE " + std::to_string(outputs.hertz));
+  for (uint8_t k = 0; k < outputs.servos; k++) {
+    const uint32_t us = outputs.pulse_us[k];
+    if (us != last_outputs.pulse_us[k])
+      say("SERVO " + std::to_string(k) + " " + std::to_string(us));
   }
-  shown = now;
+  last_outputs = outputs;
 }
 
 void pass(uint32_t us) {
@@ -64,7 +65,7 @@ void answer_begin(RequestReader* request, Writer*) {
   chip.reset = static_cast<esp_reset_reason_t>(request->u8());
   chip.random = request->u32();
   set_noinit(request->text());
-  for (uint32_t left = request->u32(); left > 0; left--) {
+  for (uint32_t remaining = request->u32(); remaining > 0; remaining--) {
     const std::string key = request->text();
     chip.entries[key] = request->text();
   }
@@ -77,9 +78,9 @@ void answer_begin(RequestReader* request, Writer*) {
   look();
 }
 
-void turns(uint32_t count) {
+void run_turns(uint32_t count) {
   turns_begun = 0;
-  begun = Watch::now();
+  step_start = Watch::now();
   for (uint32_t k = 0; k < count; k++) {
     if (chip.slept_us >= kTurnUs) {
       chip.slept_us -= kTurnUs;
@@ -93,9 +94,9 @@ void turns(uint32_t count) {
 }
 
 // A millisecond begins, in which bytes arrive.
-void receive(const Bytes& heard, size_t from, size_t count) {
-  chip.received.append(reinterpret_cast<const char*>(heard.data.get()) + from, count);
-  chip.sending = chip.sending > kBytesPerMs ? chip.sending - kBytesPerMs : 0;
+void receive(const Bytes& data, size_t offset, size_t count) {
+  chip.received.append(reinterpret_cast<const char*>(data.data.get()) + offset, count);
+  chip.unsent_bytes = chip.unsent_bytes > kBytesPerMs ? chip.unsent_bytes - kBytesPerMs : 0;
 }
 
 // S: bytes arrive, the button goes down (1) or up (2), so many turns follow. Says what the robot
@@ -104,16 +105,16 @@ void answer_step(RequestReader* request, Writer* answer) {
   request->u32();  // the time: this chip has its own
   const uint8_t flags = request->u8();
   const uint16_t count = request->u16();
-  const Bytes heard = request->bytes();
-  receive(heard, 0, heard.length);
+  const Bytes bytes = request->bytes();
+  receive(bytes, 0, bytes.length);
   if ((flags & 1) != 0) set_button(true);
   if ((flags & 2) != 0) set_button(false);
-  turns(count);
-  answer->text(chip.sent);
+  run_turns(count);
+  answer->text(chip.sent_bytes);
   answer->text(log_of_robot);
   answer->u8(light_is_on());
   answer->u8(motors_are_stopped());
-  chip.sent.clear();
+  chip.sent_bytes.clear();
   log_of_robot.clear();
 }
 
@@ -122,32 +123,32 @@ void answer_step(RequestReader* request, Writer* answer) {
 // it does and when, its light, and after each of the milliseconds whether its motors are stopped.
 void answer_wait(RequestReader* request, Writer* answer) {
   const uint32_t first_ms = request->u32();
-  const uint32_t many = request->u32();
+  const uint32_t milliseconds = request->u32();
   const uint16_t count = request->u16();
-  const uint8_t how = request->u8();
-  const bool is_spread = how == 1;
-  const Bytes heard = request->bytes();
-  std::string did;
-  std::string stopped;
-  for (uint32_t k = 0; k < many; k++) {
-    const size_t from = is_spread || k == 0 ? std::min<size_t>(k, heard.length) : heard.length;
-    const size_t left = heard.length - from;
-    receive(heard, from, is_spread ? std::min<size_t>(1, left) : left);
-    turns(count);
-    did += timed(first_ms + k, log_of_robot);
+  const uint8_t mode = request->u8();
+  const bool is_spread = mode == 1;
+  const Bytes bytes = request->bytes();
+  std::string log;
+  std::string stopped_flags;
+  for (uint32_t k = 0; k < milliseconds; k++) {
+    const size_t offset = is_spread || k == 0 ? std::min<size_t>(k, bytes.length) : bytes.length;
+    const size_t bytes_left = bytes.length - offset;
+    receive(bytes, offset, is_spread ? std::min<size_t>(1, bytes_left) : bytes_left);
+    run_turns(count);
+    log += with_times(first_ms + k, log_of_robot);
     log_of_robot.clear();
-    stopped += static_cast<char>(motors_are_stopped());
-    if (how == 2 && !chip.sent.empty()) break;
+    stopped_flags += static_cast<char>(motors_are_stopped());
+    if (mode == 2 && !chip.sent_bytes.empty()) break;
   }
-  answer->text(chip.sent);
-  answer->text(did);
+  answer->text(chip.sent_bytes);
+  answer->text(log);
   answer->u8(light_is_on());
-  answer->text(stopped);
-  chip.sent.clear();
+  answer->text(stopped_flags);
+  chip.sent_bytes.clear();
 }
 
 // E: what a reset leaves alone.
-void answer_kept(RequestReader*, Writer* answer) {
+void answer_surviving_memory(RequestReader*, Writer* answer) {
   answer->text(noinit());
   answer->u32(static_cast<uint32_t>(chip.entries.size()));
   for (const auto& entry : chip.entries) {
@@ -159,7 +160,7 @@ void answer_kept(RequestReader*, Writer* answer) {
 
 // H: the main loop stands still for so many milliseconds.
 void answer_hang(RequestReader* request, Writer*) {
-  for (uint32_t left = request->u32(); left > 0; left--) pass(1000);
+  for (uint32_t remaining = request->u32(); remaining > 0; remaining--) pass(1000);
 }
 
 // A: what an analog pin has, 0 to 4095; D: a digital one; U: how long the echo of a sensor is.
@@ -176,7 +177,7 @@ void answer_digital(RequestReader* request, Writer*) {
 // K: digital pins that change, each so many microseconds after the one before: pin and level. The
 // main loop stands still meanwhile. Says how many edges of each disc the board has counted then.
 void answer_edges(RequestReader* request, Writer* answer) {
-  for (uint32_t left = request->u32(); left > 0; left--) {
+  for (uint32_t remaining = request->u32(); remaining > 0; remaining--) {
     pass(request->u32());
     const uint8_t pin = request->u8();
     set_input(pin, request->u8() != 0);
@@ -216,9 +217,9 @@ void answer_radio(RequestReader* request, Writer* answer) {
     case 'k':
       return low_energy_congest(request->u8() != 0);
     case 'n': {
-      const std::vector<std::string> found = low_energy_notified(request->u16());
-      answer->u32(static_cast<uint32_t>(found.size()));
-      for (const std::string& each : found) answer->text(each);
+      const std::vector<std::string> notifications = low_energy_notifications(request->u16());
+      answer->u32(static_cast<uint32_t>(notifications.size()));
+      for (const std::string& notification : notifications) answer->text(notification);
       return;
     }
     case 'C':
@@ -228,7 +229,7 @@ void answer_radio(RequestReader* request, Writer* answer) {
     case 'W':
       return serial_port_write(request->text());
     case 'S':
-      return answer->text(serial_port_said());
+      return answer->text(serial_port_output());
     case 'Z':
       return serial_port_stick(request->u8() != 0);
     case 'R': {
@@ -258,15 +259,15 @@ void answer_radio(RequestReader* request, Writer* answer) {
     case 'P':
       return answer->u16(network_port());
     case 'I': {
-      const RadioSettings found = radio_settings();
-      for (const std::string& each : {found.advertised, found.serial_port, found.host,
-                                      found.instance, found.service, found.network,
-                                      found.password}) {
-        answer->text(each);
+      const RadioSettings settings = radio_settings();
+      for (const std::string& setting :
+           {settings.advertised, settings.serial_port, settings.host, settings.instance,
+            settings.service, settings.network, settings.password}) {
+        answer->text(setting);
       }
-      answer->u8(found.is_access_point);
-      answer->u32(found.joins);
-      return answer->u32(found.sockets);
+      answer->u8(settings.is_access_point);
+      answer->u32(settings.joins);
+      return answer->u32(settings.sockets);
     }
     default:
       abort();
@@ -274,25 +275,25 @@ void answer_radio(RequestReader* request, Writer* answer) {
 }
 
 // G: whether a connection that begins so is for a robot.
-void answer_sniffed(RequestReader* request, Writer* answer) {
+void answer_protocol(RequestReader* request, Writer* answer) {
   const std::string bytes = request->text();
-  answer->u8(
-      static_cast<uint8_t>(sniffed(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
+  answer->u8(static_cast<uint8_t>(
+      sniff_protocol(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
 }
 
 // M: how many turns of the main loop, and nanoseconds of this computer, the last step took until a
 // motor pin changed.
-void answer_moved(RequestReader*, Writer* answer) {
-  answer->u32(turns_until_moved);
-  answer->u32(static_cast<uint32_t>(moved_ns));
-  answer->u32(chip.rests);
+void answer_motion_time(RequestReader*, Writer* answer) {
+  answer->u32(turns_until_motion);
+  answer->u32(static_cast<uint32_t>(motion_ns));
+  answer->u32(chip.sleep_count);
 }
 
 // C: the line of the cable goes high (0) or low (1), or spoils the next byte (2).
 void answer_line(RequestReader* request, Writer*) {
-  const uint8_t what = request->u8();
-  if (what == 2) return spoil_byte();
-  hold_line(what == 1);
+  const uint8_t line_event = request->u8();
+  if (line_event == 2) return spoil_byte();
+  hold_line(line_event == 1);
 }
 
 // X: a panic. What a stack that is not to be relied on would make is not simulated.
@@ -309,7 +310,7 @@ const Answers answers = {
     {'B', answer_begin},
     {'S', answer_step},
     {'W', answer_wait},
-    {'E', answer_kept},
+    {'E', answer_surviving_memory},
     {'H', answer_hang},
     {'A', answer_analog},
     {'D', answer_digital},
@@ -319,8 +320,8 @@ const Answers answers = {
     {'R', answer_radio},
     {'C', answer_line},
     {'X', answer_panic},
-    {'G', answer_sniffed},
-    {'M', answer_moved},
+    {'G', answer_protocol},
+    {'M', answer_motion_time},
     {'L', [](RequestReader*, Writer*) { chip.is_ledc_stuck = true; }},
     {'F', [](RequestReader* request, Writer*) { chip.nvs_room = used_entries() + request->u8(); }},
     {'Z', [](RequestReader* request, Writer*) { chip.erase_ms = request->u32(); }},
@@ -329,7 +330,7 @@ const Answers answers = {
 }  // namespace
 
 int main() {
-  const bool is_known = all_answered(answers);
+  const bool is_known = answer_all_requests(answers);
   fflush(nullptr);
   _Exit(is_known ? 0 : 1);  // tasks go on until then
 }

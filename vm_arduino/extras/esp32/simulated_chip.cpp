@@ -90,15 +90,15 @@ void on_write(uint8_t pin, bool was_high, bool is_high) {
 }
 
 uint64_t next_event() {
-  uint64_t next = timer.due_us;
-  if (echo_rises_us < next) next = echo_rises_us;
-  if (echo_falls_us < next) next = echo_falls_us;
-  if (next_task_us != nullptr && next_task_us() < next) next = next_task_us();
+  uint64_t next_us = timer.due_us;
+  if (echo_rises_us < next_us) next_us = echo_rises_us;
+  if (echo_falls_us < next_us) next_us = echo_falls_us;
+  if (next_task_us != nullptr && next_task_us() < next_us) next_us = next_task_us();
   if (chip.restart_ms != 0) {
-    const uint64_t restart_us = chip.fed_us + chip.restart_ms * uint64_t{1000};
-    if (restart_us < next) next = restart_us;
+    const uint64_t restart_us = chip.last_feed_us + chip.restart_ms * uint64_t{1000};
+    if (restart_us < next_us) next_us = restart_us;
   }
-  return next;
+  return next_us;
 }
 
 void do_event() {
@@ -151,9 +151,9 @@ bool set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
   expect(channel < kChannels, "a channel of LEDC that the chip does not have");
   expect(bits <= kMostBits, "more bits of LEDC than the chip has");
   if (!can_make(hertz, bits)) return false;
-  for (uint8_t each : {channel, static_cast<uint8_t>(channel ^ 1)}) {
-    chip.channels[each].hertz = hertz;
-    chip.channels[each].bits = bits;
+  for (uint8_t shared_channel : {channel, static_cast<uint8_t>(channel ^ 1)}) {
+    chip.channels[shared_channel].hertz = hertz;
+    chip.channels[shared_channel].bits = bits;
   }
   return true;
 }
@@ -162,8 +162,9 @@ void set_duty(uint8_t channel, uint32_t duty) {
   SimulatedChannel& simulated_channel = chip.channels[channel];
   expect(simulated_channel.bits != 0, "a duty of a channel that is not set up");
   if (chip.is_ledc_stuck) return;
-  const uint32_t most = (1U << simulated_channel.bits) - 1;
-  simulated_channel.duty = duty == most ? most + 1 : duty;  // as both versions of the core do
+  const uint32_t max_duty = (1U << simulated_channel.bits) - 1;
+  simulated_channel.duty =
+      duty == max_duty ? max_duty + 1 : duty;  // as both versions of the core do
 }
 
 uint32_t set_tone(uint8_t channel, uint32_t hertz) {
@@ -193,9 +194,9 @@ size_t entries_of(const std::string& value) {
 }  // namespace
 
 size_t used_entries() {
-  size_t used = 1;  // the name of the namespace
-  for (const auto& entry : chip.entries) used += entries_of(entry.second);
-  return used;
+  size_t count = 1;  // the name of the namespace
+  for (const auto& entry : chip.entries) count += entries_of(entry.second);
+  return count;
 }
 
 namespace {
@@ -217,15 +218,15 @@ esp_err_t put(const char* key, const std::string& value) {
   expect_free("NVS in a critical section");
   expect(strlen(key) < 16, "a key of NVS that is too long");
   if (chip.is_off) return ESP_OK;
-  const auto before = chip.entries.find(key);
-  if (before != chip.entries.end() && before->second == value) return ESP_OK;
+  const auto entry = chip.entries.find(key);
+  if (entry != chip.entries.end() && entry->second == value) return ESP_OK;
   if (used_entries() + entries_of(value) > chip.nvs_room) return ESP_ERR_NVS_NOT_ENOUGH_SPACE;
   erase();
   chip.nvs_writes++;
-  if (chip.nvs_writes == chip.cut_at) {
+  if (chip.nvs_writes == chip.cut_write) {
     chip.is_off = true;
-    if (chip.torn == TornEntry::kOld) return ESP_OK;
-    if (chip.torn == TornEntry::kLost) {
+    if (chip.torn_entry == TornEntry::kOld) return ESP_OK;
+    if (chip.torn_entry == TornEntry::kLost) {
       chip.entries.erase(key);
       return ESP_OK;
     }
@@ -236,18 +237,18 @@ esp_err_t put(const char* key, const std::string& value) {
 
 }  // namespace
 
-void expect(bool is_so, const char* what) {
-  if (is_so) return;
-  fprintf(stderr, "MISUSE %s\n", what);
+void expect(bool condition, const char* message) {
+  if (condition) return;
+  fprintf(stderr, "MISUSE %s\n", message);
   abort();
 }
 
-void expect_free(const char* what) { expect(in_critical == 0, what); }
+void expect_free(const char* message) { expect(in_critical == 0, message); }
 
 void pass_us(uint64_t us) {
   const uint64_t end_us = chip.now_us + us;
-  for (uint64_t next = next_event(); next <= end_us; next = next_event()) {
-    if (next > chip.now_us) chip.now_us = next;
+  for (uint64_t next_us = next_event(); next_us <= end_us; next_us = next_event()) {
+    if (next_us > chip.now_us) chip.now_us = next_us;
     do_event();
   }
   chip.now_us = end_us;
@@ -315,28 +316,28 @@ uint16_t analogRead(uint8_t pin) {
 void analogReadResolution(uint8_t bits) { analog_bits = bits; }
 
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
-static uint8_t attached[40];  // the channel of each pin, as the core keeps it
+static uint8_t pin_channels[40];  // the channel of each pin, as the core keeps it
 
 bool ledcAttachChannel(uint8_t pin, uint32_t freq, uint8_t resolution, uint8_t channel) {
   expect_free("ledcAttachChannel in a critical section");
-  SimulatedPin& its = output_at(pin);
+  SimulatedPin& simulated_pin = output_at(pin);
   if (!set_frequency(channel, freq, resolution)) return false;
-  its.is_output = true;
-  its.signal = signal_of_channel(channel);
-  attached[pin] = channel;
+  simulated_pin.is_output = true;
+  simulated_pin.signal = signal_of_channel(channel);
+  pin_channels[pin] = channel;
   return true;
 }
 
 bool ledcWrite(uint8_t pin, uint32_t duty) {
-  set_duty(attached[pin], duty);
+  set_duty(pin_channels[pin], duty);
   return true;
 }
 
-uint32_t ledcWriteTone(uint8_t pin, uint32_t freq) { return set_tone(attached[pin], freq); }
+uint32_t ledcWriteTone(uint8_t pin, uint32_t freq) { return set_tone(pin_channels[pin], freq); }
 
 uint32_t ledcChangeFrequency(uint8_t pin, uint32_t freq, uint8_t resolution) {
   expect_free("ledcChangeFrequency in a critical section");
-  return set_frequency(attached[pin], freq, resolution) ? freq : 0;
+  return set_frequency(pin_channels[pin], freq, resolution) ? freq : 0;
 }
 #else
 uint32_t ledcSetup(uint8_t channel, uint32_t freq, uint8_t resolution_bits) {
@@ -347,9 +348,9 @@ uint32_t ledcSetup(uint8_t channel, uint32_t freq, uint8_t resolution_bits) {
 void ledcAttachPin(uint8_t pin, uint8_t channel) {
   expect_free("ledcAttachPin in a critical section");
   expect(channel < kChannels, "a channel of LEDC that the chip does not have");
-  SimulatedPin& its = output_at(pin);
-  its.is_output = true;
-  its.signal = signal_of_channel(channel);
+  SimulatedPin& simulated_pin = output_at(pin);
+  simulated_pin.is_output = true;
+  simulated_pin.signal = signal_of_channel(channel);
 }
 
 void ledcWrite(uint8_t channel, uint32_t duty) { set_duty(channel, duty); }
@@ -357,18 +358,18 @@ void ledcWrite(uint8_t channel, uint32_t duty) { set_duty(channel, duty); }
 uint32_t ledcWriteTone(uint8_t channel, uint32_t freq) { return set_tone(channel, freq); }
 #endif
 
-void simulated_register(uint32_t at, uint32_t value) {
-  if (at >= GPIO_FUNC0_OUT_SEL_CFG_REG) {
-    output_at((at - GPIO_FUNC0_OUT_SEL_CFG_REG) / 4).signal = value;
+void simulated_register(uint32_t address, uint32_t value) {
+  if (address >= GPIO_FUNC0_OUT_SEL_CFG_REG) {
+    output_at((address - GPIO_FUNC0_OUT_SEL_CFG_REG) / 4).signal = value;
     return;
   }
-  const bool is_high = at == GPIO_OUT_W1TS_REG || at == GPIO_OUT_W1TS_REG + kNextPort;
-  const uint32_t first = at == GPIO_OUT_W1TS_REG || at == GPIO_OUT_W1TC_REG ? 0 : 32;
-  const uint32_t pin = first + static_cast<uint32_t>(__builtin_ctz(value));
+  const bool is_high = address == GPIO_OUT_W1TS_REG || address == GPIO_OUT_W1TS_REG + kNextPort;
+  const uint32_t first_pin = address == GPIO_OUT_W1TS_REG || address == GPIO_OUT_W1TC_REG ? 0 : 32;
+  const uint32_t pin = first_pin + static_cast<uint32_t>(__builtin_ctz(value));
   SimulatedPin& simulated_pin = output_at(pin);
-  const bool before = simulated_pin.level;
+  const bool was_high = simulated_pin.level;
   simulated_pin.level = is_high;
-  on_write(static_cast<uint8_t>(pin), before, is_high);
+  on_write(static_cast<uint8_t>(pin), was_high, is_high);
 }
 
 int gpio_get_level(gpio_num_t gpio_num) {
@@ -465,13 +466,13 @@ esp_err_t esp_task_wdt_delete(TaskHandle_t handle) {
 esp_err_t esp_task_wdt_add(TaskHandle_t) {
   expect(chip.restart_ms != 0, "the task watchdog before it has begun");
   chip.is_watched = true;
-  chip.fed_us = chip.now_us;
+  chip.last_feed_us = chip.now_us;
   return ESP_OK;
 }
 
 esp_err_t esp_task_wdt_reset(void) {
   expect(chip.is_watched, "the task watchdog fed by who is not watched");
-  chip.fed_us = chip.now_us;
+  chip.last_feed_us = chip.now_us;
   return ESP_OK;
 }
 
@@ -487,9 +488,9 @@ void nvs_close(nvs_handle_t) { chip.nvs_handles--; }
 
 esp_err_t nvs_get_u32(nvs_handle_t, const char* key, uint32_t* out_value) {
   if (chip.nvs_fault == NvsFault::kNumbers) return ESP_FAIL;
-  const auto found = chip.entries.find(key);
-  if (found == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
-  memcpy(out_value, found->second.data(), sizeof *out_value);
+  const auto entry = chip.entries.find(key);
+  if (entry == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
+  memcpy(out_value, entry->second.data(), sizeof *out_value);
   return ESP_OK;
 }
 
@@ -499,11 +500,11 @@ esp_err_t nvs_set_u32(nvs_handle_t, const char* key, uint32_t value) {
 
 esp_err_t nvs_get_blob(nvs_handle_t, const char* key, void* out_value, size_t* length) {
   if (chip.nvs_fault == NvsFault::kBlobs) return ESP_FAIL;
-  const auto found = chip.entries.find(key);
-  if (found == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
-  if (found->second.size() > *length) return ESP_ERR_NVS_INVALID_LENGTH;
-  *length = found->second.size();
-  memcpy(out_value, found->second.data(), *length);
+  const auto entry = chip.entries.find(key);
+  if (entry == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
+  if (entry->second.size() > *length) return ESP_ERR_NVS_INVALID_LENGTH;
+  *length = entry->second.size();
+  memcpy(out_value, entry->second.data(), *length);
   return ESP_OK;
 }
 
@@ -568,7 +569,7 @@ int HardwareSerial::available() {
 // Behind the UART's FIFO the driver may have a ring. Then the core adds all of that ring, full or not;
 // a byte takes 32 of it, with its length and two heads, and waits where there is no room.
 int HardwareSerial::availableForWrite() {
-  const size_t waiting = chip.sending < kFifoBytes ? chip.sending : kFifoBytes;
+  const size_t waiting = chip.unsent_bytes < kFifoBytes ? chip.unsent_bytes : kFifoBytes;
   return static_cast<int>(kFifoBytes - waiting + chip.send_room);
 }
 
@@ -581,8 +582,8 @@ int HardwareSerial::read() {
 
 size_t HardwareSerial::write(uint8_t byte) {
   const size_t room = kFifoBytes + chip.send_room / kRingBytes;
-  expect(chip.sending < room, "a byte that a serial port without room makes wait");
-  chip.sent += static_cast<char>(byte);
-  chip.sending++;
+  expect(chip.unsent_bytes < room, "a byte that a serial port without room makes wait");
+  chip.sent_bytes += static_cast<char>(byte);
+  chip.unsent_bytes++;
   return 1;
 }

@@ -49,10 +49,10 @@ struct SimulatedChip {
   uint64_t mac = 0;  // its first byte is the lowest
 
   std::string received;  // waits for the firmware
-  std::string sent;
+  std::string sent_bytes;
   size_t receive_room = 256;
-  size_t send_room = 0;  // behind the UART's own 128 bytes
-  size_t sending = 0;    // bytes that the UART has still to send
+  size_t send_room = 0;     // behind the UART's own 128 bytes
+  size_t unsent_bytes = 0;  // bytes that the UART has still to send
   bool has_uart = false;
   bool tells_framing = false;
   bool is_line_held = false;  // low
@@ -63,17 +63,17 @@ struct SimulatedChip {
   uint32_t erase_ms = 0;  // how long a write stops the chip
   NvsFault nvs_fault = NvsFault::kNone;
   size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
-  uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
-  TornEntry torn = TornEntry::kOld;
+  uint32_t cut_write = 0;               // the power fails at this write; 0: it does not
+  TornEntry torn_entry = TornEntry::kOld;
   bool is_off = false;  // since then nothing is written
 
   uint32_t restart_ms = 0;  // of the task watchdog; 0: it does not run
-  uint64_t fed_us = 0;
+  uint64_t last_feed_us = 0;
   bool is_watched = false;   // the main loop, by it
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
-  uint32_t slept_us = 0;  // by the main loop, and not yet counted as turns of it
-  uint32_t rests = 0;     // how many times it slept
+  uint32_t slept_us = 0;     // by the main loop, and not yet counted as turns of it
+  uint32_t sleep_count = 0;  // how many times it slept
 
   bool is_heap_full = false;  // no stack finds room
   std::atomic<bool> has_wifi{false};
@@ -89,8 +89,8 @@ struct SimulatedChip {
 extern SimulatedChip chip;
 
 // Ends the program with "MISUSE" and what it was, unless it is so.
-void expect(bool is_so, const char* what);
-void expect_free(const char* what);  // of a critical section
+void expect(bool condition, const char* message);
+void expect_free(const char* message);  // of a critical section
 
 // Lets time pass; what is due meanwhile happens at its microsecond.
 void pass_us(uint64_t us);

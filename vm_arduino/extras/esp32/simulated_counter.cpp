@@ -22,7 +22,7 @@ constexpr uint16_t kMostFilter = 1023;
 struct Line {
   int pin;
   bool level;
-  bool wanted;          // what the pin has
+  bool input_level;     // what the pin has
   uint64_t changed_us;  // since then
 };
 
@@ -31,7 +31,7 @@ struct Unit {
   bool is_in_reset;
   bool has_filter;
   uint16_t filter;
-  pcnt_config_t how;
+  pcnt_config_t config;
   int32_t count;
   Line pulse;
   Line control;
@@ -40,18 +40,19 @@ struct Unit {
 Unit units[PCNT_UNIT_MAX];
 
 bool is_due(const Unit& unit, const Line& line, uint64_t at_us) {
-  if (line.wanted == line.level) return false;
+  if (line.input_level == line.level) return false;
   const uint64_t lasts = unit.has_filter ? unit.filter * kTick : 0;
   return (at_us - line.changed_us) * 2000 >= lasts;
 }
 
 void count(Unit* unit) {
-  unit->pulse.level = unit->pulse.wanted;
-  const pcnt_ctrl_mode_t control = unit->control.level ? unit->how.hctrl_mode : unit->how.lctrl_mode;
-  const pcnt_count_mode_t mode = unit->pulse.level ? unit->how.pos_mode : unit->how.neg_mode;
+  unit->pulse.level = unit->pulse.input_level;
+  const pcnt_ctrl_mode_t control =
+      unit->control.level ? unit->config.hctrl_mode : unit->config.lctrl_mode;
+  const pcnt_count_mode_t mode = unit->pulse.level ? unit->config.pos_mode : unit->config.neg_mode;
   if (unit->is_in_reset || mode == PCNT_COUNT_DIS || control == PCNT_MODE_DISABLE) return;
   unit->count += (mode == PCNT_COUNT_INC) == (control == PCNT_MODE_KEEP) ? 1 : -1;
-  if (unit->count == unit->how.counter_h_lim || unit->count == unit->how.counter_l_lim) {
+  if (unit->count == unit->config.counter_h_lim || unit->count == unit->config.counter_l_lim) {
     unit->count = 0;
   }
 }
@@ -62,14 +63,14 @@ void settle(Unit* unit) {
   const bool has_pulse = is_due(*unit, unit->pulse, now_us);
   const bool has_control = is_due(*unit, unit->control, now_us);
   const bool is_first = has_control && unit->control.changed_us <= unit->pulse.changed_us;
-  if (is_first) unit->control.level = unit->control.wanted;
+  if (is_first) unit->control.level = unit->control.input_level;
   if (has_pulse) count(unit);
-  if (has_control) unit->control.level = unit->control.wanted;
+  if (has_control) unit->control.level = unit->control.input_level;
 }
 
 void change(Line* line, uint8_t pin, bool level) {
-  if (line->pin != pin || line->wanted == level) return;
-  line->wanted = level;
+  if (line->pin != pin || line->input_level == level) return;
+  line->input_level = level;
   line->changed_us = chip.now_us;
 }
 
@@ -84,13 +85,13 @@ void on_input(uint8_t pin, bool level) {
 
 Line line_of(int pin) {
   if (pin < 0) return {pin, false, false, 0};
-  SimulatedPin& its = chip.pins[pin];
-  its.is_output = false;
+  SimulatedPin& simulated_pin = chip.pins[pin];
+  simulated_pin.is_output = false;
   if ((kPulledUp >> pin & 1) != 0) {
-    if (!its.has_pull_up) its.input = true;
-    its.has_pull_up = true;
+    if (!simulated_pin.has_pull_up) simulated_pin.input = true;
+    simulated_pin.has_pull_up = true;
   }
-  return {pin, its.input, its.input, chip.now_us};
+  return {pin, simulated_pin.input, simulated_pin.input, chip.now_us};
 }
 
 bool can_read(int pin) { return pin < 0 || (pin < 40 && (kInputs >> pin & 1) != 0); }
@@ -107,20 +108,22 @@ Unit* unit_of(pcnt_unit_t unit) {
 extern "C" {
 
 esp_err_t pcnt_unit_config(const pcnt_config_t* pcnt_config) {
-  const pcnt_config_t& how = *pcnt_config;
+  const pcnt_config_t& config = *pcnt_config;
   expect_free("the pulse counter configured in a critical section");
-  expect(how.unit < PCNT_UNIT_MAX, "a unit of the pulse counter that is not there");
-  expect(how.channel == PCNT_CHANNEL_0, "a channel that this stand-in does not have");
-  expect(can_read(how.pulse_gpio_num), "a pulse on a pin that is not there");
-  expect(can_read(how.ctrl_gpio_num), "a control signal on a pin that is not there");
-  expect(how.pulse_gpio_num < 0 || how.pulse_gpio_num != how.ctrl_gpio_num, "one pin for both");
-  expect(how.pos_mode < PCNT_COUNT_MAX && how.neg_mode < PCNT_COUNT_MAX, "a way to count");
-  expect(how.hctrl_mode < PCNT_MODE_MAX && how.lctrl_mode < PCNT_MODE_MAX, "a way to control");
-  expect(how.counter_h_lim >= 0 && how.counter_l_lim <= 0, "limits of the pulse counter");
+  expect(config.unit < PCNT_UNIT_MAX, "a unit of the pulse counter that is not there");
+  expect(config.channel == PCNT_CHANNEL_0, "a channel that this stand-in does not have");
+  expect(can_read(config.pulse_gpio_num), "a pulse on a pin that is not there");
+  expect(can_read(config.ctrl_gpio_num), "a control signal on a pin that is not there");
+  expect(config.pulse_gpio_num < 0 || config.pulse_gpio_num != config.ctrl_gpio_num,
+         "one pin for both");
+  expect(config.pos_mode < PCNT_COUNT_MAX && config.neg_mode < PCNT_COUNT_MAX, "a way to count");
+  expect(config.hctrl_mode < PCNT_MODE_MAX && config.lctrl_mode < PCNT_MODE_MAX,
+         "a way to control");
+  expect(config.counter_h_lim >= 0 && config.counter_l_lim <= 0, "limits of the pulse counter");
   chip.on_input = on_input;
-  const Line pulse = line_of(how.pulse_gpio_num);
-  const Line control = line_of(how.ctrl_gpio_num);
-  units[how.unit] = {true, true, false, units[how.unit].filter, how, 0, pulse, control};
+  const Line pulse = line_of(config.pulse_gpio_num);
+  const Line control = line_of(config.ctrl_gpio_num);
+  units[config.unit] = {true, true, false, units[config.unit].filter, config, 0, pulse, control};
   return ESP_OK;
 }
 
@@ -130,9 +133,9 @@ esp_err_t pcnt_get_counter_value(pcnt_unit_t pcnt_unit, int16_t* value) {
 }
 
 esp_err_t pcnt_counter_clear(pcnt_unit_t pcnt_unit) {
-  Unit* const its = unit_of(pcnt_unit);
-  its->is_in_reset = false;
-  its->count = 0;
+  Unit* const unit = unit_of(pcnt_unit);
+  unit->is_in_reset = false;
+  unit->count = 0;
   return ESP_OK;
 }
 

@@ -34,7 +34,7 @@ BLEServer server;
 BLEService service;
 BLEAdvertising advertising;
 BLECharacteristic characteristics[2];
-size_t made;
+size_t characteristic_count;
 bool has_le;
 bool has_server;
 bool has_started;  // its service
@@ -47,11 +47,11 @@ struct LowEnergyClient {
 };
 constexpr size_t kMostClients = 3;  // CONFIG_BTDM_CTRL_BLE_MAX_CONN of the core
 std::map<uint16_t, LowEnergyClient> clients;
-std::vector<uint16_t> sent_away;  // and still there
-gatts_event_handler on_stack;
+std::vector<uint16_t> dismissed_clients;  // and still there
+gatts_event_handler on_gatts_event;
 BLECharacteristicCallbacks* on_write;
 bool is_congested;
-std::string written;
+std::string written_bytes;
 bool is_advertising;
 
 // the serial port
@@ -60,11 +60,11 @@ constexpr uint16_t kPortWaitMs = 1000;
 uint32_t port_handles;  // so far
 uint32_t port_client;   // its handle; 0: nobody
 bool is_second_attempt;
-std::vector<uint32_t> port_closing;
+std::vector<uint32_t> closing_ports;
 std::atomic<bool> is_port_stuck{false};
 esp_spp_cb_t on_port;
 BluetoothSerialDataCb on_port_data;
-std::string port_out;
+std::string port_output;
 
 // Both kinds of Bluetooth, which begin the same controller.
 constexpr uint16_t kBeginningMs = 20;
@@ -91,9 +91,10 @@ bool has_modem_sleep = true;
 std::atomic<bool> has_network_stack{false};
 std::atomic<int> sockets{0};
 constexpr int kMostSockets = 16;
-std::atomic<size_t> taken{90};  // of what is sent at once: the rest comes later, as over a poor radio
-std::string near_name;
-std::string near_password;
+std::atomic<size_t> send_limit{
+    90};  // of what is sent at once: the rest comes later, as over a poor radio
+std::string reachable_name;
+std::string reachable_password;
 uint16_t bound_port;
 int bound_socket = -1;
 bool has_mdns;
@@ -124,52 +125,52 @@ void look_at_sleep() {
 }
 
 // Who was sent away leaves.
-void let_go() {
+void drop_dismissed() {
   for (;;) {
     uint16_t client;
     {
       const Lock lock(guard);
-      if (sent_away.empty()) return;
-      client = sent_away.back();
-      sent_away.pop_back();
+      if (dismissed_clients.empty()) return;
+      client = dismissed_clients.back();
+      dismissed_clients.pop_back();
     }
     low_energy_disconnect(client);
   }
 }
 
-void tell_port(esp_spp_cb_event_t event, esp_spp_cb_param_t its) {
-  esp_spp_cb_t told;
+void send_port_event(esp_spp_cb_event_t event, esp_spp_cb_param_t param) {
+  esp_spp_cb_t callback;
   {
     const Lock lock(guard);
-    told = on_port;
+    callback = on_port;
   }
-  if (told != nullptr) told(event, &its);
+  if (callback != nullptr) callback(event, &param);
 }
 
 void close_ports() {
   for (;;) {
-    esp_spp_cb_param_t its = {};
+    esp_spp_cb_param_t param = {};
     {
       const Lock lock(guard);
-      if (port_closing.empty()) return;
-      its.close.handle = port_closing.front();
-      port_closing.erase(port_closing.begin());
+      if (closing_ports.empty()) return;
+      param.close.handle = closing_ports.front();
+      closing_ports.erase(closing_ports.begin());
       if (!is_second_attempt) port_client = 0;
       is_second_attempt = false;
     }
-    tell_port(ESP_SPP_CLOSE_EVT, its);
+    send_port_event(ESP_SPP_CLOSE_EVT, param);
   }
 }
 
 // The stack's task tells; it has a handler as soon as anybody may be connected.
-void tell(esp_gatts_cb_event_t event, esp_ble_gatts_cb_param_t its) {
-  gatts_event_handler told;
+void send_event(esp_gatts_cb_event_t event, esp_ble_gatts_cb_param_t param) {
+  gatts_event_handler handler;
   {
     const Lock lock(guard);
-    told = on_stack;
+    handler = on_gatts_event;
   }
-  if (told != nullptr) told(event, kInterface, &its);
-  let_go();
+  if (handler != nullptr) handler(event, kInterface, &param);
+  drop_dismissed();
 }
 
 }  // namespace
@@ -185,9 +186,9 @@ uint16_t low_energy_connect() {
     is_advertising = false;
     clients[client] = LowEnergyClient();
   }
-  esp_ble_gatts_cb_param_t its = {};
-  its.connect.conn_id = client;
-  tell(ESP_GATTS_CONNECT_EVT, its);
+  esp_ble_gatts_cb_param_t param = {};
+  param.connect.conn_id = client;
+  send_event(ESP_GATTS_CONNECT_EVT, param);
   return client;
 }
 
@@ -196,9 +197,9 @@ void low_energy_disconnect(uint16_t client) {
     const Lock lock(guard);
     if (clients.erase(client) == 0) return;
   }
-  esp_ble_gatts_cb_param_t its = {};
-  its.disconnect.conn_id = client;
-  tell(ESP_GATTS_DISCONNECT_EVT, its);
+  esp_ble_gatts_cb_param_t param = {};
+  param.disconnect.conn_id = client;
+  send_event(ESP_GATTS_DISCONNECT_EVT, param);
 }
 
 bool low_energy_is_there(uint16_t client) {
@@ -212,27 +213,27 @@ void low_energy_agree(uint16_t client, uint16_t mtu) {
     if (clients.count(client) == 0) return;
     clients[client].mtu = mtu < 23 ? 23 : mtu > 247 ? 247 : mtu;
   }
-  esp_ble_gatts_cb_param_t its = {};
-  its.mtu.conn_id = client;
-  its.mtu.mtu = mtu;
-  tell(ESP_GATTS_MTU_EVT, its);
+  esp_ble_gatts_cb_param_t param = {};
+  param.mtu.conn_id = client;
+  param.mtu.mtu = mtu;
+  send_event(ESP_GATTS_MTU_EVT, param);
 }
 
-void low_energy_subscribe(uint16_t client, bool has) {
+void low_energy_subscribe(uint16_t client, bool subscribes) {
   {
     const Lock lock(guard);
     if (clients.count(client) == 0) return;
-    clients[client].has_subscribed = has;
+    clients[client].has_subscribed = subscribes;
   }
-  uint8_t value[] = {has, 0};
-  esp_ble_gatts_cb_param_t its = {};
-  its.write = {client, BLEDescriptor().getHandle(), sizeof value, value};
-  tell(ESP_GATTS_WRITE_EVT, its);
+  uint8_t value[] = {subscribes, 0};
+  esp_ble_gatts_cb_param_t param = {};
+  param.write = {client, BLEDescriptor().getHandle(), sizeof value, value};
+  send_event(ESP_GATTS_WRITE_EVT, param);
 }
 
-void low_energy_congest(bool is_so) {
+void low_energy_congest(bool is_on) {
   const Lock lock(guard);
-  is_congested = is_so;
+  is_congested = is_on;
 }
 
 void low_energy_write(uint16_t client, const std::string& bytes) {
@@ -240,40 +241,40 @@ void low_energy_write(uint16_t client, const std::string& bytes) {
     const Lock lock(guard);
     if (clients.count(client) == 0) return;
   }
-  written = bytes;  // of the stack's task alone
-  esp_ble_gatts_cb_param_t its = {};
-  its.write = {client, characteristics[1].getHandle(), static_cast<uint16_t>(written.size()),
-               characteristics[1].getData()};
-  on_write->onWrite(&characteristics[1], &its);
-  tell(ESP_GATTS_WRITE_EVT, its);
+  written_bytes = bytes;  // of the stack's task alone
+  esp_ble_gatts_cb_param_t param = {};
+  param.write = {client, characteristics[1].getHandle(),
+                 static_cast<uint16_t>(written_bytes.size()), characteristics[1].getData()};
+  on_write->onWrite(&characteristics[1], &param);
+  send_event(ESP_GATTS_WRITE_EVT, param);
 }
 
-std::vector<std::string> low_energy_notified(uint16_t client) {
+std::vector<std::string> low_energy_notifications(uint16_t client) {
   const Lock lock(guard);
-  std::vector<std::string> found;
-  if (clients.count(client) != 0) found.swap(clients[client].notified);
-  return found;
+  std::vector<std::string> notifications;
+  if (clients.count(client) != 0) notifications.swap(clients[client].notified);
+  return notifications;
 }
 
 // As `esp_spp_cb` of BluetoothSerial.cpp has it: after a second attempt the first one that closes is
 // taken for that.
 void serial_port_connect(bool is_there) {
-  esp_spp_cb_param_t its = {};
+  esp_spp_cb_param_t param = {};
   {
     const Lock lock(guard);
     if (is_there) {
-      its.srv_open.handle = ++port_handles;
+      param.srv_open.handle = ++port_handles;
       if (port_client == 0) {
         port_client = port_handles;
       } else {
         is_second_attempt = true;
-        port_closing.push_back(port_handles);
+        closing_ports.push_back(port_handles);
       }
     } else if (port_client != 0) {
-      port_closing.push_back(port_client);
+      closing_ports.push_back(port_client);
     }
   }
-  if (is_there) tell_port(ESP_SPP_SRV_OPEN_EVT, its);
+  if (is_there) send_port_event(ESP_SPP_SRV_OPEN_EVT, param);
   close_ports();
 }
 
@@ -283,31 +284,31 @@ bool serial_port_has_client() {
 }
 
 void serial_port_write(const std::string& bytes) {
-  BluetoothSerialDataCb told;
+  BluetoothSerialDataCb callback;
   {
     const Lock lock(guard);
     if (port_client == 0) return;
-    told = on_port_data;
+    callback = on_port_data;
   }
-  for (size_t at = 0; at < bytes.size(); at += kPortPacket) {
-    const std::string packet = bytes.substr(at, kPortPacket);
-    if (told) told(reinterpret_cast<const uint8_t*>(packet.data()), packet.size());
+  for (size_t offset = 0; offset < bytes.size(); offset += kPortPacket) {
+    const std::string packet = bytes.substr(offset, kPortPacket);
+    if (callback) callback(reinterpret_cast<const uint8_t*>(packet.data()), packet.size());
   }
 }
 
-void serial_port_stick(bool is_so) { is_port_stuck = is_so; }
+void serial_port_stick(bool is_stuck) { is_port_stuck = is_stuck; }
 
-std::string serial_port_said() {
+std::string serial_port_output() {
   const Lock lock(guard);
-  std::string found;
-  found.swap(port_out);
-  return found;
+  std::string output;
+  output.swap(port_output);
+  return output;
 }
 
 void network_in_reach(const std::string& name, const std::string& password) {
   const Lock lock(guard);
-  near_name = name;
-  near_password = password;
+  reachable_name = name;
+  reachable_password = password;
 }
 
 void network_name(const std::string& name, const std::string& address, uint16_t wait_ms) {
@@ -318,7 +319,7 @@ void network_name(const std::string& name, const std::string& address, uint16_t 
 
 void network_refuses(uint8_t reason) { refusal = reason; }
 
-void network_takes(uint16_t most) { taken = most; }
+void network_takes(uint16_t byte_limit) { send_limit = byte_limit; }
 
 void network_expires() {
   arduino_event_t event = {ARDUINO_EVENT_WIFI_STA_DISCONNECTED, {{kAuthExpire}}};
@@ -331,19 +332,19 @@ void network_expires() {
   if (on_disconnected != nullptr) on_disconnected(&event);
 }
 
-void network_leases_after(uint32_t found_ms) {
+void network_leases_after(uint32_t new_lease_ms) {
   const Lock lock(guard);
-  lease_ms = found_ms;
+  lease_ms = new_lease_ms;
 }
 
-void network_searches(uint32_t found_ms) {
+void network_searches(uint32_t new_search_ms) {
   const Lock lock(guard);
-  search_ms = found_ms;
+  search_ms = new_search_ms;
 }
 
 void radio_logs() {
   if (log_level >= ESP_LOG_ERROR) {
-    chip.sent += "E (15234) wifi:sta is connecting, cannot set config\r\n";
+    chip.sent_bytes += "E (15234) wifi:sta is connecting, cannot set config\r\n";
   }
 }
 
@@ -354,9 +355,9 @@ uint16_t network_port() {
 
 RadioSettings radio_settings() {
   const Lock lock(guard);
-  RadioSettings found = settings;
-  found.sockets = static_cast<uint32_t>(sockets);
-  return found;
+  RadioSettings current = settings;
+  current.sockets = static_cast<uint32_t>(sockets);
+  return current;
 }
 
 // -- what the core has --------------------------------------------------------------------------
@@ -392,7 +393,7 @@ bool BluetoothSerial::hasClient() {
 extern "C" esp_err_t esp_spp_disconnect(uint32_t handle) {
   const Lock lock(guard);
   expect(handle != 0, "a serial port of nobody");
-  port_closing.push_back(handle);
+  closing_ports.push_back(handle);
   return ESP_OK;
 }
 
@@ -408,7 +409,7 @@ size_t BluetoothSerial::write(const uint8_t* buffer, size_t size) {
     vTaskDelay(1);
   }
   const Lock lock(guard);
-  port_out.append(reinterpret_cast<const char*>(buffer), size);
+  port_output.append(reinterpret_cast<const char*>(buffer), size);
   return size;
 }
 
@@ -417,8 +418,8 @@ void BLECharacteristicCallbacks::onWrite(BLECharacteristic*, esp_ble_gatts_cb_pa
 void BLECharacteristic::addDescriptor(BLEDescriptor*) {
   expect(!has_started, "a part of a service that has started");
 }
-uint8_t* BLECharacteristic::getData() { return reinterpret_cast<uint8_t*>(&written[0]); }
-size_t BLECharacteristic::getLength() { return written.size(); }
+uint8_t* BLECharacteristic::getData() { return reinterpret_cast<uint8_t*>(&written_bytes[0]); }
+size_t BLECharacteristic::getLength() { return written_bytes.size(); }
 void BLECharacteristic::setCallbacks(BLECharacteristicCallbacks* pCallbacks) {
   const Lock lock(guard);
   on_write = pCallbacks;
@@ -434,19 +435,20 @@ extern "C" esp_err_t esp_ble_gatts_send_indicate(esp_gatt_if_t gatts_if, uint16_
                                                  uint8_t* value, bool) {
   const Lock lock(guard);
   expect(gatts_if == kInterface && attr_handle == kFirstHandle, "a notification of nothing");
-  const auto found = clients.find(conn_id);
-  if (found == clients.end()) return ESP_ERR_INVALID_STATE;
+  const auto position = clients.find(conn_id);
+  if (position == clients.end()) return ESP_ERR_INVALID_STATE;
   if (is_congested) return ESP_FAIL;
-  LowEnergyClient& its = found->second;
-  if (!its.has_subscribed) return ESP_OK;  // it is sent, and the client throws it away
-  const size_t most = its.mtu - 3U;        // the stack cuts the rest off
-  its.notified.emplace_back(reinterpret_cast<char*>(value), value_len < most ? value_len : most);
+  LowEnergyClient& client = position->second;
+  if (!client.has_subscribed) return ESP_OK;  // it is sent, and the client throws it away
+  const size_t byte_limit = client.mtu - 3U;  // the stack cuts the rest off
+  client.notified.emplace_back(reinterpret_cast<char*>(value),
+                               value_len < byte_limit ? value_len : byte_limit);
   return ESP_OK;
 }
 
 BLECharacteristic* BLEService::createCharacteristic(const char*, uint32_t) {
   expect(!has_started, "a part of a service that has started");
-  return &characteristics[made++];
+  return &characteristics[characteristic_count++];
 }
 void BLEService::start() { has_started = true; }
 
@@ -454,7 +456,7 @@ BLEService* BLEServer::createService(const char*) { return &service; }
 void BLEServer::disconnect(uint16_t connId) {
   const Lock lock(guard);
   expect(clients.count(connId) != 0, "a client that is sent away and not there");
-  sent_away.push_back(connId);
+  dismissed_clients.push_back(connId);
 }
 
 void BLEAdvertising::addServiceUUID(const char*) {}
@@ -476,7 +478,7 @@ void BLEDevice::init(BleText deviceName) {
 void BLEDevice::setCustomGattsHandler(gatts_event_handler handler) {
   expect(!has_started, "a handler that misses events of a service that has started");
   const Lock lock(guard);
-  on_stack = handler;
+  on_gatts_event = handler;
 }
 esp_err_t BLEDevice::setMTU(uint16_t mtu) {
   expect(has_le, "Bluetooth LE before BLEDevice::init");
@@ -513,22 +515,22 @@ wl_status_t WiFiClass::begin(const char* ssid, const char* passphrase, int32_t, 
 // as `WiFiGenericClass::_eventCallback` has it.
 wl_status_t WiFiClass::status() {
   arduino_event_t event = {ARDUINO_EVENT_WIFI_STA_DISCONNECTED, {{refusal}}};
-  wl_status_t found = WL_DISCONNECTED;
+  wl_status_t status = WL_DISCONNECTED;
   {
     const Lock lock(guard);
     if (wifi_mode != WIFI_STA) return WL_NO_SHIELD;
     if (is_expired) return WL_CONNECTED;
     const uint32_t now_ms = static_cast<uint32_t>(millis());
     if (!is_associated && now_ms - scanned_ms < search_ms) return WL_DISCONNECTED;
-    const bool is_near = !near_name.empty() && near_name == settings.network;
-    if (is_near && near_password == settings.password) {
+    const bool is_near = !reachable_name.empty() && reachable_name == settings.network;
+    if (is_near && reachable_password == settings.password) {
       // once out of reach, it is joined again by whoever tries
       if (!is_associated && now_ms - scanned_ms >= kScanMs && !reconnects) return WL_DISCONNECTED;
       if (!is_associated) {
         associated_ms = now_ms;
         is_associated = true;
-        arduino_event_t joined = {ARDUINO_EVENT_WIFI_STA_CONNECTED, {{0}}};
-        if (on_connected != nullptr) on_connected(&joined);
+        arduino_event_t joined_event = {ARDUINO_EVENT_WIFI_STA_CONNECTED, {{0}}};
+        if (on_connected != nullptr) on_connected(&joined_event);
       }
       return now_ms - associated_ms < lease_ms ? WL_IDLE_STATUS : WL_CONNECTED;
     }
@@ -538,12 +540,12 @@ wl_status_t WiFiClass::status() {
       settings.joins++;
     }
     if (!is_near) {
-      found = WL_NO_SSID_AVAIL;
+      status = WL_NO_SSID_AVAIL;
       event.event_info.wifi_sta_disconnected.reason = kNoNetwork;
     }
   }
   if (on_disconnected != nullptr) on_disconnected(&event);
-  return found;
+  return status;
 }
 
 int WiFiClass::onEvent(WiFiEventSysCb cbEvent, arduino_event_id_t event) {
@@ -643,15 +645,15 @@ void esp_log_level_set(const char* tag, esp_log_level_t level) {
 }
 
 int lwip_accept(int s, struct sockaddr* addr, socklen_t* addrlen) {
-  const int found = accept(s, addr, addrlen);
-  if (found < 0) return found;
+  const int connection = accept(s, addr, addrlen);
+  if (connection < 0) return connection;
   if (sockets == kMostSockets) {  // it is taken from those that wait, and gone
-    close(found);
+    close(connection);
     errno = ENFILE;
     return -1;
   }
   sockets++;
-  return found;
+  return connection;
 }
 
 // On 127.0.0.1, at a port that is free: many robots are on one computer.
@@ -685,7 +687,7 @@ int lwip_fcntl(int s, int cmd, int val) { return fcntl(s, cmd, val); }
 struct hostent* lwip_gethostbyname(const char* name) {
   static in_addr address;  // of one task alone, as with lwIP
   static char* list[] = {reinterpret_cast<char*>(&address), nullptr};
-  static hostent found = {nullptr, nullptr, AF_INET, sizeof address, list};
+  static hostent host = {nullptr, nullptr, AF_INET, sizeof address, list};
   uint16_t wait_ms;
   {
     const Lock lock(guard);
@@ -694,19 +696,19 @@ struct hostent* lwip_gethostbyname(const char* name) {
   }
   if (wait_ms != 0) vTaskDelay(wait_ms);
   const Lock lock(guard);
-  const auto known = addresses.find(name);
-  if (known == addresses.end() || inet_aton(known->second.c_str(), &address) == 0) return nullptr;
-  return &found;
+  const auto entry = addresses.find(name);
+  if (entry == addresses.end() || inet_aton(entry->second.c_str(), &address) == 0) return nullptr;
+  return &host;
 }
 int lwip_listen(int s, int backlog) { return listen(s, backlog); }
 ssize_t lwip_recv(int s, void* mem, size_t len, int flags) { return recv(s, mem, len, flags); }
 ssize_t lwip_send(int s, const void* dataptr, size_t size, int flags) {
-  const size_t most = taken;
-  if (most == 0) {
+  const size_t byte_limit = send_limit;
+  if (byte_limit == 0) {
     errno = EWOULDBLOCK;
     return -1;
   }
-  return send(s, dataptr, size < most ? size : most, flags | MSG_NOSIGNAL);
+  return send(s, dataptr, size < byte_limit ? size : byte_limit, flags | MSG_NOSIGNAL);
 }
 int lwip_setsockopt(int s, int level, int optname, const void* optval, socklen_t optlen) {
   return setsockopt(s, level, optname, optval, optlen);

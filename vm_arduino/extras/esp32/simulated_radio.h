@@ -19,26 +19,26 @@ void low_energy_disconnect(uint16_t client);
 bool low_energy_is_there(uint16_t client);
 void low_energy_agree(uint16_t client, uint16_t mtu);
 void low_energy_subscribe(uint16_t client, bool has_subscribed);
-void low_energy_congest(bool is_so);  // its stack takes no notification meanwhile
+void low_energy_congest(bool is_on);  // its stack takes no notification meanwhile
 void low_energy_write(uint16_t client, const std::string& bytes);
-std::vector<std::string> low_energy_notified(uint16_t client);  // since the last call
+std::vector<std::string> low_energy_notifications(uint16_t client);  // since the last call
 
 // Bluetooth with a serial port. Whoever comes while there is a client is sent away by the core.
 // One that is stuck takes nothing: `write` of the core waits then.
 void serial_port_connect(bool is_there);
 bool serial_port_has_client();
 void serial_port_write(const std::string& bytes);
-void serial_port_stick(bool is_so);
-std::string serial_port_said();  // since the last call
+void serial_port_stick(bool is_stuck);
+std::string serial_port_output();  // since the last call
 
 // WiFi: a network in reach with its password; none if `name` is empty.
 void network_in_reach(const std::string& name, const std::string& password);
-void network_refuses(uint8_t reason);  // a wrong password
-void network_takes(uint16_t most);     // of what is sent at once; 0: nothing, for now
-void network_expires();  // it sends the robot away: its authentication is over
+void network_refuses(uint8_t reason);          // a wrong password
+void network_takes(uint16_t byte_limit);       // of what is sent at once; 0: nothing, for now
+void network_expires();                        // it sends the robot away: its authentication is over
 void network_leases_after(uint32_t lease_ms);  // until whoever has joined has an address
 void network_searches(uint32_t search_ms);     // until a network is found, or none
-void radio_logs();  // a library of ESP-IDF tells an error, on UART 0
+void radio_logs();                             // a library of ESP-IDF tells an error, on UART 0
 // Lets the network know a name of a computer; none but "localhost" is known before.
 // Looking it up takes `wait_ms`.
 void network_name(const std::string& name, const std::string& address, uint16_t wait_ms);

@@ -25,30 +25,30 @@ struct Task {
   ucontext_t context;
   const void* stack;  // which the sanitizers are told of
   size_t stack_bytes;
-  void* kept;
+  void* fake_stack;
 };
 
 std::vector<std::unique_ptr<Task>> tasks;
 Task main_loop;
-Task* active = &main_loop;
-Task* before;
+Task* current = &main_loop;
+Task* previous;
 
 // After a switch, in the task that goes on.
 void arrive() {
-  __sanitizer_finish_switch_fiber(active->kept, &before->stack, &before->stack_bytes);
+  __sanitizer_finish_switch_fiber(current->fake_stack, &previous->stack, &previous->stack_bytes);
 }
 
-void go_on_with(Task* task) {
-  before = active;
-  active = task;
-  __sanitizer_start_switch_fiber(&before->kept, task->stack, task->stack_bytes);
-  swapcontext(&before->context, &task->context);
+void switch_to(Task* task) {
+  previous = current;
+  current = task;
+  __sanitizer_start_switch_fiber(&previous->fake_stack, task->stack, task->stack_bytes);
+  swapcontext(&previous->context, &task->context);
   arrive();
 }
 
-void live() {
+void run_task() {
   arrive();
-  active->code(active->parameters);
+  current->code(current->parameters);
   abort();  // a task of FreeRTOS does not return
 }
 
@@ -60,9 +60,9 @@ uint64_t next_us() {
   return next;
 }
 
-void run_due() {
+void run_due_tasks() {
   for (size_t k = 0; k < tasks.size(); k++) {
-    if (tasks[k]->due_us <= chip.now_us) go_on_with(tasks[k].get());
+    if (tasks[k]->due_us <= chip.now_us) switch_to(tasks[k].get());
   }
 }
 
@@ -87,23 +87,23 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const,
   getcontext(&task->context);
   task->context.uc_stack.ss_sp = task->memory.get();
   task->context.uc_stack.ss_size = kStackBytes;
-  makecontext(&task->context, live, 0);
+  makecontext(&task->context, run_task, 0);
   task->context.uc_stack.ss_size = 0;  // else ASan clears its shadow at each switch
   tasks.push_back(std::move(task));
   next_task_us = next_us;
-  run_tasks = run_due;
+  run_tasks = run_due_tasks;
   return 1;
 }
 
 void vTaskDelay(const TickType_t xTicksToDelay) {
   expect_free("vTaskDelay in a critical section");
-  if (active == &main_loop) {
-    chip.rests++;
+  if (current == &main_loop) {
+    chip.sleep_count++;
     chip.slept_us += xTicksToDelay * 1000;
     return pass_us(uint64_t{xTicksToDelay} * 1000);
   }
-  active->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
-  go_on_with(&main_loop);
+  current->due_us = chip.now_us + uint64_t{xTicksToDelay} * 1000;
+  switch_to(&main_loop);
 }
 
 }  // extern "C"

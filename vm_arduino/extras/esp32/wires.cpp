@@ -38,8 +38,8 @@ uint32_t pulse_us(const Pwm& servo) {
 int power_of(const TurningServo& motor) {
   const uint32_t us = pulse_us(kServos[motor.number]);
   if (us == 0) return 0;
-  const int more = static_cast<int>(us) - motor.still_us;
-  return percent((motor.is_reversed ? -more : more) / 2.0);
+  const int offset_us = static_cast<int>(us) - motor.still_us;
+  return percent((motor.is_reversed ? -offset_us : offset_us) / 2.0);
 }
 #endif
 
@@ -56,14 +56,14 @@ uint32_t tone() {
 }  // namespace
 
 PartOutputs part_outputs() {
-  PartOutputs found = {};
-  found.left = power_of(kLeftMotor);
-  found.right = power_of(kRightMotor);
-  found.hertz = tone();
+  PartOutputs outputs = {};
+  outputs.left = power_of(kLeftMotor);
+  outputs.right = power_of(kRightMotor);
+  outputs.hertz = tone();
 #ifdef tiniscript_servos
-  for (const Pwm& servo : kServos) found.pulse_us[found.servos++] = pulse_us(servo);
+  for (const Pwm& servo : kServos) outputs.pulse_us[outputs.servos++] = pulse_us(servo);
 #endif
-  return found;
+  return outputs;
 }
 
 bool light_is_on() { return is_there(kLight) && output_of(kLight.number) != 0; }

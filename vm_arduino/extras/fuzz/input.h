@@ -9,11 +9,11 @@
 
 class Input {
  public:
-  Input(const uint8_t* data, size_t size) : data_(data), size_(size), at_(0) {}
+  Input(const uint8_t* data, size_t size) : data_(data), size_(size), offset_(0) {}
 
-  bool has_more() const { return at_ < size_; }
-  size_t left() const { return size_ - at_; }
-  uint8_t u8() { return at_ < size_ ? data_[at_++] : 0; }
+  bool has_more() const { return offset_ < size_; }
+  size_t remaining() const { return size_ - offset_; }
+  uint8_t u8() { return offset_ < size_ ? data_[offset_++] : 0; }
   uint16_t u16() {
     const uint8_t low = u8();
     return static_cast<uint16_t>(low | u8() << 8);
@@ -22,7 +22,7 @@ class Input {
  private:
   const uint8_t* data_;
   size_t size_;
-  size_t at_;
+  size_t offset_;
 };
 
 // Ends the run with what must not be: the fuzzer keeps its input.

@@ -32,14 +32,14 @@ uint8_t seq;
 uint8_t epoch;
 
 // What the robot has sent: a row of packets, whose frames are whole.
-std::string sent;
+std::string sent_bytes;
 
-void look_at_sent() {
-  size_t begin = 0;
-  for (size_t k = 0; k < sent.size(); k++) {
-    if (sent[k] != 0) continue;
-    const std::string packet = sent.substr(begin, k - begin);
-    begin = k + 1;
+void check_sent() {
+  size_t start = 0;
+  for (size_t k = 0; k < sent_bytes.size(); k++) {
+    if (sent_bytes[k] != 0) continue;
+    const std::string packet = sent_bytes.substr(start, k - start);
+    start = k + 1;
     if (packet.empty()) continue;
     if (packet.size() > 1 && (packet[1] & kReply) == 0) continue;  // text
     uint8_t bytes[kPacketBytes];
@@ -49,7 +49,7 @@ void look_at_sent() {
     must((bytes[kTypeAt] & kReply) != 0);
     epoch = bytes[kEpochAt];
   }
-  sent.erase(0, begin);
+  sent_bytes.erase(0, start);
 }
 
 void turn() {
@@ -58,18 +58,18 @@ void turn() {
     link_half.tick();
     link_half.send_due();
     uint8_t byte;
-    while (link_half.next_tx_byte(&byte)) sent.push_back(static_cast<char>(byte));
+    while (link_half.next_tx_byte(&byte)) sent_bytes.push_back(static_cast<char>(byte));
   }
-  look_at_sent();
-  must(sent.size() < 4096);
+  check_sent();
+  must(sent_bytes.size() < 4096);
 }
 
-bool looks() { return seq % kWindow == 0; }
+bool is_looking() { return seq % kWindow == 0; }
 
 void arrive(uint8_t byte) {
   const bool is_stop = receiver.put(byte, static_cast<uint16_t>(now_ms));
   must(!is_stop || link_half.stop_is_due());
-  if (!looks()) return;
+  if (!is_looking()) return;
   link_half.pass_time(static_cast<uint16_t>(now_ms));
   link_half.tick();
   link_half.send_due();
@@ -83,17 +83,17 @@ void send_frame(uint8_t type, Input* input) {
   frame[kSeqAt] = ++seq;
   frame[kEpochAt] = epoch;
   if (length > kSmallFrame - kHeadBytes - kCrcBytes) end++;  // the 0 of a large one
-  const uint8_t begin = end;
-  while (end - begin < length) frame[end++] = input->u8();
-  if (type == static_cast<uint8_t>(Message::kHello) && length != 0) frame[begin] = kLinkMajor;
+  const uint8_t start = end;
+  while (end - start < length) frame[end++] = input->u8();
+  if (type == static_cast<uint8_t>(Message::kHello) && length != 0) frame[start] = kLinkMajor;
   const uint8_t size = encode_frame(frame, end);
   arrive(0);
   for (uint8_t k = 0; k < size; k++) arrive(frame[k]);
 }
 
-void happen(uint8_t what, Input* input) {
+void happen(uint8_t event, Input* input) {
   const bool is_running = port.robot_status.state == State::kRunning;
-  switch (what % 8) {
+  switch (event % 8) {
     case 0:
       now_ms += input->u8();
       break;
@@ -103,13 +103,13 @@ void happen(uint8_t what, Input* input) {
     case 2:
       if (is_running) {
         port.robot_status.state = State::kIdle;
-        link_half.done();
+        link_half.on_done();
       }
       break;
     case 3:
       if (is_running) {
         port_stop(1);
-        link_half.faulted();
+        link_half.on_faulted();
       }
       break;
     case 4:
@@ -117,7 +117,7 @@ void happen(uint8_t what, Input* input) {
       break;
     case 5:
       port_stop(0);
-      link_half.stopped(Cause::kButton);
+      link_half.on_stopped(Cause::kButton);
       break;
     case 6:
       port.is_busy = !port.is_busy;
@@ -144,7 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   link_half.begin(&receiver, epoch);
   now_ms = 0;
   seq = 0;
-  sent.clear();
+  sent_bytes.clear();
   for (size_t k = 0; k < kMostEvents && input.has_more(); k++) {
     const uint8_t event = input.u8();
     if (event < 0x40) {
@@ -155,7 +155,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       for (uint8_t count = event % 64; count > 0 && input.has_more(); count--) arrive(input.u8());
       if (event >= 0xc0) arrive('\n');
     }
-    if (!looks()) continue;
+    if (!is_looking()) continue;
     turn();
     // whatever came: the motors' pins are off where a stop has not been looked at
     must(receiver.due_stop() == Cause::kNone || port.robot_status.state != State::kRunning);

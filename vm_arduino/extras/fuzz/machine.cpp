@@ -29,7 +29,7 @@ bool is_ready() {
   return is_refusing;
 }
 
-void make_right(std::vector<uint8_t>* image) {
+void make_valid(std::vector<uint8_t>* image) {
   uint8_t* const bytes = image->data();
   const size_t code = image->size() - kHeaderBytes;
   bytes[kMagicAt] = 'T';
@@ -70,33 +70,33 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Input input(data, size);
   const uint8_t sensors = input.u8() % 16;
   const uint8_t actuators = input.u8() % 8;
-  const uint8_t how = input.u8();
+  const uint8_t flags = input.u8();
   std::vector<uint8_t> image;
   while (input.has_more() && image.size() < kMostBytes) image.push_back(input.u8());
-  if ((how & 1) != 0) {
+  if ((flags & 1) != 0) {
     if (image.size() < kHeaderBytes) return -1;
-    make_right(&image);
+    make_valid(&image);
   }
   const uint16_t length = static_cast<uint16_t>(image.size());
   image.resize(length + kEndBytes);                                   // the machine's own: END
   std::vector<uint8_t> exact(image.begin(), image.begin() + length);  // a sanitizer sees its end
   uint16_t devices;
-  Image found;
-  if (unpack(exact.data(), length, &found) != Refusal::kNone) return 0;
-  if (verify(found.code, found.code_length, sensors, actuators, &devices, found.needs).rule !=
-      Rule::kNone) {
+  Image unpacked;
+  if (unpack(exact.data(), length, &unpacked) != Refusal::kNone) return 0;
+  if (verify(unpacked.code, unpacked.code_length, sensors, actuators, &devices, unpacked.needs)
+          .rule != Rule::kNone) {
     return 0;
   }
-  const bool is_its_kit = check_devices(found, devices) == Refusal::kNone;
+  const bool is_for_kit = check_devices(unpacked, devices) == Refusal::kNone;
   const Admission admission = admit(exact.data(), sensors, actuators);
-  must((admission.refusal == 0) == is_its_kit);
+  must((admission.refusal == 0) == is_for_kit);
 
-  std::vector<uint8_t> code(found.code, found.code + found.code_length);
+  std::vector<uint8_t> code(unpacked.code, unpacked.code + unpacked.code_length);
   code.resize(code.size() + kEndBytes, static_cast<uint8_t>(Op::kEnd));
   Machine machine;
   std::vector<int32_t> readings(sensors);
-  uint32_t now_ms = how * 0x01000000U;
-  machine.start(code.data(), found.code_length, readings.data(), sensors, how | 1U, now_ms);
+  uint32_t now_ms = flags * 0x01000000U;
+  machine.start(code.data(), unpacked.code_length, readings.data(), sensors, flags | 1U, now_ms);
   for (uint16_t k = 0; k < kTicks; k++) {
     const Status status = machine.tick(now_ms, kBudget);
     if (status == Status::kWaiting) now_ms = machine.wake_ms();

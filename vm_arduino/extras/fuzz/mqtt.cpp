@@ -25,22 +25,22 @@ struct Packet {
   std::string payload;
   bool is_retained;
 
-  bool operator==(const Packet& other) const {
-    return event == other.event && topic == other.topic && payload == other.payload &&
-           is_retained == other.is_retained;
+  bool operator==(const Packet& second) const {
+    return event == second.event && topic == second.topic && payload == second.payload &&
+           is_retained == second.is_retained;
   }
 };
 
 std::string bytes_of(Input* input, size_t length) {
-  std::string found;
-  while (found.size() < length) found.push_back(static_cast<char>(input->u8()));
-  return found;
+  std::string bytes;
+  while (bytes.size() < length) bytes.push_back(static_cast<char>(input->u8()));
+  return bytes;
 }
 
 std::string message(Input* input) {
   std::string topic = bytes_of(input, input->u8() % (kMqttTopicBytes + 4));
-  for (char& each : topic) {
-    if (each == 0) each = '/';
+  for (char& letter : topic) {
+    if (letter == 0) letter = '/';
   }
   const std::string payload = bytes_of(input, input->u16() % (kMqttPayloadBytes + 4));
   uint8_t bytes[kRoom];
@@ -51,10 +51,10 @@ std::string message(Input* input) {
   return std::string(reinterpret_cast<const char*>(bytes), writer.length());
 }
 
-// The next packet of `data` from `at` on, which goes on after it. False: it is not all there.
-bool next_packet(const std::string& data, size_t* at, Packet* found) {
-  *found = {MqttEvent::kNone, "", "", false};
-  size_t place = *at;
+// The next packet of `data` from `offset` on, which goes on after it. False: it is not all there.
+bool next_packet(const std::string& data, size_t* offset, Packet* packet) {
+  *packet = {MqttEvent::kNone, "", "", false};
+  size_t place = *offset;
   if (place == data.size()) return false;
   const uint8_t type = static_cast<uint8_t>(data[place++]);
   size_t length = 0;
@@ -64,8 +64,8 @@ bool next_packet(const std::string& data, size_t* at, Packet* found) {
     length += static_cast<size_t>(byte & 0x7f) << (7 * k);
     if (byte < 0x80) break;
     if (k == 3) {
-      *at = place;
-      found->event = MqttEvent::kBroken;
+      *offset = place;
+      packet->event = MqttEvent::kBroken;
       return true;
     }
   }
@@ -74,8 +74,8 @@ bool next_packet(const std::string& data, size_t* at, Packet* found) {
                                    : (type == 0x20 && length == 2) || (type == 0x90 && length == 4) ||
                                          (type == 0xd0 && length == 0);
   if (!is_known) {
-    *at = place;
-    found->event = MqttEvent::kBroken;
+    *offset = place;
+    packet->event = MqttEvent::kBroken;
     return true;
   }
   const std::string body = data.substr(place, length);
@@ -83,37 +83,37 @@ bool next_packet(const std::string& data, size_t* at, Packet* found) {
     const size_t topic = static_cast<size_t>(static_cast<uint8_t>(body[0]) << 8 |
                                              static_cast<uint8_t>(body[1]));
     if (topic > length - 2) {
-      *at = place + 2;
-      found->event = MqttEvent::kBroken;
+      *offset = place + 2;
+      packet->event = MqttEvent::kBroken;
       return true;
     }
     if (body.size() == length && topic <= kMqttTopicBytes &&
         length - 2 - topic <= kMqttPayloadBytes) {
-      *found = {MqttEvent::kMessage, body.substr(2, topic), body.substr(2 + topic),
-                (type & 1) != 0};
+      *packet = {MqttEvent::kMessage, body.substr(2, topic), body.substr(2 + topic),
+                 (type & 1) != 0};
     }
   }
   if (body.size() < length) return false;
-  *at = place + length;
-  if (type == 0x20) found->event = body[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
+  *offset = place + length;
+  if (type == 0x20) packet->event = body[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
   if (type == 0x90) {
     const std::string grants = body.substr(2);
     const bool are_codes = grants.find_first_not_of(std::string("\0\x80", 2)) == std::string::npos;
     const bool are_all = grants == std::string(2, 0);
-    found->event = !are_codes ? MqttEvent::kBroken
-                   : are_all  ? MqttEvent::kSubscribed
-                              : MqttEvent::kRefused;
+    packet->event = !are_codes ? MqttEvent::kBroken
+                    : are_all  ? MqttEvent::kSubscribed
+                               : MqttEvent::kRefused;
   }
   return true;
 }
 
 std::vector<Packet> expected(const std::string& data) {
-  std::vector<Packet> all;
-  Packet found;
-  for (size_t at = 0; next_packet(data, &at, &found);) {
-    if (found.event != MqttEvent::kNone) all.push_back(found);
+  std::vector<Packet> packets;
+  Packet packet;
+  for (size_t offset = 0; next_packet(data, &offset, &packet);) {
+    if (packet.event != MqttEvent::kNone) packets.push_back(packet);
   }
-  return all;
+  return packets;
 }
 
 }  // namespace
@@ -127,21 +127,22 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   }
   static MqttReader reader;
   reader.begin();
-  std::vector<Packet> all;
-  for (const char each : data) {
-    Packet found = {reader.take(static_cast<uint8_t>(each)), "", "", false};
-    if (found.event == MqttEvent::kNone) continue;
-    if (found.event == MqttEvent::kBroken) reader.begin();
-    if (found.event == MqttEvent::kMessage) {
+  std::vector<Packet> packets;
+  for (const char byte : data) {
+    Packet packet = {reader.take(static_cast<uint8_t>(byte)), "", "", false};
+    if (packet.event == MqttEvent::kNone) continue;
+    if (packet.event == MqttEvent::kBroken) reader.begin();
+    if (packet.event == MqttEvent::kMessage) {
       must(reader.length() <= kMqttPayloadBytes);
-      found.topic = reader.topic();
-      found.payload.assign(reinterpret_cast<const char*>(reader.payload()), reader.length());
-      found.is_retained = reader.is_retained();
+      packet.topic = reader.topic();
+      packet.payload.assign(reinterpret_cast<const char*>(reader.payload()), reader.length());
+      packet.is_retained = reader.is_retained();
     }
-    all.push_back(found);
+    packets.push_back(packet);
   }
-  std::vector<Packet> others = expected(data);
-  for (Packet& each : others) each.topic = each.topic.c_str();  // a topic of ours has no 0 in it
-  must(all == others);
+  std::vector<Packet> expected_packets = expected(data);
+  for (Packet& packet : expected_packets)
+    packet.topic = packet.topic.c_str();  // a topic of ours has no 0 in it
+  must(packets == expected_packets);
   return 0;
 }

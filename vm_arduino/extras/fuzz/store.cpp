@@ -15,7 +15,7 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr uint8_t kMostDeeds = 12;
+constexpr uint8_t kMostActions = 12;
 constexpr uint32_t kMostTicks = 20000;
 
 bool has_cut;  // in this input
@@ -38,19 +38,21 @@ void start(Store* store) {
 }
 
 // A slot may count that holds no image at all: the store knows checksums alone.
-Content what_counts(const Store& store, Area area) {
+Content valid_content(const Store& store, Area area) {
   const Content content = read(store, area);
-  if (area == Area::kProgram && !content.empty()) must(content == checked(content));
+  if (area == Area::kProgram && !content.empty()) must(content == with_checksum(content));
   return content;
 }
 
-void twice(Store* store) {
+void start_twice(Store* store) {
   start(store);
-  Content first[kAreas];
-  for (uint8_t k = 0; k < kAreas; k++) first[k] = what_counts(*store, static_cast<Area>(k));
+  Content first_contents[kAreas];
+  for (uint8_t k = 0; k < kAreas; k++)
+    first_contents[k] = valid_content(*store, static_cast<Area>(k));
   const uint32_t writes = memory.writes;
   start(store);
-  for (uint8_t k = 0; k < kAreas; k++) must(what_counts(*store, static_cast<Area>(k)) == first[k]);
+  for (uint8_t k = 0; k < kAreas; k++)
+    must(valid_content(*store, static_cast<Area>(k)) == first_contents[k]);
   // The first start has settled it. A byte that a cut has left unstable may say that a slot is
   // empty, and at the next start something else: then that empties it.
   must(has_cut || memory.writes == writes);
@@ -73,35 +75,36 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     }
   }
   Store store;
-  twice(&store);
-  for (uint8_t k = 0; k < kMostDeeds && input.has_more(); k++) {
-    const uint8_t what = input.u8();
-    const bool is_cut = (what & 0x10) != 0;
+  start_twice(&store);
+  for (uint8_t k = 0; k < kMostActions && input.has_more(); k++) {
+    const uint8_t flags = input.u8();
+    const bool is_cut = (flags & 0x10) != 0;
     uint16_t cut_after = is_cut ? input.u16() % 512 : 0;
-    const Torn torn = static_cast<Torn>(input.u8() % kTorn);
-    const Area area = static_cast<Area>(what % kAreas);
-    const Content old = what_counts(store, area);
-    const Content now = area == Area::kProgram ? some_image(input.u8()) : some_record(area);
-    Content buffer = now;
+    const TornByte torn_byte = static_cast<TornByte>(input.u8() % kTornBytes);
+    const Area area = static_cast<Area>(flags % kAreas);
+    const Content old_content = valid_content(store, area);
+    const Content new_content =
+        area == Area::kProgram ? random_image(input.u8()) : random_record(area);
+    Content buffer = new_content;
     must(begin(&store, area, &buffer));
     while (store.is_busy() && !memory.is_off) {
       memory.is_writing = false;
       if (is_cut && cut_after == 0) {
         memory.is_cut_next = true;
-        memory.torn = torn;
+        memory.torn_byte = torn_byte;
       }
       const uint32_t writes = memory.writes;
       store.tick(true);
       if (memory.writes != writes && cut_after > 0) cut_after--;
-      if ((what & 0x20) != 0) store.give_up();
+      if ((flags & 0x20) != 0) store.give_up();
     }
     memory.is_writing = false;
     has_cut |= memory.is_off;
     const bool is_whole = !memory.is_off && store.state() == StoreState::kSaved;
-    if (is_whole) must(what_counts(store, area) == now);
-    twice(&store);
-    const Content content = what_counts(store, area);
-    must(is_whole ? content == now : content == now || content == old);
+    if (is_whole) must(valid_content(store, area) == new_content);
+    start_twice(&store);
+    const Content content = valid_content(store, area);
+    must(is_whole ? content == new_content : content == new_content || content == old_content);
   }
   return 0;
 }

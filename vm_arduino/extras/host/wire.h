@@ -32,27 +32,27 @@ class RequestReader {
   int32_t i32() { return static_cast<int32_t>(number(4)); }
 
   std::string text() {
-    std::string found(u32(), '\0');
-    for (char& each : found) each = static_cast<char>(next());
-    return found;
+    std::string text(u32(), '\0');
+    for (char& letter : text) letter = static_cast<char>(next());
+    return text;
   }
 
-  // `more` zero bytes follow those that were sent.
-  Bytes bytes(size_t more = 0) {
+  // `zero_bytes` more bytes, all 0, follow those that were sent.
+  Bytes bytes(size_t zero_bytes = 0) {
     const size_t length = u32();
-    Bytes found{std::unique_ptr<uint8_t[]>(new uint8_t[length + more]()), length};
-    for (size_t k = 0; k < length; k++) found.data[k] = next();
-    return found;
+    Bytes copy{std::unique_ptr<uint8_t[]>(new uint8_t[length + zero_bytes]()), length};
+    for (size_t k = 0; k < length; k++) copy.data[k] = next();
+    return copy;
   }
 
  private:
   uint8_t next() {
-    if (at_ >= data_.size()) abort();
-    return static_cast<uint8_t>(data_[at_++]);
+    if (offset_ >= data_.size()) abort();
+    return static_cast<uint8_t>(data_[offset_++]);
   }
 
   std::string data_;
-  size_t at_ = 0;
+  size_t offset_ = 0;
 };
 
 class Writer {
@@ -75,30 +75,30 @@ class Writer {
 };
 
 // Returns lines, each after the time of all.
-inline std::string timed(uint32_t ms, const std::string& lines) {
-  std::string found;
-  for (size_t at = 0, end; at < lines.size(); at = end) {
-    end = lines.find('\n', at) + 1;
-    found += std::to_string(ms) + " " + lines.substr(at, end - at);
+inline std::string with_times(uint32_t ms, const std::string& lines) {
+  std::string timed_lines;
+  for (size_t start = 0, end; start < lines.size(); start = end) {
+    end = lines.find('\n', start) + 1;
+    timed_lines += std::to_string(ms) + " " + lines.substr(start, end - start);
   }
-  return found;
+  return timed_lines;
 }
 
 // Reads the next request, without its length; false at the end of the input.
-inline bool next_request(std::string* asked) {
+inline bool next_request(std::string* request_data) {
   unsigned char head[4];
   if (fread(head, 1, sizeof head, stdin) != sizeof head) return false;
-  asked->resize(RequestReader(std::string(head, head + sizeof head)).u32());
-  if (asked->empty()) return true;
-  if (fread(&(*asked)[0], 1, asked->size(), stdin) != asked->size()) exit(1);
+  request_data->resize(RequestReader(std::string(head, head + sizeof head)).u32());
+  if (request_data->empty()) return true;
+  if (fread(&(*request_data)[0], 1, request_data->size(), stdin) != request_data->size()) exit(1);
   return true;
 }
 
-inline void send_answer(const Writer& said) {
+inline void send_answer(const Writer& answer) {
   Writer head;
-  head.u32(static_cast<uint32_t>(said.data().size()));
+  head.u32(static_cast<uint32_t>(answer.data().size()));
   fwrite(head.data().data(), 1, head.data().size(), stdout);
-  fwrite(said.data().data(), 1, said.data().size(), stdout);
+  fwrite(answer.data().data(), 1, answer.data().size(), stdout);
   fflush(stdout);
 }
 
@@ -106,21 +106,22 @@ inline void send_answer(const Writer& said) {
 using Answers = std::map<char, void (*)(RequestReader*, Writer*)>;
 
 // Answers a request; false if its first byte is none of these.
-inline bool answered(const Answers& answers, const std::string& asked, Writer* said) {
-  RequestReader request(asked);
-  const auto found = answers.find(static_cast<char>(request.u8()));
-  if (found == answers.end()) return false;
-  found->second(&request, said);
+inline bool answer_request(const Answers& answers, const std::string& request_data,
+                           Writer* answer) {
+  RequestReader request(request_data);
+  const auto handler = answers.find(static_cast<char>(request.u8()));
+  if (handler == answers.end()) return false;
+  handler->second(&request, answer);
   return true;
 }
 
 // Answers requests up to the end of the input; returns false at one that it does not know.
-inline bool all_answered(const Answers& answers) {
-  std::string asked;
-  while (next_request(&asked)) {
-    Writer said;
-    if (!answered(answers, asked, &said)) return false;
-    send_answer(said);
+inline bool answer_all_requests(const Answers& answers) {
+  std::string request_data;
+  while (next_request(&request_data)) {
+    Writer answer;
+    if (!answer_request(answers, request_data, &answer)) return false;
+    send_answer(answer);
   }
   return true;
 }

@@ -36,16 +36,16 @@ constexpr double kLagMs = 60;
 constexpr double kEdgesPerMs = 0.09;  // at full power
 
 struct Wheel {
-  double speed = 0;  // in edges a millisecond
-  double gone = 0;   // edges, less those that it went back
-  double turned = 0;  // edges in all
+  double speed = 0;        // in edges a millisecond
+  double net_edges = 0;    // edges, less those that it went back
+  double total_edges = 0;  // edges in all
   bool is_held = false;
 
   void pass_millisecond(int8_t percent) {
     speed += (percent * kEdgesPerMs / 100 - speed) / kLagMs;
     if (is_held) speed = 0;
-    gone += speed;
-    turned += fabs(speed);
+    net_edges += speed;
+    total_edges += fabs(speed);
   }
 };
 
@@ -56,7 +56,7 @@ struct Tabletop {
   uint8_t actuators = 0;
   uint32_t max_run_ms = 0;
   std::vector<int32_t> readings;
-  std::vector<int32_t> kept;  // the firmware's
+  std::vector<int32_t> firmware_readings;  // the firmware's
   std::vector<uint16_t> hashes;
   std::string words;
   uint16_t language = 0;  // the answers to text
@@ -70,29 +70,29 @@ struct Tabletop {
   bool has_stalled = false;  // since it was asked
   bool is_low = false;  // the supply
   bool writes_mark = false;
-  uint8_t measures = 0;    // of it, each fourth says something
-  std::set<uint16_t> dead;  // addresses of the memory whose bytes never change
-  bool has_set = false;    // an actuator, and no stop since
+  uint8_t measurement_count = 0;      // of it, each fourth says something
+  std::set<uint16_t> dead_addresses;  // addresses of the memory whose bytes never change
+  bool has_set = false;               // an actuator, and no stop since
   bool has_hung = false;
-  Place hung = {};
+  Place hang_place = {};
   uint8_t busy_ticks = 0;   // for which a byte is being written,
   uint8_t write_ticks = 0;  // as many as this
-  uint8_t sends_ticks = 0;  // that each byte takes which the robot sends; 0: none,
+  uint8_t send_ticks = 0;   // that each byte takes which the robot sends; 0: none,
   uint8_t line_ticks = 0;   // and so many are left of the last one
   uint32_t now_ms = 0;
   bool has_tone = false;    // of a program
   uint32_t tone_end_ms = 0;
-  bool is_other = false;    // what it holds, than what STATUS says
-  uint16_t wrong_light_ms = 0;  // for which the light has not told what a press would do
-  std::string code;                // that was started last
-  std::vector<std::string> codes;  // all that nobody has asked for
+  bool differs_from_status = false;  // what it holds, than what STATUS says
+  uint16_t wrong_light_ms = 0;       // for which the light has not told what a press would do
+  std::string code;                  // that was started last
+  std::vector<std::string> codes;    // all that nobody has asked for
 };
 
 Tabletop table;
 
-void say(const char* what, int32_t first, int32_t second) {
+void say(const char* event, int32_t first, int32_t second) {
   char line[60];
-  snprintf(line, sizeof line, "%s %ld %ld\n", what, static_cast<long>(first),
+  snprintf(line, sizeof line, "%s %ld %ld\n", event, static_cast<long>(first),
            static_cast<long>(second));
   table.log += line;
 }
@@ -102,8 +102,8 @@ int8_t percent_of(int16_t level) { return static_cast<int8_t>(lround(level / 2.5
 // Whether a byte is a commit byte: a mark of a slot other than 0.
 bool is_mark(uint16_t place, uint8_t value) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
-    const int at = place - place_of(slot);
-    if (at > 0 && at <= kMarks && value != 0 && value != 0xff) return true;
+    const int offset = place - place_of(slot);
+    if (offset > 0 && offset <= kMarks && value != 0 && value != 0xff) return true;
   }
   return false;
 }
@@ -144,10 +144,11 @@ void check_signs() {
     table.log += "SOUND after the program\n";
     table.has_tone = false;
   }
-  const bool is_it = status.program == get32(program + kChecksumAt) &&
-                     status.length == get16(program + kCodeLengthAt);
-  if (is_in_memory() && !is_it && !table.is_other) table.log += "PROGRAM is another one\n";
-  table.is_other = is_in_memory() && !is_it;
+  const bool is_same = status.program == get32(program + kChecksumAt) &&
+                       status.length == get16(program + kCodeLengthAt);
+  if (is_in_memory() && !is_same && !table.differs_from_status)
+    table.log += "PROGRAM is another one\n";
+  table.differs_from_status = is_in_memory() && !is_same;
   const bool has_program = has_booted() && status.saved != Saved::kNothing &&
                            status.saved != Saved::kOtherVersion;
   const bool is_right = table.is_lit == (!is_running && has_program);
@@ -171,7 +172,7 @@ void answer_begin(RequestReader* request, Writer*) {
   table.hashes.resize(static_cast<size_t>(readings_of(table.sensors) + table.actuators));
   for (uint16_t& hash : table.hashes) hash = request->u16();
   table.readings.resize(table.sensors);
-  table.kept.resize(readings_of(table.sensors));
+  table.firmware_readings.resize(readings_of(table.sensors));
   table.memory = request->text();
   table.words = request->text();
   table.language = request->u16();
@@ -180,26 +181,26 @@ void answer_begin(RequestReader* request, Writer*) {
 
 // Lets so many ticks of a millisecond pass, and as many more as bytes arrive, one in each tick.
 // Returns what the robot sends.
-std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t length) {
+std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* data, size_t length) {
   table.now_ms = now_ms;
   table.wheels[0].pass_millisecond(table.left);
   table.wheels[1].pass_millisecond(table.right);
-  std::string sent;
-  size_t next = 0;
-  for (uint16_t k = 0; k < ticks || next < length; k++) {
-    if (next < length) firmware_on_rx_byte(heard[next++], static_cast<uint16_t>(now_ms));
+  std::string sent_bytes;
+  size_t index = 0;
+  for (uint16_t k = 0; k < ticks || index < length; k++) {
+    if (index < length) firmware_on_rx_byte(data[index++], static_cast<uint16_t>(now_ms));
     firmware_tick(now_ms);
     check_code();
     if (table.busy_ticks != 0) table.busy_ticks--;
     if (table.line_ticks != 0) table.line_ticks--;
     uint8_t byte = 0;
     while (table.line_ticks == 0 && firmware_next_tx_byte(&byte)) {
-      sent += static_cast<char>(byte);
-      table.line_ticks = table.sends_ticks;
+      sent_bytes += static_cast<char>(byte);
+      table.line_ticks = table.send_ticks;
     }
   }
   check_signs();
-  return sent;
+  return sent_bytes;
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
@@ -209,10 +210,10 @@ void answer_step(RequestReader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t flags = request->u8();
   const uint16_t ticks = request->u16();
-  const Bytes heard = request->bytes();
-  size_t next = 0;
-  while ((flags & 16) != 0 && next < heard.length) {
-    firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
+  const Bytes bytes = request->bytes();
+  size_t index = 0;
+  while ((flags & 16) != 0 && index < bytes.length) {
+    firmware_on_rx_byte(bytes.data[index++], static_cast<uint16_t>(now_ms));
   }
   table.log.clear();
   if ((flags & 4) != 0) table.has_stalled = true;
@@ -220,7 +221,7 @@ void answer_step(RequestReader* request, Writer* answer) {
   if ((flags & 2) != 0) firmware_on_released();
   if ((flags & 8) != 0) firmware_on_disconnect();
   if ((flags & 32) != 0) firmware_on_down();
-  answer->text(pass(now_ms, ticks, heard.data.get() + next, heard.length - next));
+  answer->text(pass(now_ms, ticks, bytes.data.get() + index, bytes.length - index));
   answer->text(table.log);
   answer->u8(table.is_lit);
   answer->u8(table.is_latched);
@@ -233,26 +234,26 @@ void answer_wait(RequestReader* request, Writer* answer) {
   const uint32_t first_ms = request->u32();
   const uint32_t count = request->u32();
   const uint16_t ticks = request->u16();
-  const uint8_t how = request->u8();
-  const bool is_spread = how == 1;
-  const Bytes heard = request->bytes();
-  std::string sent;
-  std::string did;
-  std::string latched;
+  const uint8_t mode = request->u8();
+  const bool is_spread = mode == 1;
+  const Bytes bytes = request->bytes();
+  std::string sent_bytes;
+  std::string whole_log;
+  std::string latched_flags;
   for (uint32_t k = 0; k < count; k++) {
-    const size_t begin = is_spread || k == 0 ? std::min<size_t>(k, heard.length) : heard.length;
-    const size_t left = heard.length - begin;
-    const size_t length = is_spread ? std::min<size_t>(1, left) : left;
+    const size_t start = is_spread || k == 0 ? std::min<size_t>(k, bytes.length) : bytes.length;
+    const size_t bytes_left = bytes.length - start;
+    const size_t length = is_spread ? std::min<size_t>(1, bytes_left) : bytes_left;
     table.log.clear();
-    sent += pass(first_ms + k, ticks, heard.data.get() + begin, length);
-    did += timed(first_ms + k, table.log);
-    latched += static_cast<char>(table.is_latched);
-    if (how == 2 && !sent.empty()) break;
+    sent_bytes += pass(first_ms + k, ticks, bytes.data.get() + start, length);
+    whole_log += with_times(first_ms + k, table.log);
+    latched_flags += static_cast<char>(table.is_latched);
+    if (mode == 2 && !sent_bytes.empty()) break;
   }
-  answer->text(sent);
-  answer->text(did);
+  answer->text(sent_bytes);
+  answer->text(whole_log);
   answer->u8(table.is_lit);
-  answer->text(latched);
+  answer->text(latched_flags);
 }
 
 // E: the contents of the memory.
@@ -262,10 +263,10 @@ void answer_memory(RequestReader*, Writer* answer) { answer->text(table.memory);
 void answer_supply(RequestReader* request, Writer*) { table.is_low = request->u8() != 0; }
 
 // D: a byte of the memory never changes any more.
-void answer_dead(RequestReader* request, Writer*) { table.dead.insert(request->u16()); }
+void answer_dead(RequestReader* request, Writer*) { table.dead_addresses.insert(request->u16()); }
 
 // M: each byte of the memory changes again.
-void answer_mended(RequestReader*, Writer*) { table.dead.clear(); }
+void answer_mended(RequestReader*, Writer*) { table.dead_addresses.clear(); }
 
 // V: sets the readings of the sensors.
 void answer_readings(RequestReader* request, Writer*) {
@@ -273,7 +274,7 @@ void answer_readings(RequestReader* request, Writer*) {
 }
 
 // P: so many ticks pass until the robot has sent a byte.
-void answer_pace(RequestReader* request, Writer*) { table.sends_ticks = request->u8(); }
+void answer_pace(RequestReader* request, Writer*) { table.send_ticks = request->u8(); }
 
 // C: the codes that were started since this was asked last.
 void answer_codes(RequestReader*, Writer* answer) {
@@ -292,19 +293,19 @@ void answer_remote(RequestReader*, Writer* answer) {
 void answer_discs(RequestReader* request, Writer*) {
   table.discs.cm = request->u32();
   table.discs.degrees = request->u32();
-  for (Wheel& wheel : table.wheels) wheel.turned = request->u16() / 1000.0;
+  for (Wheel& wheel : table.wheels) wheel.total_edges = request->u16() / 1000.0;
 }
 
 // H: holds the left wheel (1) and the right one (2), and lets go of the others.
 void answer_held(RequestReader* request, Writer*) {
-  const uint8_t held = request->u8();
-  for (uint8_t k = 0; k < 2; k++) table.wheels[k].is_held = (held >> k & 1) != 0;
+  const uint8_t held_wheels = request->u8();
+  for (uint8_t k = 0; k < 2; k++) table.wheels[k].is_held = (held_wheels >> k & 1) != 0;
 }
 
 // O: how far both wheels have gone, in thousandths of the way between two edges.
 void answer_wheels(RequestReader*, Writer* answer) {
   for (const Wheel& wheel : table.wheels) {
-    answer->u32(static_cast<uint32_t>(static_cast<int32_t>(lround(wheel.gone * 1000))));
+    answer->u32(static_cast<uint32_t>(static_cast<int32_t>(lround(wheel.net_edges * 1000))));
   }
 }
 
@@ -315,7 +316,7 @@ void answer_trim(RequestReader* request, Writer* answer) {
   answer->u8(is_sound(trim));
   for (int power = -128; power < 128; power++) {
     const int8_t percent = static_cast<int8_t>(power);
-    const Levels levels = trimmed(trim, percent, percent);
+    const Levels levels = trimmed_levels(trim, percent, percent);
     answer->u16(static_cast<uint16_t>(levels.left));
     answer->u16(static_cast<uint16_t>(levels.right));
   }
@@ -339,7 +340,7 @@ void board_steer(int16_t left, int16_t right) {
 Discs board_discs() { return table.discs; }
 
 uint16_t board_edges(bool is_right) {
-  return static_cast<uint16_t>(static_cast<uint64_t>(table.wheels[is_right].turned));
+  return static_cast<uint16_t>(static_cast<uint64_t>(table.wheels[is_right].total_edges));
 }
 
 void robot_off() {
@@ -348,11 +349,11 @@ void robot_off() {
 }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  const int32_t before = *value;
+  const int32_t previous_value = *value;
   *value = sensor < table.sensors
                ? table.readings[sensor]
                : remote_reading(static_cast<uint8_t>(sensor - table.sensors));
-  return note_reading(sensor, before, *value);
+  return note_reading(sensor, previous_value, *value);
 }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) {
@@ -372,7 +373,7 @@ uint8_t board_sensors() { return table.sensors; }
 
 uint8_t board_actuators() { return table.actuators; }
 
-int32_t* board_readings() { return table.kept.data(); }
+int32_t* board_readings() { return table.firmware_readings.data(); }
 
 uint32_t board_max_run_ms() { return table.max_run_ms; }
 
@@ -408,16 +409,16 @@ void board_release() {
 }
 
 bool board_take_hang(Place* place) {
-  const bool found = table.has_hung;
+  const bool has_hung = table.has_hung;
   table.has_hung = false;
-  *place = table.hung;
-  return found;
+  *place = table.hang_place;
+  return has_hung;
 }
 
 bool board_take_stall() {
-  const bool found = table.has_stalled;
+  const bool has_stalled = table.has_stalled;
   table.has_stalled = false;
-  return found;
+  return has_stalled;
 }
 
 LineErrors board_line_errors() { return {0, 0}; }
@@ -426,7 +427,7 @@ void board_forget() {}
 
 Supply board_supply() {
   if (table.left != 0 || table.right != 0) table.log += "MEASURED while a motor is on\n";
-  if (table.measures++ % 4 != 3) return Supply::kMeasuring;
+  if (table.measurement_count++ % 4 != 3) return Supply::kMeasuring;
   return table.is_low ? Supply::kLow : Supply::kEnough;
 }
 
@@ -449,7 +450,7 @@ void nvm_write(uint16_t place, uint8_t value) {
     table.log += "MARK while a motor is on\n";
   }
   if (table.writes_mark && table.is_low) table.log += "MARK while the supply is low\n";
-  if (table.dead.count(place) == 0) table.memory[place] = static_cast<char>(value);
+  if (table.dead_addresses.count(place) == 0) table.memory[place] = static_cast<char>(value);
   table.busy_ticks = table.write_ticks;
 }
 
@@ -475,4 +476,4 @@ const Answers answers = {
 
 }  // namespace tiniscript
 
-int main() { return all_answered(answers) ? 0 : 1; }
+int main() { return answer_all_requests(answers) ? 0 : 1; }

@@ -19,8 +19,8 @@ using namespace tiniscript;
 namespace {
 
 struct TestedSeal : Seal {
-  void heard(uint32_t counter) { heard_ = counter; }
-  void sent(uint32_t counter) { sent_ = counter; }
+  void set_received_counter(uint32_t counter) { received_counter_ = counter; }
+  void set_sent_counter(uint32_t counter) { sent_counter_ = counter; }
 };
 
 Receiver receiver;
@@ -53,51 +53,51 @@ void answer_begin(RequestReader* request, Writer*) {
 // it sends and what the robot does.
 void answer_step(RequestReader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
-  const uint8_t how = request->u8();
+  const uint8_t mode = request->u8();
   const Bytes data = request->bytes();
   port.log.clear();
-  std::string sent;
+  std::string sent_bytes;
   for (size_t k = 0; k <= data.length; k++) {
     if (k < data.length && receiver.put(data.data[k], static_cast<uint16_t>(now_ms))) {
       port.log += link_half.stop_is_due() ? "PINS OFF\n" : "the link does not know of a stop\n";
     }
     const bool is_last = k == data.length;
-    if (how == 1 && !is_last) continue;
+    if (mode == 1 && !is_last) continue;
     link_half.pass_time(static_cast<uint16_t>(now_ms));
     link_half.tick();
     link_half.send_due();
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
-      while ((how != 2 || is_last) && link_half.next_tx_byte(&byte))
-        sent += static_cast<char>(byte);
+      while ((mode != 2 || is_last) && link_half.next_tx_byte(&byte))
+        sent_bytes += static_cast<char>(byte);
       link_half.tick();
       link_half.send_due();
     }
   }
-  answer->text(sent);
+  answer->text(sent_bytes);
   answer->text(port.log);
 }
 
 // R: what happens to the robot: its program is done, has a fault, shows something; its button.
 void answer_robot(RequestReader* request, Writer* answer) {
-  const uint8_t what = request->u8();
+  const uint8_t event = request->u8();
   const uint32_t value = request->u32();
   bool is_taken = true;
-  switch (what) {
+  switch (event) {
     case 'd':
       port.robot_status.state = State::kIdle;
-      link_half.done();
+      link_half.on_done();
       break;
     case 'f':
       port_stop(static_cast<uint8_t>(value));
-      link_half.faulted();
+      link_half.on_faulted();
       break;
     case 's':
       is_taken = link_half.show(static_cast<int32_t>(value), false);
       break;
     case 'b':
       port_stop(0);
-      link_half.stopped(Cause::kButton);
+      link_half.on_stopped(Cause::kButton);
       break;
     case 'r':
       port_release();
@@ -105,7 +105,7 @@ void answer_robot(RequestReader* request, Writer* answer) {
       port_start(false);
       break;
     case 'a':
-      port.at = static_cast<uint16_t>(value);
+      port.offset = static_cast<uint16_t>(value);
       break;
     case 'w':
       port.is_busy = value != 0;
@@ -129,12 +129,12 @@ void answer_robot(RequestReader* request, Writer* answer) {
   answer->u8(is_taken);
 }
 
-// Writes a row: what was found, its length and its first bytes, `most` of them.
-std::string row_of(const char* what, const uint8_t* bytes, size_t length, size_t most) {
+// Writes a row: what was found, its length and its first bytes, `max_bytes` of them.
+std::string row_of(const char* kind, const uint8_t* bytes, size_t length, size_t max_bytes) {
   char part[40];
-  snprintf(part, sizeof part, "%s %zu", what, length);
+  snprintf(part, sizeof part, "%s %zu", kind, length);
   std::string row = part;
-  for (size_t k = 0; k < length && k < most; k++) {
+  for (size_t k = 0; k < length && k < max_bytes; k++) {
     snprintf(part, sizeof part, " %02x", bytes[k]);
     row += part;
   }
@@ -159,29 +159,29 @@ void take_lines(std::string* line, std::string* rows) {
 }
 
 // I: bytes and times to a receiver alone: what it finds, a line each. A frame is released, and text
-// taken, after `held` more bytes.
+// taken, after `delay` more bytes.
 void answer_packets(RequestReader* request, Writer* answer) {
   receiver = Receiver();
   std::string rows;
   std::string line;
-  const uint8_t held = request->u8();
-  uint8_t left = 0;
+  const uint8_t delay = request->u8();
+  uint8_t remaining = 0;
   for (uint32_t count = request->u32(); count > 0; count--) {
     const uint16_t now_ms = request->u16();
-    if (left > 0 && --left == 0) receiver.release();
-    if (left == 0) take_lines(&line, &rows);
+    if (remaining > 0 && --remaining == 0) receiver.release();
+    if (remaining == 0) take_lines(&line, &rows);
     const uint8_t byte = request->u8();
     if (receiver.count_zeros(byte, now_ms)) rows += "stop\n";
     receiver.keep_and_find_stop(byte, now_ms);
-    if (left > 0) continue;
-    if (held == 0) take_lines(&line, &rows);
+    if (remaining > 0) continue;
+    if (delay == 0) take_lines(&line, &rows);
     if (!receiver.has_frame()) continue;
     rows += row_of("frame", receiver.bytes(), receiver.length(), kPacketBytes);
     rows += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole\n" : " damaged\n";
-    left = static_cast<uint8_t>(held + 1);
-    if (held == 0) {
+    remaining = static_cast<uint8_t>(delay + 1);
+    if (delay == 0) {
       receiver.release();
-      left = 0;
+      remaining = 0;
     }
   }
   take_lines(&line, &rows);
@@ -215,23 +215,23 @@ void answer_seal(RequestReader* request, Writer* answer) {
   origin.kind = request->u8();
   TestedSeal seal = TestedSeal();
   seal.begin(key, origin);
-  seal.heard(request->u32());
-  seal.sent(request->u32());
-  const Bytes open = request->bytes();
-  const Bytes heard = request->bytes();
+  seal.set_received_counter(request->u32());
+  seal.set_sent_counter(request->u32());
+  const Bytes open_frame = request->bytes();
+  const Bytes sealed_frame = request->bytes();
   uint8_t frame[kWireBytes + kTagBytes] = {};
-  std::copy(open.data.get(), open.data.get() + open.length, frame);
-  std::string closed;
+  std::copy(open_frame.data.get(), open_frame.data.get() + open_frame.length, frame);
+  std::string closed_frame;
   if (seal.may_close()) {
-    const uint8_t end = seal.close(frame, static_cast<uint8_t>(open.length));
-    closed.assign(frame, frame + end);
+    const uint8_t end = seal.close(frame, static_cast<uint8_t>(open_frame.length));
+    closed_frame.assign(frame, frame + end);
   }
-  answer->text(closed);
-  answer->u8(seal.open(heard.data.get(), static_cast<uint8_t>(heard.length)));
+  answer->text(closed_frame);
+  answer->u8(seal.open(sealed_frame.data.get(), static_cast<uint8_t>(sealed_frame.length)));
 }
 
 // M: the image that the robot holds, and whether it is what a robot may run.
-void answer_image(RequestReader*, Writer* answer) { answer->text(port.held); }
+void answer_image(RequestReader*, Writer* answer) { answer->text(port.held_image); }
 
 const Answers answers = {
     {'B', answer_begin},
@@ -246,13 +246,15 @@ const Answers answers = {
 }  // namespace
 
 // For who loads it as a library: the answer to a request, until the next one.
-extern "C" const char* link_answer(const char* asked, uint32_t length, uint32_t* answer_length);
-extern "C" const char* link_answer(const char* asked, uint32_t length, uint32_t* answer_length) {
-  static Writer said;
-  said = Writer();
-  if (!answered(answers, std::string(asked, asked + length), &said)) abort();
-  *answer_length = static_cast<uint32_t>(said.data().size());
-  return said.data().data();
+extern "C" const char* link_answer(const char* request_data, uint32_t length,
+                                   uint32_t* answer_length);
+extern "C" const char* link_answer(const char* request_data, uint32_t length,
+                                   uint32_t* answer_length) {
+  static Writer reply;
+  reply = Writer();
+  if (!answer_request(answers, std::string(request_data, request_data + length), &reply)) abort();
+  *answer_length = static_cast<uint32_t>(reply.data().size());
+  return reply.data().data();
 }
 
-int main() { return all_answered(answers) ? 0 : 1; }
+int main() { return answer_all_requests(answers) ? 0 : 1; }

@@ -15,9 +15,9 @@ namespace {
 
 constexpr uint16_t kScratchBytes = 64;
 
-void say(const char* what, unsigned number = 0) {
+void say(const char* format, unsigned number = 0) {
   char row[60];
-  snprintf(row, sizeof row, what, number);
+  snprintf(row, sizeof row, format, number);
   port.log += row;
   port.log += "\n";
 }
@@ -33,15 +33,15 @@ uint16_t length_of(const std::string& image) {
 }
 
 uint32_t checksum_of(const std::string& image) {
-  uint32_t found = 0;
+  uint32_t checksum = 0;
   for (uint8_t k = kAfterChecksum; !image.empty() && k-- > kChecksumAt;) {
-    found = found << 8 | static_cast<uint8_t>(image[k]);
+    checksum = checksum << 8 | static_cast<uint8_t>(image[k]);
   }
-  return found;
+  return checksum;
 }
 
 void hold(const std::string& image, Saved saved) {
-  port.held = image;
+  port.held_image = image;
   port.robot_status.program = checksum_of(image);
   port.robot_status.length = length_of(image);
   port.robot_status.saved = image.empty() ? Saved::kNothing : saved;
@@ -52,7 +52,7 @@ std::string text_of(const uint8_t* image) {
 }
 
 // The image with its checksum.
-std::string sealed(std::string image) {
+std::string with_checksum(std::string image) {
   const uint32_t crc = image_checksum(bytes_of(image), static_cast<uint16_t>(image.size()));
   image.replace(kChecksumAt, sizeof crc, reinterpret_cast<const char*>(&crc), sizeof crc);
   return image;
@@ -72,13 +72,13 @@ LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
 Answer port_prepare_upload(bool is_live) {
-  std::unique_ptr<uint8_t[]>& before = is_live ? port.live_before : port.image_before;
+  std::unique_ptr<uint8_t[]>& previous_memory = is_live ? port.old_live : port.old_image;
   if (port.is_busy) {
-    if (before != nullptr) before.swap(is_live ? port.live : port.image);
-    before.reset();
+    if (previous_memory != nullptr) previous_memory.swap(is_live ? port.live : port.image);
+    previous_memory.reset();
     return Answer::kBusy;
   }
-  before.reset();
+  previous_memory.reset();
   if (port.robot_status.state == State::kRunning) {
     port.robot_status.state = State::kIdle;
     say("END");
@@ -89,12 +89,12 @@ Answer port_prepare_upload(bool is_live) {
 // What may not be lost is not lost by writing ahead: `port_memory` gives other memory each time.
 bool port_may_write_ahead() { return !port.is_busy; }
 
-void port_forget() { hold(port.stored, Saved::kStored); }
+void port_forget() { hold(port.stored_image, Saved::kStored); }
 
 uint8_t* port_memory(uint16_t length, bool is_live) {
   if (length > kHeaderBytes + port.room) return nullptr;
   std::unique_ptr<uint8_t[]>& memory = is_live ? port.live : port.image;
-  memory.swap(is_live ? port.live_before : port.image_before);
+  memory.swap(is_live ? port.old_live : port.old_image);
   const size_t size = static_cast<size_t>(length + kEndBytes);
   memory.reset(new uint8_t[size]);
   for (size_t k = 0; k < size; k++) memory[k] = 0xa5;  // what was there before
@@ -103,32 +103,32 @@ uint8_t* port_memory(uint16_t length, bool is_live) {
 
 void port_take(uint8_t mode, bool is_live) {
   const uint8_t* const memory = (is_live ? port.live : port.image).get();
-  const std::string image = sealed(text_of(memory));
+  const std::string image = with_checksum(text_of(memory));
   for (uint8_t k = 0; k < kEndBytes; k++) {
     if (memory[image.size() + k] != static_cast<uint8_t>(Op::kEnd))
       say("TAKE something without END");
   }
-  Image read;
-  const bool is_whole = unpack(bytes_of(image), image.size(), &read) == Refusal::kNone;
+  Image unpacked;
+  const bool is_whole = unpack(bytes_of(image), image.size(), &unpacked) == Refusal::kNone;
   if (!is_whole) say("TAKE something that is no image");
   say(is_live ? "TAKE live %08x" : "TAKE %08x", checksum_of(image));
   if (is_live) return;
   if ((mode & kSave) != 0) {
-    port.previous = port.stored;
-    port.stored = image;
+    port.previous_image = port.stored_image;
+    port.stored_image = image;
   }
   hold(image, (mode & kSave) != 0 ? Saved::kStored : Saved::kMemory);
 }
 
 void port_take_checksum(const uint8_t* image) {
-  if (text_of(image) != sealed(text_of(image))) say("SEAL something else");
+  if (text_of(image) != with_checksum(text_of(image))) say("SEAL something else");
 }
 
 void port_start(bool is_live) {
   port.robot_status.state = State::kRunning;
   port.robot_status.run++;
-  port.run_image = is_live ? sealed(text_of(port.live.get())) : port.held;
-  port.at = 0;
+  port.run_image = is_live ? with_checksum(text_of(port.live.get())) : port.held_image;
+  port.offset = 0;
   say(is_live ? "START live, run %u" : "START run %u", port.robot_status.run);
 }
 
@@ -152,25 +152,25 @@ uint8_t* port_text_room(uint16_t* room) {
 bool port_may_prepare_upload(bool) { return !port.is_busy; }
 bool port_reads_keys() { return false; }
 
-bool port_text_is_beside(bool) { return false; }
+bool port_text_is_separate(bool) { return false; }
 
 void port_take_text(uint8_t* image, bool is_for_button) {
-  const std::string whole = sealed(text_of(image));
-  say(is_for_button ? "TEXT %08x for the button" : "TEXT %08x", checksum_of(whole));
+  const std::string image_with_checksum = with_checksum(text_of(image));
+  say(is_for_button ? "TEXT %08x for the button" : "TEXT %08x", checksum_of(image_with_checksum));
   if (is_for_button) {
-    hold(whole, Saved::kMemory);
+    hold(image_with_checksum, Saved::kMemory);
   } else {
     port_start(false);
-    port.run_image = whole;
+    port.run_image = image_with_checksum;
   }
 }
 
 Answer port_undo() {
   if (port.is_busy) return Answer::kBusy;
-  if (port.previous.empty()) return Answer::kNoPrevious;
+  if (port.previous_image.empty()) return Answer::kNoPrevious;
   port_end();
-  port.previous.swap(port.stored);
-  hold(port.stored, Saved::kStored);
+  port.previous_image.swap(port.stored_image);
+  hold(port.stored_image, Saved::kStored);
   say("UNDO %08x", port.robot_status.program);
   return Answer::kOk;
 }
@@ -197,7 +197,7 @@ void port_release() {
   say("RELEASE");
 }
 
-uint16_t port_run_at() { return port.at; }
+uint16_t port_run_at() { return port.offset; }
 
 Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
   for (uint8_t k = 0; k < count; k++) say("BREAK %u", places[2 * k] | unsigned{places[2 * k + 1]} << 8);
@@ -207,19 +207,19 @@ Answer port_set_breakpoints(const uint8_t* places, uint8_t count) {
 
 void port_tell_readings(bool is_on) { say("READINGS %u", static_cast<unsigned>(is_on)); }
 
-void port_resume(ResumeHow how) { say("RESUME %u", static_cast<unsigned>(how)); }
+void port_resume(ResumeHow mode) { say("RESUME %u", static_cast<unsigned>(mode)); }
 
-uint16_t port_shown_at() { return port.at; }
+uint16_t port_shown_at() { return port.offset; }
 const uint8_t* port_run_image() { return bytes_of(port.run_image); }
 
-uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }
+uint16_t port_image_length() { return static_cast<uint16_t>(port.held_image.size()); }
 
 int32_t robot_speed(bool, uint8_t) { return 0; }
 
 uint16_t robot_device_hash(uint16_t device) { return port.hashes.at(device); }
 
 Answer port_image_byte(uint16_t offset, uint8_t* byte) {
-  *byte = static_cast<uint8_t>(port.held.at(offset));
+  *byte = static_cast<uint8_t>(port.held_image.at(offset));
   return port.is_busy ? Answer::kBusy : Answer::kOk;
 }
 
@@ -243,12 +243,12 @@ Answer port_keep_key(uint8_t kind, const uint8_t* key) {
 
 void port_identify() { say("IDENTIFY"); }
 
-Answer port_tune(const Tuning& wanted, bool has_pace) {
+Answer port_tune(const Tuning& new_tuning, bool has_pace) {
   if (port.is_busy) return Answer::kBusy;
-  if (wanted.trim.least > kMostLeast) return Answer::kBadValue;
-  port.tuning.trim = wanted.trim;
-  if (has_pace) port.tuning.pace = wanted.pace;
-  say("TRIM %u", wanted.trim.wheels);
+  if (new_tuning.trim.least > kMostLeast) return Answer::kBadValue;
+  port.tuning.trim = new_tuning.trim;
+  if (has_pace) port.tuning.pace = new_tuning.pace;
+  say("TRIM %u", new_tuning.trim.wheels);
   return port.is_saving ? Answer::kSaving : Answer::kOk;
 }
 

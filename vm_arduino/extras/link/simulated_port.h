@@ -23,15 +23,15 @@ struct SimulatedPort {
   bool is_saving = false;            // it has not kept yet what it was given
   std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside
   std::unique_ptr<uint8_t[]> live;
-  std::unique_ptr<uint8_t[]> image_before;  // what they were until it makes way
-  std::unique_ptr<uint8_t[]> live_before;
+  std::unique_ptr<uint8_t[]> old_image;  // what they were until it makes way
+  std::unique_ptr<uint8_t[]> old_live;
   std::unique_ptr<uint8_t[]> text;        // what is read as text
   std::unique_ptr<uint8_t[]> whole_text;  // where there is room for all of it
-  std::string held;                       // the image that START starts
+  std::string held_image;                 // the image that START starts
   std::string run_image;                  // that of the run
-  uint16_t at = 0;                        // where it is
-  std::string stored;    // the one that is saved: what is held again where an upload breaks off
-  std::string previous;  // the one that was saved before
+  uint16_t offset = 0;                    // where it is
+  std::string stored_image;               // the saved one: held again where an upload breaks off
+  std::string previous_image;             // the one that was saved before
   std::string log;
 };
 

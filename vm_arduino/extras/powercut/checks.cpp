@@ -10,8 +10,8 @@ namespace {
 constexpr uint16_t kNever = 0xffff;  // ticks
 
 // Ticks until nothing is to be done, or so many times. The memory is ready in every third tick.
-void run(Store* store, bool may_commit, uint16_t most = kNever) {
-  for (uint16_t k = 0; k < most && store->is_busy(); k++) {
+void run(Store* store, bool may_commit, uint16_t max_ticks = kNever) {
+  for (uint16_t k = 0; k < max_ticks && store->is_busy(); k++) {
     memory.is_writing = memory.is_writing && k % 3 != 0;
     store->tick(may_commit);
   }
@@ -38,14 +38,14 @@ bool has(const Store& store, const Content& image) { return read(store, Area::kP
   if (!(what)) return #what
 
 const char* run_checks() {
-  const Content a = some_image(20);
-  const Content b = some_image(20);
-  const Content c = some_image(kStoredCodeBytes);
-  const Content large = some_image(kStoredCodeBytes + 1);
-  Content record = some_record(Area::kFault);
+  const Content a = random_image(20);
+  const Content b = random_image(20);
+  const Content c = random_image(kStoredCodeBytes);
+  const Content large_image = random_image(kStoredCodeBytes + 1);
+  Content record = random_record(Area::kFault);
   const Content same_record = record;
   Store store;
-  Store later;
+  Store later_store;
   memory.fill(0xff);
 
   // an empty memory
@@ -54,15 +54,15 @@ const char* run_checks() {
   expect(!store.begin_save(a.data()));
   run(&store, true);
   expect(store.state() == StoreState::kIdle && memory.writes == 0);
-  expect(store.used(Area::kProgram) == kNoSlot && has(store, {}));
+  expect(store.current_slot(Area::kProgram) == kNoSlot && has(store, {}));
 
   // a save waits for the motors, and says so
   expect(store.begin_save(a.data()) && !store.begin_save(b.data()));
-  expect(!store.begin_keep(Area::kFault, record.data()));
+  expect(!store.begin_save_record(Area::kFault, record.data()));
   run(&store, false, 2000);
   expect(store.state() == StoreState::kSaving && store.is_busy());
-  start(&later);
-  expect(has(later, {}));
+  start(&later_store);
+  expect(has(later_store, {}));
   memory.fill(0xff);
   start(&store);
   expect(save(&store, a) && save(&store, b));
@@ -73,7 +73,7 @@ const char* run_checks() {
   expect(store.begin_save(c.data()));
   run(&store, false, 5000);
   expect(has(store, b));
-  later = store;
+  later_store = store;
   run(&store, true);
   expect(store.state() == StoreState::kSaved && has(store, c));
 
@@ -86,8 +86,8 @@ const char* run_checks() {
   expect(store.is_ready_to_commit() && !store.is_committing());
   store.give_up();
   expect(!store.is_busy() && has(store, c) && !store.is_ready_to_commit());
-  start(&later);
-  expect(has(later, c));
+  start(&later_store);
+  expect(has(later_store, c));
   expect(store.begin_save(a.data()));
   run(&store, false, 5000);
   store.tick(true);
@@ -98,8 +98,8 @@ const char* run_checks() {
   expect(!store.is_committing());
   store.give_up();
   expect(!store.is_busy() && has(store, c));
-  start(&later);
-  expect(has(later, a));
+  start(&later_store);
+  expect(has(later_store, a));
   memory.is_writing = false;
   start(&store);
   expect(save(&store, c) && save(&store, b) && save(&store, c));
@@ -107,7 +107,7 @@ const char* run_checks() {
   // what is stored already costs nothing
   uint32_t writes = memory.writes;
   expect(save(&store, c) && memory.writes == writes);
-  expect(!store.begin_save(large.data()));
+  expect(!store.begin_save(large_image.data()));
 
   // the largest program; then what was there before the last, of which hardly a byte has changed
   start(&store);
@@ -136,7 +136,7 @@ const char* run_checks() {
 
   // a verdict that is taken back
   expect(save(&store, a));
-  const uint8_t slot = store.used(Area::kProgram);
+  const uint8_t slot = store.current_slot(Area::kProgram);
   store.refuse();
   expect(has(store, b));
   store.readmit(slot);
@@ -166,7 +166,7 @@ const char* run_checks() {
   expect(save(&store, b));
 
   // where a byte of it has changed by itself it is written anew, all of it
-  memory.cells[place_of(store.used(Area::kProgram) ^ 1) + kBodyAt + 20] = {1, 1};
+  memory.cells[place_of(store.current_slot(Area::kProgram) ^ 1) + kBodyAt + 20] = {1, 1};
   expect(save(&store, a));
   start(&store);
   expect(has(store, a) && save(&store, b));
@@ -181,32 +181,33 @@ const char* run_checks() {
   expect(has(store, b) && save(&store, a) && save(&store, b));
 
   // records: apart from each other and from programs
-  expect(store.begin_keep(Area::kIdentity, record.data()));
+  expect(store.begin_save_record(Area::kIdentity, record.data()));
   run(&store, true);
   expect(record == same_record && read(store, Area::kIdentity) == record);
   expect(read(store, Area::kFault).empty() && has(store, b));
   record[kNameAt] = static_cast<uint8_t>(record[kNameAt] + 1);
-  expect(store.begin_keep(Area::kFault, record.data()));
+  expect(store.begin_save_record(Area::kFault, record.data()));
   run(&store, true);
   expect(record != same_record);
   start(&store);
   expect(read(store, Area::kIdentity) == same_record && read(store, Area::kFault) == record);
 
   // a byte that is worn out
-  memory.dead = static_cast<uint16_t>(place_of(store.used(Area::kProgram) ^ 1) + kBodyAt + 30);
+  memory.dead_place =
+      static_cast<uint16_t>(place_of(store.current_slot(Area::kProgram) ^ 1) + kBodyAt + 30);
   expect(store.begin_save(c.data()));
   run(&store, true);
   expect(store.state() == StoreState::kFailed && has(store, b));
   start(&store);
   expect(has(store, b));
-  memory.dead = kMemoryBytes;
+  memory.dead_place = kMemoryBytes;
 
   // a byte that has changed by itself: the one before counts, and where that has changed too, none
   expect(save(&store, a));
-  for (const Content& left : {b, Content()}) {
-    memory.cells[place_of(store.used(Area::kProgram)) + kBodyAt + 20] = {1, 1};
+  for (const Content& expected : {b, Content()}) {
+    memory.cells[place_of(store.current_slot(Area::kProgram)) + kBodyAt + 20] = {1, 1};
     start(&store);
-    expect(has(store, left));
+    expect(has(store, expected));
   }
   return nullptr;
 }

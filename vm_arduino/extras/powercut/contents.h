@@ -17,13 +17,13 @@ void seed_random(uint32_t seed);
 using Content = std::vector<uint8_t>;  // empty: nothing
 
 // Puts the checksum of an image into it.
-Content checked(Content image);
+Content with_checksum(Content image);
 
 // An image with so many bytes of code, any ones.
-Content some_image(uint16_t code_bytes);
+Content random_image(uint16_t code_bytes);
 
 // A record of anything, with its check.
-Content some_record(Area area);
+Content random_record(Area area);
 
 // Begins to save content, which must not change until that is done. False: the store refuses it.
 bool begin(Store* store, Area area, Content* content);

@@ -13,21 +13,21 @@ uint16_t erases[kMemoryBytes];
 
 namespace {
 
-void expect(bool is_so, const char* what) {
-  if (is_so) return;
-  printf("MISUSE %s\n", what);
+void expect(bool condition, const char* message) {
+  if (condition) return;
+  printf("MISUSE %s\n", message);
   exit(3);
 }
 
 uint8_t old_value(const Memory::Cell& cell) {
-  return random_below(2) == 0 ? cell.value : cell.other;
+  return random_below(2) == 0 ? cell.value : cell.other_value;
 }
 
 // Any byte; often one that means something in the slot around it: nature is no friend.
 uint8_t nasty_byte(uint16_t place) {
   if (random_below(2) == 0) return static_cast<uint8_t>(random_below(0x100));
-  const uint32_t near = (place + kMemoryBytes - 3U + random_below(7)) % kMemoryBytes;
-  return memory.cells[near].value ^ (random_below(2) == 0 ? 0 : 0xa5);
+  const uint32_t neighbor = (place + kMemoryBytes - 3U + random_below(7)) % kMemoryBytes;
+  return memory.cells[neighbor].value ^ (random_below(2) == 0 ? 0 : 0xa5);
 }
 
 void write(uint16_t place, uint8_t value) {
@@ -36,7 +36,7 @@ void write(uint16_t place, uint8_t value) {
   if (memory.is_off) return;
   memory.is_writing = true;
   memory.writes++;
-  if (place == memory.dead) return;
+  if (place == memory.dead_place) return;
   Memory::Cell& cell = memory.cells[place];
   if (!memory.is_cut_next) {
     cell = {value, value};
@@ -44,24 +44,24 @@ void write(uint16_t place, uint8_t value) {
   }
   memory.is_off = true;
   memory.cut_place = place;
-  switch (memory.torn) {
-    case Torn::kNotStarted:
+  switch (memory.torn_byte) {
+    case TornByte::kNotStarted:
       return;
-    case Torn::kDone:
+    case TornByte::kDone:
       break;
-    case Torn::kAllOnes:
+    case TornByte::kAllOnes:
       value = 0xff;
       break;
-    case Torn::kAllZeros:
+    case TornByte::kAllZeros:
       value = 0;
       break;
-    case Torn::kRandom:
+    case TornByte::kRandom:
       value = nasty_byte(place);
       break;
-    case Torn::kBoth:
+    case TornByte::kBoth:
       value &= old_value(cell);
       break;
-    case Torn::kUnstable:
+    case TornByte::kUnstable:
       cell = {old_value(cell), value};
       return;
   }
@@ -80,7 +80,7 @@ uint8_t nvm_read(uint16_t place) {
   expect(place < kMemoryBytes, "a read past the end");
   expect(!memory.is_writing, "a look while a write goes on");
   const Memory::Cell& cell = memory.cells[place];
-  return cell.value == cell.other ? cell.value : old_value(cell);
+  return cell.value == cell.other_value ? cell.value : old_value(cell);
 }
 
 void nvm_write(uint16_t place, uint8_t value) {

@@ -13,7 +13,7 @@
 namespace tiniscript {
 
 // What becomes of the byte that is written when the plug is pulled.
-enum class Torn : uint8_t {
+enum class TornByte : uint8_t {
   kNotStarted,
   kDone,
   kAllOnes,
@@ -22,21 +22,21 @@ enum class Torn : uint8_t {
   kBoth,  // old and new: only the bits that both have
   kUnstable,
 };
-constexpr uint8_t kTorn = 7;
+constexpr uint8_t kTornBytes = 7;
 
 struct Memory {
   struct Cell {
     uint8_t value;
-    uint8_t other;  // not the same: unstable
+    uint8_t other_value;  // not the same: unstable
   };
 
   Cell cells[kMemoryBytes];
   bool is_writing;
   bool is_cut_next;  // the plug is pulled at the next write
-  Torn torn;
+  TornByte torn_byte;
   bool is_off;  // since then nothing is written
   uint16_t cut_place;
-  uint16_t dead = kMemoryBytes;  // a byte that keeps what it is
+  uint16_t dead_place = kMemoryBytes;  // a byte that keeps what it is
   uint32_t writes;
 
   void fill(uint8_t value);

@@ -28,23 +28,23 @@ void* memset(void* to, int value, size_t length) {
 }
 
 // The quotient in the lower half, the remainder in the upper one.
-static uint64_t divided(uint32_t size, uint32_t divisor) {
-  uint32_t rest = 0;
+static uint64_t divide(uint32_t size, uint32_t divisor) {
+  uint32_t remainder = 0;
   for (uint8_t bit = 32; bit != 0; bit--) {
-    const bool carry = (rest & 0x80000000) != 0;
-    rest = rest << 1 | size >> 31;
+    const bool carry = (remainder & 0x80000000) != 0;
+    remainder = remainder << 1 | size >> 31;
     size <<= 1;
-    if (carry || rest >= divisor) {
-      rest -= divisor;
+    if (carry || remainder >= divisor) {
+      remainder -= divisor;
       size++;
     }
   }
-  return static_cast<uint64_t>(rest) << 32 | size;
+  return static_cast<uint64_t>(remainder) << 32 | size;
 }
 
-uint32_t __udivsi3(uint32_t a, uint32_t b) { return static_cast<uint32_t>(divided(a, b)); }
+uint32_t __udivsi3(uint32_t a, uint32_t b) { return static_cast<uint32_t>(divide(a, b)); }
 
-uint32_t __umodsi3(uint32_t a, uint32_t b) { return static_cast<uint32_t>(divided(a, b) >> 32); }
+uint32_t __umodsi3(uint32_t a, uint32_t b) { return static_cast<uint32_t>(divide(a, b) >> 32); }
 
 int32_t __divsi3(int32_t a, int32_t b) {
   const uint32_t size = __udivsi3(a < 0 ? 0 - static_cast<uint32_t>(a) : static_cast<uint32_t>(a),

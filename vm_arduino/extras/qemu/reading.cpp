@@ -14,9 +14,9 @@ uint8_t buffer[kMostRoom];
 uint8_t words[kMostWords];
 Reader reader;
 
-void say(Text found) {
-  if (found == Text::kMore) return put(2);
-  if (found == Text::kProblem) {
+void say(TextState state) {
+  if (state == TextState::kOpenBlock) return put(2);
+  if (state == TextState::kProblem) {
     put(1);
     put(static_cast<char>(reader.problem()));
     return put(static_cast<char>(reader.column()));
@@ -28,19 +28,19 @@ void say(Text found) {
 }
 
 // A text ends as a line does.
-uint8_t byte_of(size_t begun, uint32_t length, uint32_t k) {
-  return k < length ? request_byte(begun + k) : uint8_t{'\n'};
+uint8_t byte_of(size_t text_start, uint32_t length, uint32_t k) {
+  return k < length ? request_byte(text_start + k) : uint8_t{'\n'};
 }
 
-void read(size_t begun, uint32_t length, uint16_t room) {
+void read(size_t text_start, uint32_t length, uint16_t room) {
   reader.begin(buffer, room);
-  Text found = Text::kNothing;
+  TextState state = TextState::kNothing;
   for (uint32_t k = 0; k <= length; k++) {
-    const Text now = reader.put(byte_of(begun, length, k));
-    if (now != Text::kGoesOn) found = now;
-    if (now == Text::kProblem && reader.has_problem()) break;
+    const TextState next_state = reader.put(byte_of(text_start, length, k));
+    if (next_state != TextState::kOpenLine) state = next_state;
+    if (next_state == TextState::kProblem && reader.has_problem()) break;
   }
-  say(found);
+  say(state);
 }
 
 }  // namespace

@@ -27,10 +27,10 @@ struct SanitizedReader {
 
   void begin() { reader.begin(buffer.get(), room); }
 
-  void say(Text found) const {
-    if (found == Text::kMore) {
+  void say(TextState state) const {
+    if (state == TextState::kOpenBlock) {
       puts("MORE");
-    } else if (found == Text::kProblem) {
+    } else if (state == TextState::kProblem) {
       printf("NO %d %d\n", static_cast<int>(reader.problem()), reader.column());
     } else {
       printf("OK %d ", reader.start());
@@ -45,35 +45,35 @@ struct SanitizedReader {
   std::unique_ptr<uint8_t[]> buffer;
 };
 
-void read_lines(SanitizedReader* read) {
-  read->begin();
+void read_lines(SanitizedReader* sanitized) {
+  sanitized->begin();
   bool is_blank = true;
   for (int byte = getchar(); byte >= 0; byte = getchar()) {
-    const Text found = read->reader.put(static_cast<uint8_t>(byte));
-    if (found == Text::kGoesOn) {
+    const TextState state = sanitized->reader.put(static_cast<uint8_t>(byte));
+    if (state == TextState::kOpenLine) {
       if (byte != '\n') is_blank = false;
       continue;
     }
-    if (!is_blank) read->say(found);
-    if (is_blank || found != Text::kMore) read->begin();
+    if (!is_blank) sanitized->say(state);
+    if (is_blank || state != TextState::kOpenBlock) sanitized->begin();
     is_blank = true;
   }
 }
 
-void read_texts(SanitizedReader* read) {
+void read_texts(SanitizedReader* sanitized) {
   uint8_t head[4];
   while (fread(head, 1, 4, stdin) == 4) {
     std::vector<uint8_t> text(head[0] | head[1] << 8 | head[2] << 16);
     if (fread(text.data(), 1, text.size(), stdin) != text.size()) return;
     if (text.empty() || (text.back() != '\n' && text.back() != '\r')) text.push_back('\n');
-    read->begin();
-    Text found = Text::kNothing;
+    sanitized->begin();
+    TextState state = TextState::kNothing;
     for (const uint8_t byte : text) {
-      const Text now = read->reader.put(byte);
-      if (now != Text::kGoesOn) found = now;
-      if (now == Text::kProblem && read->reader.has_problem()) break;
+      const TextState next_state = sanitized->reader.put(byte);
+      if (next_state != TextState::kOpenLine) state = next_state;
+      if (next_state == TextState::kProblem && sanitized->reader.has_problem()) break;
     }
-    read->say(found);
+    sanitized->say(state);
   }
 }
 
@@ -85,14 +85,14 @@ uint16_t tiniscript::robot_language() { return 0; }
 int main(int count, char** arguments) {
   if (count < 3) return 2;
   for (const char* digits = arguments[2]; digits[0] != 0 && digits[1] != 0; digits += 2) {
-    const char both[] = {digits[0], digits[1], 0};
-    words.push_back(static_cast<uint8_t>(strtol(both, nullptr, 16)));
+    const char digit_pair[] = {digits[0], digits[1], 0};
+    words.push_back(static_cast<uint8_t>(strtol(digit_pair, nullptr, 16)));
   }
-  SanitizedReader read(static_cast<size_t>(atoi(arguments[1])));
+  SanitizedReader sanitized(static_cast<size_t>(atoi(arguments[1])));
   if (count > 3) {
-    read_texts(&read);
+    read_texts(&sanitized);
   } else {
-    read_lines(&read);
+    read_lines(&sanitized);
   }
   return 0;
 }

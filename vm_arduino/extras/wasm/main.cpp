@@ -138,8 +138,8 @@ tini_exported("tick") void module_tick() {
   do {
     const uint8_t slice = budget < 255 ? static_cast<uint8_t>(budget) : 255;
     status = machine.tick(exchange.now_ms, slice);
-    budget -= static_cast<uint32_t>(slice - machine.left());
-    is_over = status != Status::kRunning || machine.left() != 0;
+    budget -= static_cast<uint32_t>(slice - machine.budget_left());
+    is_over = status != Status::kRunning || machine.budget_left() != 0;
   } while (budget != 0 && !is_over);
   exchange.budget = budget;
   exchange.wake_ms = machine.wake_ms();

@@ -34,15 +34,15 @@ constexpr uint32_t kWordBytes = 65536;
 
 uint8_t inbox[kBoxBytes];   // what is on its way to the robot
 uint8_t outbox[kBoxBytes];  // what it has sent
-uint32_t heard;             // of the inbox,
-uint32_t to_hear;           // of so many bytes
-uint32_t said;              // of the outbox
+uint32_t received;          // of the inbox,
+uint32_t inbox_length;      // of so many bytes
+uint32_t outbox_length;     // of the outbox
 uint64_t now_us;
-uint64_t hears_us;   // when the next byte has come in,
-uint64_t says_us;    // and when the one that goes out is gone
-uint64_t writes_us;  // and when the EEPROM is ready again
-uint32_t byte_us;    // how long a byte takes on the line, both ways; 0: no time
-uint32_t write_us;   // and how long in the EEPROM
+uint64_t next_receive_us;  // when the next byte has come in,
+uint64_t next_send_us;     // and when the one that goes out is gone
+uint64_t write_end_us;     // and when the EEPROM is ready again
+uint32_t byte_us;          // how long a byte takes on the line, both ways; 0: no time
+uint32_t write_us;         // and how long in the EEPROM
 bool is_latched = true;
 int32_t readings[256];
 uint16_t hashes[512];
@@ -60,19 +60,19 @@ struct RobotSettings {
   uint16_t language;
 };
 
-RobotSettings own;
+RobotSettings settings;
 uint8_t memory[kMemoryBytes];
 
 // What the robot does, and when: milliseconds since power-on.
 struct Note {
   uint32_t now_ms;
-  uint32_t what;
+  uint32_t kind;
   int32_t first;
   int32_t second;
   int32_t third;
 };
 
-enum What : uint32_t {
+enum NoteKind : uint32_t {
   kMotors = 1,
   kRead,
   kBeep,
@@ -91,33 +91,33 @@ enum What : uint32_t {
 constexpr uint32_t kNotes = 256;
 
 Note notes[kNotes];
-uint32_t noted;
+uint32_t note_count;
 int32_t reading;
 
 uint32_t now_ms() { return static_cast<uint32_t>(now_us / 1000); }
 
-void note(What what, int32_t first = 0, int32_t second = 0, int32_t third = 0) {
-  if (noted == kNotes) host_look();
-  notes[noted++] = {now_ms(), what, first, second, third};
+void note(NoteKind kind, int32_t first = 0, int32_t second = 0, int32_t third = 0) {
+  if (note_count == kNotes) host_look();
+  notes[note_count++] = {now_ms(), kind, first, second, third};
 }
 
 void receive() {
-  while (heard < to_hear && hears_us <= now_us) {
-    firmware_on_rx_byte(inbox[heard++], static_cast<uint16_t>(now_ms()));
+  while (received < inbox_length && next_receive_us <= now_us) {
+    firmware_on_rx_byte(inbox[received++], static_cast<uint16_t>(now_ms()));
     firmware_tick(now_ms());
     if (byte_us == 0) return;  // the next one at the next tick
-    hears_us += byte_us;
+    next_receive_us += byte_us;
   }
 }
 
 void say() {
-  while (said < kBoxBytes && says_us <= now_us) {
-    if (!firmware_next_tx_byte(outbox + said)) {
-      says_us = now_us;
+  while (outbox_length < kBoxBytes && next_send_us <= now_us) {
+    if (!firmware_next_tx_byte(outbox + outbox_length)) {
+      next_send_us = now_us;
       return;
     }
-    said++;
-    says_us += byte_us;
+    outbox_length++;
+    next_send_us += byte_us;
   }
 }
 
@@ -133,14 +133,14 @@ void board_steer(int16_t left, int16_t right) {
   if (!is_latched) note(kSteer, left, right);
 }
 
-Discs board_discs() { return own.discs; }
+Discs board_discs() { return settings.discs; }
 
 // Both are asked at once, and once in a millisecond.
 uint16_t board_edges(bool is_right) {
-  static uint32_t asked_ms;
+  static uint32_t last_look_ms;
   static uint16_t edges[2];
-  if (!is_right && asked_ms != now_ms()) {
-    asked_ms = now_ms();
+  if (!is_right && last_look_ms != now_ms()) {
+    last_look_ms = now_ms();
     note(kEdges);
     host_look();
     edges[0] = static_cast<uint16_t>(reading);
@@ -152,12 +152,13 @@ uint16_t board_edges(bool is_right) {
 void robot_off() {}  // `board_stop` says it
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  const bool is_own = sensor < own.sensors;
-  note(kRead, sensor, is_own ? 0 : remote_reading(static_cast<uint8_t>(sensor - own.sensors)));
+  const bool is_of_kit = sensor < settings.sensors;
+  note(kRead, sensor,
+       is_of_kit ? 0 : remote_reading(static_cast<uint8_t>(sensor - settings.sensors)));
   host_look();
-  const int32_t before = *value;
+  const int32_t previous_value = *value;
   *value = reading;
-  return note_reading(sensor, before, reading);
+  return note_reading(sensor, previous_value, reading);
 }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) {
@@ -166,23 +167,23 @@ void robot_beep(uint16_t hertz, uint32_t duration_ms) {
 
 void robot_set(uint8_t actuator, int32_t value) { note(kSet, actuator, value); }
 
-uint16_t board_kit() { return own.kit; }
+uint16_t board_kit() { return settings.kit; }
 
-uint8_t board_sensors() { return own.sensors; }
+uint8_t board_sensors() { return settings.sensors; }
 
-uint8_t board_actuators() { return own.actuators; }
+uint8_t board_actuators() { return settings.actuators; }
 
 int32_t* board_readings() { return readings; }
 
-uint32_t board_max_run_ms() { return own.max_run_ms; }
+uint32_t board_max_run_ms() { return settings.max_run_ms; }
 
-uint32_t board_speed(bool is_turn) { return is_turn ? own.turn : own.speed; }
+uint32_t board_speed(bool is_turn) { return is_turn ? settings.turn : settings.speed; }
 
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 const uint8_t* robot_words() { return words; }
 
-uint16_t robot_language() { return own.language; }
+uint16_t robot_language() { return settings.language; }
 
 void board_stop() {
   is_latched = true;
@@ -212,13 +213,13 @@ void board_finished() { note(kFinished); }
 
 void board_faulted() { note(kFaulted); }
 
-bool nvm_is_ready() { return now_us >= writes_us; }
+bool nvm_is_ready() { return now_us >= write_end_us; }
 
 uint8_t nvm_read(uint16_t place) { return memory[place]; }
 
 void nvm_write(uint16_t place, uint8_t value) {
   memory[place] = value;
-  writes_us = now_us + write_us;
+  write_end_us = now_us + write_us;
 }
 
 void nvm_clear(uint16_t place) { nvm_write(place, 0); }
@@ -254,7 +255,7 @@ tini_exported("box_bytes") uint32_t module_box_bytes() { return kBoxBytes; }
 
 // What there is to be seen, and how many notes; whoever looks makes that 0.
 tini_exported("notes") Note* module_notes() { return notes; }
-tini_exported("noted") uint32_t* module_noted() { return &noted; }
+tini_exported("noted") uint32_t* module_noted() { return &note_count; }
 tini_exported("reading") int32_t* module_reading() { return &reading; }
 
 // Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
@@ -267,14 +268,14 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
                                          uint32_t language) {
   byte_us = line_us;
   write_us = eeprom_us;
-  own.kit = static_cast<uint16_t>(kit);
-  own.sensors = static_cast<uint8_t>(sensors);
-  own.actuators = static_cast<uint8_t>(actuators);
-  own.max_run_ms = max_run_ms;
-  own.speed = speed;
-  own.turn = turn;
-  own.discs = {edge_cm, edge_degrees, has_two != 0};
-  own.language = static_cast<uint16_t>(language);
+  settings.kit = static_cast<uint16_t>(kit);
+  settings.sensors = static_cast<uint8_t>(sensors);
+  settings.actuators = static_cast<uint8_t>(actuators);
+  settings.max_run_ms = max_run_ms;
+  settings.speed = speed;
+  settings.turn = turn;
+  settings.discs = {edge_cm, edge_degrees, has_two != 0};
+  settings.language = static_cast<uint16_t>(language);
   BootInfo boot_info;
   boot_info.reset = static_cast<Reset>(reset);
   boot_info.seed = seed;
@@ -283,30 +284,30 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
 
 // So many bytes are in the inbox now, after those that have been heard.
 tini_exported("put") void module_put(uint32_t bytes) {
-  heard = 0;
-  to_hear = bytes;
-  if (hears_us < now_us + byte_us) hears_us = now_us + byte_us;
+  received = 0;
+  inbox_length = bytes;
+  if (next_receive_us < now_us + byte_us) next_receive_us = now_us + byte_us;
 }
 
 // Goes on up to a time, or until the inbox is empty where `has_more`, or the outbox is full, or the
 // program is held. Returns how many bytes are in the outbox: they are to be fetched now.
 tini_exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
-  said = 0;
+  outbox_length = 0;
   watched_begin();
-  while (now_us < until_us && said < kBoxBytes && !watched_has_held()) {
-    if (has_more != 0 && heard == to_hear) break;
+  while (now_us < until_us && outbox_length < kBoxBytes && !watched_has_held()) {
+    if (has_more != 0 && received == inbox_length) break;
     now_us += kTickUs;
     receive();
     firmware_tick(now_ms());
     say();
   }
-  return said;
+  return outbox_length;
 }
 
 tini_exported("now_us") uint64_t module_now_us() { return now_us; }
 
 // How many bytes of the inbox have not been heard.
-tini_exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
+tini_exported("unheard") uint32_t module_unheard() { return inbox_length - received; }
 
 tini_exported("press") void module_press() {
   firmware_on_pressed();
@@ -326,7 +327,7 @@ tini_exported("fault") uint32_t module_fault() { return port_status().fault; }
 // Where the instruction that runs begins; all ones while no program runs.
 tini_exported("at") uint32_t module_at() {
   Place place;
-  return firmware_runs(&place) ? place.at : 0xffffffff;
+  return firmware_runs(&place) ? place.offset : 0xffffffff;
 }
 
 tini_exported("tasks") const int32_t* module_tasks() { return watched_tasks(); }

@@ -15,18 +15,18 @@ namespace tiniscript {
 namespace {
 
 uint8_t marks[kImageBytes];  // bits for each offset of the code
-uint8_t wanted;              // a program is held at the marks that have one of these bits
-uint8_t rest;                // of the budget of the tick in which it is held
+uint8_t wanted_marks;        // a program is held at the marks that have one of these bits
+uint8_t held_budget;         // of the budget of the tick in which it is held
 bool is_held;
-bool has_held;                  // since `watched_begin`
-bool passes;                    // the instruction in front of which it was held
-int32_t left_over[kVariables];  // of a program that has ended, once the machine is reset
+bool has_held;                       // since `watched_begin`
+bool is_passing;                     // the instruction in front of which it was held
+int32_t last_variables[kVariables];  // of a program that has ended, once the machine is reset
 bool is_reset;
 
 class HeldMachine : public Machine {
  public:
   void prepare() {
-    for (uint8_t k = 0; k < kVariables; k++) left_over[k] = task().variables[k];
+    for (uint8_t k = 0; k < kVariables; k++) last_variables[k] = task().variables[k];
     is_reset = true;
     Machine::prepare();
   }
@@ -34,35 +34,36 @@ class HeldMachine : public Machine {
   void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                       uint32_t seed, uint32_t now_ms) {
     is_held = false;
-    passes = false;
-    rest = 0;
+    is_passing = false;
+    held_budget = 0;
     is_reset = false;
     Machine::start_prepared(code, length, readings, sensors, seed, now_ms);
   }
 
   Status tick(uint32_t now_ms, uint8_t budget) {
     if (is_held) return status();
-    if (rest != 0) budget = rest;
-    rest = 0;
-    Status found;
-    if (wanted == 0) {
-      found = Machine::tick(now_ms, budget);
-      passes = passes && left() == budget;  // where nothing is wanted now, something may be later
-      return found;
+    if (held_budget != 0) budget = held_budget;
+    held_budget = 0;
+    Status result;
+    if (wanted_marks == 0) {
+      result = Machine::tick(now_ms, budget);
+      is_passing = is_passing &&
+                   budget_left() == budget;  // where nothing is wanted now, something may be later
+      return result;
     }
     do {
       if (has_tasks() && !reach_instruction(now_ms)) return status();
       if (is_marked(now_ms)) {
         is_held = true;
         has_held = true;
-        rest = budget;
+        held_budget = budget;
         return Status::kRunning;
       }
-      found = Machine::tick(now_ms, 1);
-      budget = static_cast<uint8_t>(budget - 1 + left());
-      passes = passes && left() != 0;  // a SHOW that waits for room to be sent
-    } while (budget != 0 && found == Status::kRunning && left() == 0);
-    return found;
+      result = Machine::tick(now_ms, 1);
+      budget = static_cast<uint8_t>(budget - 1 + budget_left());
+      is_passing = is_passing && budget_left() != 0;  // a SHOW that waits for room to be sent
+    } while (budget != 0 && result == Status::kRunning && budget_left() == 0);
+    return result;
   }
 
  private:
@@ -72,8 +73,9 @@ class HeldMachine : public Machine {
   }
 
   bool is_marked(uint32_t now_ms) const {
-    const uint16_t at = task().pc;
-    return !passes && !is_early(now_ms) && at < kImageBytes && (marks[at] & wanted) != 0;
+    const uint16_t offset = task().pc;
+    return !is_passing && !is_early(now_ms) && offset < kImageBytes &&
+           (marks[offset] & wanted_marks) != 0;
   }
 };
 
@@ -93,7 +95,7 @@ uint8_t* watched_marks() { return marks; }
 
 uint32_t watched_marks_bytes() { return kImageBytes; }
 
-void watched_want(uint8_t bits) { wanted = bits; }
+void watched_want(uint8_t bits) { wanted_marks = bits; }
 
 void watched_begin() { has_held = false; }
 
@@ -104,34 +106,34 @@ uint32_t watched_held_at() { return is_held && is_running() ? machine.task().pc 
 void watched_go_on() {
   if (!is_held) return;
   is_held = false;
-  passes = true;
+  is_passing = true;
   if (is_running()) go_on();
 }
 
 const int32_t* watched_tasks() {
-  static int32_t found[1 + kTasks + 1];
-  found[0] = 0;
+  static int32_t places[1 + kTasks + 1];
+  places[0] = 0;
 #ifdef tiniscript_has_tasks
-  if (!is_running() || !machine.has_tasks()) return found;
+  if (!is_running() || !machine.has_tasks()) return places;
   const Task& task = machine.task();
   for (const TaskRecord& record : task.records) {
-    const uint16_t at = &record == task.me ? task.pc : record.pc;
-    if (record.state != 0 && at != 0) found[++found[0]] = at - 1;
+    const uint16_t offset = &record == task.current ? task.pc : record.pc;
+    if (record.state != 0 && offset != 0) places[++places[0]] = offset - 1;
   }
 #endif
-  return found;
+  return places;
 }
 
 uint32_t watched_driver() {
 #ifdef tiniscript_has_tasks
   if (!is_running() || !machine.has_tasks() || !is_driving()) return kNowhere;
   const Task& task = machine.task();
-  const uint16_t at = task.holder == task.me ? task.pc : task.holder->pc;
-  if (at != 0) return at - 1u;
+  const uint16_t offset = task.holder == task.current ? task.pc : task.holder->pc;
+  if (offset != 0) return offset - 1u;
 #endif
   return kNowhere;
 }
 
-const int32_t* watched_variables() { return is_reset ? left_over : machine.task().variables; }
+const int32_t* watched_variables() { return is_reset ? last_variables : machine.task().variables; }
 
 }  // namespace tiniscript

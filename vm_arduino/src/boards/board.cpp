@@ -73,12 +73,12 @@ void board_tick(uint32_t now_ms) {
 bool board_has_disconnected() {
   if (!is_there(kBluetoothState)) return false;
   const uint16_t now_us = clock_us();
-  const bool is_now = is_high(kBluetoothState);
-  if (is_now == is_connected) agreed_us = now_us;
+  const bool is_state_high = is_high(kBluetoothState);
+  if (is_state_high == is_connected) agreed_us = now_us;
   if (static_cast<uint16_t>(now_us - agreed_us) < kSteadyUs) return false;
   agreed_us = now_us;
-  is_connected = is_now;
-  return !is_now;
+  is_connected = is_state_high;
+  return !is_state_high;
 }
 
 BootInfo board_boot_info() {
@@ -121,9 +121,9 @@ void board_actuators_off() { actuators_off(false); }
 
 // A program may have set an actuator again after the timer turned it off.
 bool board_take_stall() {
-  const bool found = watchdog_take_stall();
-  if (found) actuators_off(true);
-  return found;
+  const bool has_stalled = watchdog_take_stall();
+  if (has_stalled) actuators_off(true);
+  return has_stalled;
 }
 
 bool board_take_hang(Place* place) { return watchdog_take_hang(place); }
@@ -155,12 +155,12 @@ void robot_off() {
 }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  const int32_t before = *value;
+  const int32_t previous_value = *value;
   if (!kHasRemote || is_of_kit(sensor)) {
-    return read_sensor(sensor, value) && note_reading(sensor, before, *value);
+    return read_sensor(sensor, value) && note_reading(sensor, previous_value, *value);
   }
   *value = remote_reading(static_cast<uint8_t>(sensor - kBoardSensors));
-  return note_reading(sensor, before, *value);
+  return note_reading(sensor, previous_value, *value);
 }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) { sound_start(hertz, duration_ms); }

@@ -29,24 +29,25 @@ Button button;
 bool button_has_moved(bool is_down) { return is_down != button.was_down; }
 
 Press button_read(bool is_down, uint32_t now_ms) {
-  Button* const it = near(&button);
+  Button* const near_button = near(&button);
   const uint8_t now_low_ms = static_cast<uint8_t>(now_ms);
-  if (is_down != it->was_down) {
-    it->was_down = is_down;
-    it->steady_ms = 0;
-  } else if (now_low_ms != it->last_ms && it->steady_ms < kDebounceMs) {
-    it->steady_ms++;
+  if (is_down != near_button->was_down) {
+    near_button->was_down = is_down;
+    near_button->steady_ms = 0;
+  } else if (now_low_ms != near_button->last_ms && near_button->steady_ms < kDebounceMs) {
+    near_button->steady_ms++;
   }
-  it->last_ms = now_low_ms;
-  if (it->state == State::kUp && is_down) {
-    it->state = State::kEdge;
+  near_button->last_ms = now_low_ms;
+  if (near_button->state == State::kUp && is_down) {
+    near_button->state = State::kEdge;
     return Press::kPressed;
   }
-  if (it->steady_ms < kDebounceMs || (is_down && it->state == State::kDown)) return Press::kNothing;
-  const State before = it->state;
-  it->state = is_down ? State::kDown : State::kUp;
+  if (near_button->steady_ms < kDebounceMs || (is_down && near_button->state == State::kDown))
+    return Press::kNothing;
+  const State previous_state = near_button->state;
+  near_button->state = is_down ? State::kDown : State::kUp;
   if (is_down) return Press::kDown;
-  return before == State::kDown ? Press::kReleased : Press::kNothing;
+  return previous_state == State::kDown ? Press::kReleased : Press::kNothing;
 }
 
 }  // namespace tiniscript

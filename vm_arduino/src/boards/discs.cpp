@@ -39,30 +39,30 @@ struct Counter {
 volatile Counter counters[2];
 
 // Returns whether it was a glitch. Call this only while the interrupt is off.
-tini_always_inline bool on_change(volatile Counter* it, Disc disc) {
-  const bool is_now = is_high(disc.pin);
+tini_always_inline bool on_change(volatile Counter* counter, Disc disc) {
+  const bool is_high_now = is_high(disc.pin);
   cli();
   const uint16_t now_us = clock_us_inside();
   sei();
-  if (!it->is_old && static_cast<uint16_t>(now_us - it->edge_us) < kGlitchUs) {
-    it->edges = static_cast<uint16_t>(it->edges - it->step);
-    it->is_old = true;
-    it->is_high = !it->is_high;  // which `tick` compares with the line
+  if (!counter->is_old && static_cast<uint16_t>(now_us - counter->edge_us) < kGlitchUs) {
+    counter->edges = static_cast<uint16_t>(counter->edges - counter->step);
+    counter->is_old = true;
+    counter->is_high = !counter->is_high;  // which `tick` compares with the line
     return true;
   }
-  if (is_now == it->is_high) return true;  // it was over before it was seen
-  it->is_high = is_now;
-  it->edge_us = now_us;
-  it->is_old = false;
-  it->step = kHasTwo && is_high(disc.second) == is_now ? -1 : 1;
-  it->edges = static_cast<uint16_t>(it->edges + it->step);
+  if (is_high_now == counter->is_high) return true;  // it was over before it was seen
+  counter->is_high = is_high_now;
+  counter->edge_us = now_us;
+  counter->is_old = false;
+  counter->step = kHasTwo && is_high(disc.second) == is_high_now ? -1 : 1;
+  counter->edges = static_cast<uint16_t>(counter->edges + counter->step);
   return false;
 }
 
-tini_always_inline void on_edge(volatile Counter* it, Disc disc) {
+tini_always_inline void on_edge(volatile Counter* counter, Disc disc) {
   do {
-    if (on_change(it, disc)) return;
-  } while (is_high(disc.pin) != it->is_high);
+    if (on_change(counter, disc)) return;
+  } while (is_high(disc.pin) != counter->is_high);
   cli();  // until it returns, so that it does not interrupt itself
   register8(kExternal) |= disc.interrupt;
 }
@@ -82,35 +82,35 @@ tini_always_inline void interrupt(Disc disc, void (*function)()) {
 }
 
 // Turns it on again, and notices the changes since it was off.
-tini_always_inline void tick(volatile Counter* it, Disc disc) {
+tini_always_inline void tick(volatile Counter* counter, Disc disc) {
   const bool is_on = (register8(kExternal) & disc.interrupt) != 0;
-  if (is_on && is_high(disc.pin) == it->is_high) return;
+  if (is_on && is_high(disc.pin) == counter->is_high) return;
   register8(kExternal) &= static_cast<uint8_t>(~disc.interrupt);
   EIFR = disc.interrupt;
-  if (is_high(disc.pin) != it->is_high) on_change(it, disc);
+  if (is_high(disc.pin) != counter->is_high) on_change(counter, disc);
   register8(kExternal) |= disc.interrupt;
 }
 
-void begin(volatile Counter* it, Disc disc) {
+void begin(volatile Counter* counter, Disc disc) {
   begin_pull_up(disc.pin);
   if (is_there(disc.second)) begin_pull_up(disc.second);
-  it->is_old = true;
-  it->is_high = is_high(disc.pin);
+  counter->is_old = true;
+  counter->is_high = is_high(disc.pin);
   const CriticalSection critical;
   listen_inside({disc.pin, kExternalGroup, disc.interrupt}, true);
 }
 
-uint16_t edges_of(volatile Counter* it) {
+uint16_t edges_of(volatile Counter* counter) {
   uint16_t edges;
   uint16_t edge_us;
   {
     const CriticalSection critical;
-    edges = it->edges;
-    edge_us = it->edge_us;
+    edges = counter->edges;
+    edge_us = counter->edge_us;
   }
   if (static_cast<uint16_t>(clock_us() - edge_us) > kOldUs) {
     const CriticalSection critical;
-    if (it->edge_us == edge_us) it->is_old = true;
+    if (counter->edge_us == edge_us) counter->is_old = true;
   }
   return edges;
 }
@@ -120,28 +120,28 @@ uint16_t edges_of(volatile Counter* it) {
 constexpr uint16_t kFilter = 1023;  // ticks of 12.5 ns: the longest pulse that the counter ignores
 constexpr int16_t kHalf = 16000;    // the counter begins again at 0 where it is full
 
-uint16_t counted[2];
+uint16_t edge_counts[2];
 
 void begin(pcnt_unit_t unit, Disc disc) {
   begin_input(disc.pin);
-  pcnt_config_t how = {};
-  how.pulse_gpio_num = disc.pin.number;
-  how.ctrl_gpio_num = PCNT_PIN_NOT_USED;
-  how.unit = unit;
-  how.channel = PCNT_CHANNEL_0;
-  how.pos_mode = PCNT_COUNT_INC;
-  how.neg_mode = PCNT_COUNT_INC;
-  how.lctrl_mode = PCNT_MODE_KEEP;
-  how.hctrl_mode = PCNT_MODE_KEEP;
-  how.counter_h_lim = 32767;
-  how.counter_l_lim = -32768;
+  pcnt_config_t config = {};
+  config.pulse_gpio_num = disc.pin.number;
+  config.ctrl_gpio_num = PCNT_PIN_NOT_USED;
+  config.unit = unit;
+  config.channel = PCNT_CHANNEL_0;
+  config.pos_mode = PCNT_COUNT_INC;
+  config.neg_mode = PCNT_COUNT_INC;
+  config.lctrl_mode = PCNT_MODE_KEEP;
+  config.hctrl_mode = PCNT_MODE_KEEP;
+  config.counter_h_lim = 32767;
+  config.counter_l_lim = -32768;
   if (is_there(disc.second)) {
     begin_input(disc.second);
-    how.ctrl_gpio_num = disc.second.number;
-    how.neg_mode = PCNT_COUNT_DEC;
-    how.hctrl_mode = PCNT_MODE_REVERSE;
+    config.ctrl_gpio_num = disc.second.number;
+    config.neg_mode = PCNT_COUNT_DEC;
+    config.hctrl_mode = PCNT_MODE_REVERSE;
   }
-  pcnt_unit_config(&how);
+  pcnt_unit_config(&config);
   pcnt_set_filter_value(unit, kFilter);
   pcnt_filter_enable(unit);
   pcnt_counter_clear(unit);
@@ -177,13 +177,13 @@ void discs_tick() {}
 
 uint16_t board_edges(bool is_right) {
   const pcnt_unit_t unit = is_right ? PCNT_UNIT_1 : PCNT_UNIT_0;
-  int16_t found = 0;
-  pcnt_get_counter_value(unit, &found);
-  uint16_t& before = counted[is_right];
-  if (found < kHalf && found > -kHalf) return static_cast<uint16_t>(before + found);
+  int16_t count = 0;
+  pcnt_get_counter_value(unit, &count);
+  uint16_t& total = edge_counts[is_right];
+  if (count < kHalf && count > -kHalf) return static_cast<uint16_t>(total + count);
   pcnt_counter_clear(unit);
-  before = static_cast<uint16_t>(before + found);
-  return before;
+  total = static_cast<uint16_t>(total + count);
+  return total;
 }
 
 #endif

@@ -34,10 +34,12 @@ tini_always_inline void motors_low() {
 
 // At level 255 the pulse is 510 us longer or shorter.
 tini_always_inline void drive(TurningServo motor, bool is_backward, uint8_t level) {
-  const uint16_t more = static_cast<uint16_t>(2 * level);
+  const uint16_t offset_us = static_cast<uint16_t>(2 * level);
   const bool is_shorter = is_backward != motor.is_reversed;
-  servo_set(motor.number,
-            static_cast<uint16_t>(is_shorter ? motor.still_us - more : motor.still_us + more), 0);
+  servo_set(
+      motor.number,
+      static_cast<uint16_t>(is_shorter ? motor.still_us - offset_us : motor.still_us + offset_us),
+      0);
 }
 
 tini_always_inline void begin_drive(bool) {}

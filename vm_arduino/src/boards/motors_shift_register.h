@@ -42,7 +42,7 @@ tini_always_inline void motors_off() {
 // Puts the bits into the register, the highest first, and shows them at its outputs. Each write
 // takes two cycles or more, 125 ns; a 74HC595 wants at most 30 ns between any two of these edges.
 tini_always_inline void shift_out(uint8_t bits) {
-  for (uint8_t left = 8; left != 0; left--) {
+  for (uint8_t bits_left = 8; bits_left != 0; bits_left--) {
     write(kDirections.data, (bits & 0x80) != 0);
     write(kDirections.clock, true);
     bits = static_cast<uint8_t>(bits << 1);
@@ -56,11 +56,11 @@ tini_always_inline void shift_out(uint8_t bits) {
 tini_always_inline void point(bool is_left_backward, bool is_right_backward) {
   const uint8_t left = is_left_backward ? kLeftMotor.backward : kLeftMotor.forward;
   const uint8_t right = is_right_backward ? kRightMotor.backward : kRightMotor.forward;
-  const uint8_t wanted = left | right;
-  if (wanted == directions) return;
-  directions = wanted;
+  const uint8_t new_directions = left | right;
+  if (new_directions == directions) return;
+  directions = new_directions;
   motors_off();
-  shift_out(wanted);
+  shift_out(new_directions);
   write(kDirections.enable, false);
 }
 

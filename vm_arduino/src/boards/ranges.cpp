@@ -14,17 +14,17 @@ int32_t in_limits(int32_t value, int32_t low, int32_t high) {
 }
 
 uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last) {
-  const int32_t at = in_limits(whole(value), low, high) - low;
+  const int32_t position = in_limits(whole(value), low, high) - low;
   // Ranges above 2^15 are exact enough without their lowest bits.
   uint32_t range = static_cast<uint32_t>(high - low);
-  uint32_t gone = static_cast<uint32_t>(at);
+  uint32_t scaled_position = static_cast<uint32_t>(position);
   while (range > 0x7fff) {
     range >>= 1;
-    gone >>= 1;
+    scaled_position >>= 1;
   }
   const bool is_falling = last < first;
-  const uint16_t way = static_cast<uint16_t>(is_falling ? first - last : last - first);
-  const uint16_t part = static_cast<uint16_t>((gone * way + range / 2) / range);
+  const uint16_t span = static_cast<uint16_t>(is_falling ? first - last : last - first);
+  const uint16_t part = static_cast<uint16_t>((scaled_position * span + range / 2) / range);
   return static_cast<uint16_t>(is_falling ? first - part : first + part);
 }
 

@@ -14,8 +14,8 @@ namespace {
 constexpr uint8_t kTriggerUs = 10;      // minimum length of the trigger pulse
 constexpr uint16_t kLimitUs = 25000;    // an echo takes at most 23.3 ms, plus 0.5 ms to begin
 constexpr uint16_t kSpacingUs = 30000;  // between two pings
-constexpr uint8_t kFresh = 28;          // 60 ms, less 2 for a late clock and a step of 2
-constexpr uint8_t kOld = 150;           // 300 ms: a healthy sensor has lowered its echo by then
+constexpr uint8_t kFreshAge = 28;       // 60 ms, less 2 for a late clock and a step of 2
+constexpr uint8_t kOldAge = 150;        // 300 ms: a healthy sensor has lowered its echo by then
 constexpr uint16_t kNearUs = 175;       // 3 cm
 constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from 2 cm
 constexpr uint16_t kNothing = 0xffff;
@@ -42,56 +42,57 @@ struct Reading {
 // The interrupt's record of an echo. It ignores pulses and gaps shorter than kGlitchUs.
 enum class EchoState : uint8_t {
   kNothing,
-  kHigh,   // since `rose_us`
-  kEnded,  // at `fell_us`; final after kGlitchUs
-  kAgain,  // the line is high again since `again_us`
+  kHigh,       // since `rose_us`
+  kEnded,      // at `fell_us`; final after kGlitchUs
+  kHighAgain,  // the line is high again since `high_again_us`
 };
 
 Flag<Bit::kSpaced> is_spaced;  // kSpacingUs have passed since `ping_us`
 
 // The rest lies together, as `near` makes access short.
 struct Sonar {
-  volatile EchoState heard;
+  volatile EchoState echo_state;
   volatile uint16_t rose_us;
   volatile uint16_t fell_us;
-  volatile uint16_t again_us;
+  volatile uint16_t high_again_us;
   Ping ping;
-  bool is_held;        // there is a stale echo
-  uint8_t aged_ms;     // when the ages were right
-  uint8_t last_asked;  // the sensor of the current ping
-  uint16_t ping_us;    // when the last ping of any sensor was sent
-  uint16_t begun_us;   // when the trigger, or a stale echo, went high
+  bool is_held;         // there is a stale echo
+  uint8_t ages_ms;      // when the ages were right
+  uint8_t last_pinged;  // the sensor of the current ping
+  uint16_t ping_us;     // when the last ping of any sensor was sent
+  uint16_t start_us;    // when the trigger, or a stale echo, went high
   Reading readings[kUltrasonics];
 };
 
 Sonar sonar;
 
 // With only one sensor, the compiler knows which one.
-tini_always_inline uint8_t asked() { return kUltrasonics == 1 ? 0 : sonar.last_asked; }
+tini_always_inline uint8_t pinged_sensor() { return kUltrasonics == 1 ? 0 : sonar.last_pinged; }
 
-tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t then_us) {
-  return static_cast<uint16_t>(now_us - then_us);
+tini_always_inline uint16_t elapsed_us(uint16_t now_us, uint16_t earlier_us) {
+  return static_cast<uint16_t>(now_us - earlier_us);
 }
 
 void on_change() {
-  Sonar* const it = near(&sonar);
+  Sonar* const near_sonar = near(&sonar);
   const uint16_t now_us = clock_us();
-  const EchoState before = it->heard;
-  if (is_high(ultrasonic_at(asked()).echo.pin)) {
-    if (before == EchoState::kNothing) {
-      it->rose_us = now_us;
-      it->heard = EchoState::kHigh;
-    } else if (before == EchoState::kEnded && elapsed_us(now_us, it->fell_us) < kGlitchUs) {
-      it->again_us = now_us;
-      it->heard = EchoState::kAgain;
+  const EchoState state = near_sonar->echo_state;
+  if (is_high(ultrasonic_at(pinged_sensor()).echo.pin)) {
+    if (state == EchoState::kNothing) {
+      near_sonar->rose_us = now_us;
+      near_sonar->echo_state = EchoState::kHigh;
+    } else if (state == EchoState::kEnded && elapsed_us(now_us, near_sonar->fell_us) < kGlitchUs) {
+      near_sonar->high_again_us = now_us;
+      near_sonar->echo_state = EchoState::kHighAgain;
     }
-  } else if (before == EchoState::kHigh) {
-    it->fell_us = now_us;
-    it->heard =
-        elapsed_us(now_us, it->rose_us) < kGlitchUs ? EchoState::kNothing : EchoState::kEnded;
-  } else if (before == EchoState::kAgain) {
-    if (elapsed_us(now_us, it->again_us) >= kGlitchUs) it->fell_us = now_us;
-    it->heard = EchoState::kEnded;
+  } else if (state == EchoState::kHigh) {
+    near_sonar->fell_us = now_us;
+    near_sonar->echo_state = elapsed_us(now_us, near_sonar->rose_us) < kGlitchUs
+                                 ? EchoState::kNothing
+                                 : EchoState::kEnded;
+  } else if (state == EchoState::kHighAgain) {
+    if (elapsed_us(now_us, near_sonar->high_again_us) >= kGlitchUs) near_sonar->fell_us = now_us;
+    near_sonar->echo_state = EchoState::kEnded;
   }
 }
 
@@ -106,96 +107,96 @@ tini_always_inline void on_pin_change() {
 }
 #endif
 
-// Whether `more` is over 3 cm, and over 20 % of `value`.
-tini_always_inline bool is_far(uint16_t more, uint16_t value) {
-  if (more >= 0x2000) return true;  // no value is so long that this is less
-  return more > kNearUs && static_cast<uint16_t>(5 * more) > value;
+// Whether `difference_us` is over 3 cm, and over 20 % of `value_us`.
+tini_always_inline bool is_far(uint16_t difference_us, uint16_t value_us) {
+  if (difference_us >= 0x2000) return true;  // no value is so long that this is less
+  return difference_us > kNearUs && static_cast<uint16_t>(5 * difference_us) > value_us;
 }
 
 // One wrong sample has no effect: one that is far from the value counts only with a second, and the
 // value is the middle one of the three. The same holds for the first value of a run, of three
 // samples.
-void take(Reading& mine, uint16_t us) {
+void add_sample(Reading& reading, uint16_t us) {
   if (kTrustsSamples) {
-    mine.echo_us = us;
-    mine.sample_us = kNothing;
+    reading.echo_us = us;
+    reading.sample_us = kNothing;
     return;
   }
-  uint16_t value = mine.echo_us;
-  const uint16_t before = mine.sample_us;
+  uint16_t value_us = reading.echo_us;
+  const uint16_t sample_us = reading.sample_us;
   uint16_t low = us;
-  uint16_t high = value;
+  uint16_t high = value_us;
   if (low > high) {
-    low = value;
+    low = value_us;
     high = us;
   }
-  if (before == kNothing) {
-    const uint16_t more = static_cast<uint16_t>(high - low);
-    if (is_far(more, value)) {  // always, where there is no value
-      mine.sample_us = us;
+  if (sample_us == kNothing) {
+    const uint16_t difference_us = static_cast<uint16_t>(high - low);
+    if (is_far(difference_us, value_us)) {  // always, where there is no value
+      reading.sample_us = us;
       return;
     }
-    value = us;
-  } else if (value == kNothing) {
-    value = us;
+    value_us = us;
+  } else if (value_us == kNothing) {
+    value_us = us;
   } else {
-    value = before < low ? low : before > high ? high : before;
-    mine.sample_us = kNothing;
+    value_us = sample_us < low ? low : sample_us > high ? high : sample_us;
+    reading.sample_us = kNothing;
   }
-  mine.echo_us = value;
+  reading.echo_us = value_us;
 }
 
 void listen(bool is_on) {
   const CriticalSection critical;
-  if (is_on) sonar.heard = EchoState::kNothing;
-  listen_inside(ultrasonic_at(asked()).echo, is_on);
+  if (is_on) sonar.echo_state = EchoState::kNothing;
+  listen_inside(ultrasonic_at(pinged_sensor()).echo, is_on);
 }
 
 void lower_trigger() {
-  Sonar* const it = near(&sonar);
-  write(ultrasonic_at(asked()).trigger, false);
-  it->ping_us = clock_us();
+  Sonar* const near_sonar = near(&sonar);
+  write(ultrasonic_at(pinged_sensor()).trigger, false);
+  near_sonar->ping_us = clock_us();
   is_spaced = false;
-  it->readings[asked()].age = 0;
+  near_sonar->readings[pinged_sensor()].age = 0;
 }
 
 // Continues the current ping. Returns whether it is over, and puts the sample into `*us`.
 bool end_ping(uint16_t* us) {
-  Sonar* const it = near(&sonar);
-  if (it->ping == Ping::kTriggered) {
-    if (elapsed_us(clock_us(), it->begun_us) < kTriggerUs) return false;
+  Sonar* const near_sonar = near(&sonar);
+  if (near_sonar->ping == Ping::kTriggered) {
+    if (elapsed_us(clock_us(), near_sonar->start_us) < kTriggerUs) return false;
     listen(true);
     lower_trigger();
-    it->ping = Ping::kListening;
+    near_sonar->ping = Ping::kListening;
     return false;
   }
-  EchoState found;
+  EchoState echo_state;
   uint16_t rose_us;
   uint16_t fell_us;
   {
     const CriticalSection critical;
-    found = it->heard;
-    rose_us = it->rose_us;
-    fell_us = it->fell_us;
+    echo_state = near_sonar->echo_state;
+    rose_us = near_sonar->rose_us;
+    fell_us = near_sonar->fell_us;
   }
   const uint16_t now_us = clock_us();
-  const uint16_t gone_us = elapsed_us(now_us, it->ping_us);
+  const uint16_t since_ping_us = elapsed_us(now_us, near_sonar->ping_us);
   const uint16_t echo_us = elapsed_us(fell_us, rose_us);
   const uint16_t quiet_us = elapsed_us(now_us, fell_us);
-  const bool has_ended = found == EchoState::kEnded;
-  if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
+  const bool has_ended = echo_state == EchoState::kEnded;
+  if (since_ping_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
-  it->ping = Ping::kNone;
+  near_sonar->ping = Ping::kNone;
   if (has_ended && echo_us < kLimitUs) *us = echo_us;
   return true;
 }
 
 void begin(uint8_t number) {
-  Sonar* const it = near(&sonar);
-  if (kUltrasonics != 1) it->last_asked = number;
+  Sonar* const near_sonar = near(&sonar);
+  if (kUltrasonics != 1) near_sonar->last_pinged = number;
   write(ultrasonic_at(number).trigger, true);
-  it->begun_us = clock_us();
-  it->ping = Ping::kTriggered;
+  near_sonar->start_us = clock_us();
+  near_sonar->ping = Ping::kTriggered;
 }
 
 // Notes and returns whether kSpacingUs have passed since the last ping of any sensor.
@@ -206,44 +207,44 @@ bool note_spacing() {
 
 // Goes on with the pings. Returns whether the value of a sensor is fresh, if it has one.
 bool measure(uint8_t number) {
-  Sonar* const it = near(&sonar);
-  Reading& mine = it->readings[number];
-  uint8_t whose = number;
+  Sonar* const near_sonar = near(&sonar);
+  Reading& reading = near_sonar->readings[number];
+  uint8_t sensor = number;
   uint16_t us = kLimitUs;
   bool is_awaited = true;
-  if (it->ping != Ping::kNone) {
-    whose = asked();
-    if (!end_ping(&us)) return whose != number && mine.age <= kFresh;
-    is_awaited = !is_spaced && whose == number;  // an echo found so late was not awaited
+  if (near_sonar->ping != Ping::kNone) {
+    sensor = pinged_sensor();
+    if (!end_ping(&us)) return sensor != number && reading.age <= kFreshAge;
+    is_awaited = !is_spaced && sensor == number;  // an echo found so late was not awaited
   } else {
     if (release(ultrasonic_at(number).echo)) return false;
     // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
     const bool is_busy = is_high(ultrasonic_at(number).echo.pin);
     if (!is_busy) {
-      it->is_held = false;
+      near_sonar->is_held = false;
       if (note_spacing()) {
-        if (mine.age >= kOld) mine.sample_us = kNothing;
+        if (reading.age >= kOldAge) reading.sample_us = kNothing;
         begin(number);
         return false;
       }
     }
-    if (mine.age <= kFresh) return true;
+    if (reading.age <= kFreshAge) return true;
     if (!is_busy) return false;
-    if (!it->is_held) {
-      it->is_held = true;
-      it->begun_us = clock_us();
+    if (!near_sonar->is_held) {
+      near_sonar->is_held = true;
+      near_sonar->start_us = clock_us();
       return false;
     }
-    if (elapsed_us(clock_us(), it->begun_us) < kLimitUs) return false;
-    it->is_held = false;
-    if (mine.age >= kOld) {
+    if (elapsed_us(clock_us(), near_sonar->start_us) < kLimitUs) return false;
+    near_sonar->is_held = false;
+    if (reading.age >= kOldAge) {
       revive(ultrasonic_at(number).echo);
-      mine.echo_us = 0;
-      mine.sample_us = kNothing;
+      reading.echo_us = 0;
+      reading.sample_us = kNothing;
       return true;
     }
   }
-  take(it->readings[whose], us);
+  add_sample(near_sonar->readings[sensor], us);
   return is_awaited;
 }
 
@@ -257,12 +258,12 @@ void ultrasonic_begin() {
 
 void ultrasonic_tick() {
   if (!is_spaced) note_spacing();
-  Sonar* const it = near(&sonar);
-  const uint8_t gone_ms = (clock_8_ms() - it->aged_ms) & 0xfe;
-  it->aged_ms = static_cast<uint8_t>(it->aged_ms + gone_ms);
+  Sonar* const near_sonar = near(&sonar);
+  const uint8_t passed_ms = (clock_8_ms() - near_sonar->ages_ms) & 0xfe;
+  near_sonar->ages_ms = static_cast<uint8_t>(near_sonar->ages_ms + passed_ms);
   for (uint8_t number = 0; number < kUltrasonics; number++) {
-    Reading& reading = it->readings[number];
-    const uint8_t age = static_cast<uint8_t>(reading.age + gone_ms / 2);
+    Reading& reading = near_sonar->readings[number];
+    const uint8_t age = static_cast<uint8_t>(reading.age + passed_ms / 2);
     reading.age = age < reading.age ? 0xff : age;
   }
 }
@@ -270,22 +271,22 @@ void ultrasonic_tick() {
 bool ultrasonic_read(uint8_t number, int32_t* distance) {
   if (kUltrasonics == 1) number = 0;  // which it is, but a compiler cannot know
   if (!measure(number)) return false;
-  const Reading& mine = near(&sonar)->readings[number];
-  const uint16_t echo_us = mine.echo_us;
-  if (echo_us == kNothing || mine.sample_us != kNothing) return false;
+  const Reading& reading = near(&sonar)->readings[number];
+  const uint16_t echo_us = reading.echo_us;
+  if (echo_us == kNothing || reading.sample_us != kNothing) return false;
   *distance = kFarthest;
   if (echo_us < kFarUs) *distance = uint32_t{echo_us} * kThousandthsPer256Us >> 8;
   return true;
 }
 
 void ultrasonic_forget() {
-  Sonar* const it = near(&sonar);
-  if (it->ping == Ping::kTriggered) lower_trigger();
-  if (it->ping == Ping::kListening) listen(false);
-  it->ping = Ping::kNone;
-  it->is_held = false;
+  Sonar* const near_sonar = near(&sonar);
+  if (near_sonar->ping == Ping::kTriggered) lower_trigger();
+  if (near_sonar->ping == Ping::kListening) listen(false);
+  near_sonar->ping = Ping::kNone;
+  near_sonar->is_held = false;
   for (uint8_t number = 0; number < kUltrasonics; number++) {
-    it->readings[number].echo_us = it->readings[number].sample_us = kNothing;
+    near_sonar->readings[number].echo_us = near_sonar->readings[number].sample_us = kNothing;
   }
 }
 

@@ -30,8 +30,8 @@ uint32_t board_speed(bool is_turn);
 
 // A place in a program: the checksum of the image and the offset of an instruction.
 struct Place {
-  uint32_t program;
-  uint16_t at;
+  uint32_t checksum;
+  uint16_t offset;
 };
 
 // Sets the outputs of the motor driver, -255 to 255; positive is forward. Has no effect while the

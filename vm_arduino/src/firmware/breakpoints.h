@@ -30,17 +30,19 @@ class Breakpoints {
   void begin(uint8_t* code, uint16_t length);
   void end();
 
-  // Whether `before` and `after` a tick have work to do.
-  bool are_on() const { return count_ != 0 || is_stepping_ || passed_ != kNoPlace || is_in_some_; }
+  // Whether `insert_traps` and `remove_traps` have work to do.
+  bool are_on() const {
+    return count_ != 0 || is_stepping_ || passed_place_ != kNoPlace || has_open_statement_;
+  }
 
   // Whether traps are in the code.
-  bool are_in() const { return are_in_; }
+  bool has_traps() const { return has_traps_; }
 
-  void put_in(const Machine& machine) { exchange(machine.length()); }
+  void insert_traps(const Machine& machine) { exchange(machine.length()); }
 
   // Takes them out after the tick. Returns whether the program halts; it does only where it may.
   // Otherwise a halted machine continues.
-  bool take_out(Machine* machine, Status status, bool may_halt);
+  bool remove_traps(Machine* machine, Status status, bool may_halt);
 
   bool is_halted() const { return is_halted_; }
 
@@ -53,21 +55,21 @@ class Breakpoints {
 
   void exchange(uint16_t length);
   void exchange_at(uint16_t place, uint16_t length, uint8_t* byte);
-  bool is_place(uint16_t at) const;
+  bool is_place(uint16_t offset) const;
   void enter(const Machine& machine);
-  void note_left(const Machine& machine);
+  void note_left_statements(const Machine& machine);
 
   uint8_t* code_;
   uint16_t places_[kMostPlaces];
   uint8_t count_;
   bool is_halted_ : 1;
   bool is_stepping_ : 1;
-  bool is_in_some_ : 1;  // a task is in a statement
-  bool are_in_ : 1;
-  uint8_t stepper_;    // the task that steps
-  uint16_t step_end_;  // where that ends, if the task is in no statement
-  uint16_t passed_;    // where there is no trap in the next tick
-  Statement in_statement_[kAllTasks];  // where each task has halted; its begin may be kNoPlace
+  bool has_open_statement_ : 1;  // a task is in a statement
+  bool has_traps_ : 1;
+  uint8_t stepper_;                  // the task that steps
+  uint16_t step_end_;                // where that ends, if the task is in no statement
+  uint16_t passed_place_;            // where there is no trap in the next tick
+  Statement statements_[kAllTasks];  // where each task has halted; its start may be kNoPlace
   // The original instructions where the traps are: of each place, of the step's end, and of both
   // ways on from each statement. It is kTrap if there is none.
   uint8_t bytes_[kMostPlaces + 1 + 2 * kAllTasks];

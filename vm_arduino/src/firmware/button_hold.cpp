@@ -40,16 +40,18 @@ void confirm() {
 }  // namespace
 
 void pass_button_hold(uint16_t passed_ms) {
-  Hold* const it = near(&hold);
-  if (it->phase == Phase::kUp) return;
-  const uint16_t before_ms = it->down_ms;
-  it->down_ms =
-      passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
+  Hold* const near_hold = near(&hold);
+  if (near_hold->phase == Phase::kUp) return;
+  const uint16_t previous_ms = near_hold->down_ms;
+  near_hold->down_ms =
+      passed_ms < kMostMs - previous_ms ? static_cast<uint16_t>(previous_ms + passed_ms) : kMostMs;
   if (!kHasOwners) return;
-  if (it->phase == Phase::kDown && before_ms < kClaimMs && it->down_ms >= kClaimMs) confirm();
+  if (near_hold->phase == Phase::kDown && previous_ms < kClaimMs && near_hold->down_ms >= kClaimMs)
+    confirm();
   // Tried again until the store is free.
-  if (it->phase == Phase::kDownSinceReset && it->down_ms >= kForgetMs && forget_keys()) {
-    it->phase = Phase::kUp;
+  if (near_hold->phase == Phase::kDownSinceReset && near_hold->down_ms >= kForgetMs &&
+      forget_keys()) {
+    near_hold->phase = Phase::kUp;
     robot_beep(kSignHertz, kSignMs);
   }
 }
@@ -60,12 +62,12 @@ void begin_press() {
 }
 
 void hold_press() {
-  Hold* const it = near(&hold);
-  if (it->phase == Phase::kEdge) {
-    it->phase = Phase::kDown;
-  } else if (it->phase == Phase::kUp) {
-    it->phase = Phase::kDownSinceReset;
-    it->down_ms = 0;
+  Hold* const near_hold = near(&hold);
+  if (near_hold->phase == Phase::kEdge) {
+    near_hold->phase = Phase::kDown;
+  } else if (near_hold->phase == Phase::kUp) {
+    near_hold->phase = Phase::kDownSinceReset;
+    near_hold->down_ms = 0;
   }
 }
 

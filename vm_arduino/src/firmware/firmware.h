@@ -70,13 +70,13 @@ struct RadioName {
 bool firmware_radio_name(RadioName* name);
 
 // Whether WiFi is off after restarts: HELLO reports this.
-void firmware_wifi_rests(bool is_so);
+void firmware_wifi_rests(bool is_resting);
 
 // Whether the client of a transport has authenticated with a key of the robot.
 bool firmware_has_key(Transport transport);
 
 // A transport has no client any more: this ends an attached run that the client started.
-void firmware_on_part(Transport transport);
+void firmware_on_client_left(Transport transport);
 
 // For a robot with one line: a byte has arrived; one with a framing error is 0. May be called from
 // the interrupt: a run of zeros turns the motors off at once.

@@ -16,9 +16,9 @@
 namespace tiniscript {
 
 void guide_begin();  // a program begins
-void guide_go(int8_t left, int8_t right, int32_t way);
+void guide_go(int8_t left, int8_t right, int32_t distance);
 void guide_go_on();  // with that way, after something has ended it
-Going guide_going(int32_t* rest);
+MoveState guide_move_state(int32_t* remaining);
 void guide_end(bool is_driven);  // it sets no motor any more; `is_driven`: other code does
 void guide_tick();               // as often as may be
 uint16_t guide_noise();          // of both wheels, the left one in the low byte

@@ -21,7 +21,7 @@ Tuning tuning;
 static_assert(sizeof(Trim) == kTrimBytes && sizeof(Pace) == kPaceBytes,
               "they are kept as they are sent");
 
-bool change(uint8_t* to, const uint8_t* from, uint8_t length) {
+bool update_bytes(uint8_t* to, const uint8_t* from, uint8_t length) {
   bool is_changed = false;
   for (uint8_t k = 0; k < length; k++) {
     if (to[k] != from[k]) is_changed = true;
@@ -63,13 +63,14 @@ void read_pace(const uint8_t* record) {
 }
 
 bool change_name(const uint8_t* name, uint8_t length) {
-  const bool is_other_length = change(&device_info.name_length, &length, 1);
-  return change(device_info.name, name, length) || is_other_length;
+  const bool is_other_length = update_bytes(&device_info.name_length, &length, 1);
+  return update_bytes(device_info.name, name, length) || is_other_length;
 }
 
-bool change_tuning(const Tuning& wanted, bool has_pace) {
-  return change(reinterpret_cast<uint8_t*>(&tuning), reinterpret_cast<const uint8_t*>(&wanted),
-                has_pace ? sizeof(Tuning) : sizeof(Trim));
+bool change_tuning(const Tuning& new_tuning, bool has_pace) {
+  return update_bytes(reinterpret_cast<uint8_t*>(&tuning),
+                      reinterpret_cast<const uint8_t*>(&new_tuning),
+                      has_pace ? sizeof(Tuning) : sizeof(Trim));
 }
 
 Identity& port_identity() { return identity; }

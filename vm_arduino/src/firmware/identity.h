@@ -26,6 +26,6 @@ void read_pace(const uint8_t* record);
 
 // Each returns whether it changes anything. The arguments must be valid.
 bool change_name(const uint8_t* name, uint8_t length);
-bool change_tuning(const Tuning& wanted, bool has_pace);
+bool change_tuning(const Tuning& new_tuning, bool has_pace);
 
 }  // namespace tiniscript

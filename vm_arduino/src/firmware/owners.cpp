@@ -29,9 +29,9 @@ void read_owner() {
 
 Answer port_key(uint8_t kind, uint8_t* key) {
   if (!nvm_is_readable()) return Answer::kUnreadable;
-  const Answer answer = owner_kept();
+  const Answer answer = owner_save_answer();
   if (answer != Answer::kOk) return answer;
-  return fetch_key(kind, key) ? Answer::kOk : not_now();
+  return fetch_key(kind, key) ? Answer::kOk : busy_answer();
 }
 
 }  // namespace tiniscript

@@ -19,8 +19,8 @@ int32_t robot_speed(bool is_turn, uint8_t power) {
   if (line.at80 <= line.at40) {  // not measured, or not sound
     return static_cast<int32_t>(board_speed(is_turn) * power);
   }
-  const int16_t above = static_cast<int16_t>(25 * power - 1000);
-  return int32_t{line.at80} * above + int32_t{line.at40} * (1000 - above);
+  const int16_t weight = static_cast<int16_t>(25 * power - 1000);
+  return int32_t{line.at80} * weight + int32_t{line.at40} * (1000 - weight);
 }
 
 }  // namespace tiniscript

@@ -25,11 +25,11 @@ constexpr uint8_t kOwnerBit = 8;
 
 Boot boot;
 uint8_t record[kOwnerBytes];
-QuickByte<kToKeepAt> to_keep;
-QuickByte<kKeepingAt> keeping;  // the bits that the store is writing
-Flag<Bit::kLow> is_low;         // saving waits for more voltage
-uint16_t low_ms;                // when that wait began
-uint8_t worn;                   // data that it has failed to save since the request: bits
+QuickByte<kDueSavesAt> due_saves;
+QuickByte<kCurrentSaveAt> current_save;  // the bits that the store is writing
+Flag<Bit::kLow> is_low;                  // saving waits for more voltage
+uint16_t low_ms;                         // when that wait began
+uint8_t failed_saves;                    // data that it has failed to save since the request: bits
 
 // -- after a reset ------------------------------------------------------------------------------
 
@@ -41,16 +41,16 @@ void load_identity() {
 
 // The record of a fault: its kind, its place, its image. A hang that the watchdog ended is newer.
 void load_fault() {
-  const bool is_there = store.fetch_first(Area::kFault, record, kRecordBytes);
-  if (is_there) read_pace(record);
-  Place hung;
-  if (board_take_hang(&hung)) {
+  const bool is_stored = store.fetch_first(Area::kFault, record, kRecordBytes);
+  if (is_stored) read_pace(record);
+  Place place;
+  if (board_take_hang(&place)) {
     robot_status.fault = static_cast<uint8_t>(LinkFault::kStall);
-    robot_status.fault_at = hung.at;
-    robot_status.fault_program = hung.program;
+    robot_status.fault_at = place.offset;
+    robot_status.fault_program = place.checksum;
     return keep_fault();
   }
-  if (is_there) copy_bytes(record + kFaultAt, &robot_status.fault, kFaultBytes);
+  if (is_stored) copy_bytes(record + kFaultAt, &robot_status.fault, kFaultBytes);
 }
 
 // Reads the next item when the store is free.
@@ -84,7 +84,7 @@ void load_next() {
 
 void write_record() {
   for (uint8_t& byte : record) byte = 0;
-  if (keeping == kIdentityBit) {
+  if (current_save == kIdentityBit) {
     write_identity(record);
   } else {
     copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
@@ -107,71 +107,72 @@ void tell_saving() { robot_status.saved = is_low ? Saved::kLowSupply : Saved::kS
 
 // Begins the next save, a program first.
 void keep_next() {
-  keeping = static_cast<uint8_t>(to_keep & -to_keep);
+  current_save = static_cast<uint8_t>(due_saves & -due_saves);
   bool has_begun;
-  if (keeping == kProgramBit) {
+  if (current_save == kProgramBit) {
     has_begun = store.begin_save(program);
   } else {
     write_record();
-    has_begun = store.begin_keep(keeping == kFaultBit ? Area::kFault : Area::kIdentity, record);
+    has_begun =
+        store.begin_save_record(current_save == kFaultBit ? Area::kFault : Area::kIdentity, record);
   }
-  to_keep = static_cast<uint8_t>(to_keep & ~keeping);
-  if (!has_begun) keeping = 0;  // too large: no such program exists
+  due_saves = static_cast<uint8_t>(due_saves & ~current_save);
+  if (!has_begun) current_save = 0;  // too large: no such program exists
 }
 
 // The record stays in memory until it is saved, so no other record may wait to be saved.
-bool may_keep_keys() { return has_booted() && !store.is_busy() && (to_keep | keeping) == 0; }
+bool may_keep_keys() { return has_booted() && !store.is_busy() && (due_saves | current_save) == 0; }
 
 void keep_keys() {
-  store.begin_keep(Area::kOwner, record);
-  keeping = kOwnerBit;
-  worn &= static_cast<uint8_t>(~kOwnerBit);
+  store.begin_save_record(Area::kOwner, record);
+  current_save = kOwnerBit;
+  failed_saves &= static_cast<uint8_t>(~kOwnerBit);
 }
 
 }  // namespace
 
 void tick_persistence() {
-  if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // no data to save
+  if (boot == Boot::kOver && (due_saves | current_save) == 0) return;  // no data to save
   if (link.has_due_live()) return;
   store.tick(may_commit());
   const bool is_busy = store.is_busy();
-  const bool is_kept = store.state() == StoreState::kSaved;
+  const bool is_saved = store.state() == StoreState::kSaved;
   if (boot != Boot::kOver) {
     if (is_low) tell_saving();
     return load_next();
   }
-  if (!is_busy && keeping == kProgramBit) {
-    robot_status.saved = is_kept ? Saved::kStored : Saved::kMemory;
-    if (is_kept) robot_status.slot = store.used(Area::kProgram);
-  } else if (((to_keep | keeping) & kProgramBit) != 0) {
+  if (!is_busy && current_save == kProgramBit) {
+    robot_status.saved = is_saved ? Saved::kStored : Saved::kMemory;
+    if (is_saved) robot_status.slot = store.current_slot(Area::kProgram);
+  } else if (((due_saves | current_save) & kProgramBit) != 0) {
     tell_saving();
   }
   if (is_busy) return;
-  if (!is_kept) worn |= keeping;
-  if (keeping == kOwnerBit) read_owner();
-  keeping = 0;
-  if (to_keep != 0) keep_next();
+  if (!is_saved) failed_saves |= current_save;
+  if (current_save == kOwnerBit) read_owner();
+  current_save = 0;
+  if (due_saves != 0) keep_next();
 }
 
 bool has_booted() { return boot == Boot::kOver; }
 
 void keep_program() {
   tell_saving();
-  to_keep = to_keep | kProgramBit;
+  due_saves = due_saves | kProgramBit;
 }
 
-void keep_fault() { to_keep = to_keep | kFaultBit; }
+void keep_fault() { due_saves = due_saves | kFaultBit; }
 
 void keep_identity() {
-  to_keep = to_keep | kIdentityBit;
-  worn &= kOwnerBit;
+  due_saves = due_saves | kIdentityBit;
+  failed_saves &= kOwnerBit;
 }
 
-Answer identity_kept() {
-  if (((to_keep | keeping) & (kIdentityBit | kFaultBit)) != 0) {
+Answer identity_save_answer() {
+  if (((due_saves | current_save) & (kIdentityBit | kFaultBit)) != 0) {
     return is_low ? Answer::kLowSupply : Answer::kSaving;
   }
-  if ((worn & (kIdentityBit | kFaultBit)) == 0) return Answer::kOk;
+  if ((failed_saves & (kIdentityBit | kFaultBit)) == 0) return Answer::kOk;
   keep_identity();
   keep_fault();
   return Answer::kNotKept;
@@ -179,25 +180,25 @@ Answer identity_kept() {
 
 bool fetch_key(uint8_t kind, uint8_t* key) {
   if (!has_booted() && boot <= Boot::kSettling) return false;
-  const bool is_there = store.used(Area::kOwner) != kNoSlot;
+  const bool is_stored = store.current_slot(Area::kOwner) != kNoSlot;
   for (uint8_t k = 0; k < kKeyRoom; k++) {
     key[k] = 0;
-    const uint16_t at = static_cast<uint16_t>(kKeysAt + kind * kKeyRoom + k);
-    if (is_there && !store.fetch(Area::kOwner, at, key + k)) return false;
+    const uint16_t offset = static_cast<uint16_t>(kKeysAt + kind * kKeyRoom + k);
+    if (is_stored && !store.fetch(Area::kOwner, offset, key + k)) return false;
   }
   return true;
 }
 
 Answer port_keep_key(uint8_t kind, const uint8_t* key) {
-  if (!may_keep_keys()) return not_now();
+  if (!may_keep_keys()) return busy_answer();
   for (uint8_t k = 0; k < kOwnerKeys; k++) {
-    if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return not_now();
+    if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return busy_answer();
   }
   copy_bytes(key, record + kKeysAt + kind * kKeyRoom, kKeyRoom);
-  const bool was_worn = (worn & kOwnerBit) != 0;
+  const bool has_failed = (failed_saves & kOwnerBit) != 0;
   keep_keys();
   link.expire_others();
-  return was_worn ? Answer::kNotKept : Answer::kSaving;
+  return has_failed ? Answer::kNotKept : Answer::kSaving;
 }
 
 bool forget_keys() {
@@ -207,26 +208,26 @@ bool forget_keys() {
   return true;
 }
 
-Answer owner_kept() {
-  if (keeping != kOwnerBit) return Answer::kOk;
+Answer owner_save_answer() {
+  if (current_save != kOwnerBit) return Answer::kOk;
   return is_low ? Answer::kLowSupply : Answer::kSaving;
 }
 
 Answer give_up_program() {
   if (is_low) {
     // The wait for enough voltage may never end, so the next program takes precedence.
-    if (keeping == kProgramBit) {
+    if (current_save == kProgramBit) {
       store.give_up();
-      keeping = 0;
+      current_save = 0;
       is_low = false;
     }
-    to_keep = static_cast<uint8_t>(to_keep & ~kProgramBit);
-  } else if (store.is_busy() || (to_keep & kProgramBit) != 0) {
+    due_saves = static_cast<uint8_t>(due_saves & ~kProgramBit);
+  } else if (store.is_busy() || (due_saves & kProgramBit) != 0) {
     return Answer::kBusy;  // a program that is being written cannot be read
   }
   return nvm_is_ready() ? Answer::kOk : Answer::kBusy;
 }
 
-Answer not_now() { return is_low ? Answer::kLowSupply : Answer::kBusy; }
+Answer busy_answer() { return is_low ? Answer::kLowSupply : Answer::kBusy; }
 
 }  // namespace tiniscript

@@ -24,13 +24,13 @@ void keep_identity();
 
 // Whether the identity is saved, and the pace, which is stored with the fault. kOk: yes; kSaving
 // and kLowSupply: not yet; kNotKept: the memory is worn out, and it is tried again.
-Answer identity_kept();
+Answer identity_save_answer();
 
 // Copies a key of the robot into `key`: zeros if it has none. False: not available now.
 bool fetch_key(uint8_t kind, uint8_t* key);
 
 // kSaving or kLowSupply while a key is being saved.
-Answer owner_kept();
+Answer owner_save_answer();
 
 // Learns from the store whether the robot has an owner (`owners.cpp`).
 void read_owner();
@@ -43,6 +43,6 @@ bool forget_keys();
 Answer give_up_program();
 
 // The reason why something is not available now.
-Answer not_now();
+Answer busy_answer();
 
 }  // namespace tiniscript

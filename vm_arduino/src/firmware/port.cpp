@@ -22,7 +22,7 @@ LineErrors port_line_errors() { return board_line_errors(); }
 uint16_t port_room() { return kStoredCodeBytes; }
 
 Answer port_prepare_upload(bool is_live) {
-  if (!has_booted()) return not_now();
+  if (!has_booted()) return busy_answer();
   if (is_running()) end_run(State::kIdle);
   forget_start();
   if (is_live) return has_program() || load_program() ? Answer::kOk : Answer::kBusy;
@@ -91,7 +91,7 @@ uint8_t* port_text_room(uint16_t* room) {
   return program;
 }
 
-bool port_text_is_beside(bool is_for_button) { return !kTextIsInProgram && !is_for_button; }
+bool port_text_is_separate(bool is_for_button) { return !kTextIsInProgram && !is_for_button; }
 
 void port_take_text(uint8_t* image, bool is_for_button) {
   if (is_for_button) {
@@ -103,8 +103,8 @@ void port_take_text(uint8_t* image, bool is_for_button) {
 }
 
 Answer port_undo() {
-  const Answer way = port_prepare_upload(false);
-  if (way != Answer::kOk) return way;
+  const Answer answer = port_prepare_upload(false);
+  if (answer != Answer::kOk) return answer;
   const bool is_stored = robot_status.slot != kNoSlot;
   if (!hold_previous()) return Answer::kNoPrevious;
   if (is_stored) keep_program();
@@ -128,23 +128,24 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
   *byte = program[offset];
   const bool is_there =
       is_in_memory() || (has_booted() && store.fetch(Area::kProgram, offset, byte));
-  return is_there ? Answer::kOk : not_now();
+  return is_there ? Answer::kOk : busy_answer();
 }
 
 Answer port_rename(const uint8_t* name, uint8_t length) {
-  if (!has_booted()) return not_now();
+  if (!has_booted()) return busy_answer();
   if (change_name(name, length)) keep_identity();
-  return identity_kept();
+  return identity_save_answer();
 }
 
-Answer port_tune(const Tuning& wanted, bool has_pace) {
-  if (!is_sound(wanted.trim) || (has_pace && !is_sound(wanted.pace))) return Answer::kBadValue;
-  if (!has_booted()) return not_now();
-  if (change_tuning(wanted, has_pace)) {
+Answer port_tune(const Tuning& new_tuning, bool has_pace) {
+  if (!is_sound(new_tuning.trim) || (has_pace && !is_sound(new_tuning.pace)))
+    return Answer::kBadValue;
+  if (!has_booted()) return busy_answer();
+  if (change_tuning(new_tuning, has_pace)) {
     keep_identity();
     if (has_pace) keep_fault();
   }
-  return identity_kept();
+  return identity_save_answer();
 }
 
 }  // namespace tiniscript

@@ -47,7 +47,7 @@ void hold_stored() {
   uint8_t header[kHeaderBytes];
   for (;;) {
     robot_status.saved = has_other ? Saved::kOtherVersion : Saved::kNothing;
-    robot_status.slot = store.used(Area::kProgram);
+    robot_status.slot = store.current_slot(Area::kProgram);
     if (robot_status.slot == kNoSlot) return;
     if (!store.fetch_first(Area::kProgram, header, kHeaderBytes)) return;
     if (!is_other_version(header)) break;
@@ -69,7 +69,7 @@ void hold_memory() {
 bool hold_previous() {
   const uint8_t slot = robot_status.slot;
   if (slot == kNoSlot) {
-    if (store.used(Area::kProgram) == kNoSlot) return false;
+    if (store.current_slot(Area::kProgram) == kNoSlot) return false;
     hold_stored();
     return load_program();
   }

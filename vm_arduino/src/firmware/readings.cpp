@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint8_t kMostReadings = 12;  // on a slow line they delay the end of a run by that much
 constexpr uint8_t kSensorsOfKits = 32;
-constexpr uint8_t kAll = kSensorsOfKits + kRemoteRoom;
+constexpr uint8_t kAllSensors = kSensorsOfKits + kRemoteRoom;
 
 // A bit for each sensor.
 class Sensors {
@@ -27,26 +27,26 @@ class Sensors {
   void clear() {
     for (uint8_t& byte : bytes_) byte = 0;
   }
-  // The first one, or kAll.
+  // The first one, or kAllSensors.
   uint8_t first() const {
     uint8_t sensor = 0;
-    while (sensor < kAll && !has(sensor)) sensor++;
+    while (sensor < kAllSensors && !has(sensor)) sensor++;
     return sensor;
   }
 
  private:
   static uint8_t bit(uint8_t sensor) { return static_cast<uint8_t>(1 << sensor % 8); }
 
-  uint8_t bytes_[(kAll + 7) / 8];
+  uint8_t bytes_[(kAllSensors + 7) / 8];
 };
 
-ToldReading noted[kMostReadings];
+ReadingReport reports[kMostReadings];
 uint8_t oldest;
 uint8_t count;
-Sensors has_read;  // in this run
-Sensors untold;    // there was no room
+Sensors read_sensors;     // in this run
+Sensors dropped_sensors;  // there was no room
 
-ToldReading reading_of(uint8_t sensor, int32_t value) {
+ReadingReport reading_of(uint8_t sensor, int32_t value) {
   const uint32_t since_ms = machine_ms() - machine_of_run().task().started_ms;
   return {robot_status.run, sensor, value, static_cast<uint16_t>(since_ms)};
 }
@@ -55,16 +55,16 @@ ToldReading reading_of(uint8_t sensor, int32_t value) {
 
 void begin_readings() {
   oldest = count = 0;
-  has_read.clear();
-  untold.clear();
+  read_sensors.clear();
+  dropped_sensors.clear();
 }
 
-void note_changed(uint8_t sensor, int32_t before, int32_t value) {
-  if (has_read.has(sensor) && value == before) return;
-  has_read.add(sensor);
-  if (untold.has(sensor)) return;
-  if (count == kMostReadings) return untold.add(sensor);
-  noted[(oldest + count++) % kMostReadings] = reading_of(sensor, value);
+void note_changed(uint8_t sensor, int32_t previous_value, int32_t value) {
+  if (read_sensors.has(sensor) && value == previous_value) return;
+  read_sensors.add(sensor);
+  if (dropped_sensors.has(sensor)) return;
+  if (count == kMostReadings) return dropped_sensors.add(sensor);
+  reports[(oldest + count++) % kMostReadings] = reading_of(sensor, value);
 }
 
 void port_tell_readings(bool is_on) {
@@ -73,15 +73,15 @@ void port_tell_readings(bool is_on) {
   if (!were_noted) begin_readings();
 }
 
-bool port_has_reading() { return count != 0 || untold.first() != kAll; }
+bool port_has_reading() { return count != 0 || dropped_sensors.first() != kAllSensors; }
 
-ToldReading port_next_reading() {
+ReadingReport port_next_reading() {
   if (count == 0) {
-    const uint8_t sensor = untold.first();
-    untold.remove(sensor);
+    const uint8_t sensor = dropped_sensors.first();
+    dropped_sensors.remove(sensor);
     return reading_of(sensor | kUntold, board_readings()[sensor]);
   }
-  const ToldReading& reading = noted[oldest];
+  const ReadingReport& reading = reports[oldest];
   oldest = static_cast<uint8_t>((oldest + 1) % kMostReadings);
   count--;
   return reading;

@@ -17,11 +17,11 @@ void begin_readings();
 
 extern bool are_readings_noted;
 
-void note_changed(uint8_t sensor, int32_t before, int32_t value);
+void note_changed(uint8_t sensor, int32_t previous_value, int32_t value);
 
-// A sensor has been read: it had `before` the last time. Returns that it has been.
-inline bool note_reading(uint8_t sensor, int32_t before, int32_t value) {
-  if (kTellsReadings && are_readings_noted) note_changed(sensor, before, value);
+// A sensor has been read: it had `previous_value` the last time. Returns that it has been.
+inline bool note_reading(uint8_t sensor, int32_t previous_value, int32_t value) {
+  if (kTellsReadings && are_readings_noted) note_changed(sensor, previous_value, value);
   return true;
 }
 

@@ -39,18 +39,18 @@ Status tick_machine() {
 }
 
 // Records a fault.
-void fault(uint8_t number, uint16_t at) {
+void fault(uint8_t number, uint16_t offset) {
   link.write_checksum();  // the record contains the checksum of its image
   robot_status.fault = number;
-  robot_status.fault_at = at;
+  robot_status.fault_at = offset;
   robot_status.fault_program = get32(run_image + kChecksumAt);
   keep_fault();
   board_faulted();
 }
 
-void abort_run(LinkFault why) {
-  stop_run(static_cast<uint8_t>(why));
-  link.faulted();
+void abort_run(LinkFault cause) {
+  stop_run(static_cast<uint8_t>(cause));
+  link.on_faulted();
 }
 
 void go_on() {
@@ -58,11 +58,11 @@ void go_on() {
   if (status == Status::kDone) {
     end_run(State::kIdle, true);
     board_finished();
-    link.done();
+    link.on_done();
   } else if (status == Status::kFault) {
     end_run(State::kFaulted);
     fault(static_cast<uint8_t>(machine.fault()), machine.offset());
-    link.faulted();
+    link.on_faulted();
   } else if (!link.is_attached() && now_ms - machine.task().started_ms >= board_max_run_ms()) {
     abort_run(LinkFault::kMaxRun);
   }
@@ -150,7 +150,7 @@ void press() {
   may_start = !is_running();
   if (may_start) return;
   end_run(State::kStopped);
-  link.stopped(Cause::kButton);
+  link.on_stopped(Cause::kButton);
 }
 
 }  // namespace
@@ -176,7 +176,7 @@ void firmware_on_disconnect() {
   link.expire();
   if (!is_running() || !link.is_attached()) return;
   end_run(State::kStopped);
-  link.stopped(Cause::kCable);
+  link.on_stopped(Cause::kCable);
 }
 
 MachineOfRun& machine_of_run() { return machine; }
@@ -191,14 +191,14 @@ const uint8_t* port_run_image() { return run_image; }
 bool firmware_runs(Place* place) {
   if (!is_running()) return false;
   const uint8_t* const image = run_image;
-  const uint16_t most = image == live ? kLiveImageBytes : kImageBytes;
+  const uint16_t limit = image == live ? kLiveImageBytes : kImageBytes;
   const uint16_t length = image_length(image);
   if (kHasBreakpoints && are_traps_in()) {  // then it has its checksum
-    place->program = get32(image + kChecksumAt);
+    place->checksum = get32(image + kChecksumAt);
   } else {
-    place->program = image_checksum(image, length < most ? length : most);
+    place->checksum = image_checksum(image, length < limit ? length : limit);
   }
-  place->at = machine.offset();
+  place->offset = machine.offset();
   return true;
 }
 
@@ -219,7 +219,7 @@ int32_t remote_reading(uint8_t number) {
 }
 
 void robot_motors(int8_t left, int8_t right) {
-  const Levels levels = trimmed(port_tuning().trim, left, right);
+  const Levels levels = trimmed_levels(port_tuning().trim, left, right);
   has_motors_on = (left | right) != 0;
   if (kHasDiscs) guide_end(has_motors_on);
   board_motors(levels.left, levels.right);

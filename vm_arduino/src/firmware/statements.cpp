@@ -29,49 +29,49 @@ bool jumps(ControlRole role) {
   }
 }
 
-// The target of an instruction whose last operand, one byte or two, ends before `after`.
-uint16_t target_of(const uint8_t* code, uint16_t after, const DecodeForm& form) {
-  const uint8_t* last = code + after - 1;
-  uint16_t distance = *last;
-  if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
-  return static_cast<uint16_t>(form.jumps_back() ? after - distance : after + distance);
+// The target of an instruction whose last operand, one byte or two, ends before `operand_end`.
+uint16_t target_of(const uint8_t* code, uint16_t operand_end, const DecodeForm& form) {
+  const uint8_t* operand = code + operand_end - 1;
+  uint16_t distance = *operand;
+  if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--operand);
+  return static_cast<uint16_t>(form.jumps_back() ? operand_end - distance : operand_end + distance);
 }
 
 }  // namespace
 
-bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, FoundStatement* found) {
-  *found = {{place, length, kNoPlace}, false, false};
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, StatementInfo* info) {
+  *info = {{place, length, kNoPlace}, false, false};
   bool is_inside = false;      // from `place` on
   bool is_check = false;       // of an UNTIL or a WHEN
   uint8_t depth = 0;           // values on the stack
-  uint16_t joined = 0;         // where the last AND_THEN or OR_ELSE ends that is open
-  for (uint16_t at = 0; at < length;) {
-    const bool is_begin = depth == 0 && at >= joined;
-    if (is_inside && is_begin && !is_check) {
-      found->statement.end = at;
+  uint16_t join_end = 0;       // where the last AND_THEN or OR_ELSE ends that is open
+  for (uint16_t offset = 0; offset < length;) {
+    const bool is_statement_start = depth == 0 && offset >= join_end;
+    if (is_inside && is_statement_start && !is_check) {
+      info->statement.end = offset;
       return true;
     }
-    if (at == place) {
-      if (!is_begin) return false;
+    if (offset == place) {
+      if (!is_statement_start) return false;
       is_inside = true;
-      found->is_in_check = is_check;
+      info->is_in_check = is_check;
     }
-    const DecodeForm form = decode_form_of(code[at]);  // a prefix has one byte, and no effect
+    const DecodeForm form = decode_form_of(code[offset]);  // a prefix has one byte, and no effect
     const ControlRole role = form.role();
-    at = static_cast<uint16_t>(at + form.size());
-    if (code[at - form.size()] == static_cast<uint8_t>(Op::kEscape)) continue;
+    offset = static_cast<uint16_t>(offset + form.size());
+    if (code[offset - form.size()] == static_cast<uint8_t>(Op::kEscape)) continue;
     depth = static_cast<uint8_t>(depth - form.pops() + form.pushes());
     if (role == ControlRole::kJoin) {
-      const uint16_t target = target_of(code, at, form);
-      if (target > joined) joined = target;
+      const uint16_t target = target_of(code, offset, form);
+      if (target > join_end) join_end = target;
     } else if (role == ControlRole::kWatch || role == ControlRole::kWhen) {
       is_check = true;
     } else if (role == ControlRole::kUntil || role == ControlRole::kLook) {
       is_check = false;
     }
     if (!is_inside) continue;
-    if (jumps(role)) found->statement.target = target_of(code, at, form);
-    if (role == ControlRole::kReturn) found->returns = true;
+    if (jumps(role)) info->statement.target = target_of(code, offset, form);
+    if (role == ControlRole::kReturn) info->returns = true;
   }
   return is_inside;
 }

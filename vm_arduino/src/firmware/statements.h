@@ -14,18 +14,18 @@ constexpr uint16_t kNoPlace = 0xffff;
 
 // It goes on at its end, or where it jumps to: no statement has two jumps.
 struct Statement {
-  uint16_t begin;
+  uint16_t start;
   uint16_t end;     // where the next one begins that is no check, or the code's length
   uint16_t target;  // or kNoPlace
 };
 
-struct FoundStatement {
+struct StatementInfo {
   Statement statement;
   bool returns;      // it goes on after the call that has led here
   bool is_in_check;  // it is part of one
 };
 
 // Finds the statement that begins at a place. False: none begins there.
-bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, FoundStatement* found);
+bool find_statement(const uint8_t* code, uint16_t length, uint16_t place, StatementInfo* info);
 
 }  // namespace tiniscript

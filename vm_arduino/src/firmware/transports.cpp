@@ -32,12 +32,12 @@ bool firmware_has_room(Transport transport) { return link.receiver(transport).ha
 
 // It counts as a mark until its bytes are there.
 void firmware_await_stop(Transport transport, bool is_there) {
-  bool* const its = &is_awaited[static_cast<uint8_t>(transport)];
+  bool* const is_marked = &is_awaited[static_cast<uint8_t>(transport)];
   Receiver& receiver = link.receiver(transport);
   if (is_there) port_end();
-  if (is_there && !*its) receiver.put_mark();
-  if (!is_there && *its) receiver.take_mark();
-  *its = is_there;
+  if (is_there && !*is_marked) receiver.put_mark();
+  if (!is_there && *is_marked) receiver.take_mark();
+  *is_marked = is_there;
 }
 
 Answer port_may_drive(uint8_t type) { return link.may_drive(type); }
@@ -46,11 +46,11 @@ bool port_may_press() { return link.may_press(); }
 
 bool firmware_has_key(Transport transport) { return link.has_key(transport); }
 
-void firmware_on_part(Transport transport) {
+void firmware_on_client_left(Transport transport) {
   is_awaited[static_cast<uint8_t>(transport)] = false;  // the mark goes with the waiting bytes
-  if (!link.part(transport) || !is_running()) return;
+  if (!link.end_session(transport) || !is_running()) return;
   end_run(State::kStopped);
-  link.stopped(Cause::kCable);
+  link.on_stopped(Cause::kCable);
 }
 
 WifiReport port_wifi_report(WifiStep step) { return board_wifi(step); }
@@ -62,9 +62,10 @@ Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
   return board_set_wifi(step, text, length);
 }
 
-void firmware_wifi_rests(bool is_so) {
+void firmware_wifi_rests(bool is_resting) {
   uint8_t& features = port_identity().more_features;
-  features = static_cast<uint8_t>(is_so ? features | kMoreWifiRests : features & ~kMoreWifiRests);
+  features =
+      static_cast<uint8_t>(is_resting ? features | kMoreWifiRests : features & ~kMoreWifiRests);
 }
 
 bool firmware_radio_name(RadioName* name) {
@@ -74,11 +75,11 @@ bool firmware_radio_name(RadioName* name) {
   static const char kStart[] = "tini-";
   static const char kDigits[] = "0123456789abcdef";
   *name = RadioName();
-  uint8_t at = 0;
-  for (; kStart[at] != 0; at++) name->host[at] = kStart[at];
-  for (uint8_t shift = 16; shift > 0; at++) {
+  uint8_t length = 0;
+  for (; kStart[length] != 0; length++) name->host[length] = kStart[length];
+  for (uint8_t shift = 16; shift > 0; length++) {
     shift = static_cast<uint8_t>(shift - 4);
-    name->host[at] = kDigits[id >> shift & 0xf];
+    name->host[length] = kDigits[id >> shift & 0xf];
   }
   for (uint8_t k = 0; k < sizeof name->id - 1; k++) {
     name->id[k] = kDigits[id >> (28 - 4 * k) & 0xf];

@@ -17,20 +17,20 @@ uint8_t level_of(uint8_t percent) {
   return static_cast<uint8_t>(2 * percent + (percent * uint16_t{141} >> 8));
 }
 
-// The level of a wheel that needs the level `low` to move. It is reduced by `weakened` percent if
+// The level of a wheel that needs the level `low` to move. It is reduced by `reduction` percent if
 // that is positive.
-int16_t level(int8_t power, uint8_t low, int8_t weakened) {
+int16_t level(int8_t power, uint8_t low, int8_t reduction) {
   if (power == 0) return 0;
   const uint8_t size = size_of(power);
-  uint8_t found = level_of(size > 100 ? 100 : size);
+  uint8_t size_level = level_of(size > 100 ? 100 : size);
   uint8_t missing = low;  // of 256 steps
-  if (weakened > 0)
-    missing = static_cast<uint8_t>(missing + level_of(static_cast<uint8_t>(weakened)));
+  if (reduction > 0)
+    missing = static_cast<uint8_t>(missing + level_of(static_cast<uint8_t>(reduction)));
   if (missing != 0) {
-    const uint16_t rest = static_cast<uint16_t>((found << 8) - found * missing);
-    found = static_cast<uint8_t>(low + (rest >> 8));
+    const uint16_t scaled = static_cast<uint16_t>((size_level << 8) - size_level * missing);
+    size_level = static_cast<uint8_t>(low + (scaled >> 8));
   }
-  return power < 0 ? static_cast<int16_t>(-found) : found;
+  return power < 0 ? static_cast<int16_t>(-size_level) : size_level;
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ tini_noinline bool is_sound(const Trim& trim) {
          trim.least <= kMostLeast;
 }
 
-Levels trimmed(const Trim& trim, int8_t left, int8_t right) {
+Levels trimmed_levels(const Trim& trim, int8_t left, int8_t right) {
   const uint8_t low = level_of(trim.least);
   Levels levels = {level(left, low, trim.balance),
                   level(right, low, static_cast<int8_t>(-trim.balance))};

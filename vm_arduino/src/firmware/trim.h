@@ -22,6 +22,6 @@ bool is_sound(const Trim& trim);
 
 // The levels for `left` and `right` percent, -100 to 100. `trim` must be valid; one of zeros has no
 // effect.
-Levels trimmed(const Trim& trim, int8_t left, int8_t right);
+Levels trimmed_levels(const Trim& trim, int8_t left, int8_t right);
 
 }  // namespace tiniscript

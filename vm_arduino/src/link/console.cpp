@@ -13,7 +13,7 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kBytesATurn = 8;
-constexpr Remark kWhole = Remark::kOk;  // instead of a report: a whole program has come
+constexpr Remark kWholeProgram = Remark::kOk;  // instead of a report: a whole program has come
 // After so many mistakes, answers stop until there is a pause of this length between two bytes: the
 // other side echoes or answers each line. The next one is told that.
 constexpr uint8_t kMostMistakes = 16;
@@ -26,12 +26,11 @@ constexpr uint16_t kBriefMs = 150;  // of silence before a line counts again
 constexpr uint8_t kCapital = 0xdf;  // bits of a letter
 
 // Messages of radio modules, and words that ask for all others; 0x80 in the last letter of each.
-const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
-                                        'E', 'R', 'R', 'O', 'R' | 0x80,
-                                        'H', 'E', 'L', 'P' | 0x80,
-                                        'A', 'Y', 'U', 'D', 'A' | 0x80, 0};
-constexpr uint8_t kChatter = 3;  // so many of them
-constexpr uint8_t kAsking = 5;
+const uint8_t kSpokenWords[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80, 'E', 'R',        'R',
+                                             'O', 'R' | 0x80, 'H', 'E',        'L', 'P' | 0x80, 'A',
+                                             'Y', 'U',        'D', 'A' | 0x80, 0};
+constexpr uint8_t kChatterCount = 3;  // so many of them
+constexpr uint8_t kSpokenCount = 5;
 
 }  // namespace
 
@@ -46,10 +45,10 @@ void Console::pass(uint16_t passed_ms, uint16_t silence_left_ms) {
 void Console::discard() {
   left_ms_[kWait] = kSilenceMs;
   is_discarding_ = true;
-  is_brief_ = has_told_ = is_open_ = false;
-  refused_ = tail_ != Remark::kNone ? Remark::kPause : Remark::kNone;  // the rest of a line is none
+  is_brief_ = has_told_pause_ = is_open_ = false;
+  refusal_ = tail_ != Remark::kNone ? Remark::kPause : Remark::kNone;  // the rest of a line is none
   remark_ = Remark::kNone;
-  help_ = nullptr;
+  next_help_word_ = nullptr;
 }
 
 void Console::begin_silence() {
@@ -71,18 +70,18 @@ bool Console::drop() {
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool may_say) {
   uint8_t byte;
   is_due_ = false;
-  for (uint8_t left = kBytesATurn; left != 0; left--) {
+  for (uint8_t bytes_left = kBytesATurn; bytes_left != 0; bytes_left--) {
     // A stop does not wait until the answers before it are said, nor does anything where they wait for
     // frames: of these the last one is said.
     if (has_answer() && may_say && !receiver->has_mark()) return Act::kNone;
     if (!receiver->take_text(&byte)) {
-      if (tail_ != kWhole || left_ms_[kPatience] > kPatienceMs - kUnendedMs) break;
+      if (tail_ != kWholeProgram || left_ms_[kPatience] > kPatienceMs - kUnendedMs) break;
       byte = kLineEnd;
     } else if (byte == kLineEnd) {
-      left_ms_[kEnds] = kPatienceMs;
+      left_ms_[kLineEnds] = kPatienceMs;
     }
     has_mark_ = receiver->has_mark();
-    if (kReadsKeys && key_line_.is_empty()) before_ms_ = left_ms_[kPatience];
+    if (kReadsKeys && key_line_.is_empty()) line_patience_ms_ = left_ms_[kPatience];
     if (is_silent_ && byte != kLineEnd) end_silence();
     begin_silence();
     if (byte == kLineStop) {
@@ -93,7 +92,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
       // A 0x00 is reported a moment later, unless a client comes.
       tail_ = is_chatter() ? Remark::kNone : Remark::kNoZero;
       drop();
-      if (receiver->take_lost()) {
+      if (receiver->take_is_lost()) {
         is_ignoring_ = true;  // the line may have opened a block
         tell(Remark::kCut, is_heard);
         tail_ = Remark::kNone;
@@ -109,8 +108,8 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
     const Act act = holds               ? Act::kHold
                     : byte == kLineEnd ? end_line(is_heard)
                                         : Act::kNone;
-    refused_ = Remark::kNone;
-    begins_ = 1;
+    refusal_ = Remark::kNone;
+    start_column_ = 1;
     if (act != Act::kNone) return act;
   }
   const uint16_t left_ms = left_ms_[kPatience];
@@ -122,7 +121,7 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard, bool
     is_silent_ = true;
     is_ignoring_ = false;
     if (is_open_ && is_waiting_) say(Remark::kWaiting);
-  } else if (tail_ > kWhole &&
+  } else if (tail_ > kWholeProgram &&
              left_ms <= kPatienceMs - (tail_ == Remark::kEnter ? kTailMs : kZeroMs)) {
     end_tail(is_heard);
   }
@@ -136,8 +135,8 @@ inline void Console::end_tail(bool is_heard) {
   tail_ = Remark::kNone;
   if (is_open_) {
     if (reader_.has_setup()) {
-      if (left_ms_[kEnds] == 0 && reader_.may_end()) {
-        tail_ = kWhole;
+      if (left_ms_[kLineEnds] == 0 && reader_.may_end()) {
+        tail_ = kWholeProgram;
         return;
       }
     } else if (!is_waiting_) {
@@ -152,8 +151,8 @@ inline void Console::end_tail(bool is_heard) {
 
 // A line goes on after a second of silence, or begins there.
 inline void Console::end_silence() {
-  refused_ = Remark::kNone;
-  begins_ = static_cast<uint8_t>(reader_.last_column() + 1);
+  refusal_ = Remark::kNone;
+  start_column_ = static_cast<uint8_t>(reader_.last_column() + 1);
 }
 
 void Console::tell(Remark remark, bool is_heard) {
@@ -169,17 +168,17 @@ inline void Console::take(uint8_t byte, bool is_heard) {
   if (kReadsKeys) key_line_.put(byte);
   tail_ = Remark::kEnter;
   read(byte);
-  const uint8_t before = before_;
-  const uint8_t last = last_;
+  const uint8_t previous = previous_letter_;
+  const uint8_t last_letter = last_letter_;
   if (byte <= ' ') return;
-  before_ = last;
-  last_ = byte & kCapital;
-  const bool is_ping = before == 'N';
-  if (byte != '|' || !is_open_ || (before != 'S' && !is_ping)) return;
+  previous_letter_ = last_letter;
+  last_letter_ = byte & kCapital;
+  const bool is_ping = previous == 'N';
+  if (byte != '|' || !is_open_ || (previous != 'S' && !is_ping)) return;
   if (!is_chatter()) {
-    if (!is_waiting_ && begins_ == 1) return;
+    if (!is_waiting_ && start_column_ == 1) return;
     const uint8_t letters = is_ping ? 4 : 2;
-    if (static_cast<uint8_t>(reader_.last_column() - begins_) != letters) return;
+    if (static_cast<uint8_t>(reader_.last_column() - start_column_) != letters) return;
     tell(Remark::kStartedAgain, is_heard);
   }
   is_open_ = false;
@@ -187,18 +186,18 @@ inline void Console::take(uint8_t byte, bool is_heard) {
     read('P');
     read('I');
   }
-  read(before);
-  read(last);
+  read(previous);
+  read(last_letter);
   read(byte);
 }
 
 // Whether the line begins with a message of a radio module.
 bool Console::is_chatter() {
-  return is_open_ && (first_ == '+' || reader_.begins_like('O', 'K'));
+  return is_open_ && (first_byte_ == '+' || reader_.begins_like('O', 'K'));
 }
 
 void Console::read(uint8_t byte) {
-  if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) return;
+  if (refusal_ != Remark::kNone || (!is_open_ && !begin(byte))) return;
   reader_.put(byte);
   if (!has_moved_ && !is_ignored() && reader_.wants_room()) find_room();
 }
@@ -208,7 +207,7 @@ bool Console::begin(uint8_t byte) {
   uint16_t room;
   image_ = port_text_memory(&room, &has_moved_);
   if (image_ == nullptr) {
-    refused_ = Remark::kSaving;
+    refusal_ = Remark::kSaving;
     return false;
   }
   reader_.begin(image_ + kHeaderBytes, room);
@@ -217,7 +216,7 @@ bool Console::begin(uint8_t byte) {
   is_open_ = true;
   is_waiting_ = false;
   length_ = 0;
-  first_ = byte;
+  first_byte_ = byte;
   return true;
 }
 
@@ -227,17 +226,17 @@ bool Console::find_room() {
   const bool is_lost = port_status().saved == Saved::kMemory;
   uint16_t room;
   if (!text_may_drive()) {
-    refused_ = Remark::kNotOwner;
+    refusal_ = Remark::kNotOwner;
   } else if (!reader_.has_setup() && port_is_latched()) {
-    refused_ = Remark::kLatched;
+    refusal_ = Remark::kLatched;
   } else {
-    refused_ = Remark::kSaving;
+    refusal_ = Remark::kSaving;
     image_ = port_text_room(&room);
     if (image_ != nullptr) {
-      refused_ = Remark::kNone;
+      refusal_ = Remark::kNone;
       reader_.move(image_ + kHeaderBytes, room);
       has_moved_ = true;
-      if (is_lost) has_lost_ = true;
+      if (is_lost) has_lost_program_ = true;
       return true;
     }
   }
@@ -246,30 +245,30 @@ bool Console::find_room() {
 }
 
 inline Console::Act Console::end_line(bool is_heard) {
-  if (refused_ != Remark::kNone && !is_heard) refuse();
+  if (refusal_ != Remark::kNone && !is_heard) refuse();
   if (!is_open_) return Act::kNone;
-  const Text text = reader_.put(kLineEnd);
+  const TextState text = reader_.put(kLineEnd);
   const bool has_setup = reader_.has_setup();
   const bool was_waiting = is_waiting_;
-  const uint8_t before = length_;
+  const uint8_t length_before = length_;
   length_ = reader_.length();
-  is_waiting_ = is_open_ = text == Text::kMore;
+  is_waiting_ = is_open_ = text == TextState::kOpenBlock;
   // With a comment after it, S is no typed stop, but stops all the same.
-  if (text == Text::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
+  if (text == TextState::kProgram && reader_.is_stop()) return has_mark_ ? Act::kNone : Act::kStop;
   if (is_ignored()) {
     is_open_ = is_waiting_ = false;
-    if (is_discarding_ && text != Text::kNothing && !has_told_) {
-      has_told_ = true;
+    if (is_discarding_ && text != TextState::kNothing && !has_told_pause_) {
+      has_told_pause_ = true;
       tell(Remark::kPause, is_heard);
     }
     return Act::kNone;
   }
   switch (text) {
-    case Text::kMore:
-      awaited_ = reader_.awaited();
-      if (reader_.is_stop_after(before)) return Act::kEnd;
+    case TextState::kOpenBlock:
+      awaited_word_ = reader_.awaited_word();
+      if (reader_.is_stop_after(length_before)) return Act::kEnd;
       break;
-    case Text::kProgram:
+    case TextState::kProgram:
       is_ignoring_ = false;
       is_talking_ = true;
       if (reader_.start() == kStartPing) {
@@ -281,21 +280,21 @@ inline Console::Act Console::end_line(bool is_heard) {
         refuse();
       }
       break;
-    case Text::kProblem:
+    case TextState::kProblem:
       is_ignoring_ = has_setup || was_waiting;
-      if (!has_mark_ && first_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
+      if (!has_mark_ && first_byte_ != '+' && !is_heard && mistakes_ <= kMostMistakes) {
         // after a SETUP word a module's word is a wrong one: it begins no program
-        const uint8_t word = has_setup ? kAsking : reader_.find_unknown(kSpoken);
-        if (word < kChatter) break;
+        const uint8_t word = has_setup ? kSpokenCount : reader_.find_unknown(kSpokenWords);
+        if (word < kChatterCount) break;
         is_talking_ = true;
         say(mistakes_ == kMostMistakes ? Remark::kMute
-            : word < kAsking           ? Remark::kHelp
+            : word < kSpokenCount      ? Remark::kHelp
                                        : Remark::kMistake);
         mistakes_++;
       }
       break;
-    case Text::kGoesOn:
-    case Text::kNothing:
+    case TextState::kOpenLine:
+    case TextState::kNothing:
       break;
   }
   return Act::kNone;
@@ -308,9 +307,9 @@ tini_noinline bool Console::is_ignored() const {
 
 // Says why the line cannot be read now.
 void Console::refuse() {
-  is_talking_ = has_told_ = true;
-  say(refused_);
-  refused_ = Remark::kNone;
+  is_talking_ = has_told_pause_ = true;
+  say(refusal_);
+  refusal_ = Remark::kNone;
 }
 
 }  // namespace tiniscript

@@ -37,7 +37,7 @@ class Console {
   void discard_briefly() { is_brief_ = true; }
 
   // Whether a typed stop would belong to the program being read.
-  bool is_in_block() const { return is_open_ && is_waiting_ && awaited_ != ')'; }
+  bool is_in_block() const { return is_open_ && is_waiting_ && awaited_word_ != ')'; }
 
   // Whether a line or a program has begun, and whether it may take its time.
   bool is_open() const { return is_open_; }
@@ -79,7 +79,7 @@ class Console {
 
   // Times that run down to 0: what is left of kPatienceMs since the last byte of text, until lines count
   // again after a stop, until nobody knows any more that lines end here.
-  enum Time : uint8_t { kPatience, kWait, kEnds, kTimes };
+  enum Time : uint8_t { kPatience, kWait, kLineEnds, kTimes };
 
   void end_tail(bool is_heard);
   bool is_chatter();
@@ -101,32 +101,32 @@ class Console {
 
   uint8_t* image_;
   uint16_t left_ms_[kTimes];
-  uint8_t before_;     // the last but one of the letters and signs, in capitals
-  uint8_t last_;
-  uint8_t begins_;     // the column where the line began, or went on after a second of silence
-  uint8_t length_;     // of the code before this line
-  uint8_t first_;      // the first byte of the program
-  uint8_t awaited_;    // the word that the last line has left open, or ')'
+  uint8_t previous_letter_;  // the last but one of the letters and signs, in capitals
+  uint8_t last_letter_;
+  uint8_t start_column_;  // the column where the line began, or went on after a second of silence
+  uint8_t length_;        // of the code before this line
+  uint8_t first_byte_;    // the first byte of the program
+  uint8_t awaited_word_;  // the word that the last line has left open, or ')'
   Remark remark_;
-  const uint8_t* help_;  // the word of the robot that is said next, or nullptr
-  uint8_t mistakes_;   // answered since the last pause
-  bool is_open_;       // the reader has begun a line or a program
-  bool has_moved_;     // it lies where there is room for a whole program
-  Remark refused_;     // there is none: the line is not read, for this reason
-  bool has_lost_;      // the program that the robot held: it is told after the next answer
-  bool is_waiting_;    // for the end of a block that an earlier line has opened
+  const uint8_t* next_help_word_;  // the word of the robot that is said next, or nullptr
+  uint8_t mistakes_;               // answered since the last pause
+  bool is_open_;                   // the reader has begun a line or a program
+  bool has_moved_;                 // it lies where there is room for a whole program
+  Remark refusal_;                 // there is none: the line is not read, for this reason
+  bool has_lost_program_;          // the program that the robot held: it is told after the next answer
+  bool is_waiting_;                // for the end of a block that an earlier line has opened
   bool is_talking_;
   bool is_discarding_;
-  bool is_brief_;      // the wait: a stop was typed here
-  bool has_told_;      // that lines do not count yet
-  Remark tail_;        // the report on bytes without a line end
-  bool is_ignoring_;   // lines without a SETUP word: their program is lost
-  bool is_silent_;     // a second has passed
+  bool is_brief_;        // the wait: a stop was typed here
+  bool has_told_pause_;  // that lines do not count yet
+  Remark tail_;          // the report on bytes without a line end
+  bool is_ignoring_;     // lines without a SETUP word: their program is lost
+  bool is_silent_;       // a second has passed
   bool is_due_;
   bool has_mark_;      // a typed stop waits after them
   tini_with_keys KeyLine key_line_;
   tini_with_keys RemoteKeys keys_;
-  tini_with_keys uint16_t before_ms_;  // the patience that was left when this line began
+  tini_with_keys uint16_t line_patience_ms_;  // the patience that was left when this line began
   tini_with_keys bool has_told_keys_;
   Reader reader_;
 };

@@ -13,8 +13,8 @@ namespace tiniscript {
 bool Console::take_keys() {
   if (is_waiting_ || !key_line_.read(&keys_) || !text_may_drive()) return false;
   is_open_ = false;
-  left_ms_[kPatience] = before_ms_;
-  is_silent_ = before_ms_ <= kPatienceMs - kSilenceMs;
+  left_ms_[kPatience] = line_patience_ms_;
+  is_silent_ = line_patience_ms_ <= kPatienceMs - kSilenceMs;
   if (is_silent_) {
     is_ignoring_ = false;
     if (left_ms_[kWait] == 0) is_discarding_ = false;

@@ -26,7 +26,7 @@ constexpr uint8_t kLongestWord = 24;
 constexpr uint8_t kSkippedAt = kReadsDefs ? kAliasesAt : kAliasesAt - kEndDefBytes;
 
 // Nor are those of tasks and moves by distance on robots without them, and of later versions.
-constexpr uint8_t kSaidTo = kReadsDefs ? kLaterWordsAt : kTaskWordsAt;
+constexpr uint8_t kListEnd = kReadsDefs ? kLaterWordsAt : kTaskWordsAt;
 
 // The line that is written, and its bytes so far. Valid only while it is written.
 uint8_t* line;
@@ -45,7 +45,7 @@ tini_noinline void begin_line(uint8_t* out) {
   put(' ');
 }
 
-tini_noinline uint8_t ended_line() {
+tini_noinline uint8_t finish_line() {
   uint8_t* const end = line + size;
   end[0] = '\r';
   end[1] = '\n';
@@ -89,21 +89,21 @@ tini_noinline void put_hex(const void* bytes, uint8_t count) {
 // Puts thousandths as the shortest decimal number. Its digits are made in the last bytes of the
 // line, where no number comes.
 tini_noinline void put_number(int32_t value) {
-  uint32_t rest = static_cast<uint32_t>(value);
+  uint32_t remaining = static_cast<uint32_t>(value);
   if (value < 0) {
     put('-');
-    rest = 0 - rest;
+    remaining = 0 - remaining;
   }
   uint8_t* const point = line + kWireBytes - 3;
-  uint8_t* behind = point + 3;
-  uint8_t* at = behind;
+  uint8_t* end = point + 3;
+  uint8_t* cursor = end;
   do {
-    *--at = static_cast<uint8_t>('0' + cut_digit(&rest));
-  } while (rest != 0 || at >= point);
-  while (behind != point && behind[-1] == '0') behind--;
-  for (; at != behind; at++) {
-    if (at == point) put('.');
-    put(*at);
+    *--cursor = static_cast<uint8_t>('0' + cut_digit(&remaining));
+  } while (remaining != 0 || cursor >= point);
+  while (end != point && end[-1] == '0') end--;
+  for (; cursor != end; cursor++) {
+    if (cursor == point) put('.');
+    put(*cursor);
   }
 }
 
@@ -115,21 +115,21 @@ constexpr Remark kLevel = kRobotTextLevel == TextLevel::kMega    ? Remark::kLeve
 
 // Puts words of the robot until the line is full. Returns whether there are more.
 bool Console::put_words() {
-  const uint8_t* word = help_;
+  const uint8_t* word = next_help_word_;
   if (word == nullptr) word = kWords;
-  help_ = nullptr;
+  next_help_word_ = nullptr;
   for (;;) {
     if (!kReadsDefs && word == kWords + kDefAt) word += kDefBytes;
     if (word == kWords + kSkippedAt) word = kWords + kAliasesAt + kAliasBytes;
-    if (word == kWords + kSaidTo) word = robot_words();
+    if (word == kWords + kListEnd) word = robot_words();
     if (flash_byte(word) == 0) return false;
     if (size > kWireBytes - kLineEndBytes - kLongestWord) break;
     word = put_word(word);
     put(' ');
     // After a word of the kit there is no letter.
-    if (flash_byte(word) < 'A') word = behind_device(word);
+    if (flash_byte(word) < 'A') word = after_device(word);
   }
-  help_ = word;
+  next_help_word_ = word;
   return true;
 }
 
@@ -140,7 +140,7 @@ uint8_t Console::write_value(int32_t value, bool is_yes_no, uint8_t* out) {
   } else {
     put_number(value);
   }
-  return ended_line();
+  return finish_line();
 }
 
 tini_noinline uint8_t Console::write(uint8_t* out) {
@@ -185,12 +185,12 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
   }
   put_text<put>(text);
   if (text == text_of(Problem::kRange)) put_number(reader_.limit(4));
-  if (remark == Remark::kWaiting) put_token(awaited_);
+  if (remark == Remark::kWaiting) put_token(awaited_word_);
   // A program for the button that another one replaces is not reported.
-  if (remark == Remark::kLost || remark == Remark::kOkButton) has_lost_ = false;
-  if (remark_ == Remark::kNone && has_lost_) remark_ = Remark::kLost;
+  if (remark == Remark::kLost || remark == Remark::kOkButton) has_lost_program_ = false;
+  if (remark_ == Remark::kNone && has_lost_program_) remark_ = Remark::kLost;
   if (remark == Remark::kFault) put_text<put>(name_of_fault(port_status().fault));
-  return ended_line();
+  return finish_line();
 }
 
 }  // namespace tiniscript

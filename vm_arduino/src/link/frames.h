@@ -42,7 +42,7 @@ class FrameCheck {
   // Starts over for another packet.
   void begin();
 
-  uint8_t taken() const { return taken_; }
+  uint8_t taken_count() const { return taken_count_; }
 
   // Takes the bytes that have arrived since the last call, up to `length` (at most kPacketBytes).
   // If `length` is less than before, another packet has begun meanwhile, and no zero is taken.
@@ -50,7 +50,7 @@ class FrameCheck {
 
   // The number of bytes up to the next zero or the end; more than any frame has if that position
   // has passed.
-  uint8_t left() const { return static_cast<uint8_t>(zero_ - taken_); }
+  uint8_t remaining() const { return static_cast<uint8_t>(zero_ - taken_count_); }
 
   // Whether the bytes taken so far are a whole frame.
   bool is_whole() const;
@@ -60,9 +60,9 @@ class FrameCheck {
   uint8_t decode(uint8_t* bytes);
 
  private:
-  uint8_t taken_;    // bytes
-  uint8_t zero_;     // position of the next zero
-  uint8_t decoded_;  // the first zero that is not restored yet
+  uint8_t taken_count_;  // bytes
+  uint8_t zero_;         // position of the next zero
+  uint8_t next_zero_;    // the first zero that is not restored yet
   uint32_t crc_;
 };
 

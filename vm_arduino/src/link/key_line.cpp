@@ -24,51 +24,51 @@ bool is_digit(uint8_t byte) { return static_cast<uint8_t>(byte - '0') < 10; }
 }  // namespace
 
 bool KeyLine::read(RemoteKeys* remote_keys) {
-  if (length_ > kMost) return false;
+  if (length_ > kMaxBytes) return false;
   bytes_[length_] = 0;
-  at_ = bytes_;
+  cursor_ = bytes_;
   *remote_keys = RemoteKeys();
   skip_blanks();
   if (takes(kPad)) {
-    if (!take_way(&remote_keys->pad[0]) || !take_way(&remote_keys->pad[1])) return false;
+    if (!take_axis(&remote_keys->pad[0]) || !take_axis(&remote_keys->pad[1])) return false;
   } else if (takes(kKey)) {
-    for (uint8_t k = 0; k < kRemoteKeys && *at_ == '_'; k++) {
+    for (uint8_t k = 0; k < kRemoteKeys && *cursor_ == '_'; k++) {
       if (takes(kNames[k])) remote_keys->keys = static_cast<uint8_t>(1 << k);
     }
   } else {
     return false;
   }
   skip_blanks();
-  return *at_ == 0;
+  return *cursor_ == 0;
 }
 
 void KeyLine::skip_blanks() {
-  while (*at_ == ' ' || *at_ == ';') at_++;
+  while (*cursor_ == ' ' || *cursor_ == ';') cursor_++;
 }
 
 // Takes a word that lies in flash, if it comes next.
 bool KeyLine::takes(const char* word) {
-  const uint8_t* at = at_;
-  for (uint8_t letter; (letter = letter_at(word)) != 0; word++, at++) {
-    if (*at != letter && (*at & kCapital) != letter) return false;
+  const uint8_t* cursor = cursor_;
+  for (uint8_t letter; (letter = letter_at(word)) != 0; word++, cursor++) {
+    if (*cursor != letter && (*cursor & kCapital) != letter) return false;
   }
-  at_ = at;
+  cursor_ = cursor;
   return true;
 }
 
 // Takes a blank and a number from -100 to 100.
-bool KeyLine::take_way(int8_t* way) {
-  if (*at_++ != ' ') return false;
-  const bool is_below = *at_ == '-';
-  if (is_below) at_++;
-  if (!is_digit(*at_)) return false;
+bool KeyLine::take_axis(int8_t* axis) {
+  if (*cursor_++ != ' ') return false;
+  const bool is_below = *cursor_ == '-';
+  if (is_below) cursor_++;
+  if (!is_digit(*cursor_)) return false;
   uint8_t number = 0;
-  while (is_digit(*at_)) {
+  while (is_digit(*cursor_)) {
     if (number > kMostPad / 10) return false;
-    number = static_cast<uint8_t>(number * 10 + *at_++ - '0');
+    number = static_cast<uint8_t>(number * 10 + *cursor_++ - '0');
   }
   if (number > kMostPad) return false;
-  *way = static_cast<int8_t>(is_below ? -number : number);
+  *axis = static_cast<int8_t>(is_below ? -number : number);
   return true;
 }
 

@@ -20,23 +20,23 @@ class KeyLine {
   void put(uint8_t byte) {
     if (byte == '\t') byte = ' ';
     if (byte == ' ' && length_ != 0 && bytes_[length_ - 1] == ' ') return;
-    if (length_ < kMost) bytes_[length_] = byte;
-    if (length_ <= kMost) length_++;
+    if (length_ < kMaxBytes) bytes_[length_] = byte;
+    if (length_ <= kMaxBytes) length_++;
   }
 
   // Whether the line is such a word; returns its meaning.
   bool read(RemoteKeys* remote_keys);
 
  private:
-  static constexpr uint8_t kMost = 20;  // PAD -100 -100, with a blank and a ; on each side
+  static constexpr uint8_t kMaxBytes = 20;  // PAD -100 -100, with a blank and a ; on each side
 
   bool takes(const char* word);
-  bool take_way(int8_t* way);
+  bool take_axis(int8_t* axis);
   void skip_blanks();
 
-  const uint8_t* at_;
+  const uint8_t* cursor_;
   uint8_t length_;
-  uint8_t bytes_[kMost + 1];
+  uint8_t bytes_[kMaxBytes + 1];
 };
 
 }  // namespace tiniscript

@@ -10,14 +10,14 @@ class KeySequence {
  public:
   // Takes a byte that does not end a line. Returns whether it belongs to a key, or may.
   bool put(uint8_t byte) {
-    const Place before = place_;
+    const Place previous = place_;
     place_ = kNone;
     if (byte == 0x1b) {
       place_ = kEscape;
-    } else if (before == kEscape) {
+    } else if (previous == kEscape) {
       if (byte != '[' && byte != 'O') return false;  // an ESC alone has no effect
       place_ = kInside;
-    } else if (before == kInside) {
+    } else if (previous == kInside) {
       if (byte < ' ' || byte > '~') return false;
       if (byte < '@') place_ = kInside;
     } else {

@@ -22,7 +22,7 @@ bool has_right_start(const uint8_t* bytes, uint8_t end) {
 }  // namespace
 
 // The reason why the robot has no program to start or to fetch, or kOk.
-Answer Link::lacks_program() {
+Answer Link::missing_program_answer() {
   const Saved saved = port_status().saved;
   if (saved == Saved::kOtherVersion) return static_cast<Answer>(Refusal::kOtherVersion);
   return saved == Saved::kNothing ? Answer::kNoProgram : Answer::kOk;
@@ -36,33 +36,34 @@ void Link::begin(Receiver* receiver, uint8_t epoch) {
 void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 
 void Link::pass(uint16_t now_ms) {
-  const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
+  const uint16_t passed_ms = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
   // All that is known of a byte that arrives from here on is that it was heard, at the latest in
   // the next call.
   const bool is_held = receiver_->is_held();
   const bool is_at_stop = receiver_->is_at_stop();
   const bool is_line = receiver_->has_open_line();
-  const bool has_heard = receiver_->take_heard();
-  const uint16_t before = left_ms_[kSilence];
-  run_down(left_ms_, kTimes, passed);
-  if (kTellsReadings) pass_readings(passed);
-  if (kHasLargeFrames && left_ != 0 && left_ms_[kFrameSent] != 0) left_ms_[kFrameSent] = kTextMs;
+  const bool has_heard = receiver_->take_has_heard();
+  const uint16_t previous_silence_ms = left_ms_[kSilence];
+  run_down(left_ms_, kTimes, passed_ms);
+  if (kTellsReadings) pass_readings(passed_ms);
+  if (kHasLargeFrames && bytes_left_ != 0 && left_ms_[kFrameSent] != 0)
+    left_ms_[kFrameSent] = kTextMs;
   if (has_heard) {
     left_ms_[kSilence] = kSilenceMs;
-  } else if (before != 0) {
-    end_silence(is_held, is_at_stop, before);
+  } else if (previous_silence_ms != 0) {
+    end_silence(is_held, is_at_stop, previous_silence_ms);
     if (is_line && left_ms_[kSilence] == 0) console_.tell(Remark::kCut, is_listened_to());
   }
-  console_.pass(passed, left_ms_[kSilence]);
+  console_.pass(passed_ms, left_ms_[kSilence]);
 }
 
 // The effect of silence after a typed stop: after kHeldMs if the bytes began as a frame, after
 // kSilenceMs if its line has not ended.
-inline void Link::end_silence(bool is_held, bool is_at_stop, uint16_t before_ms) {
+inline void Link::end_silence(bool is_held, bool is_at_stop, uint16_t previous_ms) {
   constexpr uint16_t kHeldLeftMs = kSilenceMs - kHeldMs;
   const uint16_t left_ms = left_ms_[kSilence];
-  if (is_held && before_ms > kHeldLeftMs && left_ms <= kHeldLeftMs) return receiver_->stop();
+  if (is_held && previous_ms > kHeldLeftMs && left_ms <= kHeldLeftMs) return receiver_->stop();
   if (left_ms != 0 || !is_at_stop || port_status().state != State::kRunning) return;
   if (console_.is_in_block() && !receiver_->has_text()) return port_end();
   receiver_->stop();
@@ -92,25 +93,25 @@ void Link::turn() {
   if ((is_attached_ || owns_halt()) && is_dead_man_over() &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
-    faulted();
+    on_faulted();
   }
   if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) expire();
-  if (owns_halt() && left_ms_[kHaltedAgain] == 0) halted();
+  if (owns_halt() && left_ms_[kHaltedAgain] == 0) on_halted();
 }
 
 void Link::send_due() {
   Link* const self = near(this);
-  if (self->without_checksum_ != nullptr) self->write_checksum();
+  if (self->image_without_checksum_ != nullptr) self->write_checksum();
   if (kTellsReadings) self->catch_up();
   const bool is_due = kTellsReadings ? self->has_due() : self->due_ != 0;
-  if (is_due && self->left_ == 0) self->send();
+  if (is_due && self->bytes_left_ == 0) self->send();
 }
 
 // Writes the checksum into an image that is complete otherwise.
 tini_noinline void Link::write_checksum() {
-  uint8_t* const image = without_checksum_;
+  uint8_t* const image = image_without_checksum_;
   if (image == nullptr) return;
-  without_checksum_ = nullptr;
+  image_without_checksum_ = nullptr;
   const uint32_t checksum = image_checksum(image, image_length(image));
   __builtin_memcpy(image + kChecksumAt, &checksum, sizeof checksum);
   if (!is_typed()) checksum_ = checksum;
@@ -119,9 +120,9 @@ tini_noinline void Link::write_checksum() {
 
 bool Link::next_tx_byte(uint8_t* byte) {
   Link* const self = near(this);
-  const uint8_t left = self->left_;
-  if (left == 0) return false;
-  self->left_ = static_cast<uint8_t>(left - 1);
+  const uint8_t bytes_left = self->bytes_left_;
+  if (bytes_left == 0) return false;
+  self->bytes_left_ = static_cast<uint8_t>(bytes_left - 1);
   *byte = self->out_[self->sent_++];
   return true;
 }
@@ -134,7 +135,7 @@ tini_noinline void Link::stop(Cause cause) {
   const bool has_stale_frame = cause != Cause::kMessage && receiver_->has_frame();
   note_stop();
   if (!was_stopped || has_stale_frame) {
-    stopped(cause);
+    on_stopped(cause);
   } else {
     confirm(cause);
   }
@@ -143,21 +144,21 @@ tini_noinline void Link::stop(Cause cause) {
 
 // Takes the bytes of a packet that have arrived; a LIVE is made when all of its payload has.
 inline void Link::take_arrived() {
-  if (receiver_->take_begun()) {
+  if (receiver_->take_has_begun()) {
     check_.begin();
-    ahead_ = 0;
+    ahead_end_ = 0;
   }
   const uint8_t length = receiver_->length();
-  if (length == check_.taken()) return;
+  if (length == check_.taken_count()) return;
   asm volatile("" ::: "memory");  // barrier: the interrupt has written the bytes before the length
   check_.take(receiver_->bytes(), length < kPacketBytes ? length : kPacketBytes);
-  if (check_.left() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) make_ahead();
+  if (check_.remaining() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) make_ahead();
 }
 
 // Answers a frame.
 void Link::on_frame() {
   begin_request();
-  if (is_ready_ && ahead_ + kCrcBytes == receiver_->length() && go_live()) {
+  if (is_ready_ && ahead_end_ + kCrcBytes == receiver_->length() && go_live()) {
     due_ |= kDueReply;
   } else if (!check_.is_whole()) {
     damaged_++;
@@ -166,13 +167,13 @@ void Link::on_frame() {
     if (!has_right_start(receiver_->bytes(), end)) {
       damaged_++;
     } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
-      const uint8_t opened = kMaySeal ? open_seal(end) : end;
-      if (opened == 0) {
+      const uint8_t payload_end = kMaySeal ? open_seal(end) : end;
+      if (payload_end == 0) {
         damaged_++;  // forged, or sealed before another one
       } else {
         if (!has_seal() || is_sealed()) left_ms_[kListen] = kListenMs;
         console_.hang_up();
-        handle(opened);
+        handle(payload_end);
         due_ |= kDueReply;
         if (kMaySeal) close_seal();
       }
@@ -185,7 +186,7 @@ void Link::on_frame() {
 // Whether a frame is the successor of the last numbered one.
 bool Link::is_next(uint8_t seq, uint8_t epoch) const {
   if (is_sealed()) return is_open_ && epoch == epoch_;  // its counter has risen
-  return is_open_ && epoch == epoch_ && static_cast<int8_t>(seq - last_.seq) > 0;
+  return is_open_ && epoch == epoch_ && static_cast<int8_t>(seq - last_reply_.seq) > 0;
 }
 
 // Determines the answer to the frame whose payload ends at `end`.
@@ -195,17 +196,17 @@ tini_noinline void Link::handle(uint8_t end) {
   const uint8_t type = is_marked ? bytes[kTypeAt] & static_cast<uint8_t>(~kSealed) : bytes[kTypeAt];
   const uint8_t seq = bytes[kSeqAt];
   const uint8_t epoch = bytes[kEpochAt];
-  const uint8_t begin = is_marked ? kSealedPayloadAt : payload_at(end);
-  const uint8_t* const payload = bytes + begin;
-  const uint8_t length = static_cast<uint8_t>(end - begin);
+  const uint8_t payload_start = is_marked ? kSealedPayloadAt : payload_at(end);
+  const uint8_t* const payload = bytes + payload_start;
+  const uint8_t length = static_cast<uint8_t>(end - payload_start);
   const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
 
-  Reply& last = this->last();
+  Reply& last_reply = this->last_reply();
   uint8_t& last_epoch = this->last_epoch();
-  const bool is_last = seq == last.seq && type == last.number && epoch == last_epoch;
+  const bool is_last = seq == last_reply.seq && type == last_reply.number && epoch == last_epoch;
   const bool is_repeat = is_last && is_marked == is_sealed();
   if (is_open_ && is_repeat && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
-    reply_ = last;
+    reply_ = last_reply;
     left_ms_[kFrameSent] = 0;  // it is repeated
     return;
   }
@@ -246,13 +247,13 @@ tini_noinline void Link::handle(uint8_t end) {
     reply_.status = answer(static_cast<Message>(type), payload, length);
   }
   if ((is_next && (!kMaySeal || keeps_answer(type))) || (is_hello && reply_.status == kOkStatus)) {
-    last = reply_;
+    last_reply = reply_;
     last_epoch = epoch;
   }
 }
 
 uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
-  Answer found = Answer::kOk;
+  Answer answer = Answer::kOk;
   switch (message) {
     case Message::kHello:
       return hello(payload);
@@ -261,22 +262,22 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       return set_wifi(payload, length);
     case Message::kKeys:
       if (!kHasRemote) break;
-      found = hold(*reinterpret_cast<const RemoteKeys*>(payload));
-      if (found == Answer::kOk) reply_.detail = length;
+      answer = hold(*reinterpret_cast<const RemoteKeys*>(payload));
+      if (answer == Answer::kOk) reply_.detail = length;
       break;
     case Message::kPing:
       reply_.detail = length;
       break;
     case Message::kBreak:
-      if (kHasBreakpoints) found = set_breakpoints(payload, length);
+      if (kHasBreakpoints) answer = set_breakpoints(payload, length);
       break;
     case Message::kResume:
-      if (kHasBreakpoints) found = resume(payload[kResumeHowAt]);
+      if (kHasBreakpoints) answer = resume(payload[kResumeHowAt]);
       break;
     case Message::kReadVariables:
       if (!kHasBreakpoints) break;
       reply_.detail = payload[kReadVariablesFirstAt];
-      if (reply_.detail >= kVariables) found = Answer::kBadValue;
+      if (reply_.detail >= kVariables) answer = Answer::kBadValue;
       break;
     case Message::kTellReadings:
       if (kTellsReadings) tell_readings(payload[kTellReadingsIsOnAt] != 0);
@@ -291,24 +292,24 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kDone:
       break;
     case Message::kFetch:
-      found = lacks_program();
-      if (found == Answer::kOk) reply_.detail = get16(payload + kFetchOffsetAt);
+      answer = missing_program_answer();
+      if (answer == Answer::kOk) reply_.detail = get16(payload + kFetchOffsetAt);
       break;
     case Message::kStop:
       stop(Cause::kMessage);
-      if (kHasOwners && may(is_teacher())) rights_ |= kHeldBack;
+      if (kHasOwners && is_authorized(is_teacher())) rights_ |= kHeldBack;
       break;
     case Message::kClear:
-      found = clear();
+      answer = clear();
       break;
     case Message::kStart:
       if ((payload[kStartModeAt] & ~kDetached) != 0) {
-        found = Answer::kBadValue;
-      } else if ((found = lacks_program()) != Answer::kOk) {
+        answer = Answer::kBadValue;
+      } else if ((answer = missing_program_answer()) != Answer::kOk) {
         break;
       } else if (port_is_latched()) {
-        found = Answer::kLatched;
-      } else if ((found = port_prepare_upload(true)) == Answer::kOk) {
+        answer = Answer::kLatched;
+      } else if ((answer = port_prepare_upload(true)) == Answer::kOk) {
         image_ = nullptr;
         checksum_ = port_status().program;
         start(payload[kStartModeAt], false);
@@ -327,13 +328,13 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       image_ = nullptr;
       break;
     case Message::kName:
-      found = port_rename(payload, length);
+      answer = port_rename(payload, length);
       break;
     case Message::kTrim:
-      if (length != 0) found = set_trim(payload, length);
+      if (length != 0) answer = set_trim(payload, length);
       break;
     case Message::kClaim:
-      found = kHasOwners ? claim(payload, length) : Answer::kUnknownMessage;
+      answer = kHasOwners ? claim(payload, length) : Answer::kUnknownMessage;
       break;
     case Message::kAuthenticate:
       return kHasOwners ? authenticate(payload, length) : number_of(Answer::kUnknownMessage);
@@ -342,18 +343,18 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kUndo:
       image_ = nullptr;
-      found = port_undo();
+      answer = port_undo();
       checksum_ = port_status().program;
       break;
     case Message::kText:
-      found = kHasOwners ? allow_text(payload) : Answer::kUnknownMessage;
+      answer = kHasOwners ? allow_text(payload) : Answer::kUnknownMessage;
       break;
   }
-  return number_of(found);
+  return number_of(answer);
 }
 
 Answer Link::clear() {
-  if ((rights_ & kHeldBack) != 0 && !may(is_teacher())) return Answer::kHeldBack;
+  if ((rights_ & kHeldBack) != 0 && !is_authorized(is_teacher())) return Answer::kHeldBack;
   rights_ &= static_cast<uint8_t>(~kHeldBack);
   port_release();
   return Answer::kOk;
@@ -369,10 +370,10 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
 Answer Link::hold(const RemoteKeys& remote_keys) {
   if (!kHasRemote) return Answer::kOk;
   if (remote_keys.keys >= 1 << kRemoteKeys) return Answer::kBadValue;
-  const int8_t* way = remote_keys.pad;
+  const int8_t* axis = remote_keys.pad;
   do {
-    if (static_cast<uint8_t>(*way + kMostPad) > 2 * kMostPad) return Answer::kBadValue;
-  } while (++way != remote_keys.pad + 2);
+    if (static_cast<uint8_t>(*axis + kMostPad) > 2 * kMostPad) return Answer::kBadValue;
+  } while (++axis != remote_keys.pad + 2);
   remote_ = remote_keys;
   left_ms_[kHold] = kHoldMs;
   return Answer::kOk;

@@ -54,7 +54,7 @@ class Link {
   void write_checksum();
 
   // Whether there is a byte to send.
-  bool has_tx_byte() const { return left_ != 0; }
+  bool has_tx_byte() const { return bytes_left_ != 0; }
 
   // The next byte to send, or false if there is none. May be called from an interrupt.
   bool next_tx_byte(uint8_t* byte);
@@ -71,10 +71,10 @@ class Link {
 
   // Events. The first three are sent when there is room; a value that finds no room is rejected,
   // and the caller tries again.
-  void done();
-  void faulted();  // port_status() has the record
-  void stopped(Cause cause);
-  void halted();
+  void on_done();
+  void on_faulted();  // port_status() has the record
+  void on_stopped(Cause cause);
+  void on_halted();
   // Whether a program may halt: a client is there to continue it.
   bool may_halt() const { return is_listened_to() && !is_dead_man_over(); }
   bool show(int32_t value, bool is_yes_no);
@@ -120,8 +120,8 @@ class Link {
 
   // Whether only the teacher releases the robot.
   bool is_held_back() const { return (rights_ & kHeldBack) != 0; }
-  void hold_back(bool is_so) {
-    rights_ = static_cast<uint8_t>(is_so ? rights_ | kHeldBack : rights_ & ~kHeldBack);
+  void hold_back(bool is_held_back) {
+    rights_ = static_cast<uint8_t>(is_held_back ? rights_ | kHeldBack : rights_ & ~kHeldBack);
   }
 
   Cause cause() const { return cause_; }
@@ -147,14 +147,14 @@ class Link {
     if (kTellsReadings) forget_readings();
     is_open_ = false;
     due_ = 0;
-    left_ = 0;
+    bytes_left_ = 0;
     left_ms_[kListen] = left_ms_[kFrameSent] = 0;
     console_.forget_client();
   }
 
   // Whether a stop came since the last call, even if the robot was stopped already: text typed
   // before that, in any session, is discarded.
-  bool take_stopped() {
+  bool take_was_stopped() {
     const bool was_stopped = was_stopped_;
     was_stopped_ = false;
     return was_stopped;
@@ -203,7 +203,7 @@ class Link {
     int32_t value;
     bool is_yes_no;
     uint8_t run;
-    uint16_t at;
+    uint16_t offset;
   };
 
   // A reply before it is written. The detail follows a status other than OK.
@@ -219,7 +219,7 @@ class Link {
 
   // frames and their answers: `link.cpp`, in the order of their calls
   void pass(uint16_t now_ms);
-  void end_silence(bool is_held, bool is_at_stop, uint16_t before_ms);
+  void end_silence(bool is_held, bool is_at_stop, uint16_t previous_ms);
   void turn();
   void stop(Cause cause);
   void take_arrived();
@@ -227,7 +227,7 @@ class Link {
   bool is_next(uint8_t seq, uint8_t epoch) const;
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
-  static Answer lacks_program();
+  static Answer missing_program_answer();
   Answer clear();
   Answer set_trim(const uint8_t* payload, uint8_t length);
   Answer hold(const RemoteKeys& remote_keys);
@@ -251,7 +251,7 @@ class Link {
 
   // owners: `link_owners.cpp`
   bool is_forbidden(uint8_t type) const;
-  bool may(bool has_right) const;
+  bool is_authorized(bool has_right) const;
   Answer claim(const uint8_t* payload, uint8_t length);
   uint8_t authenticate(const uint8_t* payload, uint8_t length);
   Answer allow_text(const uint8_t* payload);
@@ -282,10 +282,10 @@ class Link {
   }
   bool keeps_answer(uint8_t type) const;
   void forget_answer() {
-    if (kMaySeal) sealed_last_.number = 0;
+    if (kMaySeal) last_sealed_reply_.number = 0;
   }
-  Reply& last() { return is_sealed() ? sealed_last_ : last_; }
-  uint8_t& last_epoch() { return is_sealed() ? sealed_last_epoch_ : last_epoch_; }
+  Reply& last_reply() { return is_sealed() ? last_sealed_reply_ : last_reply_; }
+  uint8_t& last_epoch() { return is_sealed() ? last_sealed_epoch_ : last_epoch_; }
   uint16_t dead_man_ms() const {
     return left_ms_[kMaySeal && is_run_sealed_ ? kSealHeard : kListen];
   }
@@ -305,13 +305,13 @@ class Link {
   void show_text(int32_t value, bool is_yes_no);
   // Whether the image that was taken last was typed: no receipt reports its checksum.
   bool is_typed() const { return kHasText && is_typed_; }
-  void note_typed(bool is_so) {
-    if (kHasText) is_typed_ = is_so;
+  void note_typed(bool is_typed) {
+    if (kHasText) is_typed_ = is_typed;
   }
 
   // breakpoints: `link_breakpoints.cpp`
   Answer set_breakpoints(const uint8_t* places, uint8_t length);
-  Answer resume(uint8_t how);
+  Answer resume(uint8_t mode);
   void forget_breakpoints();
   void tell_halt();
   void tell_tasks();
@@ -327,9 +327,9 @@ class Link {
   }
   bool has_late_value() const { return kTellsReadings && has_late_value_; }
   bool has_due() const { return due_ != 0 || has_late_value() || has_reading(); }
-  bool would_be_free() const;
+  bool is_free_without_readings() const;
   void catch_up();
-  void pass_readings(uint16_t passed);
+  void pass_readings(uint16_t passed_ms);
   bool keep_value(int32_t value, bool is_yes_no);
   void send_late_value();
   void send_reading();
@@ -370,38 +370,38 @@ class Link {
   uint8_t event_seq_;
   uint8_t last_epoch_;
   uint8_t rights_;
-  Reply last_;          // the last reply to a numbered request
-  Reply reply_;          // the current reply
+  Reply last_reply_;   // the last reply to a numbered request
+  Reply reply_;        // the current reply
   uint32_t checksum_;  // of the image in a receipt
   // The long program in transfer.
   uint8_t* image_;  // or nullptr
   uint8_t mode_;
-  uint16_t length_;    // number of bytes after the checksum
-  uint16_t next_;      // offset of the next one
-  uint8_t* without_checksum_;  // the taken image without a checksum yet, or nullptr
-  uint8_t* made_;      // the image that was made last
-  uint8_t ahead_;      // end of the payload of an image made ahead, or 0
-  bool is_ready_;      // it is `made_`, and may start if the frame ends there
+  uint16_t length_;                  // number of bytes after the checksum
+  uint16_t next_;                    // offset of the next one
+  uint8_t* image_without_checksum_;  // the taken image without a checksum yet, or nullptr
+  uint8_t* last_image_;              // the image that was made last
+  uint8_t ahead_end_;                // end of the payload of an image made ahead, or 0
+  bool is_ready_;                    // it is `made_image_`, and may start if the frame ends there
   // Output.
-  uint8_t size_;           // bytes written so far
-  uint8_t sent_;           // bytes already sent
-  volatile uint8_t left_;  // bytes left to send
+  uint8_t size_;                 // bytes written so far
+  uint8_t sent_;                 // bytes already sent
+  volatile uint8_t bytes_left_;  // bytes left to send
   tini_with_text bool is_typed_;
   // Large members come last: members near the beginning take less code.
   Console console_;
   tini_with_seals bool is_sealed_;  // the current request
   tini_with_seals bool is_reply_sealed_;
   tini_with_seals bool is_run_sealed_;  // the current or last run was started by a sealed request
-  tini_with_seals uint8_t sealed_last_epoch_;
-  tini_with_seals Reply sealed_last_;  // the last reply to a sealed request
+  tini_with_seals uint8_t last_sealed_epoch_;
+  tini_with_seals Reply last_sealed_reply_;  // the last reply to a sealed request
   tini_with_seals Seal seal_;
   tini_with_transports bool was_stopped_;
   tini_with_breakpoints bool has_breakpoints_;  // of this session
   tini_with_breakpoints bool owns_halt_;  // it was told about the last halt: that ends with it
   tini_with_readings bool tells_readings_;  // to this session
   tini_with_readings bool has_late_value_;
-  tini_with_readings uint8_t behind_;  // the number of bytes by which readings delay the line
-  tini_with_readings uint8_t late_epoch_;
+  tini_with_readings uint8_t lag_bytes_;  // the number of bytes by which readings delay the line
+  tini_with_readings uint8_t late_value_epoch_;
   tini_with_readings uint8_t reply_bytes_;  // of the last one
   tini_with_readings ShownValue late_value_;
   tini_with_remote RemoteKeys remote_;  // the last state of the remote control

@@ -10,7 +10,7 @@ namespace tiniscript {
 
 struct Link::Layout {
   static constexpr size_t sent_at() { return offsetof(Link, sent_); }
-  static constexpr size_t left_at() { return offsetof(Link, left_); }
+  static constexpr size_t bytes_left_at() { return offsetof(Link, bytes_left_); }
   static constexpr size_t out_at() { return offsetof(Link, out_); }
 };
 

@@ -18,8 +18,8 @@ constexpr uint16_t kHaltedAgainMs = 500;
 Answer Link::set_breakpoints(const uint8_t* places, uint8_t length) {
   if (length % 2 != 0) return Answer::kBadLength;
   if (port_status().state != State::kRunning) {
-    const Answer lacking = lacks_program();
-    if (lacking != Answer::kOk) return lacking;
+    const Answer answer = missing_program_answer();
+    if (answer != Answer::kOk) return answer;
     image_ = nullptr;  // the program is loaded to where it is
   }
   const Answer answer = port_set_breakpoints(places, static_cast<uint8_t>(length / 2));
@@ -27,10 +27,10 @@ Answer Link::set_breakpoints(const uint8_t* places, uint8_t length) {
   return answer;
 }
 
-Answer Link::resume(uint8_t how) {
-  if (how > static_cast<uint8_t>(ResumeHow::kStep)) return Answer::kBadValue;
+Answer Link::resume(uint8_t mode) {
+  if (mode > static_cast<uint8_t>(ResumeHow::kStep)) return Answer::kBadValue;
   reply_.detail = port_is_halted();
-  port_resume(static_cast<ResumeHow>(how));
+  port_resume(static_cast<ResumeHow>(mode));
   return Answer::kOk;
 }
 
@@ -41,7 +41,7 @@ void Link::forget_breakpoints() {
   has_breakpoints_ = owns_halt_ = false;
 }
 
-void Link::halted() {
+void Link::on_halted() {
   owns_halt_ = true;
   due_ |= kDueHalted;
   left_ms_[kHaltedAgain] = kHaltedAgainMs;
@@ -59,8 +59,8 @@ void Link::tell_variables() {
   put(port_is_halted());
   if (port_status().state != State::kRunning || port_variables() == nullptr) return;
   const uint8_t seal = kHasSeals && (out_[kTypeAt] & kSealed) != 0 ? kTagBytes : 0;
-  const uint8_t most = static_cast<uint8_t>(kSmallFrame - kCrcBytes - seal - sizeof(int32_t));
-  for (uint8_t k = static_cast<uint8_t>(reply_.detail); k < kVariables && size_ <= most; k++) {
+  const uint8_t max_size = static_cast<uint8_t>(kSmallFrame - kCrcBytes - seal - sizeof(int32_t));
+  for (uint8_t k = static_cast<uint8_t>(reply_.detail); k < kVariables && size_ <= max_size; k++) {
     put_all(port_variables() + k, sizeof(int32_t));
   }
 }

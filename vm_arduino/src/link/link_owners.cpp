@@ -24,9 +24,9 @@ bool has(uint8_t feature) { return (port_identity().features & feature) != 0; }
 }  // namespace
 
 tini_noinline bool is_key(const uint8_t* key) {
-  uint8_t found = 0;
-  for (uint8_t k = 0; k < kKeyBytes; k++) found |= key[k];
-  return found != 0;
+  uint8_t bits = 0;
+  for (uint8_t k = 0; k < kKeyBytes; k++) bits |= key[k];
+  return bits != 0;
 }
 
 // Whether a message needs authority that the session does not have.
@@ -43,14 +43,14 @@ bool Link::is_forbidden(uint8_t type) const {
 }
 
 // Whether the sender of the current frame has a right: under a seal, only sealed frames have it.
-bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
+bool Link::is_authorized(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
 
 tini_noinline void Link::expire() {
-  Identity& its = port_identity();
-  its.features &= static_cast<uint8_t>(~kYours);
-  constexpr uint8_t kStays =
+  Identity& identity = port_identity();
+  identity.features &= static_cast<uint8_t>(~kYours);
+  constexpr uint8_t kKeptFeatures =
       kMoreBreakpoints | kMoreReadings | (kHasSeals ? kMoreSeals | kMoreWifiRests : 0);
-  its.more_features = kStays != 0 ? its.more_features & kStays : 0;
+  identity.more_features = kKeptFeatures != 0 ? identity.more_features & kKeptFeatures : 0;
   drop_seal();
   rights_ &= kHeldBack;
   is_ready_ = false;  // the image was prepared with that authority
@@ -68,15 +68,16 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
   if (kind > static_cast<uint8_t>(Key::kTeacher)) return Answer::kBadValue;
   if (key_bytes != 0 && key_bytes != kKeyBytes) return Answer::kBadLength;
   uint8_t key[kKeyBytes];
-  uint8_t wanted[kKeyBytes] = {};
-  copy_bytes(payload + kClaimKeyAt, wanted, key_bytes);
+  uint8_t new_key[kKeyBytes] = {};
+  copy_bytes(payload + kClaimKeyAt, new_key, key_bytes);
   Answer answer = port_key(kind, key);
   if (answer != Answer::kOk) return answer;
   const bool is_teachers = kind == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
-  const bool is_allowed = is_teachers ? may(is_teacher()) : !has(kOwned) || may(has(kYours));
-  const bool is_given = is_key(wanted);
+  const bool is_allowed =
+      is_teachers ? is_authorized(is_teacher()) : !has(kOwned) || is_authorized(has(kYours));
+  const bool is_given = is_key(new_key);
   // A claim that is repeated because its answer was lost comes without authority.
-  if (are_equal(key, wanted, kKeyBytes) && (is_given || is_allowed)) {
+  if (are_equal(key, new_key, kKeyBytes) && (is_given || is_allowed)) {
     rights_ &= static_cast<uint8_t>(~(kIsAsked | kIsConfirmed));
     return Answer::kOk;
   }
@@ -85,7 +86,7 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
     rights_ |= kIsAsked;
     return Answer::kHoldButton;
   }
-  return port_keep_key(kind, wanted);
+  return port_keep_key(kind, new_key);
 }
 
 tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length) {

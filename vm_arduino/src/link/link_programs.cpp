@@ -27,15 +27,14 @@ bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !p
 tini_noinline void Link::make_ahead() {
   uint8_t* const bytes = receiver_->bytes();
   const uint8_t end = check_.decode(bytes);  // of too few bytes it wraps around, and is very large
-  const uint8_t begin = payload_at(end);
-  if (end == ahead_ || end <= begin || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
+  const uint8_t start = payload_at(end);
+  if (end == ahead_end_ || end <= start || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
       (is_large(end) && bytes[kPayloadAt] != 0) || due_ != 0 || !is_open_ ||
       is_forbidden(kLiveByte) || console_.is_open() || !port_may_write_ahead()) {
     return;
   }
-  ahead_ = end;
-  is_ready_ =
-      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kOkStatus;
+  ahead_end_ = end;
+  is_ready_ = fill(Use::kAhead, bytes + start, static_cast<uint8_t>(end - start)) == kOkStatus;
 }
 
 // Runs the image that was made ahead. False: this frame does not allow it.
@@ -47,11 +46,11 @@ bool Link::go_live() {
   }
   left_ms_[kListen] = kListenMs;
   // Both at once, and no detail: that is quicker than to copy it.
-  reply_.number = last_.number = kLiveByte;
-  reply_.seq = last_.seq = bytes[kSeqAt];
-  reply_.status = last_.status = kOkStatus;
+  reply_.number = last_reply_.number = kLiveByte;
+  reply_.seq = last_reply_.seq = bytes[kSeqAt];
+  reply_.status = last_reply_.status = kOkStatus;
   last_epoch_ = epoch_;
-  without_checksum_ = made_;
+  image_without_checksum_ = last_image_;
   finish(kRun, true);
   return true;
 }
@@ -80,10 +79,10 @@ uint8_t Link::make_room(Use use, uint16_t length) {
   uint8_t* const image = port_memory(length, is_live);
   if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
   if (use != Use::kAhead) {
-    const Answer way = port_prepare_upload(is_live);
-    if (way != Answer::kOk) return refuse(way, 0);
+    const Answer answer = port_prepare_upload(is_live);
+    if (answer != Answer::kOk) return refuse(answer, 0);
   }
-  made_ = image;
+  last_image_ = image;
   drop_ahead();
   image[kMagicAt] = 'T';
   image[kMagicAt + 1] = 'S';
@@ -116,9 +115,9 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
   if (!verdict.is_accepted()) {
     return refuse(static_cast<Answer>(verdict.rule), verdict.offset());
   }
-  const uint8_t found = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
-  if (found != kOkStatus) return found;
-  uint8_t* const image = made_;
+  const uint8_t refusal = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
+  if (refusal != kOkStatus) return refusal;
+  uint8_t* const image = last_image_;
   image[kIsaMajorAt] = kIsaMajor;
   image[kIsaMinorAt] = verdict.minor();
   image[kStartAt] = start;
@@ -136,12 +135,12 @@ tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, ui
 uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t refusal = fill(is_live ? Use::kLive : Use::kStored, payload, length);
   if (refusal != kOkStatus) return refusal;
-  without_checksum_ = made_;
+  image_without_checksum_ = last_image_;
   const uint8_t mode = payload[kProgramModeAt];
   finish(mode, is_live);
   if (kHasBreakpoints && is_live && (mode & kHalts) != 0) {
-    const uint8_t first[] = {0, 0};
-    set_breakpoints(first, sizeof first);
+    const uint8_t first_place[] = {0, 0};
+    set_breakpoints(first_place, sizeof first_place);
   }
   return kOkStatus;
 }
@@ -160,8 +159,8 @@ uint8_t Link::begin_program(const uint8_t* payload) {
   const uint16_t length = static_cast<uint16_t>(header[kHeaderLengthAt - kFirstAt] + code_length);
   refusal = make_room(Use::kStored, length);
   if (refusal != kOkStatus) return refusal;
-  copy_bytes(header, made_ + kFirstAt, kChecksumAt - kFirstAt);
-  image_ = made_;
+  copy_bytes(header, last_image_ + kFirstAt, kChecksumAt - kFirstAt);
+  image_ = last_image_;
   mode_ = mode;
   length_ = static_cast<uint16_t>(length - kAfterChecksum);
   next_ = 0;

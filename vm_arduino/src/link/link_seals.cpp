@@ -35,8 +35,8 @@ void Link::close_seal() {
                       reply_.status == kOkStatus && (rights_ & kHasChallenge) == 0;
   is_reply_sealed_ = is_sealed_ || is_tag;
   if (is_sealed_) {  // an unsealed frame comes after it, and repeats nothing
-    last_.seq = reply_.seq;
-    last_.number = 0;
+    last_reply_.seq = reply_.seq;
+    last_reply_.number = 0;
   }
   is_sealed_ = false;
   if (!seal_.is_set()) left_ms_[kListen] = kListenMs;  // what has dropped it was heard

@@ -43,17 +43,17 @@ Remark Link::start_text(const Console& console) {
     if (!reader->has_setup()) return Remark::kLatched;
     port_release();
   }
-  const bool is_beside = port_text_is_beside(start != 0);
-  if (!port_may_prepare_upload(is_beside)) return Remark::kSaving;
+  const bool is_separate = port_text_is_separate(start != 0);
+  if (!port_may_prepare_upload(is_separate)) return Remark::kSaving;
   image_ = nullptr;
   write_checksum();  // an image from a frame in this turn, whose receipt is due
-  if (make(is_beside ? Use::kLive : Use::kStored, start, console.image() + kHeaderBytes,
+  if (make(is_separate ? Use::kLive : Use::kStored, start, console.image() + kHeaderBytes,
            reader->length(), false) != static_cast<uint8_t>(Answer::kOk)) {
     return Remark::kRefused;
   }
-  uint8_t* const image = made_;
+  uint8_t* const image = last_image_;
   port_take_text(image, start != 0);
-  without_checksum_ = image;  // its first instruction does not wait for the checksum
+  image_without_checksum_ = image;  // its first instruction does not wait for the checksum
   note_typed(true);
   is_attached_ = false;
   return start != 0 ? Remark::kOkButton : Remark::kOk;

@@ -29,18 +29,18 @@ uint8_t byte_of(Type value) {
 }
 
 // Two bytes as one number: on an AVR that is less code than one after the other.
-uint16_t both(uint8_t first, uint8_t second) {
+uint16_t word_of(uint8_t first, uint8_t second) {
   const uint8_t bytes[] = {first, second};
-  uint16_t found;
-  __builtin_memcpy(&found, bytes, sizeof found);
-  return found;
+  uint16_t word;
+  __builtin_memcpy(&word, bytes, sizeof word);
+  return word;
 }
 
 }  // namespace
 
-void Link::done() { note_end(kDueDone); }
+void Link::on_done() { note_end(kDueDone); }
 
-void Link::faulted() {
+void Link::on_faulted() {
   renew();
   note_end(kDueFault);
 }
@@ -52,7 +52,7 @@ void Link::note_end(uint8_t due) {
   due_ = static_cast<uint8_t>((due_ & ~(kDueFault | kDueDone)) | due);
 }
 
-void Link::stopped(Cause cause) {
+void Link::on_stopped(Cause cause) {
   renew();
   cause_ = cause;
   left_ms_[kAgain] = 0;
@@ -74,8 +74,8 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   if (!is_heard && !console_.is_talking()) return true;
   // An answer in text waits until no frames come: a value for a client does not wait for that.
   const uint8_t first = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
-  const bool is_busy = left_ != 0 || (due_ & first) != 0;
-  if (is_busy && !(kTellsReadings && is_heard && would_be_free())) return false;
+  const bool is_busy = bytes_left_ != 0 || (due_ & first) != 0;
+  if (is_busy && !(kTellsReadings && is_heard && is_free_without_readings())) return false;
   if (has_late_value()) return false;
   if (!is_heard) {
     if (left_ms_[kFrameSent] != 0) return false;
@@ -84,9 +84,9 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   }
   if (kTellsReadings && keep_value(value, is_yes_no)) return true;
   if (separate()) return false;
-  const ShownValue shown = {value, is_yes_no, port_status().run, port_shown_at()};
+  const ShownValue shown_value = {value, is_yes_no, port_status().run, port_shown_at()};
   begin_event(Message::kShow);
-  put_all(&shown, sizeof shown);
+  put_all(&shown_value, sizeof shown_value);
   close();
   return true;
 }
@@ -146,8 +146,8 @@ void Link::reply() {
       break;
     case Message::kStatus:
       put_all(&robot_status, sizeof robot_status);
-      put16(both(byte_of(damaged_ + receiver_->damaged()), receiver_->dropped()));
-      put16(both(port_line_errors().framing, port_line_errors().overrun));
+      put16(word_of(byte_of(damaged_ + receiver_->damaged()), receiver_->dropped()));
+      put16(word_of(port_line_errors().framing, port_line_errors().overrun));
       uint16_t edges;
       if (kHasDiscs && port_noise(&edges)) put16(edges);
       break;
@@ -205,18 +205,18 @@ void Link::describe() {
 }
 
 void Link::fetch() {
-  const uint16_t whole = port_image_length();
+  const uint16_t length = port_image_length();
   const uint8_t first = kHasSeals ? static_cast<uint8_t>(size_ - 1) : kPayloadAt;
   const bool is_sealed = first != kPayloadAt;
-  const uint8_t most =
+  const uint8_t max_size =
       static_cast<uint8_t>(kLargestFrame + kTypeAt - kCrcBytes - (is_sealed ? kTagBytes : 0));
-  if (kHasLargeFrames && !is_sealed && reply_.detail + kSmallFetch < whole) {
+  if (kHasLargeFrames && !is_sealed && reply_.detail + kSmallFetch < length) {
     put(out_[first]);
     out_[first] = 0;
   }
-  put16(whole);
-  for (uint16_t at = reply_.detail; at < whole && size_ < most; at++) {
-    const Answer answer = port_image_byte(at, out_ + size_++);
+  put16(length);
+  for (uint16_t offset = reply_.detail; offset < length && size_ < max_size; offset++) {
+    const Answer answer = port_image_byte(offset, out_ + size_++);
     if (answer != Answer::kOk) {
       size_ = first;
       put(byte_of(answer));
@@ -273,7 +273,7 @@ void Link::hand_over_frame() {
 void Link::hand_over() {
   sent_ = 0;
   asm volatile("" ::: "memory");
-  left_ = size_;
+  bytes_left_ = size_;
 }
 
 }  // namespace tiniscript

@@ -21,54 +21,54 @@ void Links::begin(uint8_t epoch) {
 }
 
 void Links::pass_time(uint16_t now_ms) {
-  const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
+  const uint16_t passed_ms = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  run_down(&drives_ms_, 1, passed);
+  run_down(&driving_ms_, 1, passed_ms);
   for (Link& link : links_) link.pass_time(now_ms);
   if (!is_driven()) driver_ = kNobody;
 }
 
 // Asks the identity for the rights of a link's session.
 void Links::enter(uint8_t place) {
-  current_ = place;
-  Identity& its = port_identity();
-  its.features = static_cast<uint8_t>((its.features & ~kYours) | yours_[place]);
-  its.more_features =
-      static_cast<uint8_t>((its.more_features & ~kMoreByTeacher) | by_teacher_[place]);
+  current_place_ = place;
+  Identity& identity = port_identity();
+  identity.features = static_cast<uint8_t>((identity.features & ~kYours) | key_rights_[place]);
+  identity.more_features =
+      static_cast<uint8_t>((identity.more_features & ~kMoreByTeacher) | teacher_rights_[place]);
 }
 
 void Links::leave() {
-  const Identity& its = port_identity();
-  yours_[current_] = its.features & kYours;
-  by_teacher_[current_] = its.more_features & kMoreByTeacher;
+  const Identity& identity = port_identity();
+  key_rights_[current_place_] = identity.features & kYours;
+  teacher_rights_[current_place_] = identity.more_features & kMoreByTeacher;
 }
 
 void Links::tick() {
   for (uint8_t place = 0; place < kTransports; place++) {
-    const State before = port_status().state;
+    const State previous_state = port_status().state;
     is_asking_ = false;
     enter(place);
     links_[place].tick();
     leave();
     if (is_asking_ && (is_asking_by_text_ || links_[place].has_done())) drive();
-    spread(before);
+    spread_events(previous_state);
   }
 }
 
 // Tells all other sessions how the turn of the current one affects them.
-void Links::spread(State before) {
+void Links::spread_events(State previous_state) {
   const State state = port_status().state;
-  Link& its = links_[current_];
-  const bool is_held_back = its.is_held_back();
-  const bool was_stopped = its.take_stopped();
+  Link& current_link = links_[current_place_];
+  const bool is_held_back = current_link.is_held_back();
+  const bool was_stopped = current_link.take_was_stopped();
   for (uint8_t place = 0; place < kTransports; place++) {
-    if (place == current_) continue;
-    Link& other = links_[place];
-    if (is_held_back != is_held_back_) other.hold_back(is_held_back);
-    if (was_stopped) other.discard_text();
-    if (state == before) continue;
-    if (state == State::kStopped) other.stopped(its.cause());
-    if (state == State::kFaulted) other.faulted();
+    if (place == current_place_) continue;
+    Link& link = links_[place];
+    if (is_held_back != is_held_back_) link.hold_back(is_held_back);
+    if (was_stopped) link.discard_text();
+    if (state == previous_state) continue;
+    if (state == State::kStopped) link.on_stopped(current_link.cause());
+    if (state == State::kFaulted) link.on_faulted();
   }
   is_held_back_ = is_held_back;
 }
@@ -99,16 +99,16 @@ bool Links::stop_is_due() const {
   return false;
 }
 
-void Links::done() {
-  for (Link& link : links_) link.done();
+void Links::on_done() {
+  for (Link& link : links_) link.on_done();
 }
 
-void Links::faulted() {
-  for (Link& link : links_) link.faulted();
+void Links::on_faulted() {
+  for (Link& link : links_) link.on_faulted();
 }
 
-void Links::stopped(Cause cause) {
-  for (Link& link : links_) link.stopped(cause);
+void Links::on_stopped(Cause cause) {
+  for (Link& link : links_) link.on_stopped(cause);
 }
 
 void Links::cancel_and_detach() {
@@ -140,7 +140,7 @@ void Links::expire() {
 }
 
 void Links::expire_others() {
-  const uint8_t current = current_;
+  const uint8_t current = current_place_;
   leave();
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current) continue;
@@ -152,13 +152,13 @@ void Links::expire_others() {
 }
 
 bool Links::confirm_claim() {
-  Link* found = nullptr;
+  Link* claimant = nullptr;
   for (Link& link : links_) {
     if (!link.has_asked_for_claim()) continue;
-    if (found != nullptr) return false;  // the presser is unknown
-    found = &link;
+    if (claimant != nullptr) return false;  // the presser is unknown
+    claimant = &link;
   }
-  return found != nullptr && found->confirm_claim();
+  return claimant != nullptr && claimant->confirm_claim();
 }
 
 void Links::let_go() {
@@ -166,18 +166,18 @@ void Links::let_go() {
 }
 
 const RemoteKeys* Links::remote() const {
-  const Link* found = links_;
+  const Link* newest = links_;
   for (const Link& link : links_) {
-    if (link.remote_ms() > found->remote_ms()) found = &link;
+    if (link.remote_ms() > newest->remote_ms()) newest = &link;
   }
-  return found->remote();
+  return newest->remote();
 }
 
 // The place of the driver; without one, of the first that receives values; or kNobody.
 uint8_t Links::listener() const {
   uint8_t place = driver_;
-  for (uint8_t each = 0; place == kNobody && each < kTransports; each++) {
-    if (links_[each].takes_values()) place = each;
+  for (uint8_t k = 0; place == kNobody && k < kTransports; k++) {
+    if (links_[k].takes_values()) place = k;
   }
   return place;
 }
@@ -196,12 +196,12 @@ bool Links::may_halt() const {
   return place != kNobody && links_[place].may_halt();
 }
 
-void Links::halted() {
+void Links::on_halted() {
   const uint8_t place = listener();
-  if (place != kNobody) links_[place].halted();
+  if (place != kNobody) links_[place].on_halted();
 }
 
-bool Links::part(Transport transport) {
+bool Links::end_session(Transport transport) {
   const uint8_t place = place_of(transport);
   const bool ends_run = links_[place].is_attached();
   enter(place);
@@ -216,27 +216,27 @@ bool Links::part(Transport transport) {
 
 // Whether the last driver is still heard.
 bool Links::is_driven() const {
-  return driver_ != kNobody && (drives_ms_ != 0 || links_[driver_].is_heard());
+  return driver_ != kNobody && (driving_ms_ != 0 || links_[driver_].is_heard());
 }
 
 // Whether the last driver keeps the others away: one that runs nothing and changes nothing gives
 // way, even if its open page is heard.
-bool Links::keeps_wheel() const {
-  return driver_ != kNobody && (drives_ms_ != 0 || port_status().state == State::kRunning);
+bool Links::keeps_control() const {
+  return driver_ != kNobody && (driving_ms_ != 0 || port_status().state == State::kRunning);
 }
 
 // The current session drives from now on: uploads and lines of others are over.
 void Links::drive() {
-  drives_ms_ = kAuthorityMs;
-  if (driver_ == current_) return;
-  driver_ = current_;
+  driving_ms_ = kAuthorityMs;
+  if (driver_ == current_place_) return;
+  driver_ = current_place_;
   for (uint8_t place = 0; place < kTransports; place++) {
-    if (place != current_) links_[place].give_way();
+    if (place != current_place_) links_[place].give_way();
   }
 }
 
 Answer Links::may_drive(uint8_t type) {
-  const bool is_remote = is_network(static_cast<Transport>(current_));
+  const bool is_remote = is_network(static_cast<Transport>(current_place_));
   const bool is_owned = (port_identity().features & kOwned) != 0;
   const bool is_text = type == 0;
   const bool is_for_all =
@@ -250,7 +250,7 @@ Answer Links::may_drive(uint8_t type) {
     return Answer::kOk;
   }
   if (type == number_of(Message::kClear) && is_held_back_ && is_teacher()) return Answer::kOk;
-  if (driver_ != current_ && keeps_wheel()) return Answer::kOtherDriver;
+  if (driver_ != current_place_ && keeps_control()) return Answer::kOtherDriver;
   if (type == number_of(Message::kKeys)) return Answer::kOk;
   is_asking_ = true;
   is_asking_by_text_ = is_text;
@@ -258,14 +258,14 @@ Answer Links::may_drive(uint8_t type) {
 }
 
 bool Links::may_press() const {
-  if (is_network(static_cast<Transport>(current_))) return false;
-  return driver_ == current_ || !keeps_wheel();
+  if (is_network(static_cast<Transport>(current_place_))) return false;
+  return driver_ == current_place_ || !keeps_control();
 }
 
 bool Links::take_text_memory() {
-  const bool is_remote = is_network(static_cast<Transport>(current_));
+  const bool is_remote = is_network(static_cast<Transport>(current_place_));
   for (uint8_t place = 0; place < kTransports; place++) {
-    if (place == current_ || !links_[place].has_open_text()) continue;
+    if (place == current_place_ || !links_[place].has_open_text()) continue;
     if (is_remote || !is_network(static_cast<Transport>(place))) return false;
     links_[place].drop_text();  // text typed in a network drives nothing
   }

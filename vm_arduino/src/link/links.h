@@ -27,10 +27,10 @@ class Links {
   void write_checksum();
   bool has_due_live() const;
   bool stop_is_due() const;
-  void done();
-  void faulted();
-  void stopped(Cause cause);
-  void halted();
+  void on_done();
+  void on_faulted();
+  void on_stopped(Cause cause);
+  void on_halted();
   bool may_halt() const;
   void cancel_and_detach();
   bool is_attached() const;
@@ -52,7 +52,7 @@ class Links {
   }
 
   // The client has left: the authority of that session ends. Returns whether a run ends with it.
-  bool part(Transport transport);
+  bool end_session(Transport transport);
 
   // The keys have changed: ends the authority of all sessions but the one that has asked.
   void expire_others();
@@ -65,10 +65,10 @@ class Links {
   bool may_press() const;
 
   // Whether the current session drives already.
-  bool is_driving() const { return driver_ == current_; }
+  bool is_driving() const { return driver_ == current_place_; }
 
   // Whether the session of a transport has authenticated.
-  bool has_key(Transport transport) const { return yours_[place_of(transport)] != 0; }
+  bool has_key(Transport transport) const { return key_rights_[place_of(transport)] != 0; }
 
   // A line of text of the current session begins. False: another one has the memory for it now.
   bool take_text_memory();
@@ -81,21 +81,21 @@ class Links {
 
   static uint8_t place_of(Transport transport) { return static_cast<uint8_t>(transport); }
   bool is_driven() const;
-  bool keeps_wheel() const;
+  bool keeps_control() const;
   uint8_t listener() const;
   void drive();
   void enter(uint8_t place);
   void leave();
-  void spread(State before);
+  void spread_events(State previous_state);
 
   Link links_[kTransports];
   Receiver receivers_[kTransports];
-  uint8_t yours_[kTransports];       // kYours of each session
-  uint8_t by_teacher_[kTransports];  // kMoreByTeacher of each
-  uint8_t current_;                  // the current one
-  uint8_t driver_;                   // or kNobody
+  uint8_t key_rights_[kTransports];      // kYours of each session
+  uint8_t teacher_rights_[kTransports];  // kMoreByTeacher of each
+  uint8_t current_place_;                // the current one
+  uint8_t driver_;                       // or kNobody
   uint16_t now_ms_;
-  uint16_t drives_ms_;  // how long its last request counts, whatever is received
+  uint16_t driving_ms_;  // how long its last request counts, whatever is received
   bool is_held_back_;
   bool is_asking_;  // the current session, to drive
   bool is_asking_by_text_;

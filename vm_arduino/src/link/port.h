@@ -147,7 +147,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room);
 uint8_t* port_text_room(uint16_t* room);
 
 // Whether the image of a program that was read is kept in addition to the program in memory.
-bool port_text_is_beside(bool is_for_button);
+bool port_text_is_separate(bool is_for_button);
 
 // Whether port_prepare_upload would be done at once.
 bool port_may_prepare_upload(bool is_live);
@@ -182,7 +182,7 @@ const uint8_t* port_run_image();
 // A task, as READ_TASKS sends it: how long until its clock is reached, or 0.
 struct tini_packed TaskReport {
   TaskState state;
-  uint16_t at;
+  uint16_t offset;
   uint32_t left_ms;
 };
 
@@ -197,7 +197,7 @@ bool port_is_halted();
 uint8_t port_halted_task();
 
 // Lets it go on.
-void port_resume(ResumeHow how);
+void port_resume(ResumeHow mode);
 
 // The values of what runs, or nullptr; only while something runs.
 const int32_t* port_variables();
@@ -206,7 +206,7 @@ const int32_t* port_variables();
 bool port_report_task(uint8_t task, TaskReport* report);
 
 // The readings of a program, as READING sends them.
-struct tini_packed ToldReading {
+struct tini_packed ReadingReport {
   uint8_t run;
   uint8_t sensor;  // with kUntold
   int32_t value;
@@ -215,13 +215,13 @@ struct tini_packed ToldReading {
 
 // The number of bytes that a port has taken and still sends: for a UART of an AVR, that one and the
 // one after it.
-constexpr uint8_t kPortHolds = kIsAvr ? 2 : 1;
+constexpr uint8_t kPortBytes = kIsAvr ? 2 : 1;
 
 // Whether a session is told of readings from now on, and whether there is one that has not been told.
 // The next one that is to be told, if there is.
 void port_tell_readings(bool is_on);
 bool port_has_reading();
-ToldReading port_next_reading();
+ReadingReport port_next_reading();
 
 // The length of the image that the robot holds.
 uint16_t port_image_length();
@@ -287,6 +287,6 @@ void port_identify();
 Answer port_rename(const uint8_t* name, uint8_t length);
 
 // The same for a trim, or for both; also kBadValue.
-Answer port_tune(const Tuning& wanted, bool has_pace);
+Answer port_tune(const Tuning& new_tuning, bool has_pace);
 
 }  // namespace tiniscript

@@ -19,6 +19,6 @@ __attribute__((weak)) bool port_report_task(uint8_t, TaskReport*) { return false
 
 __attribute__((weak)) void port_tell_readings(bool) {}
 __attribute__((weak)) bool port_has_reading() { return false; }
-__attribute__((weak)) ToldReading port_next_reading() { return {0, 0, 0, 0}; }
+__attribute__((weak)) ReadingReport port_next_reading() { return {0, 0, 0, 0}; }
 
 }  // namespace tiniscript

@@ -26,7 +26,7 @@
 namespace tiniscript {
 
 // The kind of input waiting in a place.
-enum class Waiting : uint8_t { kNone, kFrame, kText };
+enum class InputKind : uint8_t { kNone, kFrame, kText };
 
 // The results of `take_text` other than the bytes of a line. A kLineCut is in the place of a line's
 // end that never came, or of bytes that found no room; a kLineStop is after what was a typed stop.
@@ -39,25 +39,25 @@ constexpr uint8_t kLineStop = '\r';
 template <uint8_t kPlaces>
 class PacketPlaces {
  protected:
-  uint8_t looked_at() const { return looked_at_; }
-  uint8_t filled() const { return filled_; }
-  void look_on() { looked_at_ = after(looked_at_); }
-  void fill_on() { filled_ = after(filled_); }
+  uint8_t read_place() const { return read_place_; }
+  uint8_t write_place() const { return write_place_; }
+  void advance_read() { read_place_ = next_place(read_place_); }
+  void advance_write() { write_place_ = next_place(write_place_); }
 
  private:
-  static uint8_t after(uint8_t place) { return static_cast<uint8_t>((place + 1) % kPlaces); }
+  static uint8_t next_place(uint8_t place) { return static_cast<uint8_t>((place + 1) % kPlaces); }
 
-  volatile uint8_t looked_at_;
-  volatile uint8_t filled_;
+  volatile uint8_t read_place_;
+  volatile uint8_t write_place_;
 };
 
 template <>
 class PacketPlaces<1> {
  protected:
-  static constexpr uint8_t looked_at() { return 0; }
-  static constexpr uint8_t filled() { return 0; }
-  static void look_on() {}
-  static void fill_on() {}
+  static constexpr uint8_t read_place() { return 0; }
+  static constexpr uint8_t write_place() { return 0; }
+  static void advance_read() {}
+  static void advance_write() {}
 };
 
 class Receiver : private PacketPlaces<kWindow> {
@@ -73,7 +73,7 @@ class Receiver : private PacketPlaces<kWindow> {
 
   // The state of a line of text: nothing, a stop that waits for silence, bytes that are skipped,
   // some of it, or some before a second of silence and nothing since.
-  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome, kPaused };
+  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kBegun, kPaused };
 
  public:
   // Takes a byte at the time `now_ms`. Returns whether the motors go off at once: it completes a run
@@ -102,20 +102,22 @@ class Receiver : private PacketPlaces<kWindow> {
   void disconnect();
 
   // Whether a frame waits, the bytes of the first one and their number.
-  bool has_frame() const { return waiting_[looked_at()] == Waiting::kFrame; }
-  uint8_t* bytes() { return bytes_[looked_at()]; }
-  uint8_t length() const { return length_[looked_at()]; }
+  bool has_frame() const { return input_kinds_[read_place()] == InputKind::kFrame; }
+  uint8_t* bytes() { return bytes_[read_place()]; }
+  uint8_t length() const { return length_[read_place()]; }
 
   // Whether a typed stop is in the first frame that waits: unless that is whole, it stops.
-  bool frame_may_stop() const { return may_stop_[looked_at()]; }
-  void let_frame() { may_stop_[looked_at()] = false; }
+  bool frame_may_stop() const { return may_stop_[read_place()]; }
+  void let_frame() { may_stop_[read_place()] = false; }
 
   // Whether the unfinished frame has a typed stop, or one was all between two 0x00, or Ctrl-C is
   // all of the line so far: it stops when no byte has come for kHeldMs.
   bool is_held() const { return mode() == Mode::kStopInFrame || line() == Line::kHeld; }
 
   // Whether the line so far would be a typed stop if it ended here.
-  bool is_at_stop() const { return mode() < Mode::kFrame && typed_.found() != TypedStop::kNone; }
+  bool is_at_stop() const {
+    return mode() < Mode::kFrame && typed_stop_.kind() != TypedStop::kNone;
+  }
 
   // Whether a second of silence may end a person's line: all of it is printable, or CR or LF is in
   // it.
@@ -131,15 +133,17 @@ class Receiver : private PacketPlaces<kWindow> {
 
   // Goes on to the next frame: as if it began now, though it may be whole already.
   void release() {
-    if (kWindow > 1) length_[looked_at()] = 0;
-    waiting_[looked_at()] = Waiting::kNone;
+    if (kWindow > 1) length_[read_place()] = 0;
+    input_kinds_[read_place()] = InputKind::kNone;
     if (kWindow == 1) return;
-    look_on();
+    advance_read();
     has_begun_ = true;
   }
 
   // Whether text may wait.
-  bool has_text() const { return waiting_[looked_at()] == Waiting::kText || !text_.is_empty(); }
+  bool has_text() const {
+    return input_kinds_[read_place()] == InputKind::kText || !text_.is_empty();
+  }
 
   // Whether the next byte finds room, if it is text.
   bool has_room() const { return text_.has_room(); }
@@ -148,23 +152,23 @@ class Receiver : private PacketPlaces<kWindow> {
   bool take_text(uint8_t* byte);
 
   // Whether bytes of a line have been lost since the last call. A kLineCut tells where.
-  bool take_lost() {
+  bool take_is_lost() {
     const bool is_lost = is_lost_;
     is_lost_ = false;
     return is_lost;
   }
 
   // Whether any byte has arrived since the last call, which forgets it.
-  bool take_heard() {
+  bool take_has_heard() {
     if (!has_heard_) return false;
     has_heard_ = false;
     return true;
   }
 
-  // Bytes of an unfinished packet may be read up to `length`. `take_begun` says whether another
+  // Bytes of an unfinished packet may be read up to `length`. `take_has_begun` says whether another
   // packet has begun since the last call: call it before `length`. A packet that begins between the
   // two calls counts as begun, too.
-  bool take_begun() {
+  bool take_has_begun() {
     if (!has_begun_) return false;
     has_begun_ = false;
     return true;
@@ -178,8 +182,8 @@ class Receiver : private PacketPlaces<kWindow> {
   void take_stop() { due_stop_ = Cause::kNone; }
 
   // The number of damaged and dropped packets. It wraps around to 0.
-  uint8_t damaged() const { return damaged_; }
-  uint8_t dropped() const { return dropped_; }
+  uint8_t damaged() const { return damaged_count_; }
+  uint8_t dropped() const { return dropped_count_; }
 
  private:
   // Read where the interrupt may write.
@@ -197,21 +201,21 @@ class Receiver : private PacketPlaces<kWindow> {
   void begin_line();
   void begin_packet();
   void add(uint8_t byte);
-  bool end_packet(Waiting as);
+  bool end_packet(InputKind kind);
   void cut_line();
   void lose_line();
-  void count_damaged() { damaged_ = static_cast<uint8_t>(damaged_ + 1); }
+  void count_damaged() { damaged_count_ = static_cast<uint8_t>(damaged_count_ + 1); }
 
   // Whether no frame waits before the packet that is being filled.
-  bool is_first() const { return filled() == looked_at(); }
+  bool is_first() const { return write_place() == read_place(); }
 
   // The most bytes that the packet has which is being filled, if it is a frame.
   uint8_t most_bytes() const {
-    return kHasLargeFrames && bytes_[filled()][0] > kLargeFirst ? kSmallPacket : kPacketBytes;
+    return kHasLargeFrames && bytes_[write_place()][0] > kLargeFirst ? kSmallPacket : kPacketBytes;
   }
 
   // The waiting packets. A line after a 0x00 waits in `bytes_` like a frame, as the last.
-  volatile Waiting waiting_[kWindow];
+  volatile InputKind input_kinds_[kWindow];
   volatile bool has_begun_;
   volatile Cause due_stop_;
   StopSequence zeros_;
@@ -221,16 +225,16 @@ class Receiver : private PacketPlaces<kWindow> {
   bool is_cut_;       // a 0x00 has cut a line: the rest of it is lost
   bool is_dropping_;  // the packet finds no place
   bool may_be_line_;  // the packet may be a person's
-  TypedStop typed_;
+  TypedStop typed_stop_;
   KeySequence keys_;
   volatile bool is_lost_;
   volatile bool has_heard_;
   volatile bool may_stop_[kWindow];
   volatile uint8_t marks_;
   uint8_t marks_taken_;
-  volatile uint8_t damaged_;
-  volatile uint8_t dropped_;
-  uint8_t taken_;  // bytes of the line in `bytes_`
+  volatile uint8_t damaged_count_;
+  volatile uint8_t dropped_count_;
+  uint8_t taken_bytes_;  // bytes of the line in `bytes_`
   volatile uint8_t length_[kWindow];
   TextRing text_;
   uint8_t bytes_[kWindow][kPacketBytes];

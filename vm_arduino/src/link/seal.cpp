@@ -7,9 +7,9 @@
 namespace tiniscript {
 
 tini_noinline bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
-  uint8_t differ = 0;
-  while (length-- != 0) differ = static_cast<uint8_t>(differ | (*first++ ^ *second++));
-  return differ == 0;
+  uint8_t difference = 0;
+  while (length-- != 0) difference = static_cast<uint8_t>(difference | (*first++ ^ *second++));
+  return difference == 0;
 }
 
 namespace {
@@ -39,7 +39,7 @@ void Seal::begin(const uint8_t* key, const SealOrigin& origin) {
   siphash(key, text, kOriginBytes, key_);
   text[kLabelAt] = 2;
   siphash(key, text, kOriginBytes, key_ + kHashBytes);
-  heard_ = sent_ = 0;
+  received_counter_ = sent_counter_ = 0;
   is_set_ = true;
 }
 
@@ -50,19 +50,19 @@ void Seal::drop() {
 
 bool Seal::open(const uint8_t* bytes, uint8_t end) {
   if (!is_set_ || end < kSealedPayloadAt + kTagBytes || bytes[kSealZeroAt] != 0) return false;
-  const uint8_t behind = static_cast<uint8_t>(end - kTagBytes);
+  const uint8_t mac_start = static_cast<uint8_t>(end - kTagBytes);
   uint8_t mac[kTagBytes];
-  siphash(key_, bytes + kTypeAt, static_cast<uint8_t>(behind - kTypeAt), mac);
+  siphash(key_, bytes + kTypeAt, static_cast<uint8_t>(mac_start - kTypeAt), mac);
   const uint32_t counter = get32(bytes + kCounterAt);
-  if (!are_equal(mac, bytes + behind, kTagBytes) || counter <= heard_) return false;
-  heard_ = counter;
+  if (!are_equal(mac, bytes + mac_start, kTagBytes) || counter <= received_counter_) return false;
+  received_counter_ = counter;
   return true;
 }
 
 uint8_t Seal::close(uint8_t* bytes, uint8_t end) {
-  sent_++;
+  sent_counter_++;
   bytes[kSealZeroAt] = 0;
-  copy_bytes(&sent_, bytes + kCounterAt, sizeof sent_);
+  copy_bytes(&sent_counter_, bytes + kCounterAt, sizeof sent_counter_);
   siphash(key_, bytes + kTypeAt, static_cast<uint8_t>(end - kTypeAt), bytes + end);
   return static_cast<uint8_t>(end + kTagBytes);
 }
@@ -73,12 +73,12 @@ void Seal::cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const {
   uint8_t stream[kHashBytes];
   copy_bytes(counter, text, sizeof(uint32_t));
   for (uint8_t k = 0; k < length; k++) {
-    const uint8_t at = k % kHashBytes;
-    if (at == 0) {
+    const uint8_t index = k % kHashBytes;
+    if (index == 0) {
       text[sizeof(uint32_t)] = static_cast<uint8_t>(k / kHashBytes);
       siphash(key_, text, sizeof text, stream);
     }
-    bytes[k] ^= stream[at];
+    bytes[k] ^= stream[index];
   }
 }
 

@@ -33,7 +33,7 @@ class Seal {
   bool is_set() const { return is_set_; }
 
   // Whether another frame may be sealed: a counter value is never used twice.
-  bool may_close() const { return is_set_ && sent_ != kLastCounter; }
+  bool may_close() const { return is_set_ && sent_counter_ != kLastCounter; }
 
   void begin(const uint8_t* key, const SealOrigin& origin);
 
@@ -51,8 +51,8 @@ class Seal {
   uint8_t close(uint8_t* bytes, uint8_t end);
 
  protected:
-  uint32_t heard_;  // the last counter from the computer
-  uint32_t sent_;   // the last one to it
+  uint32_t received_counter_;  // the last counter from the computer
+  uint32_t sent_counter_;      // the last one to it
 
  private:
   bool is_set_;

@@ -19,7 +19,7 @@ void siphash(const uint8_t* key, const uint8_t* message, uint8_t length, uint8_t
 // the state.
 constexpr uint8_t kWord = 8;  // bytes, little-endian
 constexpr uint8_t kWords = 4;
-void xor_word(uint8_t* word, const uint8_t* other);
+void xor_word(uint8_t* word, const uint8_t* operand);
 void sip_rounds(uint8_t* state, uint8_t rounds);
 
 }  // namespace tiniscript

@@ -31,8 +31,8 @@ const uint8_t kQuarters[] = {
 
 }  // namespace
 
-void xor_word(uint8_t* word, const uint8_t* other) {
-  for (uint8_t k = 0; k < kWord; k++) word[k] ^= other[k];
+void xor_word(uint8_t* word, const uint8_t* operand) {
+  for (uint8_t k = 0; k < kWord; k++) word[k] ^= operand[k];
 }
 
 void sip_rounds(uint8_t* state, uint8_t rounds) {

@@ -33,13 +33,13 @@ class TextRing {
   }
 
  private:
-  tini_noinline bool put(uint8_t byte, uint8_t wanted_room) {
-    const uint8_t at = end_;
-    const uint8_t after = static_cast<uint8_t>(at + 1) % kTextBytes;
-    if (static_cast<uint8_t>(first_ - after) % kTextBytes < wanted_room) return false;
-    bytes_[at] = byte;
+  tini_noinline bool put(uint8_t byte, uint8_t needed_room) {
+    const uint8_t end = end_;
+    const uint8_t next_end = static_cast<uint8_t>(end + 1) % kTextBytes;
+    if (static_cast<uint8_t>(first_ - next_end) % kTextBytes < needed_room) return false;
+    bytes_[end] = byte;
     asm volatile("" ::: "memory");  // barrier: `take` reads the byte after the index
-    end_ = after;
+    end_ = next_end;
     return true;
   }
 

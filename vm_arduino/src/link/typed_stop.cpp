@@ -25,8 +25,8 @@ constexpr uint8_t kWords[] tini_progmem = {
 
 constexpr uint8_t kStopAt = 5;  // letters of STOP NOW, without a mark
 
-constexpr int words_from(const uint8_t* letter) {
-  return *letter == 0 ? 0 : *letter / kLastLetter + words_from(letter + 1);
+constexpr int count_words(const uint8_t* letter) {
+  return *letter == 0 ? 0 : *letter / kLastLetter + count_words(letter + 1);
 }
 
 }  // namespace
@@ -34,50 +34,50 @@ constexpr int words_from(const uint8_t* letter) {
 // Most bytes of a program are no letters: they are looked at first.
 tini_noinline void TypedStop::put(uint8_t byte) {
   if (byte == ' ' || byte == '\t') return;
-  const uint8_t before = hurry_;
-  if (before == kComment) return;
-  hurry_ = 0;
+  const uint8_t urgency = urgency_;
+  if (urgency == kComment) return;
+  urgency_ = 0;
   const uint8_t count = count_;
-  const uint8_t small = byte | 0x20;
-  if (static_cast<uint8_t>(small - 'a') >= 26) {
+  const uint8_t lower_case = byte | 0x20;
+  if (static_cast<uint8_t>(lower_case - 'a') >= 26) {
     if (byte == '\b' || byte == 0x7f) {  // deletes a letter, as the reader of text does
       if (count != 0) count_ = static_cast<uint8_t>(count - 1);
       return;
     }
     if (static_cast<uint8_t>(byte - '0') >= 10) {
-      if (byte == '/') hurry_ = before == kSlash ? kComment : kSlash;
+      if (byte == '/') urgency_ = urgency == kSlash ? kComment : kSlash;
       if (byte != ';') is_loose_ = true;
       return;
     }
-  } else if (small == flash_byte(kWords + kStopAt + before % 4)) {
-    hurry_ = static_cast<uint8_t>(before % kUrgent + 1);
-  } else if (small == 's') {
-    hurry_ = before == kTwoS ? kUrgent : before % 4 == 1 ? kTwoS : 1;
+  } else if (lower_case == flash_byte(kWords + kStopAt + urgency % 4)) {
+    urgency_ = static_cast<uint8_t>(urgency % kUrgent + 1);
+  } else if (lower_case == 's') {
+    urgency_ = urgency == kTwoS ? kUrgent : urgency % 4 == 1 ? kTwoS : 1;
   }
-  add(small);
+  add(lower_case);
 }
 
 // Adds a letter or a digit of the line. Another S begins a word anew after an S or a STOP.
-inline void TypedStop::add(uint8_t small) {
+inline void TypedStop::add(uint8_t lower_case) {
   if (count_ >= kLongest) {
     if (count_ != 255) count_++;
     return;
   }
-  if (small == 's' && word() <= kStop) {
+  if (lower_case == 's' && word() <= kStop) {
     count_ = 0;
     is_loose_ = true;
   }
-  word_[count_++] = small;
+  word_[count_++] = lower_case;
 }
 
-tini_noinline TypedStop::Found TypedStop::found() const {
+tini_noinline TypedStop::Kind TypedStop::kind() const {
   const uint8_t number = word();
   return number >= kNoWord ? kNone : number <= kStop && !is_loose_ ? kStrict : kLoose;
 }
 
 // The number of the word that the line is so far, or kNoWord.
 tini_noinline uint8_t TypedStop::word() const {
-  static_assert(words_from(kWords) == kNoWord, "");
+  static_assert(count_words(kWords) == kNoWord, "");
   const uint8_t length = count_;
   return static_cast<uint8_t>(length - 1) < kLongest ? find_word(kWords, word_, length) : kNoWord;
 }

@@ -15,7 +15,7 @@ class TypedStop {
  public:
   // A line begins.
   void begin() {
-    count_ = hurry_ = 0;
+    count_ = urgency_ = 0;
     is_loose_ = false;
   }
 
@@ -24,12 +24,12 @@ class TypedStop {
 
   // The kind of stop if the line ended here. kLoose: any number of S and STOP, STOP NOW, or a word
   // of people who speak Spanish, Portuguese or English. kStrict: one S or STOP, blanks and `;`.
-  enum Found : uint8_t { kNone, kLoose, kStrict };
-  Found found() const;
+  enum Kind : uint8_t { kNone, kLoose, kStrict };
+  Kind kind() const;
 
   // Whether the byte was the last of three S in a row, or of a second STOP, anywhere in a line:
   // these do not wait for its end.
-  bool is_urgent() const { return hurry_ == kUrgent; }
+  bool is_urgent() const { return urgency_ == kUrgent; }
 
  private:
   static constexpr uint8_t kLongest = 7;  // letters of a word: DETENTE
@@ -45,12 +45,12 @@ class TypedStop {
   static constexpr uint8_t kSlash = 16;
   static constexpr uint8_t kComment = 17;
 
-  void add(uint8_t small);
+  void add(uint8_t lower_case);
   uint8_t word() const;
 
   uint8_t word_[kLongest];  // the letters and digits of the line, small; an S or a STOP before an S is left out
   uint8_t count_;           // of them
-  uint8_t hurry_;
+  uint8_t urgency_;
   bool is_loose_;           // other signs have come than blanks and `;`, or more than a word
 };
 

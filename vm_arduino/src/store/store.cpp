@@ -13,11 +13,11 @@ namespace {
 // Generation numbers wrap around. Each generation has a mark of its own, which differs from the
 // marks of a slot that is being written (0) and of an empty slot.
 constexpr uint8_t kGenerations = 0x40;
-constexpr uint8_t kMarkOf = 0xa5;
-constexpr uint8_t kEmptied = 0xff;
+constexpr uint8_t kMarkMask = 0xa5;
+constexpr uint8_t kEmptyByte = 0xff;
 
 // The known state of a slot: its generation, or that it holds nothing.
-constexpr uint8_t kRefused = kGenerations;  // added to the generation: the slot does not count
+constexpr uint8_t kRefusedBit = kGenerations;  // added to the generation: the slot does not count
 constexpr uint8_t kNothing = 0xff;
 
 // The write steps of a slot. `docs/develop/store.md` says why they come in this order.
@@ -32,8 +32,8 @@ enum class WriteStep : uint8_t {
   kEnd,
 };
 
-constexpr uint8_t step(WriteStep what, uint8_t at = 0) {
-  return static_cast<uint8_t>(static_cast<uint8_t>(what) * 16 + at);
+constexpr uint8_t step(WriteStep kind, uint8_t offset = 0) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(kind) * 16 + offset);
 }
 
 constexpr uint8_t kSteps[] tini_progmem = {
@@ -92,18 +92,18 @@ constexpr uint8_t kLastNeeded = kWritesStopTheChip ? kMarks : 1;
 
 uint16_t start_of(uint8_t slot) { return flash_word(kStarts + slot); }
 
-uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
+uint16_t plus(uint16_t place, uint16_t count) { return static_cast<uint16_t>(place + count); }
 
 // A byte of the body of the slot at `place`. The first byte is stored XOR the generation, so that
 // the checksum is wrong under another generation.
-uint8_t body_byte(uint16_t place, uint16_t at) {
-  const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, at)));
-  return at == 0 ? byte ^ nvm_read(place) : byte;
+uint8_t body_byte(uint16_t place, uint16_t offset) {
+  const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, offset)));
+  return offset == 0 ? byte ^ nvm_read(place) : byte;
 }
 
-tini_noinline uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint16_t end) {
-  while (at != end) {
-    const uint8_t byte = body_byte(place, at++);
+tini_noinline uint32_t checksum(uint32_t crc, uint16_t place, uint16_t offset, uint16_t end) {
+  while (offset != end) {
+    const uint8_t byte = body_byte(place, offset++);
     crc = crc32(crc, &byte, 1);
   }
   return crc;
@@ -124,44 +124,45 @@ uint8_t record_bytes(uint8_t slot) { return slot < kFirstOwnerSlot ? kRecordByte
 }  // namespace
 
 void Store::boot() {
-  for (uint8_t& held : held_) held = kNothing;
+  for (uint8_t& slot_state : slot_states_) slot_state = kNothing;
   state_ = StoreState::kSettling;
   is_busy_ = true;
   step_ = kLooking;
-  waits_from_ = kCommitting;
-  go_to(0);
+  first_waiting_step_ = kCommitting;
+  select_slot(0);
 }
 
 tini_noinline void Store::tick(bool may_commit) {
   if (!is_busy_ || !nvm_is_ready()) return;
   const uint8_t step = flash_byte(kSteps + step_);
-  if (step_ >= waits_from_ && !may_commit && step != tiniscript::step(WriteStep::kEnd)) return;
-  const uint8_t at = step % 16;
-  uint8_t value = kEmptied;
+  if (step_ >= first_waiting_step_ && !may_commit && step != tiniscript::step(WriteStep::kEnd))
+    return;
+  const uint8_t offset = step % 16;
+  uint8_t value = kEmptyByte;
   switch (static_cast<WriteStep>(step / 16)) {
     case WriteStep::kLook:
       return near(this)->look();
     case WriteStep::kEnd:
       return near(this)->finish();
     case WriteStep::kClear:
-      held_[slot_] = kNothing;
-      nvm_clear(plus(place_, at));
+      slot_states_[slot_] = kNothing;
+      nvm_clear(plus(place_, offset));
       step_++;
       return;
     case WriteStep::kBody:
     case WriteStep::kCheck: {
-      value = bytes_[at_];
-      const bool is_equal = body_byte(place_, at_) == value;
+      value = bytes_[offset_];
+      const bool is_equal = body_byte(place_, offset_) == value;
       if (step == tiniscript::step(WriteStep::kBody)) {
-        if (at_ == 0) value ^= generation_;
-        if (!is_equal || !is_stable_) nvm_write(plus(place_, plus(kBodyAt, at_)), value);
+        if (offset_ == 0) value ^= generation_;
+        if (!is_equal || !is_stable_) nvm_write(plus(place_, plus(kBodyAt, offset_)), value);
       } else if (!is_equal) {
         state_ = StoreState::kFailed;
         step_ = kEmptying;
         return;
       }
-      if (++at_ == length_) {
-        at_ = 0;
+      if (++offset_ == length_) {
+        offset_ = 0;
         step_++;
       }
       return;
@@ -170,21 +171,23 @@ tini_noinline void Store::tick(bool may_commit) {
       value = generation_;
       break;
     case WriteStep::kMark:
-      value = generation_ ^ kMarkOf;
+      value = generation_ ^ kMarkMask;
       break;
     case WriteStep::kEmpty:
       break;
   }
-  nvm_write(plus(place_, at), value);
+  nvm_write(plus(place_, offset), value);
   step_++;
 }
 
 bool Store::is_ready_to_commit() const {
-  return is_busy_ && step_ >= waits_from_ && nvm_is_ready();
+  return is_busy_ && step_ >= first_waiting_step_ && nvm_is_ready();
 }
 
 // The write of a commit byte has begun and is not finished.
-bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > waits_from_; }
+bool Store::is_committing() const {
+  return is_busy_ && !nvm_is_ready() && step_ > first_waiting_step_;
+}
 
 void Store::give_up() {
   if (!is_ready_to_commit() || state_ != StoreState::kSaving) return;
@@ -198,7 +201,7 @@ tini_noinline bool Store::begin_save(const uint8_t* image) {
   return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
 }
 
-bool Store::begin_keep(Area area, uint8_t* record) {
+bool Store::begin_save_record(Area area, uint8_t* record) {
   if (is_busy_) return false;
   const uint8_t length = record_bytes(static_cast<uint8_t>(2 * static_cast<uint8_t>(area)));
   const uint32_t check =
@@ -208,16 +211,16 @@ bool Store::begin_keep(Area area, uint8_t* record) {
 }
 
 void Store::refuse() {
-  const uint8_t slot = used(Area::kProgram);
-  if (slot != kNoSlot) held_[slot] |= kRefused;
+  const uint8_t slot = current_slot(Area::kProgram);
+  if (slot != kNoSlot) slot_states_[slot] |= kRefusedBit;
 }
 
-void Store::readmit(uint8_t slot) { held_[slot] &= static_cast<uint8_t>(~kRefused); }
+void Store::readmit(uint8_t slot) { slot_states_[slot] &= static_cast<uint8_t>(~kRefusedBit); }
 
-bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
-  const uint8_t slot = used(area);
+bool Store::fetch(Area area, uint16_t offset, uint8_t* byte) const {
+  const uint8_t slot = current_slot(area);
   if (slot == kNoSlot || !nvm_is_ready()) return false;
-  *byte = body_byte(start_of(slot), at);
+  *byte = body_byte(start_of(slot), offset);
   return true;
 }
 
@@ -228,38 +231,38 @@ bool Store::fetch_first(Area area, uint8_t* bytes, uint16_t length) const {
   return true;
 }
 
-uint8_t Store::used(Area area) const { return newest(area, kRefused); }
+uint8_t Store::current_slot(Area area) const { return newest_slot(area, kRefusedBit); }
 
-tini_noinline void Store::go_to(uint8_t slot) {
+tini_noinline void Store::select_slot(uint8_t slot) {
   slot_ = slot;
   place_ = start_of(slot);
 }
 
 // Selects the slot other than `slot` (or any, if that is none).
-void Store::go_beside(Area area, uint8_t slot) {
-  go_to(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
+void Store::select_other_slot(Area area, uint8_t slot) {
+  select_slot(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
 }
 
 tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
   if (is_busy_ || !nvm_is_ready()) return false;
-  const uint8_t slot = used(area);
+  const uint8_t slot = current_slot(area);
   if (slot != kNoSlot && is_in(slot, bytes, is_program(slot) ? kHeaderBytes : kCheckBytes)) {
     state_ = StoreState::kSaved;
     return true;
   }
-  const uint8_t last = newest(area, kNothing);
-  generation_ = last == kNoSlot ? 0 : (held_[last] + 1) & (kGenerations - 1);
-  go_beside(area, slot);
-  is_stable_ = held_[slot_] != kNothing;
+  const uint8_t newest = newest_slot(area, kNothing);
+  generation_ = newest == kNoSlot ? 0 : (slot_states_[newest] + 1) & (kGenerations - 1);
+  select_other_slot(area, slot);
+  is_stable_ = slot_states_[slot_] != kNothing;
   bytes_ = bytes;
   length_ = length;
-  waits_from_ = kWritesStopTheChip ? kLooking : kCommitting;
+  first_waiting_step_ = kWritesStopTheChip ? kLooking : kCommitting;
   if (is_stable_ && is_in(slot_, bytes, length)) {
     // It may be the only copy: it gets another generation, and that waits from its first byte on.
     length_ = 1;
-    waits_from_ = kWritesStopTheChip ? kLooking : kSaving;
+    first_waiting_step_ = kWritesStopTheChip ? kLooking : kSaving;
   }
-  at_ = 0;
+  offset_ = 0;
   state_ = StoreState::kSaving;
   step_ = kSaving;
   is_busy_ = true;
@@ -278,14 +281,14 @@ tini_noinline bool Store::is_in(uint8_t slot, const uint8_t* bytes, uint16_t cou
 // Decides once what a slot holds: a byte whose write was cut may read differently later.
 void Store::look() {
   const uint16_t place = place_;
-  uint8_t& held = held_[slot_];
+  uint8_t& slot_state = slot_states_[slot_];
   const uint8_t generation = nvm_read(place);
   const uint8_t first = nvm_read(place + 1);
-  const uint8_t mark = generation ^ kMarkOf;
+  const uint8_t mark = generation ^ kMarkMask;
   generation_ = generation;
-  step_ = generation == kEmptied && first == kEmptied ? kEmptyingEnd : kEmptying;
+  step_ = generation == kEmptyByte && first == kEmptyByte ? kEmptyingEnd : kEmptying;
   if (generation >= kGenerations || first != mark || !is_sound()) return;
-  held = generation;
+  slot_state = generation;
   // The last mark present may be the one whose write was cut. If it is the only one, it and the
   // generation are rewritten, as the slot may have been about to be emptied. Otherwise both are
   // left as they are.
@@ -308,20 +311,20 @@ bool Store::is_sound() {
     if (length == 0) return false;
     check = kChecksumAt;
   }
-  const uint16_t behind = plus(check, kCheckBytes);
+  const uint16_t check_end = plus(check, kCheckBytes);
   uint32_t crc = checksum(0, place_, 0, check);
-  crc = checksum(crc, place_, behind, length);
-  return checksum(crc, place_, check, behind) == kAfterItself;
+  crc = checksum(crc, place_, check_end, length);
+  return checksum(crc, place_, check, check_end) == kCrcResidue;
 }
 
 // The slot of an area with the latest generation below `end`.
-tini_noinline uint8_t Store::newest(Area area, uint8_t end) const {
+tini_noinline uint8_t Store::newest_slot(Area area, uint8_t end) const {
   const uint8_t slot = static_cast<uint8_t>(2 * static_cast<uint8_t>(area));
-  const uint8_t first = held_[slot];
-  const uint8_t second = held_[slot + 1];
+  const uint8_t first = slot_states_[slot];
+  const uint8_t second = slot_states_[slot + 1];
   if (second >= end) return first >= end ? kNoSlot : slot;
-  const uint8_t ahead = static_cast<uint8_t>(second - first);
-  const bool is_first = first < end && ahead % kGenerations >= kGenerations / 2;
+  const uint8_t difference = static_cast<uint8_t>(second - first);
+  const bool is_first = first < end && difference % kGenerations >= kGenerations / 2;
   return is_first ? slot : slot ^ 1;
 }
 
@@ -332,15 +335,15 @@ void Store::finish() {
   if (state == StoreState::kSaving) {
     // Without generation and first mark, a slot does not count, however worn the memory is.
     if (nvm_read(place_) != generation_ ||
-        nvm_read(plus(place_, kLastNeeded)) != (generation_ ^ kMarkOf)) {
+        nvm_read(plus(place_, kLastNeeded)) != (generation_ ^ kMarkMask)) {
       state_ = StoreState::kFailed;
     } else {
-      held_[slot] = generation_;
+      slot_states_[slot] = generation_;
       state_ = StoreState::kSaved;
     }
   } else if (state == StoreState::kSettling) {
     step_ = kLooking;
-    if (++slot != kSlots) return go_to(slot);
+    if (++slot != kSlots) return select_slot(slot);
     state_ = StoreState::kIdle;
   }
   is_busy_ = false;

@@ -55,10 +55,10 @@ class Store {
 
   // Begins to save a record (of kRecordBytes, or kOwnerBytes) and puts the check into its first
   // bytes. Same conditions.
-  bool begin_keep(Area area, uint8_t* record);
+  bool begin_save_record(Area area, uint8_t* record);
 
   // The slot of the current data, or kNoSlot. Undefined while settling.
-  uint8_t used(Area area) const;
+  uint8_t current_slot(Area area) const;
 
   // The current program does not suit this robot: the one before it, or none, is now current. This
   // writes nothing; after `boot` the program is offered again.
@@ -67,9 +67,9 @@ class Store {
   // Takes back that a slot, whose data has counted before, was refused.
   void readmit(uint8_t slot);
 
-  // Puts a byte of the current image or record into `*byte`; `at` must lie in it. False: there is
+  // Puts a byte of the current image or record into `*byte`; `offset` must lie in it. False: there is
   // none, or the memory is writing (try again). The memory never writes while the store is idle.
-  bool fetch(Area area, uint16_t at, uint8_t* byte) const;
+  bool fetch(Area area, uint16_t offset, uint8_t* byte) const;
 
   // The same for its first `length` bytes. If it returns false, some may have been put.
   bool fetch_first(Area area, uint8_t* bytes, uint16_t length) const;
@@ -80,24 +80,24 @@ class Store {
   void finish();
   static bool is_in(uint8_t slot, const uint8_t* bytes, uint16_t count);
   bool begin_write(Area area, const uint8_t* bytes, uint16_t length);
-  void go_to(uint8_t slot);
-  void go_beside(Area area, uint8_t slot);
-  uint8_t newest(Area area, uint8_t end) const;
+  void select_slot(uint8_t slot);
+  void select_other_slot(Area area, uint8_t slot);
+  uint8_t newest_slot(Area area, uint8_t end) const;
 
   StoreState state_;
   bool is_busy_;
-  uint8_t held_[kSlots];
+  uint8_t slot_states_[kSlots];
 
   // The current work.
   uint8_t step_;
   uint8_t slot_;
-  uint16_t place_;      // of the slot
-  uint8_t generation_;  // of the slot
-  uint8_t waits_from_;  // steps from this one on wait for `may_commit`
-  bool is_stable_;      // equal bytes of the body need not be written again
+  uint16_t place_;              // of the slot
+  uint8_t generation_;          // of the slot
+  uint8_t first_waiting_step_;  // steps from this one on wait for `may_commit`
+  bool is_stable_;              // equal bytes of the body need not be written again
   const uint8_t* bytes_;
   uint16_t length_;
-  uint16_t at_;
+  uint16_t offset_;
 };
 
 }  // namespace tiniscript

@@ -33,18 +33,18 @@ const uint8_t* robot_words();
 uint16_t robot_language();
 
 // Returns what is after a device, from what it is on.
-inline const uint8_t* behind_device(const uint8_t* device) {
+inline const uint8_t* after_device(const uint8_t* device) {
   const bool has_range = flash_byte(device) == kIsActuator;
   return device + 1 + (has_range ? kRangeBytes : 0);
 }
 
 // Whether the kit says how fast it goes or turns.
-inline bool robot_has_way(bool is_turn) {
+inline bool robot_has_speed(bool is_turn) {
   const uint8_t* word = robot_words();
   while (flash_byte(word) != 0) {
     while (flash_byte(word++) < 0x80) {
     }
-    word = behind_device(word);
+    word = after_device(word);
   }
   return (flash_byte(word + 1) & (is_turn ? kKitTurns : kKitGoes)) != 0;
 }

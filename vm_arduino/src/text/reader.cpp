@@ -9,9 +9,9 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kUnfinished = 0x80;  // what follows is no ASCII
-constexpr uint8_t kOdd = 0x81;         // a character that means nothing
-constexpr uint8_t kBroken = 0x82;      // no UTF-8
+constexpr uint8_t kIncompleteUtf8 = 0x80;        // what follows is no ASCII
+constexpr uint8_t kUnknownCharacter = 0x81;      // a character that means nothing
+constexpr uint8_t kInvalidUtf8 = 0x82;           // no UTF-8
 tini_of_defs(constexpr uint8_t kDegree = 0x83;)  // a sign for DEG
 
 // The state of a checksum: nothing has come, all digits have come, or it was a comment.
@@ -62,29 +62,29 @@ void Reader::begin(uint8_t* buffer, uint16_t room) {
   stack_ = names_ = end_ = buffer + room;
 }
 
-tini_noinline Text Reader::put(uint8_t byte) {
+tini_noinline TextState Reader::put(uint8_t byte) {
   const bool was_after_cr = is_after_cr_;
   is_after_cr_ = byte == '\r';
   if (byte == '\r') return end_line();
-  if (byte == '\n') return was_after_cr ? Text::kGoesOn : end_line();
+  if (byte == '\n') return was_after_cr ? TextState::kOpenLine : end_line();
   if ((byte & 0xc0) != 0x80 && column_ != 255) column_++;
   if (byte > ' ' && place_ != kComment) last_column_ = column_;
   if (check_ == kNoCheck) {
     if (byte == '~') {
       if (place_ != kComment) take(' ');
       check_ = kTilde;
-      return Text::kGoesOn;
+      return TextState::kOpenLine;
     }
     byte_ = byte;  // a local variable would need a frame
     crc_ = crc32(crc_, &byte_, 1);
   }
   const uint8_t letter = character(byte);
-  if (letter != kUnfinished && !checks(letter)) take(letter);
-  return Text::kGoesOn;
+  if (letter != kIncompleteUtf8 && !takes_checksum(letter)) take(letter);
+  return TextState::kOpenLine;
 }
 
 // Takes what stands after a `~`. Returns whether it did.
-bool Reader::checks(uint8_t letter) {
+bool Reader::takes_checksum(uint8_t letter) {
   if (check_ == kNoCheck || check_ == kCommentAfterAll) return false;
   if (check_ == kAllDigits) {
     if (letter == ' ' || letter == '\t') return true;
@@ -112,45 +112,46 @@ bool Reader::checks(uint8_t letter) {
 
 // Returns an ASCII letter, a space or a dash for its relatives, kOdd, kBroken or kUnfinished.
 uint8_t Reader::character(uint8_t byte) {
-  const uint8_t lead = lead_;
-  const uint8_t second = second_;
-  lead_ = 0;
+  const uint8_t lead_byte = lead_byte_;
+  const uint8_t second_byte = second_byte_;
+  lead_byte_ = 0;
   if (byte < 0x80) {
-    if (lead != 0 || (byte < ' ' && byte != '\t' && byte != '\b')) return kBroken;
+    if (lead_byte != 0 || (byte < ' ' && byte != '\t' && byte != '\b')) return kInvalidUtf8;
     return byte;
   }
   if (byte >= 0xc0) {
-    if (lead != 0 || byte < 0xc2 || byte > 0xf4) return kBroken;
-    lead_ = byte;
-    second_ = 0;
-    return kUnfinished;
+    if (lead_byte != 0 || byte < 0xc2 || byte > 0xf4) return kInvalidUtf8;
+    lead_byte_ = byte;
+    second_byte_ = 0;
+    return kIncompleteUtf8;
   }
-  if (lead == 0) return kBroken;
-  if (second == 0 && lead >= 0xe0) {
-    lead_ = lead;
-    second_ = byte;
-    return kUnfinished;
+  if (lead_byte == 0) return kInvalidUtf8;
+  if (second_byte == 0 && lead_byte >= 0xe0) {
+    lead_byte_ = lead_byte;
+    second_byte_ = byte;
+    return kIncompleteUtf8;
   }
-  if (lead >= 0xf0) {
-    lead_ = 0xe1;  // none of its characters means anything
-    return kUnfinished;
+  if (lead_byte >= 0xf0) {
+    lead_byte_ = 0xe1;  // none of its characters means anything
+    return kIncompleteUtf8;
   }
   for (const uint8_t* row = kRelatives; flash_byte(row) != 0; row += 5) {
-    const uint8_t above = static_cast<uint8_t>(byte - flash_byte(row + 2));
-    if (lead == flash_byte(row) && second == flash_byte(row + 1) && above <= flash_byte(row + 3)) {
-      if (lead == 0xef && column_ == 1) {
+    const uint8_t offset = static_cast<uint8_t>(byte - flash_byte(row + 2));
+    if (lead_byte == flash_byte(row) && second_byte == flash_byte(row + 1) &&
+        offset <= flash_byte(row + 3)) {
+      if (lead_byte == 0xef && column_ == 1) {
         column_ = 0;  // the byte order mark is no part of the line
         crc_ = 0;
       }
       return flash_byte(row + 4);
     }
   }
-  return kOdd;
+  return kUnknownCharacter;
 }
 
-Text Reader::end_line() {
-  if (lead_ != 0) take(kBroken);
-  lead_ = 0;
+TextState Reader::end_line() {
+  if (lead_byte_ != 0) take(kInvalidUtf8);
+  lead_byte_ = 0;
   const bool is_cut = check_ != kNoCheck && check_ < kAllDigits && place_ != kComment;
   take('\n');
   if (is_cut) report(Problem::kChecksum);
@@ -158,20 +159,20 @@ Text Reader::end_line() {
     problem_ = Problem::kChecksum;
     token_column_ = 1;
   }
-  place_ = kBetween;
+  place_ = kNoToken;
   column_ = 0;
   check_ = kNoCheck;
   is_damaged_ = false;
   crc_ = 0;
-  if (problem_ != Problem::kNone) return Text::kProblem;
+  if (problem_ != Problem::kNone) return TextState::kProblem;
   const bool lacks_tasks = wants_tasks();
   if (lacks_tasks) {
-    token_column_ = lasting_column_;
-    lasting_column_ = 1;  // in a line before
+    token_column_ = lone_forever_column_;
+    lone_forever_column_ = 1;  // in a line before
   }
-  if (stack_ != names_) return Text::kMore;
-  if (lacks_tasks) return Text::kProblem;
-  return state_ == kBegin ? Text::kNothing : Text::kProgram;
+  if (stack_ != names_) return TextState::kOpenBlock;
+  if (lacks_tasks) return TextState::kProblem;
+  return state_ == kBegin ? TextState::kNothing : TextState::kProgram;
 }
 
 // Takes a character, or '\n' for the end of the line.
@@ -183,7 +184,7 @@ void Reader::take(uint8_t letter) {
   if (static_cast<uint8_t>(letter - 'a') < 26) capital = static_cast<uint8_t>(letter - 0x20);
   const bool is_word = value < 10 || static_cast<uint8_t>(capital - 'A') < 26 || letter == '_';
   if (place == kComment) {
-    if (letter != '\n' && letter != kBroken) return;
+    if (letter != '\n' && letter != kInvalidUtf8) return;
   } else if (place == kWord) {
     if (is_word) {
       add_letter(capital);
@@ -192,7 +193,7 @@ void Reader::take(uint8_t letter) {
     if ((letter == '\b' || letter == 0x7f) && column_ != 255) {
       // this byte, and the letter that it takes back
       last_column_ = column_ = static_cast<uint8_t>(column_ - 2);
-      if (--letters_ == 0) place_ = kBetween;
+      if (--letters_ == 0) place_ = kNoToken;
       return;
     }
     end_word();
@@ -211,31 +212,31 @@ void Reader::take(uint8_t letter) {
       return;
     }
     token(kNumberToken);
-  } else if (place != kBetween) {
+  } else if (place != kNoToken) {
     if (place == '/' && letter == '/') {
       last_column_ = static_cast<uint8_t>(column_ - 2);
       place_ = kComment;
       return;
     }
-    uint8_t first = place;  // is now the opcode
-    place_ = kBetween;
-    if (first == '/') {
-      first = token_of(Op::kDiv);
+    uint8_t op_token = place;  // is now the opcode
+    place_ = kNoToken;
+    if (op_token == '/') {
+      op_token = token_of(Op::kDiv);
     } else {
-      first = first == '<' ? token_of(Op::kLt) : token_of(Op::kGt);
+      op_token = op_token == '<' ? token_of(Op::kLt) : token_of(Op::kGt);
       bool are_two = true;
       if (letter == '=') {
-        first++;
+        op_token++;
       } else if (letter == '>' && place == '<') {
-        first = token_of(Op::kNe);
+        op_token = token_of(Op::kNe);
       } else {
         are_two = false;
       }
       if (are_two) letter = ' ';
     }
-    token(first);
+    token(op_token);
   }
-  place_ = kBetween;
+  place_ = kNoToken;
   if (letter == ' ' || letter == '\t' || problem_ != Problem::kNone) return;
   if (is_word || letter == '.') token_column_ = column_;
   if (letter == '.' || value < 10) {
@@ -264,13 +265,13 @@ void Reader::add_letter(uint8_t letter) {
 void Reader::sign(uint8_t letter) {
   for (const uint8_t* sign = kSigns; flash_byte(sign) != 0; sign += 2) {
     if (flash_byte(sign) != letter) continue;
-    const uint8_t its = flash_byte(sign + 1);
+    const uint8_t token_of_sign = flash_byte(sign + 1);
     // what is wrong at the end of a value or an instruction, is so with what stands before it
-    if (its != letter || its == '(') token_column_ = column_;
-    if (its == 0) {
+    if (token_of_sign != letter || token_of_sign == '(') token_column_ = column_;
+    if (token_of_sign == 0) {
       place_ = letter;
     } else {
-      token(its);
+      token(token_of_sign);
     }
     return;
   }

@@ -16,12 +16,12 @@
 
 namespace tiniscript {
 
-enum class Text : uint8_t {
-  kGoesOn,   // the line has not ended
-  kNothing,  // the line has ended: no program has begun
-  kMore,     // the line has ended: a block or a bracket is open
-  kProgram,  // the line has ended, and with it a whole program
-  kProblem,  // the line has ended: there is a problem in it, and the program is lost
+enum class TextState : uint8_t {
+  kOpenLine,   // the line has not ended
+  kNothing,    // the line has ended: no program has begun
+  kOpenBlock,  // the line has ended: a block or a bracket is open
+  kProgram,    // the line has ended, and with it a whole program
+  kProblem,    // the line has ended: there is a problem in it, and the program is lost
 };
 
 class Reader {
@@ -30,7 +30,7 @@ class Reader {
   void begin(uint8_t* buffer, uint16_t room);
 
   // Takes a byte. CR, LF or both end a line.
-  tini_noinline Text put(uint8_t byte);
+  tini_noinline TextState put(uint8_t byte);
 
   // Goes on in another buffer. The words that were read last are forgotten. The one before has at
   // most 255 bytes, and lies elsewhere.
@@ -46,7 +46,7 @@ class Reader {
   bool may_end() const { return brackets_ == 0 && stack_ == names_; }
 
   // Whether the code after this number of bytes consists only of S.
-  bool is_stop_after(uint8_t before) const;
+  bool is_stop_after(uint8_t start) const;
 
   // Whether the program so far is S.
   bool is_stop() const { return !has_setup_ && is_stop_after(0); }
@@ -62,7 +62,7 @@ class Reader {
   }
 
   // After kMore: the word for which it waits, or ')'.
-  uint8_t awaited() const;
+  uint8_t awaited_word() const;
 
   // After kProgram: how the program starts, and the length of its code in the buffer, which the
   // machine's verifier accepts.
@@ -81,7 +81,7 @@ class Reader {
 
   // After kRange: the number in thousandths, and the least (0) or the most (4) that goes there.
   int32_t value() const { return static_cast<int32_t>(value_); }
-  int32_t limit(uint8_t at) const;
+  int32_t limit(uint8_t offset) const;
 
  private:
   struct Block;
@@ -90,8 +90,8 @@ class Reader {
 
   // characters, in reader.cpp
   uint8_t character(uint8_t byte);
-  bool checks(uint8_t letter);
-  Text end_line();
+  bool takes_checksum(uint8_t letter);
+  TextState end_line();
   void take(uint8_t letter);
   void sign(uint8_t letter);
   void add_letter(uint8_t letter);
@@ -99,7 +99,7 @@ class Reader {
   tini_noinline void scale(uint8_t digit);
   void report(Problem problem) { problem_ = problem; }
   bool wants_tasks() const {
-    return kReadsDefs && lasting_column_ != 0 && tasks_ == 0 && !has_problem();
+    return kReadsDefs && lone_forever_column_ != 0 && tasks_ == 0 && !has_problem();
   }
 
   // words, in reader_names.cpp
@@ -111,40 +111,40 @@ class Reader {
   SensorBits ask();
   bool take_word();
   void find_name();
-  void add_name(uint8_t info, uint8_t more);
+  void add_name(uint8_t info, uint8_t data_bytes);
 
   // instructions, in reader_parser.cpp
   void token(uint8_t token);
   Problem parse(uint8_t token);
   Problem instruction(uint8_t token);
   Problem after_name(uint8_t token);
-  Problem before(Problem problem);
-  static Problem no_end(uint8_t token);  // with a token where an instruction must end
+  Problem at_previous_token(Problem problem);
+  static Problem end_problem(uint8_t token);  // with a token where an instruction must end
   bool is_forever() const { return forever_column_ != 0; }
   void end_arguments();
   Problem end_move(uint8_t token);
   Problem end_assignment(uint8_t token);
 
   // blocks, in reader_blocks.cpp
-  void open(uint8_t type, uint8_t ends);
+  void open(uint8_t type, uint8_t end_operand);
   void emit_open(uint8_t op, uint8_t type);
   Problem close(uint8_t type);
   Problem next_arm();
   Problem leave_loop();
 
   // DEFs, tasks and ways, in reader_defs.cpp
-  void open_routine(uint8_t type, uint8_t ends);
+  void open_routine(uint8_t type, uint8_t end_operand);
   void close_routine(Block* block);
   Problem define(uint8_t token);
-  Problem head_of_def(uint8_t token);
-  Problem name_value_of_def(uint8_t token);
+  Problem def_head(uint8_t token);
+  Problem def_value_name(uint8_t token);
   Problem begin_task(bool is_when);
   bool reach(uint16_t defs);
   Problem begin_call(uint8_t token);
   bool is_call() const { return kReadsDefs && callee_ != 0; }
-  void give();
+  void set_call_value();
   void call();
-  Problem end_way(bool is_turn);
+  Problem end_distance(bool is_turn);
 
   // expressions, in reader_values.cpp
   void begin_value();
@@ -162,8 +162,8 @@ class Reader {
   void emit(uint8_t byte);
   void emit_numbered(uint8_t op, uint8_t first_short, uint8_t number);
   void emit_number(bool is_minus);
-  void link(uint8_t* ends);
-  void resolve(uint8_t at);
+  void link(uint8_t* end_operand);
+  void resolve(uint8_t offset);
   void read_first();
   tini_noinline void insert(uint8_t byte);
   void push(uint8_t byte);
@@ -177,8 +177,8 @@ class Reader {
   uint8_t* end_;
   uint8_t length_;  // of the code
   Problem problem_;
-  uint32_t value_;  // of the number's digits so far; after the number its thousandths
-  uint8_t first_;   // where the code of this instruction begins, after its readings
+  uint32_t value_;      // of the number's digits so far; after the number its thousandths
+  uint8_t code_start_;  // where the code of this instruction begins, after its readings
 
   // The members that the console uses, near the beginning: that takes less code.
   uint8_t setup_;
@@ -189,11 +189,11 @@ class Reader {
   uint8_t place_;
   uint8_t letters_;  // of the word after the code
   uint8_t column_;
-  uint8_t token_column_;   // or that of the problem
-  uint8_t before_column_;  // of the token before
-  uint8_t last_column_;    // of the last character but blanks and comments
-  uint8_t lead_;           // the first byte of a character of UTF-8 that is not whole
-  uint8_t second_;
+  uint8_t token_column_;     // or that of the problem
+  uint8_t previous_column_;  // of the token before
+  uint8_t last_column_;      // of the last character but blanks and comments
+  uint8_t lead_byte_;        // the first byte of a character of UTF-8 that is not whole
+  uint8_t second_byte_;
   uint8_t byte_;
   uint8_t check_;  // what has come of a checksum
   bool is_damaged_;
@@ -203,41 +203,41 @@ class Reader {
 
   // the parser
   uint8_t state_;
-  uint8_t what_;            // the instruction, by its word
-  uint8_t op_;              // its opcode
-  uint8_t kinds_;           // of its arguments from this one on
-  uint8_t target_;          // the variable or the actuator that it sets
-  uint8_t shape_;           // whether this argument is just a number
-  uint8_t forever_column_;  // of FOREVER among these arguments, or 0
-  uint8_t depth_;           // values that wait
-  uint16_t value_kinds_;    // a bit for each, the last one lowest: whether it is a yes/no
-  SensorBits read_;         // that are surely read
-  SensorBits known_;        // the same, and those that this instruction has read
-  SensorBits asked_;        // that have been read anywhere
+  uint8_t command_;           // the instruction, by its word
+  uint8_t op_;                // its opcode
+  uint8_t kinds_;             // of its arguments from this one on
+  uint8_t target_;            // the variable or the actuator that it sets
+  uint8_t shape_;             // whether this argument is just a number
+  uint8_t forever_column_;    // of FOREVER among these arguments, or 0
+  uint8_t depth_;             // values that wait
+  uint16_t value_kinds_;      // a bit for each, the last one lowest: whether it is a yes/no
+  SensorBits read_sensors_;   // that are surely read
+  SensorBits known_sensors_;  // the same, and those that this instruction has read
+  SensorBits asked_sensors_;  // that have been read anywhere
   uint8_t variables_;
   uint8_t blocks_;
 
   // the name that was read last
-  uint8_t found_;
+  uint8_t name_kind_;
   uint8_t number_;
   const uint8_t* entry_;
 
   // DEFs, tasks and ways
   tini_with_defs uint8_t defs_;
   tini_with_defs uint8_t tasks_;
-  tini_with_defs uint8_t deepest_;        // blocks open at once in this routine
-  tini_with_defs uint8_t calls_;          // calls open at once in it
-  tini_with_defs uint8_t beside_blocks_;  // both in the other tasks, all of them together
-  tini_with_defs uint8_t beside_calls_;
-  tini_with_defs Def* def_;                // the DEF that is open, or null
-  tini_with_defs uint16_t callee_;         // the DEF that is called, from the end of the buffer, or 0
-  tini_with_defs uint8_t wanted_;          // values that this call still wants
-  tini_with_defs bool in_task_;            // whether a task is open
-  tini_with_defs uint16_t in_main_;        // DEFs with values that the main task reaches,
-  tini_with_defs uint16_t in_this_task_;   // this task,
-  tini_with_defs uint16_t in_ended_tasks_; // and those that have ended: a bit for each
-  tini_with_defs uint8_t lasting_column_;  // of a FOREVER that wants tasks, or 0
-  tini_with_defs bool is_way_;             // whether this move goes one
+  tini_with_defs uint8_t max_blocks_;    // blocks open at once in this routine
+  tini_with_defs uint8_t calls_;         // calls open at once in it
+  tini_with_defs uint8_t other_blocks_;  // both in the other tasks, all of them together
+  tini_with_defs uint8_t other_calls_;
+  tini_with_defs Def* def_;                     // the DEF that is open, or null
+  tini_with_defs uint16_t callee_;              // the called DEF, from the buffer's end, or 0
+  tini_with_defs uint8_t missing_values_;       // values that this call still wants
+  tini_with_defs bool is_in_task_;              // whether a task is open
+  tini_with_defs uint16_t main_defs_;           // DEFs with values that the main task reaches,
+  tini_with_defs uint16_t task_defs_;           // this task,
+  tini_with_defs uint16_t ended_task_defs_;     // and those that have ended: a bit for each
+  tini_with_defs uint8_t lone_forever_column_;  // of a FOREVER that wants tasks, or 0
+  tini_with_defs bool is_by_distance_;          // whether this move goes one
 };
 
 #undef tini_with_defs

@@ -18,7 +18,7 @@ void Reader::end_word() {
     return token(word);
   }
   find_name();
-  if (found_ == 0) find_in_kit();
+  if (name_kind_ == 0) find_in_kit();
   token(kNameToken);
 }
 
@@ -26,10 +26,10 @@ void Reader::end_word() {
 // Its last letter is marked; `unmark` takes that off again.
 uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
   uint8_t* const word = buffer_ + length_;
-  uint8_t* const last = word + letters_ - 1;
-  *last |= kLastLetter;
+  uint8_t* const last_letter = word + letters_ - 1;
+  *last_letter |= kLastLetter;
   const uint8_t number = find_word(table, word, letters_);
-  *last ^= unmark;
+  *last_letter ^= unmark;
   return number;
 }
 
@@ -52,7 +52,7 @@ void Reader::find_in_kit() {
     const uint8_t device = flash_byte(entry++);
     const uint8_t number = (device & kIsActuator) != 0 ? actuators++ : sensors++;
     if (is_found) {
-      found_ = device;
+      name_kind_ = device;
       number_ = number;
       entry_ = entry;
       return;
@@ -64,51 +64,52 @@ void Reader::find_in_kit() {
 // Notes that the sensor that was named has been asked, and returns its bit.
 SensorBits Reader::ask() {
   const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << number_);
-  if (kHasRemote) asked_ |= bit;
+  if (kHasRemote) asked_sensors_ |= bit;
   return bit;
 }
 
 // Takes the word as a name of the program, if it may be one. From then on, the remote control's
 // reading of this name counts as asked. False: it is taken.
 bool Reader::take_word() {
-  const SensorBits before = asked_;
-  return found_ == 0 || (kHasRemote && (found_ & kGivesWay) != 0 && (ask() & before) == 0);
+  const SensorBits asked_before = asked_sensors_;
+  return name_kind_ == 0 ||
+         (kHasRemote && (name_kind_ & kGivesWay) != 0 && (ask() & asked_before) == 0);
 }
 
 void Reader::find_name() {
   const uint8_t* entry = names_;
-  found_ = 0;
+  name_kind_ = 0;
   while (entry != end_) {
     const uint8_t info = *entry++;
-    const uint8_t* const facts = entry;
+    const uint8_t* const data = entry;
     const bool is_def = kReadsDefs && (info & kNameDef) != 0;
     if (is_def) entry += sizeof(Def);
     if (!matches(&entry, false)) continue;
-    entry_ = facts;
+    entry_ = data;
     number_ = info & (kVariables - 1);
-    found_ = kIsVariable;
-    if ((info & kNameYesNo) != 0) found_ = kIsVariable | kIsYesNo;
-    if (is_def) found_ = kIsDef;
+    name_kind_ = kIsVariable;
+    if ((info & kNameYesNo) != 0) name_kind_ = kIsVariable | kIsYesNo;
+    if (is_def) name_kind_ = kIsDef;
     // the values of the DEF that is open lie below it
-    if (kReadsDefs && (info & kNameOfDef) != 0 && facts > reinterpret_cast<uint8_t*>(def_)) {
-      found_ = kIsGone;
+    if (kReadsDefs && (info & kNameOfDef) != 0 && data > reinterpret_cast<uint8_t*>(def_)) {
+      name_kind_ = kIsOfOtherDef;
     }
     return;
   }
 }
 
-// Adds the word as a name, `more` bytes before its letters.
-void Reader::add_name(uint8_t info, uint8_t more) {
+// Adds the word as a name, `data_bytes` bytes before its letters.
+void Reader::add_name(uint8_t info, uint8_t data_bytes) {
   // At the begin of an instruction only blocks wait: those that are counted, and a DEF.
   static_assert((kBlocks + 1) * sizeof(Block) <= 255, "what waits is copied at once");
-  const uint16_t bytes = static_cast<uint16_t>(1 + more + letters_);
+  const uint16_t bytes = static_cast<uint16_t>(1 + data_bytes + letters_);
   if (!has_room(static_cast<uint16_t>(letters_ + bytes - 1))) return;
-  uint8_t* const waits = stack_ - bytes;
-  copy_bytes(stack_, waits, static_cast<uint8_t>(names_ - stack_));
-  stack_ = waits;
+  uint8_t* const new_stack = stack_ - bytes;
+  copy_bytes(stack_, new_stack, static_cast<uint8_t>(names_ - stack_));
+  stack_ = new_stack;
   names_ -= bytes;
   *names_ = info;
-  copy_bytes(buffer_ + length_, names_ + 1 + more, letters_);
+  copy_bytes(buffer_ + length_, names_ + 1 + data_bytes, letters_);
 }
 
 }  // namespace tiniscript

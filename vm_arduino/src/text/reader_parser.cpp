@@ -15,7 +15,7 @@ static_assert(byte_of(Op::kWatchForeverWait) - byte_of(Op::kWatchWait) == kWatch
 
 }  // namespace
 
-Problem Reader::no_end(uint8_t token) {
+Problem Reader::end_problem(uint8_t token) {
   if (ends(token)) return Problem::kNone;
   return token == ')' ? Problem::kClose : Problem::kSeparator;
 }
@@ -31,19 +31,19 @@ void Reader::token(uint8_t token) {
   }
   const Problem problem = parse(token);
   if (problem != Problem::kNone) report(problem);
-  before_column_ = token_column_;
+  previous_column_ = token_column_;
 }
 
 // The problem with what stands before this token.
-Problem Reader::before(Problem problem) {
-  token_column_ = before_column_;
+Problem Reader::at_previous_token(Problem problem) {
+  token_column_ = previous_column_;
   return problem;
 }
 
 Problem Reader::parse(uint8_t token) {
   if (!kReadsDefs && token >= kWordTask && token <= kWordEndwhen) return Problem::kLacks;
   const uint8_t state = state_;
-  if (kReadsDefs && state >= kAfterDefName) return head_of_def(token);
+  if (kReadsDefs && state >= kAfterDefName) return def_head(token);
   switch (state) {
     case kBegin:
       if (token >= kWordSi && token <= kWordPing) {
@@ -79,7 +79,7 @@ Problem Reader::parse(uint8_t token) {
       return end_move(token);
     case kSeparator:
       state_ = kInstruction;
-      return no_end(token);
+      return end_problem(token);
     case kArgument:
     case kOperand:
     case kAfterMinus:
@@ -91,10 +91,10 @@ Problem Reader::parse(uint8_t token) {
 
 // A token begins an instruction.
 Problem Reader::instruction(uint8_t token) {
-  first_ = length_;
-  known_ = read_;
+  code_start_ = length_;
+  known_sensors_ = read_sensors_;
   depth_ = 0;
-  what_ = token;
+  command_ = token;
   if (kReadsDefs) callee_ = 0;
   if (token == kNameToken) {
     state_ = kAfterName;
@@ -125,7 +125,7 @@ Problem Reader::instruction(uint8_t token) {
   if (token < kFirstWord) return token == ')' ? Problem::kClose : Problem::kInstruction;
   state_ = kArguments;
   forever_column_ = 0;
-  if (kReadsDefs) is_way_ = false;
+  if (kReadsDefs) is_by_distance_ = false;
   const uint8_t* const row = kCommandRows[token - kFirstWord];
   kinds_ = flash_byte(row);
   op_ = flash_byte(row + 1);
@@ -133,43 +133,44 @@ Problem Reader::instruction(uint8_t token) {
   if (token == kWordElseif) return next_arm();
   if (token == kWordWhile) {
     emit_open(byte_of(Op::kWhile), kWhileBlock);
-    first_ = length_;
+    code_start_ = length_;
   }
   return Problem::kNone;
 }
 
 // The part after a name at the beginning of an instruction.
 Problem Reader::after_name(uint8_t token) {
-  const uint8_t found = found_;
+  const uint8_t kind = name_kind_;
   state_ = kInstruction;
   target_ = number_;
   if (token == token_of(Op::kEq)) {
     if (take_word()) {
-      if (variables_ == kVariables) return before(Problem::kLimit);
+      if (variables_ == kVariables) return at_previous_token(Problem::kLimit);
       target_ = variables_;
       add_name(variables_, 0);
-    } else if ((found & kIsVariable) == 0) {
-      return before(Problem::kTaken);
+    } else if ((kind & kIsVariable) == 0) {
+      return at_previous_token(Problem::kTaken);
     }
-    if ((found & kIsYesNo) != 0) target_ |= kNameYesNo;
+    if ((kind & kIsYesNo) != 0) target_ |= kNameYesNo;
     kinds_ = kAnyKind;
     begin_value();
     state_ = kOperand;
     return Problem::kNone;
   }
-  if (found == 0 || (kReadsDefs && found == kIsGone)) return before(Problem::kUnknownWord);
-  if ((found & kIsActuator) != 0) {
+  if (kind == 0 || (kReadsDefs && kind == kIsOfOtherDef))
+    return at_previous_token(Problem::kUnknownWord);
+  if ((kind & kIsActuator) != 0) {
     if (token != '(') return Problem::kOpen;
-    kinds_ = (found & kIsYesNo) != 0 ? kYesNoKind : kDeviceRange;
+    kinds_ = (kind & kIsYesNo) != 0 ? kYesNoKind : kDeviceRange;
     brackets_ = 1;
     begin_value();
     return Problem::kNone;
   }
-  if ((found & kIsVariable) != 0) return before(Problem::kInstruction);
-  if (kReadsDefs && found == kIsDef) return begin_call(token);
+  if ((kind & kIsVariable) != 0) return at_previous_token(Problem::kInstruction);
+  if (kReadsDefs && kind == kIsDef) return begin_call(token);
   if (!ends(token)) return Problem::kSeparator;
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
-  read_ |= ask();
+  read_sensors_ |= ask();
   return Problem::kNone;
 }
 
@@ -177,35 +178,35 @@ Problem Reader::after_name(uint8_t token) {
 void Reader::end_arguments() {
   brackets_ = 0;
   state_ = kSeparator;
-  const uint8_t what = what_;
+  const uint8_t command = command_;
   if (is_call()) return call();
-  if (what == kNameToken) {
+  if (command == kNameToken) {
     emit_numbered(byte_of(Op::kSet), byte_of(Op::kSet0), target_);
     return;
   }
-  if (what <= kWordW) {
+  if (command <= kWordW) {
     state_ = kAfterMove;
     return;
   }
   uint8_t op = op_;
-  if (what == kWordShow && (value_kinds_ & 1) != 0) op++;
-  if (what == kWordLoop && is_forever()) {
+  if (command == kWordShow && (value_kinds_ & 1) != 0) op++;
+  if (command == kWordLoop && is_forever()) {
     emit(byte_of(Op::kForever));
     open(kForeverBlock, 0);
-  } else if (what == kWordLoop) {
+  } else if (command == kWordLoop) {
     emit_open(op, kLoopBlock);
-  } else if (what == kWordIf) {
+  } else if (command == kWordIf) {
     emit(op);
     emit(0);
     open(kIfBlock, 0);
   } else {
     emit(op);
-    if (what == kWordWhile) {
+    if (command == kWordWhile) {
       link(&top()->ends);
-    } else if (what == kWordElseif) {
+    } else if (command == kWordElseif) {
       emit(0);
-      top()->to = length_;
-      top()->taken = known_;
+      top()->code_start = length_;
+      top()->known_before = known_sensors_;
     }
   }
 }
@@ -213,19 +214,19 @@ void Reader::end_arguments() {
 // The part after the brackets of a move or a wait: its UNTIL, or its end.
 Problem Reader::end_move(uint8_t token) {
   uint8_t op = op_;
-  if (kReadsDefs && is_way_) emit(byte_of(Op::kEscape));
+  if (kReadsDefs && is_by_distance_) emit(byte_of(Op::kEscape));
   const bool has_until = token == kWordUntil;
   if (has_until || (kReadsDefs && is_forever())) {
-    const uint8_t step = what_ == kWordW ? kWatchWait : kWatchMove;
+    const uint8_t step = command_ == kWordW ? kWatchWait : kWatchMove;
     op = static_cast<uint8_t>(op + step);
     if (is_forever()) op = static_cast<uint8_t>(op + step / 2);
     emit(op);
   }
   if (has_until) {
-    first_ = length_;
-    known_ = 0;
+    code_start_ = length_;
+    known_sensors_ = 0;
     depth_ = 0;
-    what_ = kWordUntil;
+    command_ = kWordUntil;
     op_ = byte_of(Op::kUntil);
     kinds_ = kYesNoKind;
     state_ = kArguments;
@@ -237,13 +238,13 @@ Problem Reader::end_move(uint8_t token) {
       return Problem::kForeverHere;
     }
     // parallel to other tasks: only the end of the program shows whether there are any
-    if (lasting_column_ == 0) lasting_column_ = forever_column_;
+    if (lone_forever_column_ == 0) lone_forever_column_ = forever_column_;
     emit(byte_of(Op::kPushFalse));
     op = byte_of(Op::kUntil);
   }
   emit(op);
   state_ = kInstruction;
-  return no_end(token);
+  return end_problem(token);
 }
 
 // The value of an assignment has ended. The kind of a variable is that of its first one.
@@ -254,11 +255,11 @@ Problem Reader::end_assignment(uint8_t token) {
     variables_++;
     *names_ |= kind;
   } else if (((target_ ^ kind) & kNameYesNo) != 0) {
-    return before(Problem::kKind);
+    return at_previous_token(Problem::kKind);
   }
   emit_numbered(byte_of(Op::kSetVar), byte_of(Op::kSetVar0), number);
   state_ = kInstruction;
-  return no_end(token);
+  return end_problem(token);
 }
 
 }  // namespace tiniscript

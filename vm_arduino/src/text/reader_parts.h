@@ -22,7 +22,7 @@ constexpr uint8_t byte_of(Op op) { return static_cast<uint8_t>(op); }
 constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_of(op)); }
 
 // The addresses of its bytes. The signs that may be the first half of another stand for themselves.
-enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
+enum Place : uint8_t { kNoToken, kWord, kComment, kWhole, kPoint, kPlaces };
 
 // What the parser expects next.
 enum ParseState : uint8_t {
@@ -50,12 +50,12 @@ enum ParseState : uint8_t {
 };
 
 // Whether an argument is just a number.
-enum Shape : uint8_t { kNoPlain, kFresh, kMinusFirst, kPlain };
+enum Shape : uint8_t { kNotPlain, kFresh, kMinusFirst, kPlain };
 
 // The kind of a name that is no device.
 constexpr uint8_t kIsVariable = 16;
 constexpr uint8_t kIsDef = 32;
-constexpr uint8_t kIsGone = 64;  // a value of another DEF
+constexpr uint8_t kIsOfOtherDef = 64;  // a value of another DEF
 
 // Among the waiting operators: open brackets, with the opcode of their function. The second
 // argument of a function has kSecond, and kBase is after all.
@@ -68,21 +68,21 @@ enum BlockType : uint8_t { kIfBlock, kLoopBlock, kWhileBlock, kDefBlock, kTaskBl
 constexpr uint8_t kBlockType = 7;
 constexpr uint8_t kForeverBlock = 8 | kLoopBlock;  // one that does not count
 
-// A block whose end has not come yet. In a DEF or a task, `after` and `taken` are depths, blocks in
-// the low byte and calls in the high one: of the main task, and of the others.
+// A block whose end has not come yet. In a DEF or a task, `read_after` and `known_before` are
+// depths, blocks in the low byte and calls in the high one: of the main task, and of the others.
 struct __attribute__((packed)) Reader::Block {
   uint8_t type;
-  uint8_t ends;       // the last of the operands that want its end; each holds the one before
-  uint8_t to;         // of an IF: after the jump to its next arm, or 0; of a loop: its first code
-  SensorBits before;  // surely read before it
-  SensorBits after;   // by all arms of an IF so far
-  SensorBits taken;   // the readings of its conditions, and those before
+  uint8_t ends;             // the last of the operands that want its end; each holds the one before
+  uint8_t code_start;       // of an IF: after the jump to its next arm, or 0; of a loop: its first code
+  SensorBits read_before;   // surely read before it
+  SensorBits read_after;    // by all arms of an IF so far
+  SensorBits known_before;  // the readings of its conditions, and those before
 };
 
 // In front of the letters of each name stands the number of its variable, with kNameYesNo or
 // kNameOfDef, or kNameDef and then this.
 struct __attribute__((packed)) Reader::Def {
-  uint8_t at;
+  uint8_t offset;
   uint8_t blocks;
   uint8_t calls;
   uint8_t values;    // the variable of the first one, and kOneValue for each

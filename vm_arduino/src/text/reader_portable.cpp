@@ -10,7 +10,7 @@ namespace tiniscript {
 namespace {
 
 // The number, or 65535 for all that are larger.
-tini_noinline uint16_t limited(uint32_t number) {
+tini_noinline uint16_t clamp(uint32_t number) {
   return number > 0xffff ? uint16_t{0xffff} : static_cast<uint16_t>(number);
 }
 
@@ -18,8 +18,8 @@ tini_noinline uint16_t limited(uint32_t number) {
 
 // Whether a byte fits after the code and `bytes` more.
 bool Reader::has_room(uint16_t bytes) {
-  const uint8_t* const behind = buffer_ + length_ + bytes;
-  if (behind < stack_) return true;
+  const uint8_t* const end = buffer_ + length_ + bytes;
+  if (end < stack_) return true;
   report(Problem::kFull);
   return false;
 }
@@ -47,12 +47,12 @@ void Reader::push(uint8_t byte) {
 
 uint8_t Reader::pop() { return *stack_++; }
 
-// Lets the operand at `at`, and those that it names one after the other, lead here.
-void Reader::resolve(uint8_t at) {
-  while (at != 0) {
-    const uint8_t before = buffer_[at];
-    buffer_[at] = static_cast<uint8_t>(length_ - at - 1);
-    at = before;
+// Lets the operand at `offset`, and those that it names one after the other, lead here.
+void Reader::resolve(uint8_t offset) {
+  while (offset != 0) {
+    const uint8_t next = buffer_[offset];
+    buffer_[offset] = static_cast<uint8_t>(length_ - offset - 1);
+    offset = next;
   }
 }
 
@@ -64,8 +64,8 @@ void Reader::emit_number(bool is_minus) {
     significand /= 10;
     places--;
   }
-  uint16_t number = limited(significand);
-  const uint16_t most = static_cast<uint16_t>(uint16_t{32767} + is_minus);
+  uint16_t number = clamp(significand);
+  const uint16_t limit = static_cast<uint16_t>(uint16_t{32767} + is_minus);
   uint8_t op = byte_of(Op::kPush16);
   uint8_t bytes = 2;
   if (places == 0 && number <= 12 && is_minus) {
@@ -88,10 +88,10 @@ void Reader::emit_number(bool is_minus) {
   } else if (places == 1 && number <= static_cast<uint8_t>(127 + is_minus)) {
     op = byte_of(Op::kPushTenths);
     bytes = 1;
-  } else if (places != 0 || number > most) {
+  } else if (places != 0 || number > limit) {
     op = byte_of(Op::kPushMilli);
-    number = limited(value_);
-    if (number > most) {
+    number = clamp(value_);
+    if (number > limit) {
       op = byte_of(Op::kPush32);
       bytes = 4;
     }
@@ -108,15 +108,15 @@ void Reader::emit_number(bool is_minus) {
 // Whether the word is the one at `entry`, which then moves past it.
 bool Reader::matches(const uint8_t** entry, bool in_flash) {
   const uint8_t* word = buffer_ + length_;
-  const uint8_t* at = *entry;
+  const uint8_t* cursor = *entry;
   bool is_same = true;
   uint8_t letter;
   do {
-    letter = in_flash ? flash_byte(at) : *at;
-    at++;
+    letter = in_flash ? flash_byte(cursor) : *cursor;
+    cursor++;
     if (is_same && letter != *word++) is_same = false;
   } while ((letter & kLastLetter) == 0);
-  *entry = at;
+  *entry = cursor;
   return is_same;
 }
 

@@ -43,9 +43,9 @@ void Reader::push_kind(bool is_yes_no) {
 // A token where an operand should begin.
 Problem Reader::operand(uint8_t token) {
   const uint8_t shape = shape_;
-  shape_ = kNoPlain;
+  shape_ = kNotPlain;
   if (token == kNumberToken) {
-    if (shape != kNoPlain) shape_ = kPlain;
+    if (shape != kNotPlain) shape_ = kPlain;
     number();
   } else if (token == kNameToken) {
     return name_value();
@@ -55,8 +55,9 @@ Problem Reader::operand(uint8_t token) {
     emit(op);
     push_kind(token != kWordTime);
   } else if (token == kWordForever) {
-    const uint8_t what = what_;
-    if (state_ != kArgument || (what != kWordLoop && what > kWordW)) return Problem::kForeverHere;
+    const uint8_t command = command_;
+    if (state_ != kArgument || (command != kWordLoop && command > kWordW))
+      return Problem::kForeverHere;
     forever_column_ = token_column_;
     state_ = kAfterForever;
   } else if (token == kWordNot) {
@@ -94,15 +95,15 @@ void Reader::number() {
 
 Problem Reader::name_value() {
   const uint8_t number = number_;
-  if ((found_ & kIsSensor) != 0) {
+  if ((name_kind_ & kIsSensor) != 0) {
     read_first();
     emit_numbered(byte_of(Op::kPushSensor), byte_of(Op::kPushSensor0), number);
-  } else if ((found_ & kIsVariable) != 0 && number != variables_) {
+  } else if ((name_kind_ & kIsVariable) != 0 && number != variables_) {
     emit_numbered(byte_of(Op::kPushVar), byte_of(Op::kPushVar0), number);
   } else {
-    return (found_ & (kIsActuator | kIsDef)) != 0 ? Problem::kTaken : Problem::kUnknownValue;
+    return (name_kind_ & (kIsActuator | kIsDef)) != 0 ? Problem::kTaken : Problem::kUnknownValue;
   }
-  push_kind((found_ & kIsYesNo) != 0);
+  push_kind((name_kind_ & kIsYesNo) != 0);
   return Problem::kNone;
 }
 
@@ -120,7 +121,7 @@ Problem Reader::operators(uint8_t token) {
                              ? kinds_ < 16
                              : (bracket & kSecond) != 0 || op == 0 || op == byte_of(Op::kAbs);
     if (kReadsDefs && bracket == kBase && (token == kWordCm || token == kWordDeg)) {
-      return end_way(token == kWordDeg);
+      return end_distance(token == kWordDeg);
     }
     if (!is_end && !is_comma && token != ')') {
       if (brackets_ == 0) return Problem::kSeparator;
@@ -146,7 +147,7 @@ Problem Reader::operators(uint8_t token) {
     pop();  // FOREVER leaves no value
   }
   if (is_call()) {
-    give();
+    set_call_value();
   } else {
     kinds_ = static_cast<uint8_t>(kinds_ / 16);
   }
@@ -163,16 +164,16 @@ Problem Reader::operators(uint8_t token) {
 
 Problem Reader::binary(uint8_t op) {
   const uint8_t binding = binding_of(op);
-  shape_ = kNoPlain;
+  shape_ = kNotPlain;
   for (;;) {
-    const uint8_t its = binding_of(*stack_);
-    if (its < binding) break;
-    if (binding == kComparisons && its == kComparisons) return Problem::kCompare;
+    const uint8_t waiting_binding = binding_of(*stack_);
+    if (waiting_binding < binding) break;
+    if (binding == kComparisons && waiting_binding == kComparisons) return Problem::kCompare;
     apply(pop());
   }
   if (binding <= kAnds) {
     emit(byte_of(binding == kAnds ? Op::kAndThen : Op::kOrElse));
-    push(static_cast<uint8_t>(length_ - first_));
+    push(static_cast<uint8_t>(length_ - code_start_));
     emit(0);
   }
   push(op);
@@ -183,28 +184,28 @@ Problem Reader::binary(uint8_t op) {
 void Reader::apply(uint8_t op) {
   const bool is_unary =
       op == byte_of(Op::kNot) || op == byte_of(Op::kNeg) || op == byte_of(Op::kAbs);
-  const uint8_t all = is_unary ? 1 : 3;
+  const uint8_t mask = is_unary ? 1 : 3;
   uint8_t low = static_cast<uint8_t>(value_kinds_);
-  const uint8_t kinds = low & all;
+  const uint8_t kinds = low & mask;
   const bool is_yes_no = op >= byte_of(Op::kEq);
   Problem problem = Problem::kNone;
   if (!is_yes_no) {
     if (kinds != 0) problem = Problem::kWantsNumber;
   } else if (op >= byte_of(Op::kNot)) {
-    if (kinds != all) problem = Problem::kWantsYesNo;
-  } else if (kinds != 0 && (kinds != all || op > byte_of(Op::kNe))) {
+    if (kinds != mask) problem = Problem::kWantsYesNo;
+  } else if (kinds != 0 && (kinds != mask || op > byte_of(Op::kNe))) {
     problem = Problem::kCompare;
   }
-  if (problem != Problem::kNone) report(before(problem));
+  if (problem != Problem::kNone) report(at_previous_token(problem));
   if (!is_unary) {
     value_kinds_ >>= 1;
     depth_--;
   }
   value_kinds_ = static_cast<uint16_t>((value_kinds_ & 0xfffe) | is_yes_no);
   if (op > byte_of(Op::kNot)) {
-    const uint8_t at = static_cast<uint8_t>(first_ + pop());
-    buffer_[at] = 0;
-    resolve(at);
+    const uint8_t offset = static_cast<uint8_t>(code_start_ + pop());
+    buffer_[offset] = 0;
+    resolve(offset);
   } else {
     emit(op);
   }
@@ -223,10 +224,10 @@ Problem Reader::end_value() {
   return Problem::kNone;
 }
 
-tini_noinline int32_t Reader::limit(uint8_t at) const {
+tini_noinline int32_t Reader::limit(uint8_t offset) const {
   const uint8_t kind = kinds_ & 15;
   const uint8_t* const range = kind == kDeviceRange ? entry_ : kArgumentRanges[kind - kFirstRange];
-  return flash_long(range + at);
+  return flash_long(range + offset);
 }
 
 }  // namespace tiniscript

@@ -23,9 +23,9 @@ template <void (*put)(uint8_t)>
 tini_noinline void put_text(uint8_t number) {
   constexpr uint8_t kNoHalf = 1;
   uint8_t first = kNoHalf;
-  for (uint16_t at = 0;; at++) {
-    uint8_t code = flash_byte(packed_texts() + at / 2);
-    if ((at & 1) == 0) code = static_cast<uint8_t>(code >> 4 | code << 4);
+  for (uint16_t index = 0;; index++) {
+    uint8_t code = flash_byte(packed_texts() + index / 2);
+    if ((index & 1) == 0) code = static_cast<uint8_t>(code >> 4 | code << 4);
     code &= 15;
     if (first != kNoHalf) {
       code |= first;

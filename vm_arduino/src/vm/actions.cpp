@@ -23,7 +23,7 @@ uint32_t time8(uint8_t time) {
 uint32_t duration(int32_t time) { return time < 0 ? 0 : static_cast<uint32_t>(time); }
 
 // Returns `value` limited to `low` to `high`.
-tini_noinline int16_t limited(int32_t value, int16_t low, int16_t high) {
+tini_noinline int16_t clamp(int32_t value, int16_t low, int16_t high) {
   const int16_t part = static_cast<int16_t>(value);
   if (part != value) return value < 0 ? low : high;
   return part < low ? low : part > high ? high : part;
@@ -31,11 +31,11 @@ tini_noinline int16_t limited(int32_t value, int16_t low, int16_t high) {
 
 // A power in percent, from -100 to 100.
 tini_noinline int8_t percent(int32_t power) {
-  return static_cast<int8_t>(limited(whole(power), -100, 100));
+  return static_cast<int8_t>(clamp(whole(power), -100, 100));
 }
 
 // The time of a move is not below 0.
-int8_t of_move(int8_t power) { return power < 0 ? 0 : power; }
+int8_t move_power(int8_t power) { return power < 0 ? 0 : power; }
 
 }  // namespace
 
@@ -53,8 +53,8 @@ bool Machine::sense(uint8_t number) {
 // Shows a value. Without room, a task keeps it and ends its turn, so that nothing stays on the
 // stack; a program without tasks waits for room, and so does the main task before all others.
 inline bool Machine::show(int32_t value) {
-  if (!kHasTasks) return robot_show(value, task_.me->shows_yes_no()) || stay();
-  task_.me->rest_ms = static_cast<uint32_t>(value);
+  if (!kHasTasks) return robot_show(value, task_.current->shows_yes_no()) || stay();
+  task_.current->rest_ms = static_cast<uint32_t>(value);
   return sends() || (has_had_turn() ? pause() : stay());
 }
 
@@ -62,17 +62,17 @@ inline bool Machine::show(int32_t value) {
 // comes there, or not in time.
 inline bool Machine::go_ms(uint8_t code, int32_t* top) {
   if (!is_way(code)) return fail();
-  int32_t* const way = top - 1;
-  if (*way <= 0) return true;
-  const uint8_t power = static_cast<uint8_t>(of_move(percent(*top)));
+  int32_t* const distance = top - 1;
+  if (*distance <= 0) return true;
+  const uint8_t power = static_cast<uint8_t>(move_power(percent(*top)));
   if (kHasDiscs && robot_measures()) {
     return goes_on(power == 0 ? Fault::kNoPower : Fault::kNone);
   }
   const int32_t speed = power == 0 ? 0 : robot_speed((code & 2) != 0, power);
   if (speed <= 0) return goes_on(Fault::kNoPower);
-  *way = static_cast<int32_t>(scaled(static_cast<uint32_t>(*way), 100000,
-                                     static_cast<uint32_t>(speed)));
-  return *way >= 0 || goes_on(Fault::kOverflow);
+  *distance = static_cast<int32_t>(
+      scaled(static_cast<uint32_t>(*distance), 100000, static_cast<uint32_t>(speed)));
+  return *distance >= 0 || goes_on(Fault::kOverflow);
 }
 
 // Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
@@ -100,15 +100,15 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
     if (family == Family::kLook) return look(*top != 0);
     if (family == Family::kEndWhen) return look_again();
   }
-  const bool takes = form.pops() != 0;
+  const bool takes_values = form.pops() != 0;
   const uint8_t first = form.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
-  const int8_t power = takes ? percent(*top) : signed8(bytes[form.size() - 1]);
-  uint32_t time_ms = takes ? duration(form.pops() == 1 ? *top : top[-1]) : time8(first);
+  const int8_t power = takes_values ? percent(*top) : signed8(bytes[form.size() - 1]);
+  uint32_t time_ms = takes_values ? duration(form.pops() == 1 ? *top : top[-1]) : time8(first);
   // of a move; what is neither move nor wait leaves them to the next one
-  task_.me->code = code;
-  task_.me->power = power;
+  task_.current->code = code;
+  task_.current->power = power;
   if (kHasDiscs && *bytes != code && time_ms != 0 && robot_measures()) {
-    task_.me->code |= TaskRecord::kMeasures;
+    task_.current->code |= TaskRecord::kMeasures;
   }
   switch (family) {
     case Family::kShowYesNo:
@@ -138,8 +138,9 @@ bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
       return watch(time_ms);
     case Family::kBeep:
     case Family::kBeep8: {
-      const int32_t hertz = takes ? whole(*top) : static_cast<uint16_t>(bytes[2] | bytes[3] << 8);
-      robot_beep(static_cast<uint16_t>(limited(hertz, 31, 20000)), time_ms);
+      const int32_t hertz =
+          takes_values ? whole(*top) : static_cast<uint16_t>(bytes[2] | bytes[3] << 8);
+      robot_beep(static_cast<uint16_t>(clamp(hertz, 31, 20000)), time_ms);
     }
       // fallthrough
     case Family::kMove:

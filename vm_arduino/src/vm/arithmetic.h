@@ -27,7 +27,7 @@ tini_always_inline bool relates(int32_t a, Comparator comparator, int32_t b) {
   return (kHolds >> (3 * static_cast<uint8_t>(comparator) + order) & 1) != 0;
 }
 
-tini_always_inline int32_t in_thousandths(int16_t whole) { return int32_t{whole} * kOne; }
+tini_always_inline int32_t to_thousandths(int16_t whole) { return int32_t{whole} * kOne; }
 
 // A sum overflows if its sign differs from the signs of both parts.
 tini_always_inline Fault sum(int32_t a, int32_t b, int32_t* result) {

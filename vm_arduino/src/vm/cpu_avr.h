@@ -39,20 +39,20 @@ inline Type* near(Type* object) {
   return object;
 }
 
-inline void clear(void* at, uint8_t fours) {
+inline void clear(void* start, uint8_t fours) {
   // The compiler's own loop clears one byte at a time or takes more registers.
   asm volatile(
       "1: st %a0+, __zero_reg__\n\tst %a0+, __zero_reg__\n\t"
       "st %a0+, __zero_reg__\n\tst %a0+, __zero_reg__\n\t"
       "dec %1\n\tbrne 1b"
-      : "+e"(at), "+r"(fours)
+      : "+e"(start), "+r"(fours)
       :
       : "memory");
 }
 
-constexpr uint16_t kFlagsAt = 0x3e;    // GPIOR0
-constexpr uint16_t kToKeepAt = 0x4a;   // GPIOR1
-constexpr uint16_t kKeepingAt = 0x4b;  // GPIOR2
+constexpr uint16_t kFlagsAt = 0x3e;        // GPIOR0
+constexpr uint16_t kDueSavesAt = 0x4a;     // GPIOR1
+constexpr uint16_t kCurrentSaveAt = 0x4b;  // GPIOR2
 
 tini_always_inline volatile uint8_t& all_flags() {
   return *reinterpret_cast<volatile uint8_t*>(kFlagsAt);
@@ -71,8 +71,8 @@ class QuickByte {
 
 inline void begin_flags() {
   all_flags() = 0;
-  QuickByte<kToKeepAt>() = 0;
-  QuickByte<kKeepingAt>() = 0;
+  QuickByte<kDueSavesAt>() = 0;
+  QuickByte<kCurrentSaveAt>() = 0;
 }
 
 template <uint8_t kBit>

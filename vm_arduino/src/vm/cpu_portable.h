@@ -32,10 +32,10 @@ inline Type* near(Type* object) {
   return object;
 }
 
-inline void clear(void* at, uint8_t fours) { __builtin_memset(at, 0, fours * size_t{4}); }
+inline void clear(void* start, uint8_t fours) { __builtin_memset(start, 0, fours * size_t{4}); }
 
-constexpr uint8_t kToKeepAt = 0;
-constexpr uint8_t kKeepingAt = 1;
+constexpr uint8_t kDueSavesAt = 0;
+constexpr uint8_t kCurrentSaveAt = 1;
 
 template <uint8_t>
 class QuickByte {

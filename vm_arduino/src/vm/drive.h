@@ -41,15 +41,15 @@ class Drive : public Execution {
   void set_clock(TaskRecord* task) const { task->clock_ms = now_ms_; }
 
   // Sets the clock to the begin of the next wait or move, or to now if that is too long ago.
-  void begin(TaskRecord* me) const {
-    if (late_ms(me) > kLateMs) set_clock(me);
+  void begin(TaskRecord* task) const {
+    if (late_ms(task) > kLateMs) set_clock(task);
   }
 
   // The time between its clock, at the last check, and the next check of its UNTIL.
-  uint32_t next_check_ms(const TaskRecord* me) const {
-    const uint32_t late = late_ms(me);
+  uint32_t next_check_ms(const TaskRecord* task) const {
+    const uint32_t lag_ms = late_ms(task);
     uint32_t next_ms = kCheckMs;
-    while (next_ms <= late) next_ms += kCheckMs;  // rarely even once
+    while (next_ms <= lag_ms) next_ms += kCheckMs;  // rarely even once
     return next_ms;
   }
 

@@ -9,13 +9,13 @@
 namespace tiniscript {
 
 bool Drive::drive(uint32_t move_ms) {
-  TaskRecord* const me = task_.me;
-  if (me->is_move()) {
+  TaskRecord* const task = task_.current;
+  if (task->is_move()) {
     set_motors_of_move();
-    me->state = kToItsEnd;
+    task->state = kToItsEnd;
   }
-  begin(me);
-  me->clock_ms += move_ms;
+  begin(task);
+  task->clock_ms += move_ms;
   return pause();
 }
 
@@ -26,40 +26,40 @@ bool Drive::watch(uint32_t move_ms) {
 
 // Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
 void Drive::keep_move(uint32_t move_ms) {
-  TaskRecord* const me = task_.me;
-  me->rest_ms = move_ms;
-  me->check = task_.pc;
-  me->state &= static_cast<uint8_t>(~kHasBegun);
+  TaskRecord* const task = task_.current;
+  task->rest_ms = move_ms;
+  task->check = task_.pc;
+  task->state &= static_cast<uint8_t>(~kHasBegun);
 }
 
 bool Drive::until(bool stop) {
-  TaskRecord* const me = task_.me;
-  const bool drives = me->is_move();
+  TaskRecord* const task = task_.current;
+  const bool drives = task->is_move();
   if (stop) {
-    if (!me->is(kHasBegun)) return true;
-    me->clock_ms = now_ms_;
+    if (!task->is(kHasBegun)) return true;
+    task->clock_ms = now_ms_;
     if (drives) set_motors(kMotorsOff);
     return true;
   }
-  if (!me->is(kHasBegun)) {
-    me->state = kHasBegun;
-    begin(me);
+  if (!task->is(kHasBegun)) {
+    task->state = kHasBegun;
+    begin(task);
     if (drives) set_motors_of_move();
   }
-  uint32_t next_ms = next_check_ms(me);
-  if (next_ms < me->rest_ms) {
-    task_.pc = me->check;
-    if (!me->is_forever()) me->rest_ms -= next_ms;
+  uint32_t next_ms = next_check_ms(task);
+  if (next_ms < task->rest_ms) {
+    task_.pc = task->check;
+    if (!task->is_forever()) task->rest_ms -= next_ms;
   } else {
-    next_ms = me->rest_ms;
-    if (drives) me->state = kToItsEnd;
+    next_ms = task->rest_ms;
+    if (drives) task->state = kToItsEnd;
   }
-  me->clock_ms += next_ms;
+  task->clock_ms += next_ms;
   return pause();
 }
 
 void Drive::end_move() {
-  task_.me->state = 0;
+  task_.current->state = 0;
   set_motors(kMotorsOff);
 }
 
@@ -68,7 +68,7 @@ bool Drive::comes_to_end() {
   return true;
 }
 
-tini_noinline void Drive::set_motors_of_move() { set_motors(powers_of_move(task_.me)); }
+tini_noinline void Drive::set_motors_of_move() { set_motors(powers_of_move(task_.current)); }
 void Drive::motors(Powers powers) { set_motors(powers); }
 void Drive::stop_motors() { set_motors(kMotorsOff); }
 

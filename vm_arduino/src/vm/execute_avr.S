@@ -28,7 +28,7 @@
 #define at1 r11
 #define mode r12        /* what two instructions that share their end differ in */
 #define budget r13
-#define framed r14
+#define frame_count r14
 #define count0 r16      /* the innermost frame: what is left of a counted loop, 24 bits, or a place */
 #define count1 r17
 #define count2 r15
@@ -165,9 +165,9 @@ _ZN10tiniscript7Machine7executeEh:
     adc r19, r27
     movw code_end, r18
     rcall add_pc_to_x
-    clr framed
+    clr frame_count
     ldd r18, Z+tini_depth_at
-    ldd r19, Z+tini_framed_at
+    ldd r19, Z+tini_frame_count_at
     cpi r18, tini_stack_values + 1
     brsh 2f
     cpi r19, tini_counters + tini_calls + 1
@@ -177,8 +177,8 @@ _ZN10tiniscript7Machine7executeEh:
     add r28, r18
     adc r29, r1
     load_a_from_y
-    mov framed, r19
-    cpse framed, r1         ; none: what its registers hold means nothing
+    mov frame_count, r19
+    cpse frame_count, r1    ; none: what its registers hold means nothing
     rcall load_frame
     rjmp next_one
 2:  adiw r26, 1             ; memory has changed
@@ -222,8 +222,8 @@ leave:
     lsr r18
     lsr r18
     std Z+tini_depth_at, r18
-    std Z+tini_framed_at, framed
-    std Z+tini_left_at, budget
+    std Z+tini_frame_count_at, frame_count
+    std Z+tini_budget_left_at, budget
     rcall store_frame
     in r28, SPL
     in r29, SPH
@@ -272,9 +272,9 @@ let_y_be_empty:
 ; The innermost frame is in registers, those around it are in memory. Without any, it comes from
 ; before the first one and goes there: the stack's last place, which is empty then.
 let_z_be_frame:
-    mov r30, framed
+    mov r30, frame_count
     lsl r30
-    add r30, framed
+    add r30, frame_count
     ldi r31, 0
     subi r30, lo8(tini_variables_at - tini_frames_at + tini_frame_bytes)
     sbci r31, hi8(tini_variables_at - tini_frames_at + tini_frame_bytes)
@@ -285,10 +285,10 @@ let_z_be_frame:
 ; Opens a frame: a0 to a2.
 push_frame:
     ldi r20, tini_counters + tini_calls
-    cp framed, r20
+    cp frame_count, r20
     brsh 1f
     rcall store_frame
-    inc framed
+    inc frame_count
     movw count0, a0
     mov count2, a2
     ret
@@ -302,7 +302,7 @@ store_frame:
     ret
 
 pop_frame:
-    dec framed
+    dec frame_count
 load_frame:
     rcall let_z_be_frame
     ld count0, Z

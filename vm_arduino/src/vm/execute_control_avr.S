@@ -30,7 +30,7 @@ op_break_loop_far:
 op_break_loop:
     clt
 1:  rcall distance
-    tst framed
+    tst frame_count
     breq bad_if
     rcall pop_frame
     rjmp jump
@@ -139,7 +139,7 @@ op_again:
     rjmp leave_behind_jump
 
 2:  clt
-3:  tst framed
+3:  tst frame_count
     breq bad_back
     rcall pop_frame
     rcall distance
@@ -196,7 +196,7 @@ op_call:
     rjmp jump_back
 
 op_return:
-    tst framed
+    tst frame_count
     breq bad_back
     movw r26, count0        ; of a loop where memory has changed
     rcall pop_frame

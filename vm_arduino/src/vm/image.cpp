@@ -48,9 +48,9 @@ Refusal unpack(const uint8_t* data, size_t length, Image* image) {
   if (data[kHeaderLengthAt] < kHeaderBytes || word(data + kCodeLengthAt) > kCodeBytes) {
     return Refusal::kBadHeader;
   }
-  const uint16_t whole = image_length(data);
-  if (length < whole) return Refusal::kTruncated;
-  if (length > whole) return Refusal::kTrailing;
+  const uint16_t full_length = image_length(data);
+  if (length < full_length) return Refusal::kTruncated;
+  if (length > full_length) return Refusal::kTrailing;
   return read(data, image);
 }
 

@@ -32,7 +32,7 @@ inline uint16_t image_length(const uint8_t* image) {
 }
 
 // The checksum of any bytes followed by their own checksum.
-constexpr uint32_t kAfterItself = 0x2144df1c;
+constexpr uint32_t kCrcResidue = 0x2144df1c;
 
 // The checksum of an image of `length` bytes, whatever its header says.
 uint32_t image_checksum(const uint8_t* image, uint16_t length);

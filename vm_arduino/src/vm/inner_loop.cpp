@@ -38,10 +38,12 @@ namespace tiniscript {
 namespace {
 
 // The operand that is in the code of an instruction of one byte.
-tini_always_inline uint8_t in_code(uint8_t code) { return static_cast<uint8_t>(code % kShorts); }
+tini_always_inline uint8_t short_operand(uint8_t code) {
+  return static_cast<uint8_t>(code % kShorts);
+}
 
 // The number that an instruction of one byte pushes: 0 to 10, and tens from 20 on.
-tini_always_inline uint8_t pushed(uint8_t code) {
+tini_always_inline uint8_t pushed_number(uint8_t code) {
   const uint8_t n = static_cast<uint8_t>(code - static_cast<uint8_t>(Op::kPushNum0));
   return n <= 10 ? n : static_cast<uint8_t>((n - 9) * 10);
 }
@@ -52,9 +54,9 @@ tini_always_inline uint8_t pushed(uint8_t code) {
 //
 // Operands are read one after the other: when a `case` returns, `next_` is after the last one.
 tini_always_inline bool InnerLoop::step() {
-  if (kCountsInstructions) left_--;
+  if (kCountsInstructions) budget_left_--;
   const uint8_t* const bytes = next_;
-  at_ = bytes;
+  start_ = bytes;
   if (static_cast<uint32_t>(bytes - machine_.code_) > machine_.length_) return fail(Fault::kBadCode);
   const uint8_t code = *bytes;
   const Op op = static_cast<Op>(code);
@@ -62,9 +64,9 @@ tini_always_inline bool InnerLoop::step() {
   switch (op) {
     // values
     case Op::kPush8:
-      return push(in_thousandths(u8()));
+      return push(to_thousandths(u8()));
     case Op::kPush16:
-      return push(in_thousandths(i16()));
+      return push(to_thousandths(i16()));
     case Op::kPushMilli:
       return push(i16());
     case Op::kPush32: {
@@ -134,12 +136,12 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kSetVar8: {
       const uint8_t number = u8();
       if (number >= kVariables) return fail(Fault::kBadCode);
-      machine_.task_.variables[number] = in_thousandths(i8());
+      machine_.task_.variables[number] = to_thousandths(i8());
       return true;
     }
     case Op::kAddVar8: {
       const uint8_t number = u8();
-      return add_to(number, in_thousandths(i8()));
+      return add_to(number, to_thousandths(i8()));
     }
     case Op::kAddVar: {
       const uint8_t number = u8();
@@ -157,7 +159,7 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kShow:
     case Op::kShowYesNo:
       if (act(code)) return true;
-      if (next_ == at_) top_++;
+      if (next_ == start_) top_++;
       return false;
     case Op::kEnd:
     case Op::kLook:
@@ -171,13 +173,13 @@ tini_always_inline bool InnerLoop::step() {
 
     // control
     case Op::kIf:
-      return pop(1) && unless(*top_ != 0, u8());
+      return pop(1) && jump_unless(*top_ != 0, u8());
     case Op::kIfFar:
-      return pop(1) && unless(*top_ != 0, u16());
+      return pop(1) && jump_unless(*top_ != 0, u16());
     case Op::kIfNot:
-      return pop(1) && unless(*top_ == 0, u8());
+      return pop(1) && jump_unless(*top_ == 0, u8());
     case Op::kIfNotFar:
-      return pop(1) && unless(*top_ == 0, u16());
+      return pop(1) && jump_unless(*top_ == 0, u16());
     case Op::kElse:
     case Op::kBreak:
     case Op::kDef:
@@ -197,9 +199,9 @@ tini_always_inline bool InnerLoop::step() {
       next_ += 2;
       return true;
     case Op::kAgain:
-      return again(u8());
+      return repeat_loop(u8());
     case Op::kAgainFar:
-      return again(u16());
+      return repeat_loop(u16());
     case Op::kLoop8:
       return open(u8());
     case Op::kLoop:
@@ -215,8 +217,8 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kBreakLoopFar:
       return break_loop(u16());
     case Op::kReturn:
-      if (machine_.task_.framed == 0) return fail(Fault::kBadCode);
-      next_ = machine_.code_ + machine_.task_.frames[--machine_.task_.framed];
+      if (machine_.task_.frame_count == 0) return fail(Fault::kBadCode);
+      next_ = machine_.code_ + machine_.task_.frames[--machine_.task_.frame_count];
       return true;
     case Op::kCall:
       return call(u8());
@@ -224,11 +226,11 @@ tini_always_inline bool InnerLoop::step() {
       return call(u16());
 
       // in one byte
-      tini_each_short(kPushVar) : return push_variable(in_code(code));
-      tini_each_short(kPushSensor) : return push_sensor(in_code(code));
-      tini_each_short(kPushRead) : return push_read(in_code(code));
-      tini_each_short(kRead) : return read(in_code(code));
-      tini_each_short(kSetVar) : return set_variable(in_code(code));
+      tini_each_short(kPushVar) : return push_variable(short_operand(code));
+      tini_each_short(kPushSensor) : return push_sensor(short_operand(code));
+      tini_each_short(kPushRead) : return push_read(short_operand(code));
+      tini_each_short(kRead) : return read(short_operand(code));
+      tini_each_short(kSetVar) : return set_variable(short_operand(code));
     tini_each_short(kPushNum) : case Op::kPushNum8:
     case Op::kPushNum9:
     case Op::kPushNum10:
@@ -241,20 +243,20 @@ tini_always_inline bool InnerLoop::step() {
     case Op::kPushNum80:
     case Op::kPushNum90:
     case Op::kPushNum100:
-      return push(in_thousandths(pushed(code)));
+      return push(to_thousandths(pushed_number(code)));
 
       // with a constant
-      tini_each_comparator(kUntil8) : return until_relates(op, in_thousandths(u8()));
-      tini_each_comparator(kUntil16) : return until_relates(op, in_thousandths(i16()));
-      tini_each_comparator(kIf8) : return unless_relates(op, in_thousandths(u8()));
-      tini_each_comparator(kIf16) : return unless_relates(op, in_thousandths(i16()));
+      tini_each_comparator(kUntil8) : return until_relates(op, to_thousandths(u8()));
+      tini_each_comparator(kUntil16) : return until_relates(op, to_thousandths(i16()));
+      tini_each_comparator(kIf8) : return jump_unless_relates(op, to_thousandths(u8()));
+      tini_each_comparator(kIf16) : return jump_unless_relates(op, to_thousandths(i16()));
       tini_each_comparator(kIfVar8) : {
         const uint8_t number = u8();
-        return unless_variable_relates(number, op, in_thousandths(u8()));
+        return jump_unless_variable_relates(number, op, to_thousandths(u8()));
       }
       tini_each_comparator(kIfVar16) : {
         const uint8_t number = u8();
-        return unless_variable_relates(number, op, in_thousandths(i16()));
+        return jump_unless_variable_relates(number, op, to_thousandths(i16()));
       }
   }
   return fail(Fault::kBadCode);
@@ -272,7 +274,7 @@ bool Machine::execute(uint8_t budget) {
   return goes_on;
 }
 
-bool Machine::run_turn() { return execute(left_); }
+bool Machine::run_turn() { return execute(budget_left_); }
 
 bool Machine::reach_instruction(uint32_t now_ms) {
   if (status_ >= Status::kDone) return false;

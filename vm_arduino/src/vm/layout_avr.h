@@ -18,18 +18,18 @@
 #define tini_fault_at 1
 #define tini_sensors_at 2
 #define tini_at_at 3
-#define tini_left_at 5
+#define tini_budget_left_at 5
 #define tini_length_at 6
 #define tini_code_at 8
 #define tini_readings_at 10
 #define tini_now_at 12
 #define tini_pc_at 16
 #define tini_depth_at 18
-#define tini_framed_at 19
-#define tini_others_at 29
+#define tini_frame_count_at 19
+#define tini_other_tasks_at 29
 #define tini_is_quiet_at 30
-#define tini_me_at 31
-#define tini_after_at 33
+#define tini_current_at 31
+#define tini_move_end_at 33
 #define tini_holder_at 35
 #define tini_records_at (tini_variables_at + 128)
 #ifdef tiniscript_has_tasks
@@ -46,13 +46,13 @@
 // in a TaskRecord, and bits of its state and its code
 #define tini_task_code_at 1
 #define tini_task_power_at 2
-#define tini_task_framed_at 3
+#define tini_task_frame_count_at 3
 #define tini_task_pc_at 4
 #define tini_task_start_at 6
 #define tini_task_check_at 8
 #define tini_clock_at 10
 #define tini_task_rest_at 14
-#define tini_task_set_at 18
+#define tini_task_own_powers_at 18
 #define tini_record_bytes 20
 #define tini_is_moving_bit 0
 #define tini_has_time_bit 1
@@ -66,7 +66,7 @@
 #define tini_waits_bit 4
 #define tini_watches_bit 5
 
-// bits of `others`
+// bits of `other_tasks`
 #define tini_is_first_round 1
 #define tini_has_had_turn_bit 6
 

@@ -28,18 +28,18 @@ void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* read
   task_.started_ms = now_ms;
   if (kHasTasks) find_tasks();
   if (kHasDiscs) forget_way();
-  task_.me->clock_ms = now_ms;
+  task_.current->clock_ms = now_ms;
 }
 
 uint32_t Machine::wake_ms() const {
-  return has_tasks() ? Scheduler::wake_ms() : task_.me->clock_ms;
+  return has_tasks() ? Scheduler::wake_ms() : task_.current->clock_ms;
 }
 
 // Whether it is time for a round: each millisecond has at least one, which takes less flash than
 // finding out when the next turn is.
 inline bool Machine::is_due() const {
   if (has_tasks()) return !task_.is_quiet;
-  return static_cast<int32_t>(late_ms(task_.me)) >= 0;
+  return static_cast<int32_t>(late_ms(task_.current)) >= 0;
 }
 
 bool Machine::wake(uint32_t now_ms) {
@@ -50,13 +50,13 @@ bool Machine::wake(uint32_t now_ms) {
   if (status_ == Status::kWaiting) {
     if (!is_due()) return false;
     status_ = Status::kRunning;
-    if (!has_tasks() && task_.me->is(kToItsEnd) && !comes_to_end()) return false;
+    if (!has_tasks() && task_.current->is(kToItsEnd) && !comes_to_end()) return false;
   }
   return true;
 }
 
 Status Machine::tick(uint32_t now_ms, uint8_t budget) {
-  left_ = budget;
+  budget_left_ = budget;
   if (status_ >= Status::kDone || budget == 0) return status_;
   if (!is_stuck() && wake(now_ms)) {
     if (has_tasks()) {

@@ -82,7 +82,7 @@ class Machine : public Scheduler {
   bool reach_instruction(uint32_t now_ms);
 
   // The rest of the last budget.
-  uint8_t left() const { return left_; }
+  uint8_t budget_left() const { return budget_left_; }
 
  private:
   friend class InnerLoop;

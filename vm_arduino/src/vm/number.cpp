@@ -25,7 +25,7 @@ uint32_t magnitude(int32_t value) {
 
 // Returns a * b / divisor, or 2^32 - 1 if the quotient is larger. It is copied to where it is used:
 // a divisor that is known there needs no division.
-tini_always_inline Division divided_at_once(uint32_t a, uint32_t b, uint32_t divisor) {
+tini_always_inline Division divide_at_once(uint32_t a, uint32_t b, uint32_t divisor) {
   const uint64_t product = static_cast<uint64_t>(a) * b;
   const uint32_t low = static_cast<uint32_t>(product);
   if (low == product) return {low / divisor, low % divisor};  // quicker if it fits
@@ -35,7 +35,7 @@ tini_always_inline Division divided_at_once(uint32_t a, uint32_t b, uint32_t div
 }
 
 // A chip of 32 bits may have no product of 64 bits: then it is made of parts.
-tini_always_inline uint64_t multiplied(uint32_t a, uint32_t b) {
+tini_always_inline uint64_t multiply(uint32_t a, uint32_t b) {
   if (kHasProduct64) return static_cast<uint64_t>(a) * b;
   const uint32_t parts[] = {(a & 0xffff) * (b & 0xffff), (a >> 16) * (b & 0xffff),
                             (a & 0xffff) * (b >> 16), (a >> 16) * (b >> 16)};
@@ -46,8 +46,8 @@ tini_always_inline uint64_t multiplied(uint32_t a, uint32_t b) {
 
 // It has no quotient of 64 bits: that is made bit by bit, or 16 bits at a time if each rest has no
 // more than 16, and if the chip divides at all. An ESP8266 does not.
-tini_always_inline Division divided_in_parts(uint32_t a, uint32_t b, uint32_t divisor) {
-  const uint64_t product = multiplied(a, b);
+tini_always_inline Division divide_in_parts(uint32_t a, uint32_t b, uint32_t divisor) {
+  const uint64_t product = multiply(a, b);
   uint32_t low = static_cast<uint32_t>(product);
   uint32_t high = static_cast<uint32_t>(product >> 32);
   if (high == 0) return {low / divisor, low % divisor};
@@ -68,13 +68,13 @@ tini_always_inline Division divided_in_parts(uint32_t a, uint32_t b, uint32_t di
   return {low, high};
 }
 
-tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
-  return kHasQuotient64 ? divided_at_once(a, b, divisor) : divided_in_parts(a, b, divisor);
+tini_always_inline Division divide(uint32_t a, uint32_t b, uint32_t divisor) {
+  return kHasQuotient64 ? divide_at_once(a, b, divisor) : divide_in_parts(a, b, divisor);
 }
 
 // Returns a * b / divisor rounded half up, or 2^32 - 1 if that is larger.
-tini_always_inline uint32_t rounded(uint32_t a, uint32_t b, uint32_t divisor) {
-  const Division division = divided(a, b, divisor);
+tini_always_inline uint32_t divide_and_round(uint32_t a, uint32_t b, uint32_t divisor) {
+  const Division division = divide(a, b, divisor);
   const bool is_up = division.remainder >= divisor - division.remainder;
   return division.quotient + (is_up && division.quotient != 0xffffffff ? 1 : 0);
 }
@@ -88,15 +88,15 @@ Fault finish(uint32_t size, bool is_negative, int32_t* result) {
 // MUL, DIV, MOD
 Fault scale(Op op, int32_t* pair) {
   const bool is_negative = pair[1] < 0;
-  const bool differ = is_negative != (pair[0] < 0);
+  const bool signs_differ = is_negative != (pair[0] < 0);
   const uint32_t first = magnitude(pair[0]);
   const uint32_t second = magnitude(pair[1]);
-  if (op == Op::kMul) return finish(rounded(first, second, kOne), differ, pair);
+  if (op == Op::kMul) return finish(divide_and_round(first, second, kOne), signs_differ, pair);
   if (second == 0) return Fault::kDivideByZero;
-  if (op == Op::kDiv) return finish(rounded(first, kOne, second), differ, pair);
+  if (op == Op::kDiv) return finish(divide_and_round(first, kOne, second), signs_differ, pair);
   // The exact remainder has the sign of the divisor.
-  const uint32_t rest = first % second;
-  return finish(rest != 0 && differ ? second - rest : rest, is_negative, pair);
+  const uint32_t remainder = first % second;
+  return finish(remainder != 0 && signs_differ ? second - remainder : remainder, is_negative, pair);
 }
 
 // Rounds the first of a pair to the number of decimals in the second.
@@ -107,7 +107,7 @@ Fault round(int32_t* pair) {
   if (places >= -6) {  // half of 10^7 is more than any number
     uint32_t unit = 1;
     for (int32_t k = places; k < 3; k++) unit *= 10;
-    size = rounded(magnitude(pair[0]), 1, unit) * unit;
+    size = divide_and_round(magnitude(pair[0]), 1, unit) * unit;
   }
   return finish(size, pair[0] < 0, pair);
 }
@@ -153,18 +153,20 @@ Fault calculate(Op op, int32_t* pair) {
 
 Fault add(int32_t* place, const int32_t* number) { return sum(*place, *number, place); }
 
-int32_t thousandths(int16_t whole) { return in_thousandths(whole); }
+int32_t thousandths(int16_t whole) { return to_thousandths(whole); }
 
 bool compare(const int32_t* a, int16_t whole, uint8_t op) {
-  return relates(*a, comparator_of(static_cast<Op>(op)), in_thousandths(whole));
+  return relates(*a, comparator_of(static_cast<Op>(op)), to_thousandths(whole));
 }
 
 int32_t whole(int32_t a) {
-  const int32_t units = static_cast<int32_t>(rounded(magnitude(a), 1, kOne));
+  const int32_t units = static_cast<int32_t>(divide_and_round(magnitude(a), 1, kOne));
   return a < 0 ? -units : units;
 }
 
-uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) { return rounded(a, b, divisor); }
+uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
+  return divide_and_round(a, b, divisor);
+}
 
 uint32_t next_random(uint32_t state) {
   state ^= state << 13;
@@ -175,10 +177,10 @@ uint32_t next_random(uint32_t state) {
 Fault random_between(int32_t* pair, uint32_t state) {
   const int32_t low = whole(pair[0]);
   const int32_t high = whole(pair[1]);
-  const int32_t least = low < high ? low : high;
+  const int32_t lower_bound = low < high ? low : high;
   const uint32_t count = magnitude(high - low) + 1;
-  const int32_t units = least + static_cast<int32_t>(state % count);
-  return finish(divided(magnitude(units), kOne, 1).quotient, units < 0, pair);
+  const int32_t units = lower_bound + static_cast<int32_t>(state % count);
+  return finish(divide(magnitude(units), kOne, 1).quotient, units < 0, pair);
 }
 
 }  // namespace tiniscript

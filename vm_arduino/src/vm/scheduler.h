@@ -22,7 +22,7 @@ class Scheduler : public Drive {
   bool finds_turn(bool is_over);
 
   // Whether the first turn, of the main task before all others, is over.
-  bool has_had_turn() const { return (task_.others & kHasHadTurn) != 0; }
+  bool has_had_turn() const { return (task_.other_tasks & kHasHadTurn) != 0; }
 
   // When the next task is due: it may be at once, or was.
   uint32_t wake_ms() const;
@@ -39,7 +39,7 @@ class Scheduler : public Drive {
  private:
   bool waits_for_clock(const TaskRecord* task) const;
   bool is_due(const TaskRecord* task) const;
-  bool begin_turn(TaskRecord* me);
+  bool begin_turn(TaskRecord* task);
   void end_turn();
   void begin_others();
   void end_round();

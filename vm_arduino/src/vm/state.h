@@ -48,17 +48,17 @@ struct TaskRecord {
   static constexpr uint8_t kMeasures = 0x80;  // it lasts until the way is gone
   static constexpr uint8_t kFirstShow = static_cast<uint8_t>(Op::kShow);
 
-  uint8_t state;      // bits, see below
-  uint8_t code;       // of its move or wait; or of a SHOW that found no room
-  int8_t power;       // of its move
-  uint8_t framed;     // how many frames it has
-  uint16_t pc;        // where its next turn begins
-  uint16_t start;     // of a WHEN, its check; of others 0
-  uint16_t check;     // where that of its UNTIL begins, or where it goes on after its move
-  uint32_t clock_ms;  // its own clock; its next turn is due then
-  uint32_t rest_ms;   // how long its move may last from then on, or kForever; or the value of
-                      // the SHOW, or the way of a move that is measured
-  Powers set;         // by its M; of who has the motors, what they are set to
+  uint8_t state;        // bits, see below
+  uint8_t code;         // of its move or wait; or of a SHOW that found no room
+  int8_t power;         // of its move
+  uint8_t frame_count;  // how many frames it has
+  uint16_t pc;          // where its next turn begins
+  uint16_t start;       // of a WHEN, its check; of others 0
+  uint16_t check;       // where that of its UNTIL begins, or where it goes on after its move
+  uint32_t clock_ms;    // its own clock; its next turn is due then
+  uint32_t rest_ms;     // how long its move may last from then on, or kForever; or the value of
+                        // the SHOW, or the way of a move that is measured
+  Powers own_powers;    // by its M; of who has the motors, what they are set to
 
   bool is(uint8_t bits) const { return (state & bits) != 0; }
   bool is_move() const { return (code & kWaits) == 0; }
@@ -81,7 +81,7 @@ constexpr uint8_t kHasWaited = 128;   // since it last went back to the start of
 constexpr uint8_t kWantsMotors = kIsMoving | kHoldsPowers | kKeeps;
 constexpr uint8_t kAtFirst = kHasTime | kHasBegun;
 
-// Bits of `others`.
+// Bits of `other_tasks`.
 constexpr uint8_t kIsFirstRound = 1;
 constexpr uint8_t kOneOther = 2;     // the amount for each task that has not ended, except one
 constexpr uint8_t kAllOthers = 14;
@@ -113,16 +113,16 @@ struct TaskOf;
 template <>
 struct TaskOf<true> {
   uint16_t pc;
-  uint8_t depth;   // values on `stack`
-  uint8_t framed;  // of `frames`
+  uint8_t depth;        // values on `stack`
+  uint8_t frame_count;  // of `frames`
   uint32_t random_state;
   uint32_t started_ms;
-  bool is_late;        // 2^31 ms have passed since the start: TIME can no longer express it
-  uint8_t others;      // bits, see above
-  bool is_quiet;       // in this millisecond a round has gone by without a turn
-  TaskRecord* me;      // whose turn it is; null: a round is over
-  uint16_t after;      // after the move that drives, where its UNTIL looks again before
-  TaskRecord* holder;  // who has the motors; where nobody wants them, the main task
+  bool is_late;         // 2^31 ms have passed since the start: TIME can no longer express it
+  uint8_t other_tasks;  // bits, see above
+  bool is_quiet;        // in this millisecond a round has gone by without a turn
+  TaskRecord* current;  // whose turn it is; null: a round is over
+  uint16_t move_end;    // after the move that drives, where its UNTIL looks again before
+  TaskRecord* holder;   // who has the motors; where nobody wants them, the main task
   int32_t variables[kVariables];
   TaskRecord records[kTasks + 1];  // in the order of rank; the last one is the main task
   // Everything from here on is written before it is read.
@@ -131,7 +131,7 @@ struct TaskOf<true> {
 
   TaskRecord* main_task() { return records + kTasks; }
   void end_quiet() { is_quiet = false; }
-  void note_powers(Powers powers) { holder->set = powers; }
+  void note_powers(Powers powers) { holder->own_powers = powers; }
 };
 
 // The same where there is no room for tasks: the main one alone.
@@ -139,16 +139,16 @@ template <>
 struct TaskOf<false> {
   uint16_t pc;
   uint8_t depth;
-  uint8_t framed;
+  uint8_t frame_count;
   uint32_t random_state;
   uint32_t started_ms;
   bool is_late;
-  TaskRecord me[1];
+  TaskRecord current[1];
   int32_t variables[kVariables];
   int32_t stack[kStackValues + 1];
   Frame frames[kFrames];
 
-  static constexpr uint8_t others = 0;
+  static constexpr uint8_t other_tasks = 0;
   static constexpr bool is_quiet = false;
   static void end_quiet() {}
   static void note_powers(Powers) {}
@@ -160,7 +160,7 @@ using Task = TaskOf<kHasTasks>;
 // lies.
 class Execution {
  protected:
-  bool has_tasks() const { return task_.others != 0; }
+  bool has_tasks() const { return task_.other_tasks != 0; }
 
   // Whether it continues, without a fault.
   bool goes_on(Fault fault);
@@ -178,7 +178,7 @@ class Execution {
   Fault fault_;
   uint8_t sensors_;
   uint16_t offset_;
-  uint8_t left_;
+  uint8_t budget_left_;
   uint16_t length_;
   const uint8_t* code_;
   int32_t* readings_;

@@ -13,52 +13,52 @@ namespace tiniscript {
 // Makes a record for each task in the order of rank; between them and the main task are those of
 // none. All of it is 0.
 void Scheduler::find_tasks() {
-  TaskRecord* me = task_.records;
+  TaskRecord* task = task_.records;
   ControlRole kind = ControlRole::kWhen;
   for (;;) {
-    for (uint16_t at = 0; at < length_;) {
-      const DecodeForm form = decode_form_of(code_[at]);
-      at = static_cast<uint16_t>(at + form.size());
-      if (form.role() != kind || me == task_.main_task()) continue;
-      me->state = kAtFirst;
-      me->pc = at;
-      if (kind == ControlRole::kWhen) me->start = at;
-      me++;
-      task_.others = static_cast<uint8_t>((task_.others + kOneOther) | kHasOthers);
+    for (uint16_t offset = 0; offset < length_;) {
+      const DecodeForm form = decode_form_of(code_[offset]);
+      offset = static_cast<uint16_t>(offset + form.size());
+      if (form.role() != kind || task == task_.main_task()) continue;
+      task->state = kAtFirst;
+      task->pc = offset;
+      if (kind == ControlRole::kWhen) task->start = offset;
+      task++;
+      task_.other_tasks = static_cast<uint8_t>((task_.other_tasks + kOneOther) | kHasOthers);
     }
     if (kind == ControlRole::kTask) break;
     kind = ControlRole::kTask;
   }
-  task_.me = task_.holder = task_.main_task();
-  task_.me->state = kAtFirst;
+  task_.current = task_.holder = task_.main_task();
+  task_.current->state = kAtFirst;
 }
 
 // Sends the value that a SHOW has kept. Returns whether there was room.
 bool Scheduler::sends() {
-  TaskRecord* const me = task_.me;
-  if (!robot_show(static_cast<int32_t>(me->rest_ms), me->shows_yes_no())) return false;
-  me->code = static_cast<uint8_t>(Op::kWait);
+  TaskRecord* const task = task_.current;
+  if (!robot_show(static_cast<int32_t>(task->rest_ms), task->shows_yes_no())) return false;
+  task->code = static_cast<uint8_t>(Op::kWait);
   return true;
 }
 
 // Goes on in a WHEN, or looks once more.
 bool Scheduler::look(bool holds) {
   if (holds) return true;
-  TaskRecord* const me = task_.me;
-  me->state &= static_cast<uint8_t>(~(kKeeps | kHoldsPowers));
+  TaskRecord* const task = task_.current;
+  task->state &= static_cast<uint8_t>(~(kKeeps | kHoldsPowers));
   return look_again();
 }
 
 bool Scheduler::look_again() {
-  task_.pc = task_.me->start;
+  task_.pc = task_.current->start;
   return wait(kCheckMs);
 }
 
 // Ends this task. Returns whether it was the last one.
 bool Scheduler::end_task() {
-  task_.me->state = 0;
-  if ((task_.others & kAllOthers) == 0) return true;
-  task_.others = static_cast<uint8_t>(task_.others - kOneOther);
+  task_.current->state = 0;
+  if ((task_.other_tasks & kAllOthers) == 0) return true;
+  task_.other_tasks = static_cast<uint8_t>(task_.other_tasks - kOneOther);
   return pause();
 }
 
@@ -69,12 +69,12 @@ bool Scheduler::waits_for_clock(const TaskRecord* task) const {
 
 // When the next task is due.
 uint32_t Scheduler::wake_ms() const {
-  int32_t more_ms = 0x7fffffff;  // nothing happens by itself
+  int32_t next_ms = 0x7fffffff;  // nothing happens by itself
   for (const TaskRecord* task = task_.records; task <= task_.records + kTasks; task++) {
-    const int32_t its_ms = static_cast<int32_t>(task->clock_ms - now_ms_);
-    if (its_ms < more_ms && waits_for_clock(task)) more_ms = its_ms;
+    const int32_t left_ms = static_cast<int32_t>(task->clock_ms - now_ms_);
+    if (left_ms < next_ms && waits_for_clock(task)) next_ms = left_ms;
   }
-  return now_ms_ + static_cast<uint32_t>(more_ms);
+  return now_ms_ + static_cast<uint32_t>(next_ms);
 }
 
 }  // namespace tiniscript

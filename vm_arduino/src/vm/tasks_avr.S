@@ -7,7 +7,7 @@
 ;
 ; Between two steps:
 ;   Y        the machine
-;   me       the record of the task that is looked at, or whose turn it is
+;   current  the record of the task that is looked at, or whose turn it is
 ;   budget   how many jumps back and calls are left
 ;   r1       0
 
@@ -15,8 +15,8 @@
 
 #ifdef tiniscript_tasks_in_assembly
 
-#define me r16          /* and r17 */
-#define me1 r17
+#define current r16     /* and r17 */
+#define current1 r17
 #define budget r15
 
 #define GPIOR0 0x1e
@@ -42,16 +42,16 @@
     .type _ZN10tiniscript7Machine9run_roundEv, @function
 _ZN10tiniscript7Machine9run_roundEv:
     push budget
-    push me
-    push me1
+    push current
+    push current1
     push r28
     push r29
     movw r28, r24
-    ldd budget, Y+tini_left_at
-    ldd me, Y+tini_me_at
-    ldd me1, Y+tini_me_at+1
-    cp me, r1
-    cpc me1, r1
+    ldd budget, Y+tini_budget_left_at
+    ldd current, Y+tini_current_at
+    ldd current1, Y+tini_current_at+1
+    cp current, r1
+    cpc current1, r1
     breq begin_round
     rjmp go_on_with_turn
 
@@ -59,7 +59,7 @@ begin_round:
     ldi r24, 1
     std Y+tini_is_quiet_at, r24
     rcall let_z_be_first
-    movw me, r30
+    movw current, r30
     rjmp look_at_task
 
 let_z_be_first:
@@ -69,25 +69,25 @@ let_z_be_first:
 ; finds_turn: of the next task.
 find_turn:
     let_z_be tini_main_task_at
-    cp r30, me
-    cpc r31, me1
+    cp r30, current
+    cpc r31, current1
     brne 1f
     rjmp end_round
-1:  subi me, lo8(-tini_record_bytes)
-    sbci me1, hi8(-tini_record_bytes)
+1:  subi current, lo8(-tini_record_bytes)
+    sbci current1, hi8(-tini_record_bytes)
 look_at_task:
-    std Y+tini_me_at, me
-    std Y+tini_me_at+1, me1
+    std Y+tini_current_at, current
+    std Y+tini_current_at+1, current1
     ; to_the_end
-    movw r30, me
-    ldd r24, Z+tini_task_framed_at
+    movw r30, current
+    ldd r24, Z+tini_task_frame_count_at
 1:  subi r24, 1
     brcs waits_for_clock
     let_z_be tini_frames_at
     ld r18, Z
     ldd r19, Z+1
     ldd r20, Z+2
-    ldd r25, Y+tini_framed_at
+    ldd r25, Y+tini_frame_count_at
 2:  cpi r25, 2
     brlo 3f
     ldd r21, Z+3
@@ -104,7 +104,7 @@ look_at_task:
     rjmp 1b
 
 waits_for_clock:
-    movw r30, me
+    movw r30, current
     ld r24, Z
     sbrc r24, tini_has_time_bit
     rjmp 4f
@@ -112,18 +112,18 @@ waits_for_clock:
     rjmp find_turn
     ldd r18, Y+tini_holder_at
     ldd r19, Y+tini_holder_at+1
-    cp r18, me
-    cpc r19, me1
+    cp r18, current
+    cpc r19, current1
     brne find_turn
 4:  rcall let_late_be_mine
     sbrc r25, 7
     rjmp find_turn
 
 ; begin_turn
-    ldd r24, Z+tini_task_framed_at
-    ldd r25, Y+tini_framed_at
+    ldd r24, Z+tini_task_frame_count_at
+    ldd r25, Y+tini_frame_count_at
     sub r24, r25
-    std Z+tini_task_framed_at, r24
+    std Z+tini_task_frame_count_at, r24
     ldd r24, Z+tini_task_pc_at
     ldd r25, Z+tini_task_pc_at+1
     std Y+tini_pc_at, r24
@@ -137,7 +137,7 @@ waits_for_clock:
     cpse r24, r1
     rjmp 8f
 9:  rjmp end_turn
-8:  movw r30, me
+8:  movw r30, current
 5:  ld r24, Z
     sbrc r24, tini_has_begun_bit
     rjmp 6f
@@ -173,7 +173,7 @@ go_on_with_turn:
     ld r24, Y
     cpi r24, tini_done
     breq return
-    ldd r25, Y+tini_left_at
+    ldd r25, Y+tini_budget_left_at
     tst r25
     brne has_stopped
     ; the inner loop leaves at each jump back, where a loop may wait, and at each call
@@ -200,17 +200,17 @@ go_on_with_turn:
 1:  sbis GPIOR0, tini_event_bit
     rjmp go_on_with_turn
 return:
-    std Y+tini_left_at, budget
+    std Y+tini_budget_left_at, budget
     pop r29
     pop r28
-    pop me1
-    pop me
+    pop current1
+    pop current
     pop budget
     ret
 
 ; Lets T be whether the task has waited, and forgets it.
 has_waited:
-    movw r30, me
+    movw r30, current
     ld r24, Z
     bst r24, tini_has_waited_bit
     andi r24, ~(1 << tini_has_waited_bit) & 0xff
@@ -219,22 +219,22 @@ has_waited:
 
 ; Before all others the main task waits for a reading, too.
 has_stopped:
-    ldd r25, Y+tini_others_at
+    ldd r25, Y+tini_other_tasks_at
     sbrs r25, tini_has_had_turn_bit
     cpse r24, r1
     rjmp end_turn
     rjmp return
 
 end_turn:
-    movw r30, me
+    movw r30, current
     ldd r24, Y+tini_pc_at
     ldd r25, Y+tini_pc_at+1
     std Z+tini_task_pc_at, r24
     std Z+tini_task_pc_at+1, r25
-    ldd r24, Z+tini_task_framed_at
-    ldd r25, Y+tini_framed_at
+    ldd r24, Z+tini_task_frame_count_at
+    ldd r25, Y+tini_frame_count_at
     add r24, r25
-    std Z+tini_task_framed_at, r24
+    std Z+tini_task_frame_count_at, r24
     std Y+tini_is_quiet_at, r1
     st Y, r1
     ; pass_on
@@ -262,7 +262,7 @@ end_turn:
     ldd r19, Y+tini_now_at+1
     ldd r20, Y+tini_now_at+2
     ldd r21, Y+tini_now_at+3
-    ldd r25, Y+tini_others_at
+    ldd r25, Y+tini_other_tasks_at
     lsr r25                 ; the bit of the first round
     adc r18, r1
     adc r19, r1
@@ -272,15 +272,15 @@ end_turn:
     std Z+tini_clock_at+1, r19
     std Z+tini_clock_at+2, r20
     std Z+tini_clock_at+3, r21
-3:  adiw r26, tini_task_set_at
+3:  adiw r26, tini_task_own_powers_at
     ld r18, X+
     ld r19, X
     sbrs r24, tini_holds_powers_bit
-    std Z+tini_task_set_at, r1
+    std Z+tini_task_own_powers_at, r1
     sbrs r24, tini_holds_powers_bit
-    std Z+tini_task_set_at+1, r1
-    ldd r22, Z+tini_task_set_at
-    ldd r23, Z+tini_task_set_at+1
+    std Z+tini_task_own_powers_at+1, r1
+    ldd r22, Z+tini_task_own_powers_at
+    ldd r23, Z+tini_task_own_powers_at+1
     cp r18, r22
     cpc r19, r23
     breq 4f
@@ -288,20 +288,20 @@ end_turn:
 4:  rjmp find_turn
 
 end_round:
-    ldd r24, Y+tini_others_at
+    ldd r24, Y+tini_other_tasks_at
     sbrs r24, tini_has_had_turn_bit
     rjmp begin_others
     andi r24, ~tini_is_first_round & 0xff
-    std Y+tini_others_at, r24
-    std Y+tini_me_at, r1
-    std Y+tini_me_at+1, r1
+    std Y+tini_other_tasks_at, r24
+    std Y+tini_current_at, r1
+    std Y+tini_current_at+1, r1
     ldi r24, tini_waiting
     st Y, r24
     rjmp return
 
 begin_others:
     ori r24, 1 << tini_has_had_turn_bit | tini_is_first_round
-    std Y+tini_others_at, r24
+    std Y+tini_other_tasks_at, r24
     rcall let_z_be_first
     ldi r24, tini_tasks
 1:  rcall set_clock
@@ -324,10 +324,10 @@ set_clock:
 
 ; How far the task's own clock is behind now: r22 to r25. Leaves r18 to r21; Z is its record.
 let_late_be_mine:
-    movw r22, me
+    movw r22, current
     movw r24, r28
     call late_ms
-    movw r30, me
+    movw r30, current
     ret
 
 let_motors_be_off:
@@ -343,22 +343,22 @@ let_motors_be:
     .global tiniscript_moves
     .type tiniscript_moves, @function
 tiniscript_moves:
-; What C++ calls begins with `rcall enter`, which runs what lies behind that, with Y and `me`.
+; What C++ calls begins with `rcall enter`, which runs what lies behind that, with Y and `current`.
 enter:
     pop r31
     pop r30
-    push me
-    push me1
+    push current
+    push current1
     push r28
     push r29
     movw r28, r24
-    ldd me, Y+tini_me_at
-    ldd me1, Y+tini_me_at+1
+    ldd current, Y+tini_current_at
+    ldd current1, Y+tini_current_at+1
     icall
     pop r29
     pop r28
-    pop me1
-    pop me
+    pop current1
+    pop current
     ret
 
 ; bool Drive::comes_to_end()
@@ -377,7 +377,7 @@ yes:
 wait:
     rcall enter
 wait_in_turn:
-    movw r30, me
+    movw r30, current
     ldi r24, tini_wait
     std Z+tini_task_code_at, r24
     rjmp drive_in_turn
@@ -394,7 +394,7 @@ drive_in_turn:
     ret
 ; go_on, where it may begin
 go_on_with_move:
-    movw r30, me
+    movw r30, current
     ld r24, Z
     sbrc r24, tini_has_begun_bit
     rjmp 3f
@@ -402,7 +402,7 @@ go_on_with_move:
     sbrc r24, tini_waits_bit
     rjmp 2f
     rcall take_motors
-    movw r30, me
+    movw r30, current
     ld r24, Z
     ori r24, 1 << tini_is_moving_bit | 1 << tini_drives_bit
     st Z, r24
@@ -417,7 +417,7 @@ go_on_with_move:
     sbrc r24, 1
     neg r22
     rcall let_motors_be
-    movw r30, me
+    movw r30, current
 2:  ld r24, Z
     ori r24, 1 << tini_has_begun_bit
     st Z, r24
@@ -458,8 +458,8 @@ go_on_with_move:
     rjmp 4f
     ldd r24, Y+tini_pc_at
     ldd r25, Y+tini_pc_at+1
-    std Y+tini_after_at, r24
-    std Y+tini_after_at+1, r25
+    std Y+tini_move_end_at, r24
+    std Y+tini_move_end_at+1, r25
 4:  rcall go_to_check
     rjmp 8f
 5:  ; its end
@@ -473,7 +473,7 @@ go_on_with_move:
     or r0, r20
     or r0, r21
     brne 7f
-    ldd r0, Y+tini_others_at
+    ldd r0, Y+tini_other_tasks_at
     tst r0
     breq 7f
     sbrc r24, tini_to_its_end_bit
@@ -526,13 +526,13 @@ let_pass:
     .type _ZN10tiniscript5Drive5watchEm, @function
 _ZN10tiniscript5Drive5watchEm:
     rcall enter
-    movw r30, me
+    movw r30, current
     ldd r24, Z+tini_task_code_at
     ori r24, 1 << tini_watches_bit
     std Z+tini_task_code_at, r24
 ; keep_move: the time is in r20 to r23. Returns what `may_begin` does.
 keep_move:
-    movw r30, me
+    movw r30, current
     std Z+tini_task_rest_at, r20
     std Z+tini_task_rest_at+1, r21
     std Z+tini_task_rest_at+2, r22
@@ -570,13 +570,13 @@ go_to_check:
 is_below:
     ldd r18, Y+tini_holder_at
     ldd r19, Y+tini_holder_at+1
-    cp r18, me
-    cpc r19, me1
+    cp r18, current
+    cpc r19, current1
     ret
 
 ; Leaves r18 to r23; r24 is the state of the task, whose record Z is.
 want:
-    movw r30, me
+    movw r30, current
     ld r24, Z
     andi r24, ~(1 << tini_holds_powers_bit) & 0xff
     ldd r25, Z+tini_task_start_at
@@ -591,8 +591,8 @@ take_motors:
     rcall want
     ldd r30, Y+tini_holder_at
     ldd r31, Y+tini_holder_at+1
-    std Y+tini_holder_at, me
-    std Y+tini_holder_at+1, me1
+    std Y+tini_holder_at, current
+    std Y+tini_holder_at+1, current1
     ld r24, Z
     sbrs r24, tini_drives_bit
     ret
@@ -629,8 +629,8 @@ leave_move:
     rcall forget_move
     sbrc r24, tini_to_its_end_bit
     ret
-    ldd r24, Y+tini_after_at
-    ldd r25, Y+tini_after_at+1
+    ldd r24, Y+tini_move_end_at
+    ldd r25, Y+tini_move_end_at+1
 2:  std Z+tini_task_pc_at, r24
     std Z+tini_task_pc_at+1, r25
     ret
@@ -644,7 +644,7 @@ forget_move:
     ret
 
 end_move:
-    movw r30, me
+    movw r30, current
     rcall forget_move
     sbrs r24, tini_drives_bit
     ret
@@ -657,7 +657,7 @@ _ZN10tiniscript5Drive5untilEb:
     rcall enter
     tst r22
     breq go_on_with_move_near
-    movw r30, me
+    movw r30, current
     ld r24, Z
     sbrc r24, tini_has_begun_bit
     rcall set_clock
@@ -682,11 +682,11 @@ _ZN10tiniscript5Drive6motorsEj:
     pop r23
     pop r22
     rcall let_motors_be     ; and so the task's own
-    movw r30, me
+    movw r30, current
     rjmp 2f
 1:  rcall want
-    std Z+tini_task_set_at, r22
-    std Z+tini_task_set_at+1, r23
+    std Z+tini_task_own_powers_at, r22
+    std Z+tini_task_own_powers_at+1, r23
 2:  ld r24, Z
     ori r24, 1 << tini_holds_powers_bit
     st Z, r24

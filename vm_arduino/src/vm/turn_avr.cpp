@@ -11,17 +11,17 @@
 namespace tiniscript {
 
 bool Machine::run_turn() {
-  uint8_t budget = left_;
+  uint8_t budget = budget_left_;
   bool is_cut_short = false;
   for (;;) {
     execute(1);
-    if (left_ != 0 || fault_ != Fault::kNone || status_ == Status::kDone) break;
+    if (budget_left_ != 0 || fault_ != Fault::kNone || status_ == Status::kDone) break;
     budget--;
     if (code_[offset_] < static_cast<uint8_t>(Op::kCall) && !go_back()) break;
     is_cut_short = budget == 0 || Flag<Bit::kEvent>();
     if (is_cut_short) break;
   }
-  left_ = budget;
+  budget_left_ = budget;
   return is_cut_short;
 }
 

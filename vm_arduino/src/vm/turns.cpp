@@ -10,20 +10,20 @@ namespace tiniscript {
 
 namespace {
 
-// Moves the first `count` of `all` frames after the others.
-void to_the_end(Frame* frames, uint8_t count, uint8_t all) {
+// Moves the first `count` of `total` frames after the others.
+void rotate_frames(Frame* frames, uint8_t count, uint8_t total) {
   for (; count != 0; count--) {
-    Frame* at = frames;
-    const Frame first = *at;
-    for (uint8_t left = all; left > 1; left--, at++) *at = at[1];
-    *at = first;
+    Frame* frame = frames;
+    const Frame first = *frame;
+    for (uint8_t remaining = total; remaining > 1; remaining--, frame++) *frame = frame[1];
+    *frame = first;
   }
 }
 
 }  // namespace
 
 void Machine::run_round() {
-  for (bool is_over = false; finds_turn(is_over) && left_ != 0; is_over = true) {
+  for (bool is_over = false; finds_turn(is_over) && budget_left_ != 0; is_over = true) {
     if (run_turn() || fault_ != Fault::kNone || status_ == Status::kDone) return;
     // before all others the main task waits for a reading, too
     if (!has_had_turn() && status_ == Status::kRunning) return;
@@ -31,11 +31,11 @@ void Machine::run_round() {
 }
 
 bool Scheduler::finds_turn(bool is_over) {
-  if (!is_over && task_.me != nullptr) return true;
+  if (!is_over && task_.current != nullptr) return true;
   for (;;) {
     if (is_over) end_turn();
     if (kHasDiscs && fault_ != Fault::kNone) return false;
-    TaskRecord* task = task_.me;
+    TaskRecord* task = task_.current;
     if (task == task_.main_task()) {
       if (has_had_turn()) {
         end_round();
@@ -50,9 +50,9 @@ bool Scheduler::finds_turn(bool is_over) {
     } else {
       task++;
     }
-    task_.me = task;
+    task_.current = task;
     // The frames of the next one come to the end of those that all tasks share.
-    to_the_end(task_.frames, task->framed, task_.framed);
+    rotate_frames(task_.frames, task->frame_count, task_.frame_count);
     is_over = is_due(task);
     if (is_over && begin_turn(task)) return true;
   }
@@ -60,14 +60,14 @@ bool Scheduler::finds_turn(bool is_over) {
 
 // The first turn is over.
 void Scheduler::begin_others() {
-  task_.others |= kHasHadTurn | kIsFirstRound;
+  task_.other_tasks |= kHasHadTurn | kIsFirstRound;
   for (TaskRecord* task = task_.records; task != task_.main_task(); task++) set_clock(task);
 }
 
 // A round is over.
 void Scheduler::end_round() {
-  task_.me = nullptr;
-  task_.others &= static_cast<uint8_t>(~kIsFirstRound);
+  task_.current = nullptr;
+  task_.other_tasks &= static_cast<uint8_t>(~kIsFirstRound);
 }
 
 bool Scheduler::is_due(const TaskRecord* task) const {
@@ -75,24 +75,25 @@ bool Scheduler::is_due(const TaskRecord* task) const {
 }
 
 // Returns whether it goes on.
-bool Scheduler::begin_turn(TaskRecord* me) {
-  me->framed = static_cast<uint8_t>(me->framed - task_.framed);  // `end_turn` adds what it is then
-  task_.pc = me->pc;
-  if (me->has_unsent() && !sends()) return false;
+bool Scheduler::begin_turn(TaskRecord* task) {
+  task->frame_count = static_cast<uint8_t>(task->frame_count -
+                                           task_.frame_count);  // `end_turn` adds what it is then
+  task_.pc = task->pc;
+  if (task->has_unsent() && !sends()) return false;
   // the motors may have been taken since its check began
-  if (!me->is(kHasBegun) && blocks()) return false;
-  if (!me->is(kHasTime)) {
-    me->state |= kHasTime;
-    set_clock(me);
-    return me->is_watched() || go_on();
+  if (!task->is(kHasBegun) && blocks()) return false;
+  if (!task->is(kHasTime)) {
+    task->state |= kHasTime;
+    set_clock(task);
+    return task->is_watched() || go_on();
   }
-  return !me->is(kToItsEnd) || comes_to_end();
+  return !task->is(kToItsEnd) || comes_to_end();
 }
 
 void Scheduler::end_turn() {
-  TaskRecord* const me = task_.me;
-  me->pc = task_.pc;
-  me->framed = static_cast<uint8_t>(me->framed + task_.framed);
+  TaskRecord* const task = task_.current;
+  task->pc = task_.pc;
+  task->frame_count = static_cast<uint8_t>(task->frame_count + task_.frame_count);
   status_ = Status::kRunning;
   task_.is_quiet = false;
   pass_on();
@@ -100,10 +101,10 @@ void Scheduler::end_turn() {
 
 // Goes back to the start of a loop, where a task that has not waited since it last did so waits.
 bool Scheduler::go_back() {
-  TaskRecord* const me = task_.me;
-  const bool has_waited = me->is(kHasWaited);
+  TaskRecord* const task = task_.current;
+  const bool has_waited = task->is(kHasWaited);
   if (!has_waited) wait(1);
-  me->state &= static_cast<uint8_t>(~kHasWaited);
+  task->state &= static_cast<uint8_t>(~kHasWaited);
   return has_waited;
 }
 
@@ -113,12 +114,12 @@ void Scheduler::pass_on() {
   while (highest != task_.main_task() && !highest->is(kWantsMotors)) highest++;
   if (highest->is(kDrives)) return;
   if (highest != task_.holder && !highest->is(kHasTime)) {
-    highest->clock_ms = now_ms_ + (task_.others & kIsFirstRound);
+    highest->clock_ms = now_ms_ + (task_.other_tasks & kIsFirstRound);
   }
-  const Powers before = task_.holder->set;
+  const Powers previous_powers = task_.holder->own_powers;
   task_.holder = highest;
-  if (!highest->is(kHoldsPowers)) highest->set = kMotorsOff;
-  if (highest->set != before) set_motors(highest->set);
+  if (!highest->is(kHoldsPowers)) highest->own_powers = kMotorsOff;
+  if (highest->own_powers != previous_powers) set_motors(highest->own_powers);
 }
 
 }  // namespace tiniscript

@@ -35,7 +35,7 @@ bool is_too_deep(Depth depth) { return (depth & 0xff) > kCounters || depth >= (k
 // A closed DEF.
 struct Def {
   uint16_t start;
-  Depth most;
+  Depth max_depth;
 };
 
 struct Memory {
@@ -45,7 +45,7 @@ struct Memory {
   Def defs[kDefs];               // that are closed
 };
 
-bool in_range(Byte kind, uint8_t value) {
+bool is_in_range(Byte kind, uint8_t value) {
   const uint8_t* const range = kRanges[static_cast<uint8_t>(kind)];
   return static_cast<uint8_t>(value - flash_byte(range)) <= flash_byte(range + 1);
 }
@@ -55,7 +55,7 @@ bool is_push_read(Family family) {
 }
 
 // Adds a device to the hash: bytecode_spec.md defines it.
-uint16_t with_device(uint16_t hash, uint16_t device) {
+uint16_t add_device(uint16_t hash, uint16_t device) {
   const uint16_t carry = hash & 0x8000 ? kDevicesPolynomial : 0;
   return static_cast<uint16_t>(hash << 1) ^ carry ^ robot_device_hash(device);
 }
@@ -72,33 +72,33 @@ Kind loop_of(ControlRole role) {
 // takes about 100 bytes more.
 __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uint8_t sensors,
                                        uint8_t actuators, Memory* memory, uint8_t may_need) {
-  uint16_t at = 0;              // where the instruction that is looked at begins
-  uint16_t after = 0;           // where the next one begins
+  uint16_t at = 0;               // where the instruction that is looked at begins
+  uint16_t next_offset = 0;      // where the next one begins
   ControlRole checker =
-      ControlRole::kNone;       // what ends the check of an UNTIL or of a WHEN that is open
-  uint8_t depth = 0;            // values on the stack
-  uint8_t joins = 0;            // that are open
-  Def* closed = memory->defs;   // after the closed DEFs
-  uint8_t counters = 0;         // counted loops that are open in this routine
-  Join* join = memory->joins;   // the one that ends first
-  uint16_t start = 0;           // of the routine that is looked at
-  uint16_t end = 0;             // of it, 0: it is the code outside of all others
-  Depth most = 0;               // that it needs
-  Depth main = 0;               // that the code outside needs, while it is looked at another routine
-  Depth ended = 0;              // that the tasks need that have ended, together
-  Depth beside = 0;             // that others need which are open with this routine
-  Block* top = memory->blocks;  // the innermost block that is open
-  uint8_t tasks = 0;            // that have begun, besides the main one
+      ControlRole::kNone;        // what ends the check of an UNTIL or of a WHEN that is open
+  uint8_t depth = 0;             // values on the stack
+  uint8_t joins = 0;             // that are open
+  Def* defs_end = memory->defs;  // after the closed DEFs
+  uint8_t counters = 0;          // counted loops that are open in this routine
+  Join* join = memory->joins;    // the one that ends first
+  uint16_t start = 0;            // of the routine that is looked at
+  uint16_t end = 0;              // of it, 0: it is the code outside of all others
+  Depth max_depth = 0;           // that it needs
+  Depth main_depth = 0;          // that the code outside needs, while another routine is looked at
+  Depth ended_depth = 0;         // that the tasks need that have ended, together
+  Depth other_depth = 0;         // that others need which are open with this routine
+  Block* top = memory->blocks;   // the innermost block that is open
+  uint8_t tasks = 0;             // that have begun, besides the main one
   ControlRole closer = ControlRole::kNone;  // of the routine
-  uint8_t needed = 0;           // of `needs`, except tasks
-  uint8_t minor = 0;            // the version of its instructions, apart from their needs
-  bool reads_inside = false;    // a reading was pushed above other values, or in an open join
+  uint8_t needed = 0;            // of `needs`, except tasks
+  uint8_t minor = 0;             // the version of its instructions, apart from their needs
+  bool reads_inside = false;     // a reading was pushed above other values, or in an open join
   join->target = kFarAway;
   top->end = 0;
   top->kind = Kind::kCode;
   memory->devices = 0;
 
-  for (;; at = after) {
+  for (;; at = next_offset) {
     // arrive
     for (; join->target <= at; join--, joins--) {
       if (join->target != at) return {Rule::kMissedTarget, at};
@@ -114,9 +114,9 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
     // opcode: an invalid one has one byte, and its role refuses it
     const uint8_t* operand = code + at;
-    after = at;
+    next_offset = at;
     if (*operand == static_cast<uint8_t>(Op::kEscape) && (may_need & kNeedsWays) != 0) {
-      if (++after == length) return {Rule::kCutOperand, at};
+      if (++next_offset == length) return {Rule::kCutOperand, at};
       if (!is_way(*++operand)) return {Rule::kUnknownOpcode, at};
       needed = kNeedsWays;
     }
@@ -125,21 +125,21 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (kHasTasks && (may_need & kNeedsTasks) == 0 && form.role() >= ControlRole::kTask) {
       return {Rule::kUnknownOpcode, at};
     }
-    after = static_cast<uint16_t>(after + form.size());
-    if (after > length) return {Rule::kCutOperand, at};
+    next_offset = static_cast<uint16_t>(next_offset + form.size());
+    if (next_offset > length) return {Rule::kCutOperand, at};
 
     // operands
     for (uint8_t kinds = form.kinds; kinds != 0; kinds = static_cast<uint8_t>(kinds >> 4)) {
       const Byte kind = static_cast<Byte>(kinds & 15);
       // a one-byte instruction holds its operand in its code
       const uint8_t value = form.size() == 1 ? code[at] % kShorts : *++operand;
-      if (!in_range(kind, value)) return {Rule::kBadOperand, at};
+      if (!is_in_range(kind, value)) return {Rule::kBadOperand, at};
       if (kind < Byte::kSensor) continue;
       if (value >= (kind == Byte::kSensor ? sensors : actuators)) {
         return {Rule::kNoSuchDevice, at};
       }
       const uint16_t first = kind == Byte::kSensor ? 0 : sensors;
-      memory->devices = with_device(memory->devices, static_cast<uint16_t>(first + value));
+      memory->devices = add_device(memory->devices, static_cast<uint16_t>(first + value));
     }
 
     // stack
@@ -148,13 +148,13 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (depth > kStackValues) return {Rule::kStackOverflow, at};
 
     // the target of a jump comes from the last one or two bytes
-    const uint8_t* last = code + after - 1;
-    uint16_t distance = *last;
-    if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
-    uint16_t target = static_cast<uint16_t>(after + distance);
-    if (target < after) target = kFarAway;
-    // a target before the code wraps to more than `after`, where nothing starts
-    if (form.jumps_back()) target = static_cast<uint16_t>(after - distance);
+    const uint8_t* operand_byte = code + next_offset - 1;
+    uint16_t distance = *operand_byte;
+    if (form.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--operand_byte);
+    uint16_t target = static_cast<uint16_t>(next_offset + distance);
+    if (target < next_offset) target = kFarAway;
+    // a target before the code wraps to more than `next_offset`, where nothing starts
+    if (form.jumps_back()) target = static_cast<uint16_t>(next_offset - distance);
 
     // place
     if (kHasTasks && is_push_read(form.family) && (depth > 1 || joins != 0)) {
@@ -204,7 +204,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
       // those that open a block: see `open` below
       case ControlRole::kElse:
-        if (top->kind != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
+        if (top->kind != Kind::kIf || top->end != next_offset) return {Rule::kNotOpen, at};
         top--;
         kind = Kind::kIf;
         break;
@@ -225,19 +225,19 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case ControlRole::kBreak:
       case ControlRole::kDrop: {  // close, leave
         const bool closes = role <= ControlRole::kNext;
-        const uint16_t its_end = closes ? after : target;
+        const uint16_t loop_end = closes ? next_offset : target;
         Block* loop = top;
         if (closes && loop->kind == Kind::kIf) return {Rule::kStillOpen, at};
         while (loop->kind == Kind::kIf) loop--;
         if (loop->kind != kind) return {Rule::kNotOpen, at};
-        if (its_end > length) return {Rule::kBadTarget, at};
+        if (loop_end > length) return {Rule::kBadTarget, at};
         if (closes) {
           if (target != loop[-1].end) return {Rule::kBadLoopStart, at};
           if (kind == Kind::kCount) counters--;
           top -= 2;
         }
-        if (loop->end == 0) loop->end = its_end;
-        if (loop->end != its_end) return {Rule::kBadLoopEnd, at};
+        if (loop->end == 0) loop->end = loop_end;
+        if (loop->end != loop_end) return {Rule::kBadLoopEnd, at};
         continue;
       }
 
@@ -245,18 +245,18 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case ControlRole::kTask:
       case ControlRole::kWhen:
         if (top->kind != Kind::kCode || end != 0) return {Rule::kBadDef, at};
-        main = most;
-        beside = 0;
+        main_depth = max_depth;
+        other_depth = 0;
         if (role == ControlRole::kDef) {
-          if (closed == memory->defs + kDefs) return {Rule::kTooManyDefs, at};
+          if (defs_end == memory->defs + kDefs) return {Rule::kTooManyDefs, at};
         } else if (kHasTasks) {
           if (tasks++ == kTasks) return {Rule::kTooManyTasks, at};
-          beside = static_cast<Depth>(ended + main);
+          other_depth = static_cast<Depth>(ended_depth + main_depth);
           if (role == ControlRole::kWhen) checker = ControlRole::kLook;
         }
         closer = static_cast<ControlRole>(static_cast<uint8_t>(role) + 1);
-        start = after;
-        most = 0;
+        start = next_offset;
+        max_depth = 0;
         end = target;
         continue;
       case ControlRole::kReturn:
@@ -264,23 +264,23 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case ControlRole::kEndWhen:
         if (end == 0 || closer != role) return {Rule::kNotOpen, at};
         if (top->kind != Kind::kCode) return {Rule::kStillOpen, at};
-        if (end != after) return {Rule::kBadDef, at};
+        if (end != next_offset) return {Rule::kBadDef, at};
         end = 0;
         if (role == ControlRole::kReturn) {
-          *closed++ = {start, most};
+          *defs_end++ = {start, max_depth};
         } else if (kHasTasks) {
-          ended = static_cast<Depth>(ended + most);
+          ended_depth = static_cast<Depth>(ended_depth + max_depth);
         }
-        most = main;
-        beside = ended;
+        max_depth = main_depth;
+        other_depth = ended_depth;
         continue;
       case ControlRole::kCall: {
-        const Def* called = closed;
+        const Def* callee = defs_end;
         do {
-          if (called == memory->defs) return {Rule::kBadCall, at};
-          called--;
-        } while (called->start != target);
-        needs = static_cast<Depth>(called->most + kCall);
+          if (callee == memory->defs) return {Rule::kBadCall, at};
+          callee--;
+        } while (callee->start != target);
+        needs = static_cast<Depth>(callee->max_depth + kCall);
         break;
       }
     }
@@ -294,7 +294,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         if (target != top->end || top->kind != Kind::kIf) return {Rule::kBadTarget, at};
         if (kind == Kind::kIf) continue;
       }
-      if (kind != Kind::kIf) (++top)->end = after;
+      if (kind != Kind::kIf) (++top)->end = next_offset;
       if (top++ >= memory->blocks + kNestWords) return {Rule::kTooDeep, at};
       *top = {target, kind};
       if (kind != Kind::kCount) continue;
@@ -302,9 +302,11 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     }
     // needs
     needs = static_cast<Depth>(needs + counters);
-    if ((most & 0xff) < (needs & 0xff)) most = static_cast<Depth>((most & 0xff00) | (needs & 0xff));
-    if (most >> 8 < needs >> 8) most = static_cast<Depth>((most & 0xff) | (needs & 0xff00));
-    if (is_too_deep(static_cast<Depth>(most + beside))) return {Rule::kTooDeep, at};
+    if ((max_depth & 0xff) < (needs & 0xff))
+      max_depth = static_cast<Depth>((max_depth & 0xff00) | (needs & 0xff));
+    if (max_depth >> 8 < needs >> 8)
+      max_depth = static_cast<Depth>((max_depth & 0xff) | (needs & 0xff00));
+    if (is_too_deep(static_cast<Depth>(max_depth + other_depth))) return {Rule::kTooDeep, at};
   }
 
   // finish

@@ -26,8 +26,8 @@ struct Verdict {
   uint16_t offset() const { return offset_or_needs; }
   uint8_t needs() const { return static_cast<uint8_t>(offset_or_needs); }
   uint8_t minor() const {  // of its image: the lowest that has what it has and needs
-    const uint8_t of_ops = static_cast<uint8_t>(kOpsHaveMinors ? offset_or_needs >> 8 : 0);
-    return minor_of_needs(needs()) > of_ops ? minor_of_needs(needs()) : of_ops;
+    const uint8_t op_minor = static_cast<uint8_t>(kOpsHaveMinors ? offset_or_needs >> 8 : 0);
+    return minor_of_needs(needs()) > op_minor ? minor_of_needs(needs()) : op_minor;
   }
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 TiniPlayer* player = nullptr;
 
-uint32_t with_line(uint32_t crc, const char* line) {
+uint32_t add_line(uint32_t crc, const char* line) {
   const uint8_t end = '\n';
   crc = crc32(crc, reinterpret_cast<const uint8_t*>(line), static_cast<uint16_t>(strlen(line)));
   return crc32(crc, &end, 1);
@@ -26,11 +26,11 @@ uint16_t hash_of(uint32_t crc) {
 
 }  // namespace
 
-uint16_t TiniKit::hash(uint16_t device) const { return hash_of(with_line(0, lines[device])); }
+uint16_t TiniKit::hash(uint16_t device) const { return hash_of(add_line(0, lines[device])); }
 
 uint16_t TiniKit::fingerprint() const {
   uint32_t crc = 0;
-  for (uint8_t k = 0; k < sensors + actuators; k++) crc = with_line(crc, lines[k]);
+  for (uint8_t k = 0; k < sensors + actuators; k++) crc = add_line(crc, lines[k]);
   return hash_of(crc);
 }
 

@@ -15,16 +15,16 @@ Receiver receiver;  // where `link/receiver.h` looks for it on an AVR
 
 namespace {
 
-TiniLink* only = nullptr;
+TiniLink* instance = nullptr;
 const uint8_t no_words[] tini_progmem = {0, 0};
 
 uint32_t checksum_of(const uint8_t* image) {
-  uint32_t found = 0;
-  for (uint8_t k = kAfterChecksum; k-- > kChecksumAt;) found = found << 8 | image[k];
-  return found;
+  uint32_t checksum = 0;
+  for (uint8_t k = kAfterChecksum; k-- > kChecksumAt;) checksum = checksum << 8 | image[k];
+  return checksum;
 }
 
-bool show_on_link(int32_t value, bool is_yes_no) { return only->show(value, is_yes_no); }
+bool show_on_link(int32_t value, bool is_yes_no) { return instance->show(value, is_yes_no); }
 
 }  // namespace
 
@@ -39,7 +39,7 @@ TiniLink::TiniLink(TiniPlayer* player, const char* name, uint32_t id)
       live_() {
   identity_.id = id;
   rename(reinterpret_cast<const uint8_t*>(name), static_cast<uint8_t>(strlen(name)));
-  only = this;
+  instance = this;
 }
 
 void TiniLink::begin(uint32_t random) {
@@ -66,9 +66,9 @@ void TiniLink::tick(uint32_t now_ms) {
       end(fault != 0 ? State::kFaulted : State::kIdle);
       if (fault != 0) {
         record(fault);
-        link_.faulted();
+        link_.on_faulted();
       } else {
-        link_.done();
+        link_.on_done();
       }
     }
   }
@@ -85,8 +85,8 @@ Answer TiniLink::prepare_upload() {
 }
 
 uint8_t* TiniLink::memory(uint16_t length, bool is_live) {
-  const uint16_t most = is_live ? sizeof live_ : player_->room();
-  if (length > most - kEndBytes) return nullptr;
+  const uint16_t room = is_live ? sizeof live_ : player_->room();
+  if (length > room - kEndBytes) return nullptr;
   return is_live ? live_ : player_->memory();
 }
 
@@ -98,17 +98,17 @@ void TiniLink::forget() {
 
 void TiniLink::take(bool is_live) {
   if (is_live) return;
-  const uint8_t* const image = held();
+  const uint8_t* const image = held_image();
   status_.length = static_cast<uint16_t>(image_length(image) - image[kHeaderLengthAt]);
   status_.saved = Saved::kMemory;
 }
 
 void TiniLink::take_checksum(const uint8_t* image) {
-  if (image == held()) status_.program = checksum_of(image);
+  if (image == held_image()) status_.program = checksum_of(image);
 }
 
 void TiniLink::start(bool is_live) {
-  const uint8_t* const image = is_live ? live_ : held();
+  const uint8_t* const image = is_live ? live_ : held_image();
   const uint8_t header = image[kHeaderLengthAt];
   const uint16_t length = static_cast<uint16_t>(image_length(image) - header);
   run_image_ = image;
@@ -150,30 +150,30 @@ bool TiniLink::rename(const uint8_t* name, uint8_t length) {
 
 namespace tiniscript {
 
-const DeviceInfo& port_device_info() { return only->device_info(); }
-uint8_t port_readings() { return only->kit().sensors; }
-uint8_t port_actuators() { return only->kit().actuators; }
-Identity& port_identity() { return only->identity(); }
-const RobotStatus& port_status() { return only->status(); }
+const DeviceInfo& port_device_info() { return instance->device_info(); }
+uint8_t port_readings() { return instance->kit().sensors; }
+uint8_t port_actuators() { return instance->kit().actuators; }
+Identity& port_identity() { return instance->identity(); }
+const RobotStatus& port_status() { return instance->status(); }
 LineErrors port_line_errors() { return {0, 0}; }
-uint16_t port_room() { return only->room(); }
-Answer port_prepare_upload(bool) { return only->prepare_upload(); }
-uint8_t* port_memory(uint16_t length, bool is_live) { return only->memory(length, is_live); }
-bool port_may_write_ahead() { return !only->is_running(); }
-void port_forget() { only->forget(); }
-void port_take(uint8_t, bool is_live) { only->take(is_live); }
-void port_take_checksum(const uint8_t* image) { only->take_checksum(image); }
-void port_start(bool is_live) { only->start(is_live); }
-void port_end() { only->prepare_upload(); }
-void port_stop(uint8_t fault) { only->stop(fault); }
-void port_release() { only->release(); }
-uint16_t port_run_at() { return only->at(); }
-uint16_t port_shown_at() { return only->shown_at(); }
-const uint8_t* port_run_image() { return only->run_image(); }
-uint16_t port_image_length() { return image_length(only->held()); }
+uint16_t port_room() { return instance->room(); }
+Answer port_prepare_upload(bool) { return instance->prepare_upload(); }
+uint8_t* port_memory(uint16_t length, bool is_live) { return instance->memory(length, is_live); }
+bool port_may_write_ahead() { return !instance->is_running(); }
+void port_forget() { instance->forget(); }
+void port_take(uint8_t, bool is_live) { instance->take(is_live); }
+void port_take_checksum(const uint8_t* image) { instance->take_checksum(image); }
+void port_start(bool is_live) { instance->start(is_live); }
+void port_end() { instance->prepare_upload(); }
+void port_stop(uint8_t fault) { instance->stop(fault); }
+void port_release() { instance->release(); }
+uint16_t port_run_at() { return instance->offset(); }
+uint16_t port_shown_at() { return instance->shown_at(); }
+const uint8_t* port_run_image() { return instance->run_image(); }
+uint16_t port_image_length() { return image_length(instance->held_image()); }
 
 Answer port_image_byte(uint16_t offset, uint8_t* byte) {
-  *byte = only->held()[offset];
+  *byte = instance->held_image()[offset];
   return Answer::kOk;
 }
 
@@ -181,7 +181,7 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
 Answer port_undo() { return Answer::kNoPrevious; }
 
 Answer port_rename(const uint8_t* name, uint8_t length) {
-  return only->rename(name, length) ? Answer::kNotKept : Answer::kBadValue;
+  return instance->rename(name, length) ? Answer::kNotKept : Answer::kBadValue;
 }
 
 Answer port_tune(const Tuning&, bool) { return Answer::kNotKept; }
@@ -210,7 +210,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t*) { return nullptr; }
-bool port_text_is_beside(bool) { return false; }
+bool port_text_is_separate(bool) { return false; }
 bool port_may_prepare_upload(bool) { return true; }
 void port_take_text(uint8_t*, bool) {}
 bool port_reads_keys() { return false; }

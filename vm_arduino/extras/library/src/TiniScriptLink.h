@@ -41,10 +41,10 @@ class TiniLink {
   bool rename(const uint8_t* name, uint8_t length);
   bool show(int32_t value, bool is_yes_no) { return link_.show(value, is_yes_no); }
   bool is_running() const { return status_.state == tiniscript::State::kRunning; }
-  uint16_t at() const { return player_->fault_at(); }
+  uint16_t offset() const { return player_->fault_at(); }
   uint16_t shown_at() const { return player_->shown_at(); }
   const uint8_t* run_image() const { return run_image_; }
-  const uint8_t* held() const { return player_->memory(); }
+  const uint8_t* held_image() const { return player_->memory(); }
   uint16_t room() const;
   const tiniscript::DeviceInfo& device_info() const { return info_; }
   const TiniKit& kit() const { return player_->kit(); }

@@ -44,13 +44,13 @@ typedef uint8_t Channels;
 #endif
 
 struct Converter {
-  uint8_t measured;       // the channel of the last conversion, or kNoChannel
+  uint8_t last_channel;   // the channel of the last conversion, or kNoChannel
   uint8_t tries;          // conversions of the reference still to come
   bool is_supply_wanted;  // somebody asked in this turn of the main loop
   // With tasks, values wait for all tasks that ask.
-  Channels bit;           // of `measured`; 0: it is old
-  Channels fresh;         // have been measured
-  Channels old;           // had been at the last tick: they are forgotten at the next
+  Channels bit;             // of `last_channel`; 0: it is old
+  Channels fresh_channels;  // have been measured
+  Channels aging_channels;  // had been at the last tick: they are forgotten at the next
   uint16_t counts[tiniscript_analogs];
 };
 
@@ -64,34 +64,34 @@ bool is_converting() { return (ADCSRA & 1 << ADSC) != 0; }
 
 void analog_begin() {
   ADCSRA = 1 << ADEN | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // 125 kHz
-  near(&converter)->measured = kNoChannel;
+  near(&converter)->last_channel = kNoChannel;
 }
 
 bool analog_read(uint8_t channel, int32_t* value) {
-  Converter* const it = near(&converter);
+  Converter* const near_converter = near(&converter);
   if (kHasOthers) {
-    const uint8_t measured = it->measured;
-    if (measured < kBandGap && !is_converting()) {
-      it->counts[measured] = ADC;
-      it->fresh |= it->bit;
-      it->measured = kNoChannel;
+    const uint8_t last_channel = near_converter->last_channel;
+    if (last_channel < kBandGap && !is_converting()) {
+      near_converter->counts[last_channel] = ADC;
+      near_converter->fresh_channels |= near_converter->bit;
+      near_converter->last_channel = kNoChannel;
     }
     const Channels bit = static_cast<Channels>(1 << channel);
-    if ((it->fresh & bit) != 0) {
-      *value = it->counts[channel];
+    if ((near_converter->fresh_channels & bit) != 0) {
+      *value = near_converter->counts[channel];
       return true;
     }
-    if (it->measured != kNoChannel) return false;
-    it->bit = bit;
+    if (near_converter->last_channel != kNoChannel) return false;
+    near_converter->bit = bit;
   } else {
-    if (is_converting() || it->measured == kBandGap) return false;
-    if (it->measured == channel) {
-      it->measured = kNoChannel;
+    if (is_converting() || near_converter->last_channel == kBandGap) return false;
+    if (near_converter->last_channel == channel) {
+      near_converter->last_channel = kNoChannel;
       *value = ADC;
       return true;
     }
   }
-  it->measured = channel;
+  near_converter->last_channel = channel;
   ADMUX = static_cast<uint8_t>(kFromSupply | (channel % kChannels));
 #ifdef MUX5
   ADCSRB = channel >= kChannels ? 1 << MUX5 : 0;
@@ -101,27 +101,27 @@ bool analog_read(uint8_t channel, int32_t* value) {
 }
 
 void analog_forget() {
-  Converter* const it = near(&converter);
+  Converter* const near_converter = near(&converter);
   if (kHasOthers) {
-    it->fresh = it->bit = 0;
+    near_converter->fresh_channels = near_converter->bit = 0;
   } else {
-    it->measured = kNoChannel;
+    near_converter->last_channel = kNoChannel;
   }
 }
 
 Supply analog_supply() {
-  Converter* const it = near(&converter);
-  it->is_supply_wanted = true;
+  Converter* const near_converter = near(&converter);
+  near_converter->is_supply_wanted = true;
   if (is_converting()) return Supply::kMeasuring;
-  if (it->measured != kBandGap) {
-    it->measured = kBandGap;
-    it->tries = kSupplyTries;
+  if (near_converter->last_channel != kBandGap) {
+    near_converter->last_channel = kBandGap;
+    near_converter->tries = kSupplyTries;
     ADMUX = kFromSupply | kBandGap;
 #ifdef MUX5
     ADCSRB = 0;
 #endif
-  } else if (--it->tries == 0) {
-    it->measured = kNoChannel;
+  } else if (--near_converter->tries == 0) {
+    near_converter->last_channel = kNoChannel;
     return ADC > kMostCount ? Supply::kLow : Supply::kEnough;
   }
   convert();
@@ -129,15 +129,17 @@ Supply analog_supply() {
 }
 
 void analog_tick() {
-  Converter* const it = near(&converter);
+  Converter* const near_converter = near(&converter);
   if (kHasOthers) {
-    const Channels lasting = static_cast<Channels>((it->fresh | it->bit) & ~it->old);
-    it->fresh &= lasting;
-    it->bit &= lasting;
-    it->old = lasting;
+    const Channels kept_channels = static_cast<Channels>(
+        (near_converter->fresh_channels | near_converter->bit) & ~near_converter->aging_channels);
+    near_converter->fresh_channels &= kept_channels;
+    near_converter->bit &= kept_channels;
+    near_converter->aging_channels = kept_channels;
   }
-  if (it->measured == kBandGap && !it->is_supply_wanted) it->measured = kNoChannel;
-  it->is_supply_wanted = false;
+  if (near_converter->last_channel == kBandGap && !near_converter->is_supply_wanted)
+    near_converter->last_channel = kNoChannel;
+  near_converter->is_supply_wanted = false;
 }
 
 }  // namespace tiniscript

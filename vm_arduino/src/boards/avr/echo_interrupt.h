@@ -17,8 +17,8 @@
 
 namespace tiniscript {
 
-// `Record` has `heard` (of type `EchoState`), `rose_us`, `fell_us` and `again_us`. Saves the
-// registers that it changes and returns from the interrupt.
+// `Record` has `echo_state` (of type `EchoState`), `rose_us`, `fell_us` and `high_again_us`. Saves
+// the registers that it changes and returns from the interrupt.
 template <class Record, class EchoState>
 tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_us) {
   asm volatile(
@@ -59,13 +59,13 @@ tini_always_inline void on_echo_edge(Record* record, Echo echo, uint8_t glitch_u
       :
       : [count] "I"(_SFR_IO_ADDR(TCNT0)), [flags] "I"(_SFR_IO_ADDR(TIFR0)), [overflow] "I"(TOV0),
         [clock] "i"(&clock), [turns] "I"(offsetof(Clock, turns)), [pin] "n"(echo.pin.port - 2),
-        [mask] "M"(0 + echo.pin.mask), [record] "i"(record), [heard] "I"(offsetof(Record, heard)),
-        [rose] "I"(offsetof(Record, rose_us)), [fell] "I"(offsetof(Record, fell_us)),
-        [again] "I"(offsetof(Record, again_us)),
+        [mask] "M"(0 + echo.pin.mask), [record] "i"(record),
+        [heard] "I"(offsetof(Record, echo_state)), [rose] "I"(offsetof(Record, rose_us)),
+        [fell] "I"(offsetof(Record, fell_us)), [again] "I"(offsetof(Record, high_again_us)),
         [nothing] "M"(static_cast<int>(EchoState::kNothing)),
         [high] "M"(static_cast<int>(EchoState::kHigh)),
         [ended] "M"(static_cast<int>(EchoState::kEnded)),
-        [high_again] "M"(static_cast<int>(EchoState::kAgain)), [glitch] "M"(0 + glitch_us));
+        [high_again] "M"(static_cast<int>(EchoState::kHighAgain)), [glitch] "M"(0 + glitch_us));
 }
 
 }  // namespace tiniscript

@@ -21,11 +21,11 @@ void begin(uint16_t place, uint8_t value, uint8_t mode) {
   EEAR = place;
   EEDR = value;
   EECR = mode;
-  const uint8_t before = SREG;
+  const uint8_t saved_sreg = SREG;
   cli();  // EEPE must follow EEMPE within four cycles
   EECR |= _BV(EEMPE);
   EECR |= _BV(EEPE);
-  SREG = before;
+  SREG = saved_sreg;
 }
 
 }  // namespace

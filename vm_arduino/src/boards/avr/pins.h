@@ -49,17 +49,17 @@ struct Pwm {
 // A critical section: interrupts are off during the object's lifetime.
 class CriticalSection {
  public:
-  tini_always_inline CriticalSection() : before_(SREG) { cli(); }
+  tini_always_inline CriticalSection() : saved_sreg_(SREG) { cli(); }
   tini_always_inline ~CriticalSection() {
     asm volatile("" ::: "memory");  // compiler barrier: no access moves out of the section
-    SREG = before_;
+    SREG = saved_sreg_;
   }
 
  private:
   CriticalSection(const CriticalSection&);
   void operator=(const CriticalSection&);
 
-  uint8_t before_;
+  uint8_t saved_sreg_;
 };
 
 tini_always_inline volatile uint8_t& register8(uint16_t address) {

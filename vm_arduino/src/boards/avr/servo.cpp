@@ -28,7 +28,7 @@ volatile Pulse pulses[kServoCount];
 uint8_t turn = kGap;  // index of the servo whose pulse is under way
 
 // With only one servo, the compiler knows which one.
-tini_always_inline uint8_t now_served() { return kServoCount == 1 ? 0 : turn; }
+tini_always_inline uint8_t current_servo() { return kServoCount == 1 ? 0 : turn; }
 
 // Ends a pulse and starts the next one. In between a stop may come in, unless it changes pulses.
 tini_always_inline void next_pulse() {
@@ -36,25 +36,25 @@ tini_always_inline void next_pulse() {
     TCNT1 = 0;
     turn = 0;
   } else {
-    write(kServos[now_served()], false);
+    write(kServos[current_servo()], false);
     turn++;
   }
 #ifdef tiniscript_has_quick_stop
   sei();
 #endif
   for (; turn < kServoCount; turn++) {
-    volatile Pulse& pulse = pulses[now_served()];
+    volatile Pulse& pulse = pulses[current_servo()];
     const uint16_t ticks = pulse.ticks;
     if (ticks == 0) continue;
     if (pulse.frames != 0 && --pulse.frames == 0) pulse.ticks = 0;
     cli();
-    write(kServos[now_served()], true);
+    write(kServos[current_servo()], true);
     OCR1A = static_cast<uint16_t>(TCNT1 + ticks - kLateTicks);
     return;
   }
   cli();
-  const uint16_t soon = static_cast<uint16_t>(TCNT1 + kSoonTicks);
-  OCR1A = soon < kFrameTicks ? kFrameTicks : soon;
+  const uint16_t earliest = static_cast<uint16_t>(TCNT1 + kSoonTicks);
+  OCR1A = earliest < kFrameTicks ? kFrameTicks : earliest;
 }
 
 }  // namespace

@@ -62,9 +62,9 @@ void sound_start(uint16_t hertz, uint32_t duration_ms) {
   TIFR2 = 1 << OCF2A;
   TIMSK2 = 1 << OCIE2A;
   TCCR2B = prescaler;
-  Sound* const it = near(&sound);
-  it->end_ms = clock_ms() + duration_ms;
-  it->is_on = true;
+  Sound* const near_sound = near(&sound);
+  near_sound->end_ms = clock_ms() + duration_ms;
+  near_sound->is_on = true;
 }
 
 void sound_finished() { start_notes(kFinishedHertz[0], kFinishedHertz[1]); }
@@ -80,10 +80,10 @@ void sound_off() {
 }
 
 void sound_tick(uint32_t now_ms) {
-  const Sound* const it = near(&sound);
-  if (!it->is_on || static_cast<int32_t>(now_ms - it->end_ms) < 0) return;
-  if (it->next_hertz == 0) return sound_off();
-  start_notes(it->next_hertz, 0);
+  const Sound* const near_sound = near(&sound);
+  if (!near_sound->is_on || static_cast<int32_t>(now_ms - near_sound->end_ms) < 0) return;
+  if (near_sound->next_hertz == 0) return sound_off();
+  start_notes(near_sound->next_hertz, 0);
 }
 
 }  // namespace tiniscript

@@ -182,13 +182,15 @@ ISR(uart_send_vect, ISR_NAKED) {
       "lds r30, %[link] + %[left]\n\tsubi r30, 1\n\tbrcs 1f\n\tsts %[link] + %[left], r30\n\t"
       "lds r30, %[link] + %[sent]\n\tinc r30\n\tsts %[link] + %[sent], r30\n\tldi r31, 0\n\t"
       "subi r30, lo8(-(%[link] + %[out] - 1))\n\tsbci r31, hi8(-(%[link] + %[out] - 1))\n\t"
-      "ld r30, Z\n\t" tini_let_stop_in "sts %[data], r30\n\trjmp 2f\n"
+      "ld r30, Z\n\t" tini_let_stop_in
+      "sts %[data], r30\n\trjmp 2f\n"
       "1: ldi r30, %[listening]\n\tsts %[control], r30\n"
       "2: pop r30\n\tout __SREG__, r30\n\tpop r31\n\tpop r30\n\treti"
       :
-      : [link] "i"(&link), [left] "n"(Link::Layout::left_at()), [sent] "n"(Link::Layout::sent_at()),
-        [out] "n"(Link::Layout::out_at()), [data] "n"(_SFR_MEM_ADDR(UDR0)),
-        [control] "n"(_SFR_MEM_ADDR(UCSR0B)), [listening] "M"(static_cast<int>(kListening)));
+      : [link] "i"(&link), [left] "n"(Link::Layout::bytes_left_at()),
+        [sent] "n"(Link::Layout::sent_at()), [out] "n"(Link::Layout::out_at()),
+        [data] "n"(_SFR_MEM_ADDR(UDR0)), [control] "n"(_SFR_MEM_ADDR(UCSR0B)),
+        [listening] "M"(static_cast<int>(kListening)));
 }
 
 tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)

@@ -36,7 +36,7 @@ struct Record {
   Place place;  // zeros if no program ran
 };
 
-Record last __attribute__((section(".noinit")));
+Record hang_record __attribute__((section(".noinit")));
 uint16_t resets __attribute__((section(".noinit")));  // count of resets, from a random start
 uint8_t flags __attribute__((section(".noinit")));    // MCUSR after the reset
 
@@ -49,18 +49,20 @@ void on_stall() {
   actuators_off(true);
 }
 
-void be_alive() { last.mark = kAlive; }
+void mark_alive() { hang_record.mark = kAlive; }
 
-tini_noinline uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
+tini_noinline uint32_t hang_mark() {
+  return kHung ^ hang_record.place.checksum ^ hang_record.place.offset;
+}
 
 }  // namespace
 
 // Records the code that the watchdog interrupts.
 extern "C" void tiniscript_note_hang() __attribute__((used, noinline));
 void tiniscript_note_hang() {
-  if (last.mark != kAlive) return;
-  if (!firmware_runs(&last.place)) last.place = Place();
-  last.mark = hung_mark();
+  if (hang_record.mark != kAlive) return;
+  if (!firmware_runs(&hang_record.place)) hang_record.place = Place();
+  hang_record.mark = hang_mark();
 }
 
 // Turns the watchdog off before memory is set up, because it may still run with a short timeout.
@@ -76,49 +78,49 @@ void tiniscript_watchdog_off() {
 }
 
 void watchdog_begin() {
-  if (last.mark == hung_mark()) {
+  if (hang_record.mark == hang_mark()) {
     has_hung = true;
   } else {
-    be_alive();
+    mark_alive();
   }
-  const uint8_t before = SREG;
+  const uint8_t saved_sreg = SREG;
   cli();
   wdt_reset();
   WDTCSR = 1 << WDCE | 1 << WDE;
   // 0.125 s; the second timeout resets. An old Nano's bootloader cannot disable the watchdog: after
   // a hang with interrupts off, the motors stay off until the power is cycled.
   WDTCSR = 1 << WDIE | 1 << WDE | 1 << WDP1 | 1 << WDP0;
-  SREG = before;
+  SREG = saved_sreg;
 }
 
 bool watchdog_take_stall() {
-  const bool found = has_stalled;
+  const bool had_stalled = has_stalled;
   has_stalled = false;
-  return found;
+  return had_stalled;
 }
 
 bool watchdog_take_hang(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
-  *place = last.place;
-  be_alive();
+  *place = hang_record.place;
+  mark_alive();
   return true;
 }
 
 Reset watchdog_reset_cause() {
-  uint8_t left = flags & (1 << WDRF | 1 << PORF | 1 << BORF | 1 << EXTRF);
-  if (has_hung) left = 1 << WDRF;
-  if ((left & 1 << WDRF) == 0 && (left & 1 << PORF) != 0) left = 1 << PORF;
+  uint8_t reset_flags = flags & (1 << WDRF | 1 << PORF | 1 << BORF | 1 << EXTRF);
+  if (has_hung) reset_flags = 1 << WDRF;
+  if ((reset_flags & 1 << WDRF) == 0 && (reset_flags & 1 << PORF) != 0) reset_flags = 1 << PORF;
   uint8_t cause = 0;  // unknown: a bootloader has cleared the flags
-  for (; left != 0; left >>= 1) cause++;
+  for (; reset_flags != 0; reset_flags >>= 1) cause++;
   return static_cast<Reset>(cause);
 }
 
 uint32_t watchdog_seed() {
   const uint8_t* const end = reinterpret_cast<const uint8_t*>(RAMEND + 1);
   const uint8_t* const stack = reinterpret_cast<const uint8_t*>(SP);
-  const uint8_t* const from = stack - kNoiseBytes;
-  return crc32(++resets, from, static_cast<uint16_t>(end - from - 1));
+  const uint8_t* const start = stack - kNoiseBytes;
+  return crc32(++resets, start, static_cast<uint16_t>(end - start - 1));
 }
 
 }  // namespace tiniscript

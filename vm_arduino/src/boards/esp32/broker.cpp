@@ -33,8 +33,8 @@ constexpr uint32_t kPeerMs = 3000;     // of silence after which another client 
 constexpr size_t kPeerDigits = 8;
 constexpr size_t kChunk = 256;
 constexpr size_t kLeastStop = 4;
-constexpr char kHere = '+';
-constexpr char kGone = '-';
+constexpr char kOnline = '+';
+constexpr char kOffline = '-';
 
 enum class Phase : uint8_t { kOff, kConnecting, kGreeting, kSubscribing, kReady };
 
@@ -45,11 +45,11 @@ MqttReader reader;
 Phase phase;
 uint32_t since_ms;  // of the phase
 uint32_t heard_ms;
-uint32_t said_ms;
+uint32_t sent_ms;
 
 Peer peer;  // the client that has the robot; empty: none
 uint32_t peer_ms;
-Peer refused;  // the client to notify that another one has the robot
+Peer refused_peer;  // the client to notify that another one has the robot
 
 size_t out_length;
 size_t out_sent;
@@ -72,7 +72,7 @@ class Topic {
     text_[length_] = 0;
     return *this;
   }
-  Topic& of_robot() { return add(radio_name().id); }
+  Topic& add_id() { return add(radio_name().id); }
   const char* text() const { return text_; }
 
  private:
@@ -81,7 +81,7 @@ class Topic {
 };
 
 // The rest of a topic after `start`, or nullptr.
-const char* rest_of(const char* topic, const char* start) {
+const char* suffix_after(const char* topic, const char* start) {
   while (*start != 0) {
     if (*topic++ != *start++) return nullptr;
   }
@@ -115,18 +115,18 @@ StopKind find_stop(const uint8_t* payload, size_t length) {
   }
   StopFinder finder = StopFinder();
   finder.begin(is_framed);
-  StopKind most = StopKind::kNothing;
+  StopKind strongest = StopKind::kNothing;
   for (size_t k = 0; k < length; k++) {
-    const StopKind found = finder.put(payload[k], 0);
-    if (found > most) most = found;
+    const StopKind stop = finder.put(payload[k], 0);
+    if (stop > strongest) strongest = stop;
   }
-  return finder.is_at_stop() ? StopKind::kStop : most;
+  return finder.is_at_stop() ? StopKind::kStop : strongest;
 }
 
-void part() {
+void drop_peer() {
   if (peer[0] == 0) return;
   peer[0] = 0;
-  pipe().part();
+  pipe().end_client();
 }
 
 void set_phase(Phase next) {
@@ -134,23 +134,23 @@ void set_phase(Phase next) {
   since_ms = now_ms();
 }
 
-// `why` stays until there is another reason: each of the next tries may end in the same way.
-void hang_up(WifiState why = WifiState::kSearching) {
+// `state` stays until there is another reason: each of the next tries may end in the same way.
+void hang_up(WifiState state = WifiState::kSearching) {
   line_end();
-  part();
-  refused[0] = 0;
+  drop_peer();
+  refused_peer[0] = 0;
   out_length = out_sent = 0;
   set_phase(Phase::kOff);
-  broker_note(why);
+  broker_note(state);
 }
 
 // The moment of the next try differs from robot to robot: a broker that is back gets them in turn.
-uint32_t again_ms() {
-  uint32_t spread = 0;
+uint32_t retry_delay_ms() {
+  uint32_t id_hash = 0;
   for (const char* digit = radio_name().id; *digit != 0; digit++) {
-    spread = spread * 31 + static_cast<uint8_t>(*digit);
+    id_hash = id_hash * 31 + static_cast<uint8_t>(*digit);
   }
-  return kAgainMs + spread % 1000;
+  return kAgainMs + id_hash % 1000;
 }
 
 void begin() {
@@ -166,22 +166,22 @@ void connect() {
     return hang_up(wifi_state == WifiState::kOff ? WifiState::kSearching : wifi_state);
   char client[sizeof "tini-" + sizeof(RadioName::id)] = "tini-";
   __builtin_memcpy(client + 5, radio_name().id, sizeof(RadioName::id));
-  char will[kNameBytes + 2] = {kGone};
+  char will[kNameBytes + 2] = {kOffline};
   __builtin_memcpy(will + 1, radio_name().name, kNameBytes + 1);
   MqttWriter writer(out, sizeof out);
-  writer.connect(client, kKeepAliveS, Topic().of_robot().text(), will, settings.user,
+  writer.connect(client, kKeepAliveS, Topic().add_id().text(), will, settings.user,
                  settings.password);
   out_length = writer.length();
   out_sent = 0;
   reader.begin();
-  heard_ms = said_ms = now_ms();
+  heard_ms = sent_ms = now_ms();
   set_phase(Phase::kGreeting);
 }
 
 void subscribe() {
   set_phase(Phase::kSubscribing);
   MqttWriter writer(out, sizeof out);
-  writer.subscribe(1, Topic().of_robot().add("/in/+").text(), Topic().add("stop").text());
+  writer.subscribe(1, Topic().add_id().add("/in/+").text(), Topic().add("stop").text());
   out_length = writer.length();
   out_sent = 0;
 }
@@ -190,11 +190,11 @@ void subscribe() {
 void announce() {
   set_phase(Phase::kReady);
   broker_note(WifiState::kReady);
-  char here[kNameBytes + 2] = {kHere};
-  __builtin_memcpy(here + 1, radio_name().name, kNameBytes + 1);
+  char presence[kNameBytes + 2] = {kOnline};
+  __builtin_memcpy(presence + 1, radio_name().name, kNameBytes + 1);
   MqttWriter writer(out, sizeof out);
-  writer.publish(Topic().of_robot().text(), reinterpret_cast<const uint8_t*>(here), length_of(here),
-                 true);
+  writer.publish(Topic().add_id().text(), reinterpret_cast<const uint8_t*>(presence),
+                 length_of(presence), true);
   out_length = writer.length();
   out_sent = 0;
 }
@@ -205,21 +205,21 @@ void pass_on(const uint8_t* bytes, size_t length) {
 
 // A message of a client. A client that has the robot keeps it until it leaves or is silent; a stop
 // from anybody is a stop.
-void on_peer(const char* who, const uint8_t* payload, size_t length) {
-  const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
+void on_peer(const char* sender, const uint8_t* payload, size_t length) {
+  const bool is_taken = peer[0] != 0 && !is_same(sender, peer) && now_ms() - peer_ms < kPeerMs;
   if (is_taken) {
-    const StopKind found = is_stop(payload, length) ? StopKind::kStop : find_stop(payload, length);
-    if (found > StopKind::kInFrame) return pipe().stop(found == StopKind::kOfRun);
-    if (length != 0) __builtin_memcpy(refused, who, sizeof refused);
+    const StopKind stop = is_stop(payload, length) ? StopKind::kStop : find_stop(payload, length);
+    if (stop > StopKind::kInFrame) return pipe().stop(stop == StopKind::kOfRun);
+    if (length != 0) __builtin_memcpy(refused_peer, sender, sizeof refused_peer);
     return;
   }
   if (length == 0) {  // it leaves
-    if (is_same(who, peer)) part();
+    if (is_same(sender, peer)) drop_peer();
     return;
   }
-  if (!is_same(who, peer)) {
-    part();
-    __builtin_memcpy(peer, who, sizeof peer);
+  if (!is_same(sender, peer)) {
+    drop_peer();
+    __builtin_memcpy(peer, sender, sizeof peer);
     pipe().begin();
   }
   peer_ms = now_ms();
@@ -232,8 +232,8 @@ void on_message() {
     if (is_stop(reader.payload(), reader.length())) pass_on(reader.payload(), reader.length());
     return;
   }
-  const char* const who = rest_of(reader.topic(), Topic().of_robot().add("/in/").text());
-  if (who != nullptr && is_peer(who)) on_peer(who, reader.payload(), reader.length());
+  const char* const sender = suffix_after(reader.topic(), Topic().add_id().add("/in/").text());
+  if (sender != nullptr && is_peer(sender)) on_peer(sender, reader.payload(), reader.length());
 }
 
 // Returns whether the connection is still there.
@@ -281,11 +281,11 @@ void write_next() {
   size_t length = 0;
   while (peer[0] != 0 && length < sizeof bytes && pipe().take(bytes + length)) length++;
   if (length != 0) {
-    writer.publish(Topic().of_robot().add("/out/").add(peer).text(), bytes, length, false);
-  } else if (refused[0] != 0) {
-    writer.publish(Topic().of_robot().add("/out/").add(refused).text(), nullptr, 0, false);
-    refused[0] = 0;
-  } else if (now_ms() - said_ms >= kPingMs) {
+    writer.publish(Topic().add_id().add("/out/").add(peer).text(), bytes, length, false);
+  } else if (refused_peer[0] != 0) {
+    writer.publish(Topic().add_id().add("/out/").add(refused_peer).text(), nullptr, 0, false);
+    refused_peer[0] = 0;
+  } else if (now_ms() - sent_ms >= kPingMs) {
     writer.ping();
   }
   out_length = writer.length();
@@ -295,19 +295,19 @@ void write_next() {
 void say() {
   if (out_sent == out_length && phase == Phase::kReady) write_next();
   if (out_sent == out_length) return;
-  const int sent = line_send(out + out_sent, out_length - out_sent);
-  if (sent == kEnded) return hang_up();
-  if (sent == kNothingYet) return;
-  out_sent += static_cast<size_t>(sent);
-  said_ms = now_ms();
+  const int sent_length = line_send(out + out_sent, out_length - out_sent);
+  if (sent_length == kEnded) return hang_up();
+  if (sent_length == kNothingYet) return;
+  out_sent += static_cast<size_t>(sent_length);
+  sent_ms = now_ms();
 }
 
 }  // namespace
 
 void broker_turn() {
-  if (broker_changed(&settings)) {
+  if (broker_take_change(&settings)) {
     hang_up();
-    since_ms = now_ms() - again_ms();  // at once
+    since_ms = now_ms() - retry_delay_ms();  // at once
   }
   if (!settings.is_set() || !wifi_is_there()) {
     if (phase != Phase::kOff) hang_up();
@@ -315,12 +315,12 @@ void broker_turn() {
     return;
   }
   if (phase == Phase::kOff) {
-    if (now_ms() - since_ms >= again_ms()) begin();
+    if (now_ms() - since_ms >= retry_delay_ms()) begin();
     return;
   }
-  const uint32_t waits_ms = now_ms() - since_ms;
+  const uint32_t waiting_ms = now_ms() - since_ms;
   const uint32_t limit_ms = settings.is_tls() ? kTlsMs : kConnectMs;
-  if (phase != Phase::kReady && waits_ms >= limit_ms) return hang_up();
+  if (phase != Phase::kReady && waiting_ms >= limit_ms) return hang_up();
   if (phase == Phase::kConnecting) return connect();
   receive();
   if (phase != Phase::kOff) say();

@@ -14,12 +14,12 @@ namespace {
 
 constexpr uint8_t kDateBytes = 4;
 
-KeptSettings<BrokerSettings> kept("broker");
-BrokerSettings wanted;  // the main loop's: received so far
-bool lacks_memory;      // the main loop's: for the broker's task
-uint8_t state;          // a WifiState, written by the broker's task
+KeptSettings<BrokerSettings> kept_settings("broker");
+BrokerSettings new_settings;  // the main loop's: received so far
+bool lacks_memory;            // the main loop's: for the broker's task
+uint8_t state;                // a WifiState, written by the broker's task
 
-void clear() { __builtin_memset(&wanted, 0, sizeof wanted); }
+void clear() { __builtin_memset(&new_settings, 0, sizeof new_settings); }
 
 // A class is a part of topics: it has no special characters for them.
 bool is_class(const char* name) {
@@ -36,24 +36,24 @@ bool begin(const uint8_t* text, uint8_t length) {
   clear();
   if (length == 0) return true;
   if (length <= kBrokerPlaceBytes) return false;
-  __builtin_memcpy(wanted.address, text, sizeof wanted.address);
-  wanted.port = static_cast<uint16_t>(text[4] | text[5] << 8);
-  return append(wanted.group, kClassBytes, text + kBrokerPlaceBytes,
+  __builtin_memcpy(new_settings.address, text, sizeof new_settings.address);
+  new_settings.port = static_cast<uint16_t>(text[4] | text[5] << 8);
+  return append(new_settings.group, kClassBytes, text + kBrokerPlaceBytes,
                 static_cast<uint8_t>(length - kBrokerPlaceBytes)) &&
-         is_class(wanted.group) && wanted.port != 0;
+         is_class(new_settings.group) && new_settings.port != 0;
 }
 
 bool take_date(const uint8_t* text, uint8_t length) {
   if (length != kDateBytes) return false;
-  wanted.date = 0;
-  for (uint8_t k = kDateBytes; k > 0; k--) wanted.date = wanted.date << 8 | text[k - 1];
-  return wanted.date != 0;
+  new_settings.date = 0;
+  for (uint8_t k = kDateBytes; k > 0; k--) new_settings.date = new_settings.date << 8 | text[k - 1];
+  return new_settings.date != 0;
 }
 
 bool take_trust(const uint8_t* text, uint8_t length) {
-  if (length > kTrustBytes - wanted.trust_bytes) return false;
-  __builtin_memcpy(wanted.trust + wanted.trust_bytes, text, length);
-  wanted.trust_bytes = static_cast<uint16_t>(wanted.trust_bytes + length);
+  if (length > kTrustBytes - new_settings.trust_bytes) return false;
+  __builtin_memcpy(new_settings.trust + new_settings.trust_bytes, text, length);
+  new_settings.trust_bytes = static_cast<uint16_t>(new_settings.trust_bytes + length);
   return true;
 }
 
@@ -62,27 +62,27 @@ bool take(WifiStep step, const uint8_t* text, uint8_t length) {
     case WifiStep::kBroker:
       return begin(text, length);
     case WifiStep::kBrokerName:
-      return append(wanted.name, kBrokerNameBytes, text, length);
+      return append(new_settings.name, kBrokerNameBytes, text, length);
     case WifiStep::kBrokerUser:
-      return append(wanted.user, kNetworkBytes, text, length);
+      return append(new_settings.user, kNetworkBytes, text, length);
     case WifiStep::kBrokerPassword:
-      return append(wanted.password, kPasswordBytes, text, length);
+      return append(new_settings.password, kPasswordBytes, text, length);
     case WifiStep::kBrokerTls:
       return take_date(text, length);
     case WifiStep::kBrokerTrust:
       return take_trust(text, length);
     case WifiStep::kUseBroker:
-      return wanted.is_sound();
+      return new_settings.is_sound();
     default:
       return true;
   }
 }
 
 // While its task has not taken the settings, it speaks of those before: it may be looking up a name.
-WifiState state_now() {
-  if (!kept.now().is_set()) return WifiState::kOff;
+WifiState current_state() {
+  if (!kept_settings.current().is_set()) return WifiState::kOff;
   if (lacks_memory) return WifiState::kNoTls;
-  if (kept.is_new()) return WifiState::kSearching;
+  if (kept_settings.is_new()) return WifiState::kSearching;
   return static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
 }
 
@@ -98,18 +98,18 @@ bool BrokerSettings::is_sound() const {
          (is_tls() ? has_trust : trust_bytes == 0);
 }
 
-void broker_load() { kept.load(); }
+void broker_load() { kept_settings.load(); }
 
-bool broker_is_set() { return kept.now().is_set(); }
+bool broker_is_set() { return kept_settings.current().is_set(); }
 
 WifiReport broker_report() {
-  const BrokerSettings& now = kept.now();
+  const BrokerSettings& settings = kept_settings.current();
   WifiReport report = {};
-  report.mode = now.is_set() ? WifiMode::kStation : WifiMode::kOff;
-  report.state = state_now();
-  __builtin_memcpy(report.address, now.address, sizeof report.address);
-  report.network_bytes = static_cast<uint8_t>(length_of(now.group));
-  __builtin_memcpy(report.network, now.group, report.network_bytes);
+  report.mode = settings.is_set() ? WifiMode::kStation : WifiMode::kOff;
+  report.state = current_state();
+  __builtin_memcpy(report.address, settings.address, sizeof report.address);
+  report.network_bytes = static_cast<uint8_t>(length_of(settings.group));
+  __builtin_memcpy(report.network, settings.group, report.network_bytes);
   return report;
 }
 
@@ -119,23 +119,23 @@ Answer broker_set(WifiStep step, const uint8_t* text, uint8_t length) {
     return Answer::kBadValue;
   }
   if (step != WifiStep::kUseBroker) return Answer::kOk;
-  const Answer answer = kept.keep(wanted);
+  const Answer answer = kept_settings.keep(new_settings);
   if (answer == Answer::kOk) clear();
   return answer;
 }
 
 Answer broker_forget() {
   clear();
-  return broker_is_set() ? kept.keep(wanted) : Answer::kOk;
+  return broker_is_set() ? kept_settings.keep(new_settings) : Answer::kOk;
 }
 
 void broker_note_memory(bool has_memory) { lacks_memory = !has_memory; }
 
 // Its remarks on earlier ones end when the main loop learns that it has taken these.
-bool broker_changed(BrokerSettings* broker_settings) {
-  if (!kept.is_new()) return false;
+bool broker_take_change(BrokerSettings* broker_settings) {
+  if (!kept_settings.is_new()) return false;
   broker_note(WifiState::kSearching);
-  return kept.changed(broker_settings);
+  return kept_settings.take_change(broker_settings);
 }
 
 void broker_note(WifiState wifi_state) {

@@ -44,7 +44,7 @@ void broker_note_memory(bool has_memory);
 
 // The broker's task: whether the settings have changed since the last call; then they are in
 // `*broker_settings`.
-bool broker_changed(BrokerSettings* broker_settings);
+bool broker_take_change(BrokerSettings* broker_settings);
 
 // The broker's task says whether the robot is connected, or why not.
 void broker_note(WifiState wifi_state);

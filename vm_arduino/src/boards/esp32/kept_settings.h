@@ -18,22 +18,22 @@ template <class Settings>
 class KeptSettings {
  public:
   explicit constexpr KeptSettings(const char* key)
-      : key_(key), changes_(0), seen_changes_(0), now_() {}
+      : key_(key), changes_(0), seen_changes_(0), current_() {}
 
   // The main loop calls these four. `load` is called once, before there is a task.
   void load() {
-    size_t length = sizeof now_;
+    size_t length = sizeof current_;
     nvs_handle_t handle;
     bool is_there = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK;
     if (is_there) {
-      is_there = nvs_get_blob(handle, key_, &now_, &length) == ESP_OK && now_.is_sound() &&
-                 length == now_.kept_bytes();
+      is_there = nvs_get_blob(handle, key_, &current_, &length) == ESP_OK && current_.is_sound() &&
+                 length == current_.kept_bytes();
       nvs_close(handle);
     }
     if (is_there) {
       changes_ = 1;
     } else {
-      __builtin_memset(&now_, 0, sizeof now_);
+      __builtin_memset(&current_, 0, sizeof current_);
     }
   }
 
@@ -52,20 +52,20 @@ class KeptSettings {
   void use(const Settings& settings) {
     {
       const CriticalSection critical;
-      now_ = settings;
+      current_ = settings;
     }
     __atomic_store_n(&changes_, changes_ + 1, __ATOMIC_RELEASE);  // it has one writer
   }
 
-  const Settings& now() const { return now_; }
+  const Settings& current() const { return current_; }
 
   // The task's: whether they have changed since its last call; then they are in `*found`.
-  bool changed(Settings* found) {
+  bool take_change(Settings* settings) {
     const uint32_t changes = __atomic_load_n(&changes_, __ATOMIC_ACQUIRE);
     if (changes == seen_changes_) return false;
     {
       const CriticalSection critical;
-      *found = now_;
+      *settings = current_;
     }
     __atomic_store_n(&seen_changes_, changes, __ATOMIC_RELEASE);
     return true;
@@ -83,7 +83,7 @@ class KeptSettings {
   const char* key_;
   uint32_t changes_;
   uint32_t seen_changes_;  // the task's
-  Settings now_;           // written by the main loop, in a critical section
+  Settings current_;       // written by the main loop, in a critical section
 };
 
 }  // namespace tiniscript

@@ -37,86 +37,86 @@ uint16_t mtu = kLeastMtu;
 uint16_t client = kNobody;  // the client with the place: the number of its connection
 uint8_t interface;
 bool has_subscribed;
-uint8_t clients;  // so far
+uint8_t client_count;  // so far
 
 // The stack's task alone.
 BLEServer* server;
 uint32_t heard_ms;  // when something was heard of that client, or it came
 
 // The radio's task: a notification that waits, and for which client.
-uint16_t to_computer;  // the handle of the characteristic
-uint8_t waiting[kMostMtu - kMtuHead];
+uint16_t notify_handle;  // the handle of the characteristic
+uint8_t outgoing[kMostMtu - kMtuHead];
 size_t length;
-uint8_t its_client;
+uint8_t outgoing_client;
 uint8_t pause_turns;
 
 BLE2902* subscription;
 
 template <class Value>
-void publish(Value* at, Value value) {
-  __atomic_store_n(at, value, __ATOMIC_RELAXED);
+void store_relaxed(Value* target, Value value) {
+  __atomic_store_n(target, value, __ATOMIC_RELAXED);
 }
 
 template <class Value>
-Value published(const Value& at) {
-  return __atomic_load_n(&at, __ATOMIC_RELAXED);
+Value load_relaxed(const Value& source) {
+  return __atomic_load_n(&source, __ATOMIC_RELAXED);
 }
 
 Pipe& pipe() { return radio_pipe(Transport::kLowEnergy); }
 
 class WriteCallbacks : public BLECharacteristicCallbacks {
  public:
-  void onWrite(BLECharacteristic* its, esp_ble_gatts_cb_param_t* event) override {
+  void onWrite(BLECharacteristic* characteristic, esp_ble_gatts_cb_param_t* event) override {
     if (event->write.conn_id != client) return;
-    const uint8_t* const bytes = its->getData();
-    const size_t length = its->getLength();
+    const uint8_t* const bytes = characteristic->getData();
+    const size_t length = characteristic->getLength();
     heard_ms = static_cast<uint32_t>(millis());
     for (size_t k = 0; k < length; k++) pipe().put(bytes[k], static_cast<uint16_t>(heard_ms));
   }
 };
 
-void part() {
-  if (client != kNobody) pipe().part();
-  publish(&client, kNobody);
+void drop_client() {
+  if (client != kNobody) pipe().end_client();
+  store_relaxed(&client, kNobody);
 }
 
 // A newcomer gets the place if it is free, or if its holder has been silent for long.
-void on_connect(uint8_t its_interface, uint16_t found) {
+void on_connect(uint8_t new_interface, uint16_t new_client) {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
-  if (client != kNobody && now_ms - heard_ms < kPlaceMs) return server->disconnect(found);
+  if (client != kNobody && now_ms - heard_ms < kPlaceMs) return server->disconnect(new_client);
   if (client != kNobody) server->disconnect(client);
-  part();
+  drop_client();
   heard_ms = now_ms;
-  publish(&mtu, kLeastMtu);
-  publish(&has_subscribed, false);
-  publish(&interface, its_interface);
-  publish(&client, found);
-  publish(&clients, static_cast<uint8_t>(clients + 1));
+  store_relaxed(&mtu, kLeastMtu);
+  store_relaxed(&has_subscribed, false);
+  store_relaxed(&interface, new_interface);
+  store_relaxed(&client, new_client);
+  store_relaxed(&client_count, static_cast<uint8_t>(client_count + 1));
   pipe().begin();
 }
 
-void on_mtu(uint16_t found) {
-  publish(&mtu, found < kLeastMtu ? kLeastMtu : found > kMostMtu ? kMostMtu : found);
+void on_mtu(uint16_t new_mtu) {
+  store_relaxed(&mtu, new_mtu < kLeastMtu ? kLeastMtu : new_mtu > kMostMtu ? kMostMtu : new_mtu);
 }
 
 // The core has done its part by then. The stack stops advertising after a connection: then no other
 // client could connect.
-void on_event(esp_gatts_cb_event_t event, esp_gatt_if_t its_interface,
-              esp_ble_gatts_cb_param_t* its) {
+void on_event(esp_gatts_cb_event_t event, esp_gatt_if_t new_interface,
+              esp_ble_gatts_cb_param_t* param) {
   switch (event) {
     case ESP_GATTS_CONNECT_EVT:
-      on_connect(its_interface, its->connect.conn_id);
+      on_connect(new_interface, param->connect.conn_id);
       return BLEDevice::startAdvertising();
     case ESP_GATTS_DISCONNECT_EVT:
-      if (its->disconnect.conn_id == client) part();
+      if (param->disconnect.conn_id == client) drop_client();
       return BLEDevice::startAdvertising();
     case ESP_GATTS_MTU_EVT:
-      if (its->mtu.conn_id == client) on_mtu(its->mtu.mtu);
+      if (param->mtu.conn_id == client) on_mtu(param->mtu.mtu);
       return;
     case ESP_GATTS_WRITE_EVT:
-      if (its->write.conn_id != client || its->write.len == 0) return;
-      if (its->write.handle != subscription->getHandle()) return;
-      return publish(&has_subscribed, (its->write.value[0] & 1) != 0);
+      if (param->write.conn_id != client || param->write.len == 0) return;
+      if (param->write.handle != subscription->getHandle()) return;
+      return store_relaxed(&has_subscribed, (param->write.value[0] & 1) != 0);
     default:
       return;
   }
@@ -136,11 +136,11 @@ void low_energy_begin() {
   BLECharacteristic* const notifier =
       service->createCharacteristic(kToComputer, BLECharacteristic::PROPERTY_NOTIFY);
   notifier->addDescriptor(&notifications);
-  BLECharacteristic* const to_robot = service->createCharacteristic(
+  BLECharacteristic* const rx_characteristic = service->createCharacteristic(
       kToRobot, BLECharacteristic::PROPERTY_WRITE | BLECharacteristic::PROPERTY_WRITE_NR);
-  to_robot->setCallbacks(&write_callbacks);
+  rx_characteristic->setCallbacks(&write_callbacks);
   service->start();
-  to_computer = notifier->getHandle();
+  notify_handle = notifier->getHandle();
   BLEAdvertising* const advertising = BLEDevice::getAdvertising();
   advertising->addServiceUUID(kService);
   advertising->setScanResponse(true);  // the name is in it
@@ -153,15 +153,15 @@ void low_energy_turn() {
     pause_turns--;
     return;
   }
-  const uint8_t found = published(clients);
-  if (found != its_client) length = 0;  // the waiting bytes are for an earlier client
-  its_client = found;
+  const uint8_t count = load_relaxed(client_count);
+  if (count != outgoing_client) length = 0;  // the waiting bytes are for an earlier client
+  outgoing_client = count;
   if (!pipe().is_connected()) return;
-  const size_t most = static_cast<size_t>(published(mtu) - kMtuHead);
-  while (length < most && pipe().take(waiting + length)) length++;
-  if (length == 0 || !published(has_subscribed)) return;
-  if (esp_ble_gatts_send_indicate(published(interface), published(client), to_computer,
-                                  static_cast<uint16_t>(length), waiting, false) == ESP_OK) {
+  const size_t max_length = static_cast<size_t>(load_relaxed(mtu) - kMtuHead);
+  while (length < max_length && pipe().take(outgoing + length)) length++;
+  if (length == 0 || !load_relaxed(has_subscribed)) return;
+  if (esp_ble_gatts_send_indicate(load_relaxed(interface), load_relaxed(client), notify_handle,
+                                  static_cast<uint16_t>(length), outgoing, false) == ESP_OK) {
     length = 0;
   }
   pause_turns = kPauseTurns;

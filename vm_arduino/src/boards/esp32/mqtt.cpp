@@ -9,12 +9,12 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kConnect = 0x10;
-constexpr uint8_t kAnswered = 0x20;
+constexpr uint8_t kConnack = 0x20;
 constexpr uint8_t kPublish = 0x30;
 constexpr uint8_t kSubscribe = 0x82;
-constexpr uint8_t kSubscribed = 0x90;
+constexpr uint8_t kSuback = 0x90;
 constexpr uint8_t kPing = 0xc0;
-constexpr uint8_t kPinged = 0xd0;
+constexpr uint8_t kPingResp = 0xd0;
 
 constexpr uint8_t kQos = 0x06;
 constexpr uint8_t kRetain = 0x01;
@@ -96,12 +96,12 @@ MqttEvent MqttReader::take(uint8_t byte) {
   switch (part_) {
     case Part::kType:
       type_ = byte;
-      left_ = 0;
+      bytes_left_ = 0;
       shift_ = 0;
       part_ = Part::kLength;
       return MqttEvent::kNone;
     case Part::kLength:
-      left_ |= static_cast<uint32_t>(byte & 0x7f) << shift_;
+      bytes_left_ |= static_cast<uint32_t>(byte & 0x7f) << shift_;
       if ((byte & 0x80) == 0) return begin_packet();
       if (shift_ == kLastShift) return MqttEvent::kBroken;
       shift_ = static_cast<uint8_t>(shift_ + 7);
@@ -113,39 +113,39 @@ MqttEvent MqttReader::take(uint8_t byte) {
 
 // Messages that a broker may send to this client. It has asked for QoS 0.
 MqttEvent MqttReader::begin_packet() {
-  at_ = 0;
+  part_offset_ = 0;
   length_ = 0;
-  topic_left_ = 0;
+  topic_bytes_left_ = 0;
   topic_[0] = 0;
   const bool is_message = (type_ & 0xf0) == kPublish;
   if (is_message) {
-    if ((type_ & kQos) != 0 || left_ < 2) return MqttEvent::kBroken;
+    if ((type_ & kQos) != 0 || bytes_left_ < 2) return MqttEvent::kBroken;
     part_ = Part::kTopicLength;
     return MqttEvent::kNone;
   }
-  const bool is_known = (type_ == kAnswered && left_ == 2) ||
-                        (type_ == kSubscribed && left_ == 2 + kGrants) ||
-                        (type_ == kPinged && left_ == 0);
+  const bool is_known = (type_ == kConnack && bytes_left_ == 2) ||
+                        (type_ == kSuback && bytes_left_ == 2 + kGrants) ||
+                        (type_ == kPingResp && bytes_left_ == 0);
   if (!is_known) return MqttEvent::kBroken;
   part_ = Part::kPayload;
-  return left_ == 0 ? end_packet() : MqttEvent::kNone;
+  return bytes_left_ == 0 ? end_packet() : MqttEvent::kNone;
 }
 
 MqttEvent MqttReader::take_body(uint8_t byte) {
-  left_--;
+  bytes_left_--;
   switch (part_) {
     case Part::kTopicLength:
-      topic_left_ = topic_left_ << 8 | byte;
-      if (++at_ < 2) break;
-      if (topic_left_ > left_) return MqttEvent::kBroken;
-      at_ = 0;
-      part_ = topic_left_ > kMqttTopicBytes ? Part::kSkip : Part::kTopic;
-      if (part_ == Part::kTopic && topic_left_ == 0) part_ = Part::kPayload;
+      topic_bytes_left_ = topic_bytes_left_ << 8 | byte;
+      if (++part_offset_ < 2) break;
+      if (topic_bytes_left_ > bytes_left_) return MqttEvent::kBroken;
+      part_offset_ = 0;
+      part_ = topic_bytes_left_ > kMqttTopicBytes ? Part::kSkip : Part::kTopic;
+      if (part_ == Part::kTopic && topic_bytes_left_ == 0) part_ = Part::kPayload;
       break;
     case Part::kTopic:
-      topic_[at_++] = static_cast<char>(byte);
-      topic_[at_] = 0;
-      if (--topic_left_ == 0) part_ = Part::kPayload;
+      topic_[part_offset_++] = static_cast<char>(byte);
+      topic_[part_offset_] = 0;
+      if (--topic_bytes_left_ == 0) part_ = Part::kPayload;
       break;
     case Part::kPayload:
       if (length_ == kMqttPayloadBytes) {
@@ -157,15 +157,15 @@ MqttEvent MqttReader::take_body(uint8_t byte) {
     default:
       break;
   }
-  return left_ == 0 ? end_packet() : MqttEvent::kNone;
+  return bytes_left_ == 0 ? end_packet() : MqttEvent::kNone;
 }
 
 MqttEvent MqttReader::end_packet() {
   const bool is_whole = part_ == Part::kPayload;
   part_ = Part::kType;
   if ((type_ & 0xf0) == kPublish) return is_whole ? MqttEvent::kMessage : MqttEvent::kNone;
-  if (type_ == kSubscribed) return end_subscription();
-  if (type_ != kAnswered) return MqttEvent::kNone;
+  if (type_ == kSuback) return end_subscription();
+  if (type_ != kConnack) return MqttEvent::kNone;
   return payload_[1] == 0 ? MqttEvent::kAccepted : MqttEvent::kRefused;
 }
 

@@ -67,10 +67,10 @@ class MqttReader {
 
   Part part_;
   uint8_t type_;
-  uint8_t shift_;  // of the length
-  uint32_t left_;  // bytes of the packet that are still to come
-  size_t at_;      // in the part
-  size_t topic_left_;
+  uint8_t shift_;        // of the length
+  uint32_t bytes_left_;  // bytes of the packet that are still to come
+  size_t part_offset_;   // in the part
+  size_t topic_bytes_left_;
   size_t length_;
   char topic_[kMqttTopicBytes + 1];
   uint8_t payload_[kMqttPayloadBytes];

@@ -33,12 +33,12 @@ nvs_handle_t handle;
 
 // The blob that was used last.
 uint8_t blob[kBlobBytes];
-uint8_t its_slot = kSlots;  // none
-uint8_t its_number;
-uint16_t its_bytes;  // those that NVS has, or will have
-bool waits;          // to be written: the bytes from the first to the last place
-uint16_t first_waiting;
-uint16_t last_waiting;
+uint8_t blob_slot = kSlots;  // none
+uint8_t blob_number;
+uint16_t blob_bytes;  // those that NVS has, or will have
+bool is_dirty;        // to be written: the bytes from the first to the last place
+uint16_t first_dirty;
+uint16_t last_dirty;
 
 // A key: h0 is the head of slot 0, b0a the first blob of its body.
 struct Key {
@@ -48,7 +48,7 @@ struct Key {
 Key head_key(uint8_t slot) { return {{'h', static_cast<char>('0' + slot), 0, 0}}; }
 
 Key blob_key() {
-  return {{'b', static_cast<char>('0' + its_slot), static_cast<char>('a' + its_number), 0}};
+  return {{'b', static_cast<char>('0' + blob_slot), static_cast<char>('a' + blob_number), 0}};
 }
 
 // The last possible end of the body of a slot.
@@ -60,15 +60,15 @@ uint16_t room_of(uint8_t slot) {
 // The slot of a place.
 uint8_t slot_of(uint16_t place) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
-    const uint16_t begin = place_of(slot);
-    if (place >= begin && place - begin < kBodyAt + room_of(slot)) return slot;
+    const uint16_t start = place_of(slot);
+    if (place >= start && place - start < kBodyAt + room_of(slot)) return slot;
   }
   return kSlots;
 }
 
-bool is_there(esp_err_t found) {
-  if (found != ESP_OK && found != ESP_ERR_NVS_NOT_FOUND) has_refused = true;
-  return found == ESP_OK;
+bool is_there(esp_err_t error) {
+  if (error != ESP_OK && error != ESP_ERR_NVS_NOT_FOUND) has_refused = true;
+  return error == ESP_OK;
 }
 
 void load_head(uint8_t slot) {
@@ -92,13 +92,13 @@ void load_blob() {
     __builtin_memset(blob, kEmpty, kBlobBytes);
     length = 0;
   }
-  its_bytes = static_cast<uint16_t>(length);
+  blob_bytes = static_cast<uint16_t>(length);
 }
 
 void write_blob() {
-  if (!waits) return;
-  waits = false;
-  if (is_open && nvs_set_blob(handle, blob_key().text, blob, its_bytes) == ESP_OK) {
+  if (!is_dirty) return;
+  is_dirty = false;
+  if (is_open && nvs_set_blob(handle, blob_key().text, blob, blob_bytes) == ESP_OK) {
     nvs_commit(handle);
   }
   ultrasonic_forget();  // its interrupt has stood still, too
@@ -106,15 +106,15 @@ void write_blob() {
 }
 
 // Has the blob of a place of a body in RAM; returns where the byte is there.
-uint16_t go_to(uint8_t slot, uint16_t at) {
-  const uint8_t number = static_cast<uint8_t>(at / kBlobBytes);
-  if (slot != its_slot || number != its_number) {
+uint16_t select_blob(uint8_t slot, uint16_t offset) {
+  const uint8_t number = static_cast<uint8_t>(offset / kBlobBytes);
+  if (slot != blob_slot || number != blob_number) {
     write_blob();
-    its_slot = slot;
-    its_number = number;
+    blob_slot = slot;
+    blob_number = number;
     load_blob();
   }
-  return at % kBlobBytes;
+  return offset % kBlobBytes;
 }
 
 void load() {
@@ -136,29 +136,29 @@ uint8_t nvm_read(uint16_t place) {
   if (!is_loaded) load();
   const uint8_t slot = slot_of(place);
   if (slot == kSlots) return kEmpty;
-  const uint16_t at = static_cast<uint16_t>(place - place_of(slot));
-  if (at < kBodyAt) return heads[slot][at];
-  const uint16_t its = go_to(slot, static_cast<uint16_t>(at - kBodyAt));
-  if (waits && its >= first_waiting && its <= last_waiting) write_blob();
-  return blob[its];
+  const uint16_t offset = static_cast<uint16_t>(place - place_of(slot));
+  if (offset < kBodyAt) return heads[slot][offset];
+  const uint16_t blob_offset = select_blob(slot, static_cast<uint16_t>(offset - kBodyAt));
+  if (is_dirty && blob_offset >= first_dirty && blob_offset <= last_dirty) write_blob();
+  return blob[blob_offset];
 }
 
 void nvm_write(uint16_t place, uint8_t value) {
   if (!is_loaded) load();
   const uint8_t slot = slot_of(place);
   if (slot == kSlots) return;
-  const uint16_t at = static_cast<uint16_t>(place - place_of(slot));
-  if (at < kBodyAt) {
+  const uint16_t offset = static_cast<uint16_t>(place - place_of(slot));
+  if (offset < kBodyAt) {
     write_blob();
-    heads[slot][at] = value;
+    heads[slot][offset] = value;
     return write_head(slot);
   }
-  const uint16_t its = go_to(slot, static_cast<uint16_t>(at - kBodyAt));
-  blob[its] = value;
-  if (!waits || its < first_waiting) first_waiting = its;
-  if (!waits || its > last_waiting) last_waiting = its;
-  if (its >= its_bytes) its_bytes = static_cast<uint16_t>(its + 1);
-  waits = true;
+  const uint16_t blob_offset = select_blob(slot, static_cast<uint16_t>(offset - kBodyAt));
+  blob[blob_offset] = value;
+  if (!is_dirty || blob_offset < first_dirty) first_dirty = blob_offset;
+  if (!is_dirty || blob_offset > last_dirty) last_dirty = blob_offset;
+  if (blob_offset >= blob_bytes) blob_bytes = static_cast<uint16_t>(blob_offset + 1);
+  is_dirty = true;
 }
 
 void nvm_clear(uint16_t place) { nvm_write(place, 0); }

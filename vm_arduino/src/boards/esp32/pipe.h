@@ -23,39 +23,40 @@ class Ring {
  public:
   // The writer's: how many more bytes find room; false if none does.
   uint16_t room() const {
-    const uint16_t first = __atomic_load_n(&first_, __ATOMIC_ACQUIRE);
-    return static_cast<uint16_t>((first + kPlaces - behind_ - 1) % kPlaces);
+    const uint16_t read_index = __atomic_load_n(&read_index_, __ATOMIC_ACQUIRE);
+    return static_cast<uint16_t>((read_index + kPlaces - write_index_ - 1) % kPlaces);
   }
   bool put(Item item) {
     if (room() == 0) return false;
-    items_[behind_] = item;
-    const uint16_t behind = static_cast<uint16_t>((behind_ + 1) % kPlaces);
-    __atomic_store_n(&behind_, behind, __ATOMIC_RELEASE);
+    items_[write_index_] = item;
+    const uint16_t write_index = static_cast<uint16_t>((write_index_ + 1) % kPlaces);
+    __atomic_store_n(&write_index_, write_index, __ATOMIC_RELEASE);
     return true;
   }
 
   // The reader's.
   bool take(Item* item) {
-    if (first_ == __atomic_load_n(&behind_, __ATOMIC_ACQUIRE)) return false;
-    *item = items_[first_];
-    const uint16_t first = static_cast<uint16_t>((first_ + 1) % kPlaces);
-    __atomic_store_n(&first_, first, __ATOMIC_RELEASE);
+    if (read_index_ == __atomic_load_n(&write_index_, __ATOMIC_ACQUIRE)) return false;
+    *item = items_[read_index_];
+    const uint16_t read_index = static_cast<uint16_t>((read_index_ + 1) % kPlaces);
+    __atomic_store_n(&read_index_, read_index, __ATOMIC_RELEASE);
     return true;
   }
   // Leaves out all bytes before a place that `end` has given, if that is still to come.
   void drop_to(uint16_t place) {
-    const uint16_t behind = __atomic_load_n(&behind_, __ATOMIC_ACQUIRE);
-    const uint16_t dropped = static_cast<uint16_t>((place + kPlaces - first_) % kPlaces);
-    const uint16_t kept = static_cast<uint16_t>((behind + kPlaces - first_) % kPlaces);
-    if (dropped <= kept) __atomic_store_n(&first_, place, __ATOMIC_RELEASE);
+    const uint16_t write_index = __atomic_load_n(&write_index_, __ATOMIC_ACQUIRE);
+    const uint16_t dropped_count = static_cast<uint16_t>((place + kPlaces - read_index_) % kPlaces);
+    const uint16_t unread_count =
+        static_cast<uint16_t>((write_index + kPlaces - read_index_) % kPlaces);
+    if (dropped_count <= unread_count) __atomic_store_n(&read_index_, place, __ATOMIC_RELEASE);
   }
 
   // Anybody's: the place of the next byte.
-  uint16_t end() const { return __atomic_load_n(&behind_, __ATOMIC_ACQUIRE); }
+  uint16_t end() const { return __atomic_load_n(&write_index_, __ATOMIC_ACQUIRE); }
 
  private:
-  uint16_t first_;   // written by the reader alone
-  uint16_t behind_;  // written by the writer alone
+  uint16_t read_index_;   // written by the reader alone
+  uint16_t write_index_;  // written by the writer alone
   Item items_[kPlaces];
 };
 
@@ -70,14 +71,14 @@ class Tally {
   // The reader's: whether it has been told since the last call.
   bool take() {
     const uint8_t count = this->count();
-    const bool is_new = count != taken_;
-    taken_ = count;
+    const bool is_new = count != taken_count_;
+    taken_count_ = count;
     return is_new;
   }
 
  private:
   uint8_t count_;
-  uint8_t taken_;
+  uint8_t taken_count_;
 };
 
 class Pipe {
@@ -93,9 +94,9 @@ class Pipe {
       if (rings == nullptr) return false;
       __atomic_store_n(&rings_, rings, __ATOMIC_RELEASE);
     }
-    const uint16_t turn = static_cast<uint16_t>(began_ / kOutPlaces + 1);
-    const uint16_t began = static_cast<uint16_t>(turn * kOutPlaces + rings_->out.end());
-    __atomic_store_n(&began_, began, __ATOMIC_RELEASE);
+    const uint16_t turn = static_cast<uint16_t>(client_start_ / kOutPlaces + 1);
+    const uint16_t client_start = static_cast<uint16_t>(turn * kOutPlaces + rings_->out.end());
+    __atomic_store_n(&client_start_, client_start, __ATOMIC_RELEASE);
     __atomic_store_n(&is_connected_, true, __ATOMIC_RELEASE);
     return true;
   }
@@ -104,30 +105,32 @@ class Pipe {
   // has: if all bytes make a stop, and those that found room do not, the stop goes outside the
   // ring.
   void put(uint8_t byte, uint16_t now_ms) {
-    has_parted_ = false;
-    Rings* const its = rings();
+    has_client_left_ = false;
+    Rings* const rings = this->rings();
     const bool has_room =
-        its != nullptr && its->in.room() > 1 && its->in.put(byte);  // one for `part`
+        rings != nullptr && rings->in.room() > 1 && rings->in.put(byte);  // one for `end_client`
     if (!has_room) lost_.add();
-    if (has_room) put_++;
-    const StopKind found = all_.put(byte, now_ms);
-    const StopKind passed = has_room ? passed_.put(byte, now_ms) : StopKind::kNothing;
-    if (found > passed) return stop(found == StopKind::kOfRun);
-    if (passed == StopKind::kStop) __atomic_store_n(&stop_at_, put_, __ATOMIC_RELEASE);
-    if (passed == StopKind::kOfRun) __atomic_store_n(&run_stop_at_, put_, __ATOMIC_RELEASE);
+    if (has_room) queued_count_++;
+    const StopKind received_stop = received_finder_.put(byte, now_ms);
+    const StopKind queued_stop = has_room ? queued_finder_.put(byte, now_ms) : StopKind::kNothing;
+    if (received_stop > queued_stop) return stop(received_stop == StopKind::kOfRun);
+    if (queued_stop == StopKind::kStop)
+      __atomic_store_n(&stop_end_, queued_count_, __ATOMIC_RELEASE);
+    if (queued_stop == StopKind::kOfRun)
+      __atomic_store_n(&run_stop_end_, queued_count_, __ATOMIC_RELEASE);
   }
 
   // The client has left.
-  void part() {
+  void end_client() {
     __atomic_store_n(&is_connected_, false, __ATOMIC_RELEASE);
-    if (!has_parted_ && rings() != nullptr) {
-      all_.begin();
-      if (rings()->in.put(kParted)) {
-        put_++;
-        passed_.begin();
+    if (!has_client_left_ && rings() != nullptr) {
+      received_finder_.begin();
+      if (rings()->in.put(kClientLeft)) {
+        queued_count_++;
+        queued_finder_.begin();
       }
     }
-    has_parted_ = true;  // further ones have no effect until a byte comes
+    has_client_left_ = true;  // further ones have no effect until a byte comes
   }
 
   // A stop of which the main loop gets no byte. `only_running`: it stops a running program only.
@@ -135,12 +138,12 @@ class Pipe {
 
   // The next byte for the client.
   bool take(uint8_t* byte) {
-    Rings* const its = rings();
-    if (its == nullptr) return false;
-    const uint16_t began = __atomic_load_n(&began_, __ATOMIC_ACQUIRE);
-    if (began != followed_) its->out.drop_to(began % kOutPlaces);
-    followed_ = began;
-    return its->out.take(byte);
+    Rings* const rings = this->rings();
+    if (rings == nullptr) return false;
+    const uint16_t client_start = __atomic_load_n(&client_start_, __ATOMIC_ACQUIRE);
+    if (client_start != followed_start_) rings->out.drop_to(client_start % kOutPlaces);
+    followed_start_ = client_start;
+    return rings->out.take(byte);
   }
 
   // The main loop calls these.
@@ -153,15 +156,15 @@ class Pipe {
 
   // The next event: a byte, or kParted.
   bool take_rx(uint16_t* item) {
-    Rings* const its = rings();
-    if (its == nullptr || !its->in.take(item)) return false;
-    taken_++;
+    Rings* const rings = this->rings();
+    if (rings == nullptr || !rings->in.take(item)) return false;
+    taken_count_++;
     return true;
   }
 
   // Whether a stop waits in the unread bytes, or one for the current run.
-  bool has_stop() const { return waits(stop_at_); }
-  bool has_run_stop() const { return waits(run_stop_at_); }
+  bool has_stop() const { return is_unread(stop_end_); }
+  bool has_run_stop() const { return is_unread(run_stop_end_); }
 
   bool has_room() const { return rings()->out.room() != 0; }  // of a connected client
   void put_tx(uint8_t byte) { rings()->out.put(byte); }
@@ -173,7 +176,7 @@ class Pipe {
   bool take_stop() { return stops_.take(); }
   bool take_silent_stop() { return silent_stops_.take(); }  // one for the current run
 
-  static constexpr uint16_t kParted = 0x100;
+  static constexpr uint16_t kClientLeft = 0x100;
 
  private:
   static constexpr uint16_t kInPlaces = 1024;
@@ -185,25 +188,25 @@ class Pipe {
     Ring<uint8_t, kOutPlaces> out;
   };
 
-  bool waits(const uint32_t& place) const {
-    const uint32_t left = __atomic_load_n(&place, __ATOMIC_ACQUIRE) - taken_;
-    return left != 0 && left <= kInPlaces;
+  bool is_unread(const uint32_t& place) const {
+    const uint32_t distance = __atomic_load_n(&place, __ATOMIC_ACQUIRE) - taken_count_;
+    return distance != 0 && distance <= kInPlaces;
   }
 
   Rings* rings() const { return __atomic_load_n(&rings_, __ATOMIC_ACQUIRE); }
 
   Rings* rings_;
-  uint16_t began_;     // the place of the client's first byte, and above it which turn that is
-  uint16_t followed_;  // the reader's: the last one that it has gone to
+  uint16_t client_start_;    // the place of the client's first byte, and above it which turn that is
+  uint16_t followed_start_;  // the reader's: the last one that it has gone to
   bool is_connected_;
   bool has_key_;
-  bool has_parted_;  // the radio's: no byte has come since
-  uint32_t put_;          // the radio's: total number of queued bytes and partings
-  uint32_t stop_at_;      // how much of that ends with the last stop
-  uint32_t run_stop_at_;  // or with the last one for the current run
-  uint32_t taken_;        // the main loop's: how much it has taken
-  StopFinder all_;     // in all bytes of the client
-  StopFinder passed_;  // in those that found room
+  bool has_client_left_;        // the radio's: no byte has come since
+  uint32_t queued_count_;       // the radio's: total number of queued bytes and partings
+  uint32_t stop_end_;           // how much of that ends with the last stop
+  uint32_t run_stop_end_;       // or with the last one for the current run
+  uint32_t taken_count_;        // the main loop's: how much it has taken
+  StopFinder received_finder_;  // in all bytes of the client
+  StopFinder queued_finder_;    // in those that found room
   Tally stops_;
   Tally silent_stops_;
   Tally lost_;

@@ -10,7 +10,7 @@ const char* const kMethods[] = {"GET",     "HEAD",    "POST",  "PUT",   "DELETE"
                                 "CONNECT", "OPTIONS", "TRACE", "PATCH", "PRI"};
 const char kMarks[] = "!#$%&'*+.^_`|~-";  // of a method, beside letters and digits
 
-struct Text {
+struct Span {
   const uint8_t* bytes;
   size_t length;
 
@@ -36,15 +36,16 @@ bool is_of_method(uint8_t byte) {
   return false;
 }
 
-size_t skip_blanks(Text line, size_t at) {
-  while (line.has(at) && is_blank(line.bytes[at])) at++;
-  return at;
+size_t skip_blanks(Span line, size_t index) {
+  while (line.has(index) && is_blank(line.bytes[index])) index++;
+  return index;
 }
 
 // Whether these letters are at a place, in upper or lower case.
-bool is_at(Text line, size_t at, const char* word) {
-  for (; *word != 0; word++, at++) {
-    if (!line.has(at) || lower(line.bytes[at]) != lower(static_cast<uint8_t>(*word))) return false;
+bool is_at(Span line, size_t index, const char* word) {
+  for (; *word != 0; word++, index++) {
+    if (!line.has(index) || lower(line.bytes[index]) != lower(static_cast<uint8_t>(*word)))
+      return false;
   }
   return true;
 }
@@ -55,7 +56,7 @@ size_t length_of(const char* word) {
   return length;
 }
 
-bool is_known_request(Text line, size_t method_end, size_t target) {
+bool is_known_request(Span line, size_t method_end, size_t target) {
   if (!line.has(target)) return false;
   const bool is_target = line.bytes[target] == '/' || line.bytes[target] == '*' ||
                          is_at(line, target, "http:") || is_at(line, target, "https:");
@@ -67,21 +68,21 @@ bool is_known_request(Text line, size_t method_end, size_t target) {
 }
 
 // METHOD TARGET HTTP/
-bool is_request(Text line, size_t target) {
-  size_t at = target;
-  while (line.has(at) && line.bytes[at] > ' ') at++;
-  const size_t behind = skip_blanks(line, at);
-  return at != target && behind != at && is_at(line, behind, "HTTP/");
+bool is_request(Span line, size_t target) {
+  size_t target_end = target;
+  while (line.has(target_end) && line.bytes[target_end] > ' ') target_end++;
+  const size_t version_start = skip_blanks(line, target_end);
+  return target_end != target && version_start != target_end && is_at(line, version_start, "HTTP/");
 }
 
-Protocol sniffed_text(const uint8_t* bytes, size_t length) {
+Protocol sniff_text(const uint8_t* bytes, size_t length) {
   const Protocol undecided = length <= kFirstBytes ? Protocol::kUnknownYet : Protocol::kOther;
   while (length != 0 && (*bytes == '\r' || *bytes == '\n')) {  // servers of HTTP skip empty lines
     bytes++;
     length--;
   }
   if (length == 0) return undecided;
-  Text line = {bytes, 0};
+  Span line = {bytes, 0};
   while (line.length < length && !is_end(bytes[line.length])) line.length++;
   size_t method_end = 0;
   while (line.has(method_end) && is_of_method(bytes[method_end])) method_end++;
@@ -106,15 +107,15 @@ bool is_binary(const uint8_t* bytes, size_t length) {
 
 }  // namespace
 
-Protocol sniffed(const uint8_t* bytes, size_t length) {
+Protocol sniff_protocol(const uint8_t* bytes, size_t length) {
   if (length > 1 && bytes[0] == 0 && bytes[1] == 0) return Protocol::kForRobot;  // a stop sequence
   if (length == 0 || bytes[0] < ' ') {
     if (is_binary(bytes, length)) return Protocol::kOther;
     if (length < 3) return Protocol::kUnknownYet;
   }
-  if (bytes[0] != 0) return sniffed_text(bytes, length);
+  if (bytes[0] != 0) return sniff_text(bytes, length);
   const bool is_line = is_printable(bytes[1]) && is_printable(bytes[2]);
-  return is_line ? sniffed_text(bytes + 1, length - 1) : Protocol::kForRobot;
+  return is_line ? sniff_text(bytes + 1, length - 1) : Protocol::kForRobot;
 }
 
 }  // namespace tiniscript

@@ -12,6 +12,6 @@ enum class Protocol : uint8_t { kUnknownYet, kForRobot, kOther };
 
 constexpr size_t kFirstBytes = 512;  // of a first line that is still open, at most
 
-Protocol sniffed(const uint8_t* bytes, size_t length);
+Protocol sniff_protocol(const uint8_t* bytes, size_t length);
 
 }  // namespace tiniscript

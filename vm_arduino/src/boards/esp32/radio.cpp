@@ -39,14 +39,14 @@ const Radio kBrokerRadio = {"tini mqtt", nullptr, broker_turn, kTlsStackBytes};
 Pipe pipes[kTransports - kFirst];
 RadioName name;
 bool has_begun;
-uint32_t rested_ms;
+uint32_t last_rest_ms;
 bool has_broker;
 bool has_broker_failed;  // to begin its task
 uint32_t broker_failed_ms;
 
 // A task: when the radio blocks, only this task waits.
-void run(void* of) {
-  const Radio& radio = *static_cast<const Radio*>(of);
+void run(void* argument) {
+  const Radio& radio = *static_cast<const Radio*>(argument);
   if (radio.begin != nullptr) radio.begin();
   for (;;) {
     radio.turn();
@@ -82,10 +82,10 @@ void begin_broker() {
 
 // On a chip with one core, the main loop would leave no time for the idle task, which frees what
 // tasks leave behind.
-void rest() {
+void yield_to_idle_task() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
-  if (portNUM_PROCESSORS > 1 || now_ms - rested_ms < kRestMs) return;
-  rested_ms = now_ms;
+  if (portNUM_PROCESSORS > 1 || now_ms - last_rest_ms < kRestMs) return;
+  last_rest_ms = now_ms;
   vTaskDelay(1);
 }
 
@@ -115,10 +115,11 @@ namespace {
 // Bytes wait in the pipe while there is no room for text: a person pastes faster than it is read.
 void take(Transport transport, Pipe* pipe) {
   uint16_t item;
-  for (uint8_t left = kBytesATurn; left > 0 && firmware_has_room(transport); left--) {
+  for (uint8_t bytes_left = kBytesATurn; bytes_left > 0 && firmware_has_room(transport);
+       bytes_left--) {
     if (!pipe->take_rx(&item)) return;
-    if (item == Pipe::kParted) {
-      firmware_on_part(transport);
+    if (item == Pipe::kClientLeft) {
+      firmware_on_client_left(transport);
     } else {
       on_rx_byte(transport, static_cast<uint8_t>(item));
     }
@@ -138,18 +139,18 @@ void radio_poll() {
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
-    Place running;
-    const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running);
+    Place running_place;
+    const bool stops_run = pipe.take_silent_stop() && firmware_runs(&running_place);
     if (pipe.take_stop() || stops_run) stop(transport);
     take(transport, &pipe);
-    if (pipe.has_run_stop() && firmware_runs(&running)) stop(transport);
+    if (pipe.has_run_stop() && firmware_runs(&running_place)) stop(transport);
     firmware_await_stop(transport, pipe.has_stop());
   }
 }
 
 // Bytes meant for nobody are discarded.
 void radio_send() {
-  rest();
+  yield_to_idle_task();
   for (uint8_t place = kFirst; place < kTransports; place++) {
     const Transport transport = static_cast<Transport>(place);
     Pipe& pipe = radio_pipe(transport);
@@ -163,9 +164,9 @@ void radio_send() {
 }
 
 uint8_t radio_lost() {
-  uint8_t lost = 0;
-  for (const Pipe& pipe : pipes) lost = static_cast<uint8_t>(lost + pipe.lost());
-  return lost;
+  uint8_t lost_bytes = 0;
+  for (const Pipe& pipe : pipes) lost_bytes = static_cast<uint8_t>(lost_bytes + pipe.lost());
+  return lost_bytes;
 }
 
 }  // namespace tiniscript

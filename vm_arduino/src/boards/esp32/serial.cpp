@@ -47,29 +47,29 @@ constexpr uint8_t kLowMs = static_cast<uint8_t>(10000 / kBaud + 3);
 constexpr uint8_t kFifoMs = static_cast<uint8_t>(128 * 10000 / kBaud + 1);
 
 // The core's task counts, the main loop reads.
-volatile uint8_t framing;  // errors, and breaks
-volatile uint8_t spoiled;  // bytes with an error
-volatile uint8_t overrun;
+volatile uint8_t framing_errors;  // errors, and breaks
+volatile uint8_t damaged_bytes;   // bytes with an error
+volatile uint8_t overruns;
 
 // The main loop's.
-uint8_t zeroed;      // of the spoiled bytes, those that have counted as a zero
-uint8_t waited_ms;   // for the first of the others
-uint8_t watched;     // errors before the line was last seen high
-uint8_t low_ms;      // since then, after an error and without a byte
-bool was_high;       // since the reset or the last time the line was held low; else no sender
+uint8_t taken_zeros;          // of the spoiled bytes, those that have counted as a zero
+uint8_t waited_ms;            // for the first of the others
+uint8_t seen_framing_errors;  // errors before the line was last seen high
+uint8_t low_ms;               // since then, after an error and without a byte
+bool was_high;                // since the reset or the last time the line was held low; else no sender
 
 void on_error(hardwareSerial_error_t error) {
   switch (error) {
     case UART_FRAME_ERROR:
-      spoiled = static_cast<uint8_t>(spoiled + 1);
-      framing = static_cast<uint8_t>(framing + 1);
+      damaged_bytes = static_cast<uint8_t>(damaged_bytes + 1);
+      framing_errors = static_cast<uint8_t>(framing_errors + 1);
       return;
     case UART_BREAK_ERROR:
-      framing = static_cast<uint8_t>(framing + 1);
+      framing_errors = static_cast<uint8_t>(framing_errors + 1);
       return;
     case UART_BUFFER_FULL_ERROR:
     case UART_FIFO_OVF_ERROR:
-      overrun = static_cast<uint8_t>(overrun + 1);
+      overruns = static_cast<uint8_t>(overruns + 1);
       return;
     default:
       return;
@@ -102,20 +102,20 @@ void take(uint8_t byte) {
 // executed.
 void take_zeros() {
   waited_ms = 0;
-  for (; zeroed != spoiled; zeroed = static_cast<uint8_t>(zeroed + 1)) take(0);
+  for (; taken_zeros != damaged_bytes; taken_zeros = static_cast<uint8_t>(taken_zeros + 1)) take(0);
 }
 
 // Every turn: a line with bytes on it is high in some of them.
 void note_high() {
   if (!is_high(kReceive)) return;
   was_high = true;
-  watched = framing;
+  seen_framing_errors = framing_errors;
   low_ms = 0;
 }
 
 // Every millisecond. A line that is held low counts as zeros until these are a stop.
 void look_at_line() {
-  if (!was_high || framing == watched || is_high(kReceive)) return;
+  if (!was_high || framing_errors == seen_framing_errors || is_high(kReceive)) return;
   low_ms = static_cast<uint8_t>(low_ms + 1);
   if (low_ms <= kLowMs) return;
   take(0);
@@ -130,18 +130,19 @@ void uart_begin(uint32_t baud) {
 }
 
 void uart_tick() {
-  if (zeroed != spoiled && waited_ms++ == kFifoMs) take_zeros();
+  if (taken_zeros != damaged_bytes && waited_ms++ == kFifoMs) take_zeros();
   look_at_line();
   radio_tick();
 }
 
 void poll_events() {
   note_high();
-  for (int left = Serial.available(); left > 0; left--) {
+  for (int available_bytes = Serial.available(); available_bytes > 0; available_bytes--) {
     const uint8_t byte = static_cast<uint8_t>(Serial.read());
     low_ms = 0;
     take(byte);
-    if (byte == 0 && zeroed != spoiled) zeroed = static_cast<uint8_t>(zeroed + 1);  // it is one
+    if (byte == 0 && taken_zeros != damaged_bytes)
+      taken_zeros = static_cast<uint8_t>(taken_zeros + 1);  // it is one
     take_zeros();
   }
   radio_poll();
@@ -155,7 +156,7 @@ void uart_send() {
   radio_send();
 }
 
-LineErrors uart_errors() { return {framing, static_cast<uint8_t>(overrun + radio_lost())}; }
+LineErrors uart_errors() { return {framing_errors, static_cast<uint8_t>(overruns + radio_lost())}; }
 
 }  // namespace tiniscript
 

@@ -21,35 +21,35 @@ BluetoothSerial port;
 uint32_t handle;    // of the client; 0: none
 uint32_t heard_ms;  // when something was heard of the client, or it came
 
-uint8_t clients;  // so far: the core's task writes it, the radio's reads it
+uint8_t client_count;  // so far: the core's task writes it, the radio's reads it
 
 // The radio's task: bytes that wait, and for which client.
-uint8_t waiting[64];
+uint8_t outgoing[64];
 size_t length;
-uint8_t its_client;
+uint8_t outgoing_client;
 
 Pipe& pipe() { return radio_pipe(Transport::kSerialPort); }
 
 // The core sends a second client away, and the first one stays. The next try of the second one
 // finds the place free, if the first one has been silent for long.
-void on_client(uint32_t found) {
+void on_client(uint32_t new_handle) {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
   if (handle == 0) {
-    handle = found;
+    handle = new_handle;
     heard_ms = now_ms;
-    __atomic_store_n(&clients, static_cast<uint8_t>(clients + 1), __ATOMIC_RELAXED);
+    __atomic_store_n(&client_count, static_cast<uint8_t>(client_count + 1), __ATOMIC_RELAXED);
     pipe().begin();
   } else if (now_ms - heard_ms >= kPlaceMs) {
     esp_spp_disconnect(handle);
   }
 }
 
-void on_event(esp_spp_cb_event_t event, esp_spp_cb_param_t* its) {
-  if (event == ESP_SPP_SRV_OPEN_EVT && its->srv_open.status == ESP_SPP_SUCCESS) {
-    on_client(its->srv_open.handle);
+void on_event(esp_spp_cb_event_t event, esp_spp_cb_param_t* param) {
+  if (event == ESP_SPP_SRV_OPEN_EVT && param->srv_open.status == ESP_SPP_SUCCESS) {
+    on_client(param->srv_open.handle);
   } else if (event == ESP_SPP_CLOSE_EVT && handle != 0 && !port.hasClient()) {
     handle = 0;
-    pipe().part();
+    pipe().end_client();
   }
 }
 
@@ -70,12 +70,12 @@ bool spp_begin() {
 // `write` blocks while the peer accepts no bytes, up to a second: only this task waits. Then it has
 // accepted none.
 void spp_turn() {
-  const uint8_t found = __atomic_load_n(&clients, __ATOMIC_RELAXED);
-  if (found != its_client) length = 0;  // the waiting bytes are for an earlier client
-  its_client = found;
+  const uint8_t count = __atomic_load_n(&client_count, __ATOMIC_RELAXED);
+  if (count != outgoing_client) length = 0;  // the waiting bytes are for an earlier client
+  outgoing_client = count;
   if (!pipe().is_connected()) return;
-  while (length < sizeof waiting && pipe().take(waiting + length)) length++;
-  if (length != 0 && port.write(waiting, length) != 0) length = 0;
+  while (length < sizeof outgoing && pipe().take(outgoing + length)) length++;
+  if (length != 0 && port.write(outgoing, length) != 0) length = 0;
 }
 
 }  // namespace tiniscript

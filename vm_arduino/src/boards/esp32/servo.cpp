@@ -54,9 +54,9 @@ bool servo_is_held(uint8_t number) {
 void servo_tick(uint32_t now_ms) {
   for (uint8_t number = 0; number < kServoCount; number++) {
     const CriticalSection critical;
-    const Pulse& each = pulses[number];
-    if (each.us == 0 || each.is_held) continue;
-    if (static_cast<int32_t>(now_ms - each.end_ms) >= 0) pulse(number, 0);
+    const Pulse& current = pulses[number];
+    if (current.us == 0 || current.is_held) continue;
+    if (static_cast<int32_t>(now_ms - current.end_ms) >= 0) pulse(number, 0);
   }
 }
 

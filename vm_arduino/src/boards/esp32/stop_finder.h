@@ -45,27 +45,27 @@ class StopFinder {
 
  private:
   enum class Mode : uint8_t { kText, kBegin, kLine, kFrame };
-  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kSome };
+  enum class Line : uint8_t { kNothing, kHeld, kSkipped, kBegun };
 
-  bool is_typed() const { return typed_.found() != TypedStop::kNone; }
+  bool is_typed() const { return typed_stop_.kind() != TypedStop::kNone; }
   static bool is_printable(uint8_t byte) { return byte >= ' ' && byte < 0x7f; }
 
   void begin_line() {
     line_ = Line::kNothing;
     is_printable_ = true;
     keys_.begin();
-    typed_.begin();
+    typed_stop_.begin();
   }
 
   void end_silence() {
     mode_ = Mode::kText;
-    if (line_ != Line::kSome) line_ = Line::kNothing;
-    typed_.begin();
+    if (line_ != Line::kBegun) line_ = Line::kNothing;
+    typed_stop_.begin();
   }
 
   // Whether it ends a line that is a typed stop.
   bool put_zero() {
-    const bool is_line = mode_ == Mode::kLine || line_ == Line::kSome;
+    const bool is_line = mode_ == Mode::kLine || line_ == Line::kBegun;
     const bool is_stop = is_line && is_printable_ && is_typed();
     begin_line();
     mode_ = Mode::kBegin;
@@ -79,22 +79,22 @@ class StopFinder {
   }
 
   StopKind watch(uint8_t byte) {
-    typed_.put(byte);
-    return typed_.is_urgent() ? StopKind::kOfRun : StopKind::kNothing;
+    typed_stop_.put(byte);
+    return typed_stop_.is_urgent() ? StopKind::kOfRun : StopKind::kNothing;
   }
 
   StopKind put_text(uint8_t byte) {
     if (ends_line(byte)) return end_line(line_ == Line::kHeld || is_typed());
     if (keys_.put(byte)) {
-      if (line_ != Line::kSome) line_ = Line::kSkipped;
+      if (line_ != Line::kBegun) line_ = Line::kSkipped;
       return StopKind::kNothing;
     }
-    if (line_ != Line::kSome) {
+    if (line_ != Line::kBegun) {
       if (byte <= ' ' || byte == kDelete) {
         line_ = byte == kControlC && line_ <= Line::kHeld ? Line::kHeld : Line::kSkipped;
         return StopKind::kNothing;
       }
-      line_ = Line::kSome;
+      line_ = Line::kBegun;
       is_printable_ = true;
     }
     if (!is_printable(byte)) is_printable_ = false;
@@ -109,11 +109,11 @@ class StopFinder {
   }
 
   StopKind take_frame_byte(uint8_t byte) {
-    const bool is_stop = ends_line(byte) && typed_.found() == TypedStop::kStrict;
+    const bool is_stop = ends_line(byte) && typed_stop_.kind() == TypedStop::kStrict;
     if ((byte < ' ' && byte != '\t') || byte == kDelete) {
-      typed_.begin();
+      typed_stop_.begin();
     } else {
-      typed_.put(byte);
+      typed_stop_.put(byte);
     }
     return is_stop ? StopKind::kInFrame : StopKind::kNothing;
   }
@@ -125,7 +125,7 @@ class StopFinder {
   Mode mode_;
   Line line_;
   bool is_printable_;  // all of the line is printable ASCII
-  TypedStop typed_;
+  TypedStop typed_stop_;
   KeySequence keys_;
 };
 

@@ -33,7 +33,7 @@ struct Client {
   size_t first_length;
   StopFinder finder;   // in them
   bool was_silent;     // for a second after one of them, of which the main loop does not know
-  uint8_t first[kFirstBytes];
+  uint8_t first_bytes[kFirstBytes];
   size_t out_length;
   size_t out_sent;
   uint8_t out[kChunk];
@@ -48,7 +48,7 @@ void close_client(Client* client) {
   if (client->socket == kNoSocket) return;
   lwip_close(client->socket);
   client->socket = kNoSocket;
-  if (client->is_admitted) radio_pipe(client->transport).part();
+  if (client->is_admitted) radio_pipe(client->transport).end_client();
 }
 
 void close_all() {
@@ -58,21 +58,21 @@ void close_all() {
 }
 
 void listen() {
-  const int found = lwip_socket(AF_INET, SOCK_STREAM, 0);
-  if (found < 0) return;
+  const int socket = lwip_socket(AF_INET, SOCK_STREAM, 0);
+  if (socket < 0) return;
   sockaddr_in place = {};
   place.sin_family = AF_INET;
   place.sin_port = htons(kNetworkPort);
   place.sin_addr.s_addr = htonl(INADDR_ANY);
   const int yes = 1;
-  lwip_setsockopt(found, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  lwip_setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   const bool is_there =
-      lwip_bind(found, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0 &&
-      lwip_listen(found, kClients) == 0 && lwip_fcntl(found, F_SETFL, O_NONBLOCK) >= 0;
+      lwip_bind(socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0 &&
+      lwip_listen(socket, kClients) == 0 && lwip_fcntl(socket, F_SETFL, O_NONBLOCK) >= 0;
   if (is_there) {
-    listener = found;
+    listener = socket;
   } else {
-    lwip_close(found);
+    lwip_close(socket);
   }
 }
 
@@ -80,34 +80,36 @@ void listen() {
 // not identified itself yet; so an owner's stop is never kept out. Owners keep theirs while they
 // speak.
 Client* free_place() {
-  Client* evicted = nullptr;
-  uint32_t most = 0;
+  Client* evicted_client = nullptr;
+  uint32_t highest_rank = 0;
   for (Client& client : clients) {
     if (client.socket == kNoSocket) return &client;
     uint32_t silent_ms = now_ms() - client.heard_ms;
     if (client.has_key() && silent_ms < kPlaceMs) continue;
     if (silent_ms > kPlaceMs) silent_ms = kPlaceMs;
-    const uint32_t worth = client.has_key() ? 1 : client.is_admitted ? 2 + silent_ms : UINT32_MAX;
-    if (worth > most) {
-      most = worth;
-      evicted = &client;
+    const uint32_t eviction_rank = client.has_key()     ? 1
+                                   : client.is_admitted ? 2 + silent_ms
+                                                        : UINT32_MAX;
+    if (eviction_rank > highest_rank) {
+      highest_rank = eviction_rank;
+      evicted_client = &client;
     }
   }
-  if (evicted != nullptr) close_client(evicted);
-  return evicted;
+  if (evicted_client != nullptr) close_client(evicted_client);
+  return evicted_client;
 }
 
 void accept_next() {
-  const int found = lwip_accept(listener, nullptr, nullptr);
-  if (found < 0) return;
+  const int socket = lwip_accept(listener, nullptr, nullptr);
+  if (socket < 0) return;
   Client* const client = free_place();
-  if (client == nullptr || lwip_fcntl(found, F_SETFL, O_NONBLOCK) < 0) {
-    lwip_close(found);
+  if (client == nullptr || lwip_fcntl(socket, F_SETFL, O_NONBLOCK) < 0) {
+    lwip_close(socket);
     return;
   }
   const int yes = 1;
-  lwip_setsockopt(found, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  client->socket = found;
+  lwip_setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  client->socket = socket;
   client->is_admitted = false;
   client->accepted_ms = client->heard_ms = now_ms();
   client->first_length = client->out_length = client->out_sent = 0;
@@ -123,29 +125,29 @@ void pass_on(Client* client, const uint8_t* bytes, size_t length) {
 // Looks at the first bytes, and lets the client in or hangs up. A stop among them that the main
 // loop does not see, or not yet, admits no client.
 void look(Client* client, const uint8_t* bytes, size_t length) {
-  StopKind most = StopKind::kNothing;
+  StopKind strongest = StopKind::kNothing;
   for (size_t k = 0; k < length; k++) {
-    const StopKind found = client->finder.put(bytes[k], static_cast<uint16_t>(now_ms()));
-    if (found > most) most = found;
+    const StopKind stop = client->finder.put(bytes[k], static_cast<uint16_t>(now_ms()));
+    if (stop > strongest) strongest = stop;
   }
   const size_t room = kFirstBytes - client->first_length;
-  const size_t more = length < room ? length : room;
-  __builtin_memcpy(client->first + client->first_length, bytes, more);
-  client->first_length += more;
-  const Protocol protocol = sniffed(client->first, client->first_length);
+  const size_t copied_bytes = length < room ? length : room;
+  __builtin_memcpy(client->first_bytes + client->first_length, bytes, copied_bytes);
+  client->first_length += copied_bytes;
+  const Protocol protocol = sniff_protocol(client->first_bytes, client->first_length);
   const bool is_full = client->first_length == kFirstBytes;
   if (protocol == Protocol::kOther || (protocol == Protocol::kUnknownYet && is_full)) {
     return close_client(client);
   }
   const bool is_passed_on = protocol == Protocol::kForRobot && !client->was_silent;
-  if (most > StopKind::kInFrame && !is_passed_on) {
-    radio_pipe(client->transport).stop(most == StopKind::kOfRun);
+  if (strongest > StopKind::kInFrame && !is_passed_on) {
+    radio_pipe(client->transport).stop(strongest == StopKind::kOfRun);
   }
   if (protocol == Protocol::kUnknownYet) return;
   if (!radio_pipe(client->transport).begin()) return close_client(client);
   client->is_admitted = true;
-  pass_on(client, client->first, client->first_length);
-  pass_on(client, bytes + more, length - more);
+  pass_on(client, client->first_bytes, client->first_length);
+  pass_on(client, bytes + copied_bytes, length - copied_bytes);
 }
 
 // A second of silence ends a typed stop while something runs, and a line begins after it. It admits
@@ -180,12 +182,12 @@ void say(Client* client) {
       client->out_length++;
     }
   }
-  const size_t left = client->out_length - client->out_sent;
-  if (left == 0) return;
-  const ssize_t sent =
-      lwip_send(client->socket, client->out + client->out_sent, left, MSG_DONTWAIT);
-  if (sent > 0) client->out_sent += static_cast<size_t>(sent);
-  if (sent < 0 && !may_come_later()) close_client(client);
+  const size_t bytes_left = client->out_length - client->out_sent;
+  if (bytes_left == 0) return;
+  const ssize_t sent_length =
+      lwip_send(client->socket, client->out + client->out_sent, bytes_left, MSG_DONTWAIT);
+  if (sent_length > 0) client->out_sent += static_cast<size_t>(sent_length);
+  if (sent_length < 0 && !may_come_later()) close_client(client);
 }
 
 }  // namespace

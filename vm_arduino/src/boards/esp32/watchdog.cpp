@@ -30,11 +30,11 @@ struct Record {
   Place place;  // zeros if no program ran
 };
 
-RTC_NOINIT_ATTR Record last;
+RTC_NOINIT_ATTR Record hang_record;
 
-constexpr uint32_t kRuns = 0x5ad1c07f;
+constexpr uint32_t kRunMark = 0x5ad1c07f;
 
-RTC_NOINIT_ATTR uint32_t runs;  // kRuns while a program runs
+RTC_NOINIT_ATTR uint32_t run_mark;  // kRuns while a program runs
 
 // The main loop writes these, and the timer's task on the other core reads them, or the other way
 // round.
@@ -42,11 +42,11 @@ bool is_fed;  // since the timer's task has looked
 bool is_hanging;
 bool has_stalled;
 
-uint8_t missed;  // the timer's: how many times it has looked since
+uint8_t missed_looks;  // the timer's: how many times it has looked since
 
 template <class Value>
-Value read(const Value& from) {
-  return __atomic_load_n(&from, __ATOMIC_ACQUIRE);
+Value read(const Value& source) {
+  return __atomic_load_n(&source, __ATOMIC_ACQUIRE);
 }
 
 template <class Value>
@@ -57,7 +57,7 @@ void write_to(Value* to, Value value) {
 bool has_hung;  // before the last reset; not yet reported
 Reset cause;
 
-uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
+uint32_t hang_mark() { return kHung ^ hang_record.place.checksum ^ hang_record.place.offset; }
 
 Reset cause_of(esp_reset_reason_t reason) {
   switch (reason) {
@@ -79,10 +79,10 @@ Reset cause_of(esp_reset_reason_t reason) {
 
 // A supply that sags deeply comes back as power-on. The bytes of a chip that has been without power
 // are lost; that they are there says that it was gone for a moment.
-Reset cause_now() {
+Reset current_cause() {
   const Reset reset = cause_of(esp_reset_reason());
-  const bool has_sagged = reset == Reset::kPower && runs == kRuns;
-  runs = 0;
+  const bool has_sagged = reset == Reset::kPower && run_mark == kRunMark;
+  run_mark = 0;
   return has_sagged ? Reset::kBrownOut : reset;
 }
 
@@ -90,14 +90,14 @@ Reset cause_now() {
 // by data sheets, it stands still like the main loop.
 void look(void*) {
   if (read(is_fed)) {
-    missed = 0;
+    missed_looks = 0;
     return write_to(&is_fed, false);
   }
-  if (read(is_hanging) || ++missed < kStallMs / kLookMs) return;
+  if (read(is_hanging) || ++missed_looks < kStallMs / kLookMs) return;
   motors_stop();
   actuators_off(true);
-  if (!firmware_runs(&last.place)) last.place = Place();
-  last.mark = hung_mark();
+  if (!firmware_runs(&hang_record.place)) hang_record.place = Place();
+  hang_record.mark = hang_mark();
   write_to(&has_stalled, true);
   write_to(&is_hanging, true);
 }
@@ -121,9 +121,9 @@ void begin_restart() {
 
 void watchdog_begin() {
   panic_begin();
-  cause = cause_now();
-  has_hung = cause == Reset::kWatchdog && last.mark == hung_mark();
-  last.mark = 0;
+  cause = current_cause();
+  has_hung = cause == Reset::kWatchdog && hang_record.mark == hang_mark();
+  hang_record.mark = 0;
   write_to(&is_fed, true);
   esp_timer_create_args_t settings = {};
   settings.callback = look;
@@ -136,9 +136,9 @@ void watchdog_begin() {
 
 void watchdog_feed() {
   write_to(&is_fed, true);
-  runs = port_status().state == State::kRunning ? kRuns : 0;
+  run_mark = port_status().state == State::kRunning ? kRunMark : 0;
   if (read(is_hanging)) {
-    last.mark = 0;
+    hang_record.mark = 0;
     write_to(&is_hanging, false);
   }
   esp_task_wdt_reset();
@@ -153,7 +153,7 @@ bool watchdog_take_stall() {
 bool watchdog_take_hang(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
-  *place = last.place;
+  *place = hang_record.place;
   return true;
 }
 

@@ -28,7 +28,7 @@ constexpr uint8_t kReady = static_cast<uint8_t>(WifiState::kReady);
 constexpr uint32_t kJoinAgainMs = 15000;  // between two tries to join
 constexpr uint32_t kYoungMs = 20000;      // a restart so soon after WiFi began counts
 constexpr uint8_t kMostRestarts = 3;      // in a row: then WiFi rests
-constexpr uint8_t kRests = 0x80;          // flag of a mode
+constexpr uint8_t kRestsFlag = 0x80;      // flag of a mode
 
 // The layout in NVS. Texts end with a 0.
 struct Settings {
@@ -36,8 +36,8 @@ struct Settings {
   char network[kNetworkBytes + 1];
   char password[kPasswordBytes + 1];
 
-  WifiMode mode() const { return static_cast<WifiMode>(kept_mode & ~kRests); }
-  bool rests() const { return (kept_mode & kRests) != 0; }
+  WifiMode mode() const { return static_cast<WifiMode>(kept_mode & ~kRestsFlag); }
+  bool rests() const { return (kept_mode & kRestsFlag) != 0; }
   size_t kept_bytes() const { return sizeof *this; }
   bool is_sound() const {
     return mode() <= WifiMode::kAccessPoint && network[kNetworkBytes] == 0 &&
@@ -50,48 +50,49 @@ struct Settings {
 constexpr uint8_t kRefusals[] = {15, 202, 203, 204};  // 4-way handshake, authentication, association
 
 // The core's task writes these two.
-uint8_t reason;      // the last one; 0 since a network was set, or has let the robot in
-bool is_associated;  // with the network; an address may still have to come
+uint8_t disconnect_reason;  // the last one; 0 since a network was set, or has let the robot in
+bool is_associated;         // with the network; an address may still have to come
 
 void on_connected(arduino_event_t*) {
   __atomic_store_n(&is_associated, true, __ATOMIC_RELAXED);
-  __atomic_store_n(&reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
+  __atomic_store_n(&disconnect_reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
 }
 
 void on_disconnected(arduino_event_t* event) {
   __atomic_store_n(&is_associated, false, __ATOMIC_RELAXED);
-  __atomic_store_n(&reason, static_cast<uint8_t>(event->event_info.wifi_sta_disconnected.reason),
+  __atomic_store_n(&disconnect_reason,
+                   static_cast<uint8_t>(event->event_info.wifi_sta_disconnected.reason),
                    __ATOMIC_RELAXED);
 }
 
 bool is_refused() {
-  const uint8_t found = __atomic_load_n(&reason, __ATOMIC_RELAXED);
-  for (uint8_t each : kRefusals) {
-    if (found == each) return true;
+  const uint8_t last_reason = __atomic_load_n(&disconnect_reason, __ATOMIC_RELAXED);
+  for (uint8_t refusal : kRefusals) {
+    if (last_reason == refusal) return true;
   }
   return false;
 }
 
 // Survives a restart, and has any value after power-on: whether WiFi has begun lately, and how many
 // of the starts before have ended in a restart soon after that.
-constexpr uint32_t kStarts = 0x5a3c1d00;
-constexpr uint32_t kYoung = 0x80;
-constexpr uint32_t kRestarts = 0x7f;
-RTC_NOINIT_ATTR uint32_t starts;  // changed in a critical section
+constexpr uint32_t kRecordMagic = 0x5a3c1d00;
+constexpr uint32_t kYoungFlag = 0x80;
+constexpr uint32_t kRestartMask = 0x7f;
+RTC_NOINIT_ATTR uint32_t restart_record;  // changed in a critical section
 
-KeptSettings<Settings> kept("wifi");
-Settings wanted;  // the main loop's: received so far
+KeptSettings<Settings> kept_settings("wifi");
+Settings new_settings;  // the main loop's: received so far
 
 uint8_t state;     // a WifiState; these two are written by the network's task
 uint32_t address;  // its bytes in their order
 
 // The network's task.
-uint32_t tried_ms;
-uint32_t began_ms;
+uint32_t last_try_ms;
+uint32_t start_ms;
 bool is_young;
 bool is_announced;
 bool is_host;  // its access point is there
-Settings used;
+Settings used_settings;
 
 void set_state(WifiState wifi_state) {
   __atomic_store_n(&state, static_cast<uint8_t>(wifi_state), __ATOMIC_RELAXED);
@@ -100,40 +101,40 @@ void set_state(WifiState wifi_state) {
 void clear(Settings* settings) { __builtin_memset(settings, 0, sizeof *settings); }
 
 // The network's task.
-void set_young(bool is_so, uint32_t kept_bits) {
+void set_young(bool is_now_young, uint32_t kept_bits) {
   const CriticalSection critical;
-  starts = (starts & kept_bits) | kStarts | (is_so ? kYoung : 0);
-  is_young = is_so;
+  restart_record = (restart_record & kept_bits) | kRecordMagic | (is_now_young ? kYoungFlag : 0);
+  is_young = is_now_young;
 }
 
 // The main loop's, after a reset: counts it, and returns whether there were too many.
 bool count_restart() {
   const Reset cause = watchdog_reset_cause();
   const bool is_failure = cause == Reset::kBrownOut || cause == Reset::kWatchdog;
-  const bool is_known = (starts & ~(kYoung | kRestarts)) == kStarts;
-  uint32_t restarts = is_known ? starts & kRestarts : 0;
-  if (is_known && is_failure && (starts & kYoung) != 0) restarts++;
-  const bool is_often = restarts >= kMostRestarts;
-  starts = kStarts | (is_often ? 0 : restarts);
-  return is_often;
+  const bool is_known = (restart_record & ~(kYoungFlag | kRestartMask)) == kRecordMagic;
+  uint32_t restarts = is_known ? restart_record & kRestartMask : 0;
+  if (is_known && is_failure && (restart_record & kYoungFlag) != 0) restarts++;
+  const bool is_too_often = restarts >= kMostRestarts;
+  restart_record = kRecordMagic | (is_too_often ? 0 : restarts);
+  return is_too_often;
 }
 
 // Has the received settings saved: a new beginning.
 Answer keep() {
-  const Answer answer = kept.keep(wanted);
+  const Answer answer = kept_settings.keep(new_settings);
   if (answer != Answer::kOk) return answer;
-  clear(&wanted);
+  clear(&new_settings);
   firmware_wifi_rests(false);
   const CriticalSection critical;
-  starts &= ~kRestarts;
+  restart_record &= ~kRestartMask;
   return answer;
 }
 
 Answer set(WifiMode mode) {
-  if (wanted.network[0] == 0 || length_of(wanted.password) < kLeastPassword) {
+  if (new_settings.network[0] == 0 || length_of(new_settings.password) < kLeastPassword) {
     return Answer::kBadValue;
   }
-  wanted.kept_mode = static_cast<uint8_t>(mode);
+  new_settings.kept_mode = static_cast<uint8_t>(mode);
   return keep();
 }
 
@@ -142,14 +143,14 @@ void leave() {
   is_announced = false;
   __atomic_store_n(&is_associated, false, __ATOMIC_RELAXED);
   WiFi.mode(WIFI_OFF);  // and no more: softAPdisconnect would start an access point first
-  set_state(used.rests() ? WifiState::kRests : WifiState::kOff);
+  set_state(used_settings.rests() ? WifiState::kRests : WifiState::kOff);
   __atomic_store_n(&address, 0U, __ATOMIC_RELAXED);
-  set_young(false, kRestarts);
+  set_young(false, kRestartMask);
 }
 
 // There may be no memory for it in addition to Bluetooth.
 void host() {
-  is_host = WiFi.mode(WIFI_AP) && WiFi.softAP(used.network, used.password);
+  is_host = WiFi.mode(WIFI_AP) && WiFi.softAP(used_settings.network, used_settings.password);
   if (!is_host) set_state(WifiState::kRefused);
 }
 
@@ -159,32 +160,32 @@ void join_again(wl_status_t status) {
   if (status == WL_CONNECTED) {
     WiFi.reconnect();
   } else {
-    WiFi.begin(used.network, used.password);
+    WiFi.begin(used_settings.network, used_settings.password);
   }
 }
 
 // Whether it is time for the next try, which then counts as made.
 bool begin_try() {
   const uint32_t now_ms = static_cast<uint32_t>(millis());
-  if (now_ms - tried_ms < kJoinAgainMs) return false;
-  tried_ms = now_ms;
+  if (now_ms - last_try_ms < kJoinAgainMs) return false;
+  last_try_ms = now_ms;
   return true;
 }
 
 void begin() {
   leave();
-  if (used.mode() == WifiMode::kOff || used.rests()) return;
+  if (used_settings.mode() == WifiMode::kOff || used_settings.rests()) return;
   WiFi.setHostname(radio_name().host);
   set_state(WifiState::kSearching);
-  __atomic_store_n(&reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
-  tried_ms = began_ms = static_cast<uint32_t>(millis());
-  set_young(true, kRestarts);
-  if (used.mode() == WifiMode::kAccessPoint) {
+  __atomic_store_n(&disconnect_reason, static_cast<uint8_t>(0), __ATOMIC_RELAXED);
+  last_try_ms = start_ms = static_cast<uint32_t>(millis());
+  set_young(true, kRestartMask);
+  if (used_settings.mode() == WifiMode::kAccessPoint) {
     host();
   } else {
     WiFi.mode(WIFI_STA);
     // Modem sleep stays on: where Bluetooth is on, too, turning it off ends the chip.
-    WiFi.begin(used.network, used.password);
+    WiFi.begin(used_settings.network, used_settings.password);
   }
 }
 
@@ -196,9 +197,9 @@ void announce() {
   MDNS.addService("tiniscript", "tcp", kNetworkPort);
 }
 
-void note_address(const IPAddress& found) {
+void note_address(const IPAddress& ip_address) {
   uint32_t bytes = 0;
-  for (int k = 0; k < 4; k++) bytes |= uint32_t{found[k]} << (8 * k);
+  for (int k = 0; k < 4; k++) bytes |= uint32_t{ip_address[k]} << (8 * k);
   __atomic_store_n(&address, bytes, __ATOMIC_RELAXED);
   set_state(WifiState::kReady);
 }
@@ -210,23 +211,23 @@ void wifi_load() {
   WiFi.onEvent(on_disconnected, ARDUINO_EVENT_WIFI_STA_DISCONNECTED);
   WiFi.persistent(false);  // the core would keep the password a second time
   WiFi.setAutoReconnect(false);  // it would scan without a pause, despite Bluetooth: we retry
-  kept.load();
-  Settings its = kept.now();
+  kept_settings.load();
+  Settings settings = kept_settings.current();
   const bool has_restarted_too_often = count_restart();
-  if (has_restarted_too_often && its.mode() != WifiMode::kOff) {
-    its.kept_mode |= kRests;
-    if (kept.keep(its) != Answer::kOk) kept.use(its);
+  if (has_restarted_too_often && settings.mode() != WifiMode::kOff) {
+    settings.kept_mode |= kRestsFlag;
+    if (kept_settings.keep(settings) != Answer::kOk) kept_settings.use(settings);
   }
-  firmware_wifi_rests(kept.now().rests());
+  firmware_wifi_rests(kept_settings.current().rests());
 }
 
 bool wifi_is_there() { return __atomic_load_n(&state, __ATOMIC_RELAXED) == kReady; }
 
 bool wifi_turn() {
-  if (kept.changed(&used)) begin();
-  if (used.mode() == WifiMode::kOff || used.rests()) return false;
-  if (is_young && static_cast<uint32_t>(millis()) - began_ms >= kYoungMs) set_young(false, 0);
-  if (used.mode() == WifiMode::kAccessPoint) {
+  if (kept_settings.take_change(&used_settings)) begin();
+  if (used_settings.mode() == WifiMode::kOff || used_settings.rests()) return false;
+  if (is_young && static_cast<uint32_t>(millis()) - start_ms >= kYoungMs) set_young(false, 0);
+  if (used_settings.mode() == WifiMode::kAccessPoint) {
     if (!is_host && begin_try()) host();
     if (!is_host) return false;
     announce();
@@ -250,12 +251,12 @@ bool wifi_turn() {
 WifiReport board_wifi(WifiStep step) {
   if (step > WifiStep::kForget) return broker_report();
   WifiReport report = {};
-  report.mode = kept.now().mode();
+  report.mode = kept_settings.current().mode();
   report.state = static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
-  const uint32_t found = __atomic_load_n(&address, __ATOMIC_RELAXED);
-  __builtin_memcpy(report.address, &found, sizeof report.address);
-  report.network_bytes = static_cast<uint8_t>(length_of(kept.now().network));
-  __builtin_memcpy(report.network, kept.now().network, report.network_bytes);
+  const uint32_t address_bytes = __atomic_load_n(&address, __ATOMIC_RELAXED);
+  __builtin_memcpy(report.address, &address_bytes, sizeof report.address);
+  report.network_bytes = static_cast<uint8_t>(length_of(kept_settings.current().network));
+  __builtin_memcpy(report.network, kept_settings.current().network, report.network_bytes);
   return report;
 }
 
@@ -264,20 +265,20 @@ Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
     case WifiStep::kTell:
       break;
     case WifiStep::kNetwork:
-      clear(&wanted);
-      if (length == 0 || !append(wanted.network, kNetworkBytes, text, length)) {
+      clear(&new_settings);
+      if (length == 0 || !append(new_settings.network, kNetworkBytes, text, length)) {
         return Answer::kBadValue;
       }
       break;
     case WifiStep::kPassword:
-      if (!append(wanted.password, kPasswordBytes, text, length)) return Answer::kBadValue;
+      if (!append(new_settings.password, kPasswordBytes, text, length)) return Answer::kBadValue;
       break;
     case WifiStep::kJoin:
       return set(WifiMode::kStation);
     case WifiStep::kHost:
       return set(WifiMode::kAccessPoint);
     case WifiStep::kForget: {
-      clear(&wanted);
+      clear(&new_settings);
       const Answer answer = broker_forget();
       return answer == Answer::kOk ? keep() : answer;
     }
