@@ -22,6 +22,7 @@ import { SensorWatch } from './watching.js';
 import { storeText, loadText } from '../page/kept.js';
 import { makeSymbolPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
+import { needStop } from '../page/stop_place.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
 import { messageWithFix } from '../writing/messages.js';
@@ -594,6 +595,7 @@ export class RobotPanel {
     element('link_drive', HTMLElement).hidden = !isConnected && !this.#isWitness;
     element('link_drive', HTMLElement).classList.toggle('witness', !isConnected);
     element('link_connected', HTMLElement).hidden = this.#transport === null;
+    needStop('link', this.#transport !== null);
     element('link_name', HTMLElement).textContent = this.#robotName;
     element('link_serial', HTMLButtonElement).hidden = !hasSerial;
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;
