@@ -4497,10 +4497,15 @@ const PARTS = {
         for (const top of workspace().getTopBlocks(false)) if (!['program', 'def'].includes(top.type)) looks(top.id, 'loose');
         for (const item of all()) {
           if (item.type === 'program') continue;
+          const inBody = flat(list.filter((_, k) => ids[k] === item.id)).length, count = item.type === 'def' ? 1 : inBody;
+          if (inBody || item.outputConnection) assertSame(blockly.ContextMenuRegistry.registry.getItem('blockDelete').displayText({ block: item }), count > 1 ? `Delete ${count} Blocks` : 'Delete Block', `the menu of ${item.type}`);
           assertSame(wordsOf(item), (wanted.get(item.id) ?? []).sort().join(' '), `the looks of ${item.type}`);
           const said = [...has.fault && idAt(has.fault) === item.id ? [`why ${has.fault.line}`] : [], ...has.findings.filter((found) => idAt(found) === item.id).map((found) => found.on_blocks.message)].join('\n\n');
           assertSame(item.getIcon(blockly.icons.WarningIcon.TYPE)?.getText() ?? '', said, `what is said at ${item.type}`);
         }
+        const count = all().filter((item) => item.type !== 'program' && !item.outputConnection).length;
+        assertSame(blockly.ContextMenuRegistry.registry.getItem('workspaceDelete').displayText({ workspace: workspace() }), count > 1 ? `Delete ${count} Blocks` : 'Delete Block', 'the menu of all');
+        if (!blockly.Msg.DELETE_ALL_BLOCKS.includes(` ${count} `)) throw new Error(`${blockly.Msg.DELETE_ALL_BLOCKS} is asked before ${count} are deleted`);
         assertSame(all().flatMap((item) => item.getSvgRoot().children.filter(({ attributes }) => attributes?.class === 'mate_mark').map(() => item.id)).sort(), has.mates.flatMap(({ line: wantedLine }) => ids[list.findIndex(({ place }) => place[0] === wantedLine)] ?? []).sort(), 'whoever else is here');
         const used = JSON.stringify(workspace().list).includes('"Y"');
         if (has.level !== 'few' && used !== flat([...form.body, ...form.loose.flatMap((item) => item.body)]).some(({ kind, word }) => kind === 'assign' && word === 'Y')) throw new Error(`the list ${used ? 'has' : 'lacks'} a name of the program`);
@@ -4858,6 +4863,13 @@ const PARTS = {
     const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
+    let lastPlace = '', driven_ms = 0; // the place of STOP stays for a while, however a run has ended
+    window.setInterval(() => {
+      const { phase, stop: place = '' } = dataset;
+      if (lastPlace && !place && now() - driven_ms < 1400) throw new Error('something else takes the place of STOP');
+      if (phase === 'running' || phase === 'paused') driven_ms = now();
+      lastPlace = place;
+    }, 50);
     return async (random, isGood) => {
       delay = () => (isGood ? 5 : random.below(150));
       robot = runningRobot(random);

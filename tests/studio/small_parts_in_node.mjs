@@ -283,6 +283,44 @@ const PARTS = {
     return { acts: { ...actions, pressesMore: actions.presses, pressesAgain: actions.presses, pressesThen: actions.presses }, checks() {}, waits: [0, 100, 200, 450, 600] };
   },
 
+  // The place of STOP: nothing else is there until a while after what moved has ended, or after a press.
+  async stop(random) {
+    playsNavigator({});
+    const page = freshPage({}, HTML);
+    const { needStop } = await page.load('page/stop_place.js');
+    const COMES_MS = 500, STAYS_MS = 1500;
+    const needs = Object.fromEntries(['run', 'link'].map((name) => [name, { isNeeded: false, isThere: false, since_ms: 0 }]));
+    const looks = () => {
+      for (const need of Object.values(needs)) {
+        if (need.isThere !== need.isNeeded && now() - need.since_ms >= (need.isThere ? STAYS_MS : COMES_MS)) need.isThere = need.isNeeded;
+      }
+    };
+    const sets = (name, isNeeded) => {
+      if (isNeeded !== needs[name].isNeeded) Object.assign(needs[name], { isNeeded, since_ms: now() });
+      needStop(name, isNeeded);
+    };
+    const actions = {
+      begins: () => sets('run', true),
+      ends: () => sets('run', false),
+      connects: () => sets('link', true),
+      leaves: () => sets('link', false),
+      presses() {
+        for (const need of Object.values(needs)) if (need.isThere && !need.isNeeded) need.since_ms = now();
+        page.byId('stop').dispatchEvent(new Event('pointerdown', { bubbles: true }));
+      },
+    };
+    const checks = () => {
+      looks();
+      const { stop = '' } = document.documentElement.dataset;
+      is(stop.split(' ').filter(Boolean).sort(), Object.keys(needs).filter((name) => needs[name].isThere).sort(), 'why STOP lies there');
+    };
+    const acts = Object.fromEntries(Object.entries(actions).map(([name, act]) => [name, () => {
+      checks();
+      act();
+    }]));
+    return { acts: { ...acts, endsAgain: acts.ends, pressesAgain: acts.presses, waits: checks }, checks, waits: [0, 200, 450, 499, 700, 1400, 1500] };
+  },
+
   // The line under the world, of one run after another.
   async timeLine(random) {
     playsNavigator({});

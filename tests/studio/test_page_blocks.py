@@ -118,9 +118,12 @@ def test_a_program_can_be_built_and_run_with_blocks_alone(pages: Pages) -> None:
     assert page.locator(".blocklyWidgetDiv input").get_attribute("inputmode") == "decimal"
     page.keyboard.press("Control+a")
     page.keyboard.type("150")
+    box_before = page.locator("#panes").bounding_box()
     page.keyboard.press("Enter")
     # The power cannot be larger.
     wait_for_text(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")
+    wait_for_note(page, "150 pasó a ser 100.")
+    assert page.locator("#panes").bounding_box() == box_before, "the note moves the blocks"
     wait_for_note(page, "un número de 0 a 100: 150 pasó a ser 100")
     page.select_option("#speed", "20")
     page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
@@ -371,6 +374,9 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
     assert named_text in (first_message.text_content() or "")
     assert row.locator(".on_block").all_inner_texts() == ["forward", "back 2 s at 80 %"]
     assert page.locator("#messages .repair").count() == 1
+    assert page.locator("#messages .place").inner_text() == "forward -2 s at 80 %"
+    for name in page.locator("#messages button").all():
+        assert "forward -2 s at 80 %" in (name.get_attribute("aria-label") or "")
     page.locator("#messages .place").click()
     focused = page.evaluate("document.activeElement.closest('.blocklyDraggable')?.textContent")
     assert "back" in focused or "forward" in focused.replace("\xa0", " ")

@@ -386,7 +386,7 @@ def test_earlier_programs_can_be_restored(page: Page) -> None:
     rows = page.locator("#versions li")
     assert rows.locator("svg").count() == 4
     rows.filter(has_text="SI|F(1, 10)").get_by_role("button").first.click()
-    wait_for_note(page, "Opened: the program of")
+    wait_for_note(page, "Opened: SI|F(1, 10)")  # its name in the list
     wait_until_checked(page)
     assert content(page) == "SI|F(1, 10)" and page.input_value("#robot") == "tinibot"
     page.locator(".cm-content").focus()

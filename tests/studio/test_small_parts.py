@@ -21,6 +21,7 @@ NEEDED_ACTS = {
     "start": {"begins", "ends", "back", "keeps", "opens", "stars"},
     "own": {"opens", "names", "paints", "fills"},
     "twice": {"presses", "keys", "hides"},
+    "stop": {"begins", "ends", "connects", "leaves", "presses"},
     "timeLine": {"begins", "moves", "keys", "presses", "releases", "resizes"},
     "editor": {"halts", "runs", "ends", "types"},
     "runs": {"opens", "sees", "saves", "chooses", "drops"},

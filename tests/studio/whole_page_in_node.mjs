@@ -415,6 +415,23 @@ async function checksLate(tab) {
   checksRest(tab);
 }
 
+/** What was said of an edit outlasts its own text, and goes with the next edit or with a run. */
+async function checksNote({ pageState: { note } }) {
+  const edits = () => view.dispatch({ changes: { from: view.state.doc.length, insert: '\nF(1)' } });
+  const runs = () => press(byId('run'));
+  for (const act of [edits, runs]) {
+    if (!isSeen(byId('run'))) return;
+    note.set('said');
+    edits();
+    if (note.value === '') throw new Error('what is said of an edit goes with it');
+    await passes(4000);
+    act();
+    if (note.value === 'said') throw new Error(`what was said of an edit stays when somebody ${act.name}`);
+  }
+  press(byId('stop'));
+  await passes(4000);
+}
+
 /** All that is seen. */
 function seenIn({ seen }) {
   const isText = byId('writing').dataset.view === 'text';
@@ -458,6 +475,7 @@ async function playsSeed(seed) {
     checkStays(tab);
     checksRest(tab);
     await checksLate(tab);
+    await checksNote(tab);
     tab.isComing = false;
     tab.python.late = delay;
     playActions(random, tab, ['retypes', 'waits']);

@@ -36,12 +36,14 @@ import { storeWork, loadWork, MOST_CHARACTERS } from './programs/work.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
 
+const OWN_EDIT_MS = 1000; // within which the text of an edit comes of which something was said
 const STALE_STATUS_MS = 400; // that what was said of a text may stay over the next one: most are checked before
 
 const robotSelect = element('robot', HTMLSelectElement);
 const languageSelect = element('language', HTMLSelectElement);
 const wordsButton = element('words', HTMLButtonElement);
 const fileInput = element('file', HTMLInputElement);
+let noted_ms = 0;
 const statusElement = element('status', HTMLElement);
 const noteElement = element('note', HTMLElement);
 const messageList = element('messages', HTMLElement);
@@ -69,7 +71,10 @@ languageSelect.value = work.language = await setLanguage(work.language);
 element('coming', HTMLElement).remove();
 pageState.note.subscribe((sentence) => {
   noteElement.textContent = sentence;
+  noted_ms = performance.now();
 });
+pageState.programText.subscribe(forgetNote);
+for (const id of ['run', 'step', 'link_upload']) element(id, HTMLButtonElement).addEventListener('click', forgetNote, { capture: true }); // a phone takes some of them
 pageState.areWordsShown.subscribe((areShown) => {
   work.words = areShown;
   wordsButton.setAttribute('aria-pressed', String(areShown));
@@ -91,10 +96,13 @@ pageState.robotName.set(work.robot);
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({
   python, editor, work, remember: storeCurrentWork,
-  tryAlone: (programText, isAsked) => simulatorPanel.tryAlone(programText, isAsked, () => {
-    element('side_virtual', HTMLButtonElement).click();
-    phone.show('robot');
-  }),
+  tryAlone: (programText, isAsked) => {
+    forgetNote();
+    return simulatorPanel.tryAlone(programText, isAsked, () => {
+      element('side_virtual', HTMLButtonElement).click();
+      phone.show('robot');
+    });
+  },
   playTone: (hertz) => simulatorPanel.playTone(hertz),
 });
 const pad = new Pad();
@@ -233,6 +241,11 @@ function showFindings(findings) {
 /** @param {Finding} finding */
 function repair(finding) {
   if (pageState.checkResult.value && finding.repair) editor.applyChanges(finding.repair); // else its places are those of another text
+}
+
+/** What was said of an edit goes with the next one or with a run. */
+function forgetNote() {
+  if (pageState.note.value && performance.now() - noted_ms > OWN_EDIT_MS) pageState.note.set('');
 }
 
 function showRobots() {

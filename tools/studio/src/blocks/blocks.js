@@ -100,6 +100,7 @@ export class Blocks {
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_PREVIEWER, 'tiniscript', Previewer, true);
     Object.assign(Blockly.config, { snapRadius: SNAP_RADIUS, connectingSnapRadius: STAY_RADIUS });
     this.#removeBlocklyActions();
+    this.#countBlocksInStacks();
     if (listener) {
       setTonePlayer(listener.playTone);
       this.#offerBreakpoints(listener);
@@ -108,7 +109,7 @@ export class Blocks {
     setRobot(robotName);
     setActuators(robotName);
     this.#workspace = this.#makeWorkspace();
-    if (listener) this.#insertByKeys();
+    if (listener) this.#insertWithoutDragging();
     for (const eventName of ['pointerdown', 'wheel', 'keydown']) {
       container.addEventListener(eventName, () => {
         this.#isTouched = true;
@@ -124,6 +125,18 @@ export class Blocks {
     }
     const { registry } = Blockly.ShortcutRegistry;
     for (const name of ['undo', 'redo']) if (registry.getRegistry()[name]) registry.unregister(name);
+  }
+
+  /** Menus count the blocks that stand in stacks: a value is a part of its block. */
+  #countBlocksInStacks() {
+    const { registry } = Blockly.ContextMenuRegistry;
+    for (const id of ['blockDelete', 'workspaceDelete']) /** @type {any} */ (registry.getItem(id)).displayText = (/** @type {Blockly.ContextMenuRegistry.Scope} */ { block, workspace }) => {
+      const blocksAfter = new Set(block?.getNextBlock()?.getDescendants(false));
+      const blocks = block?.getDescendants(false) ?? workspace?.getAllBlocks(false).filter((each) => each.isDeletable()) ?? [];
+      const count = blocks.filter((each) => !each.outputConnection && !blocksAfter.has(each)).length;
+      if (workspace) Blockly.Msg['DELETE_ALL_BLOCKS'] = text('blockly/DELETE_ALL_BLOCKS').replace('%1', String(count)); // what Blockly asks then
+      return count > 1 ? text('blockly/DELETE_X_BLOCKS').replace('%1', String(count)) : text('blockly/DELETE_BLOCK');
+    };
   }
 
   /** In the menu of a block, and by F9. */
@@ -185,28 +198,38 @@ export class Blocks {
     }
   }
 
-  /** Whoever chooses a block of a list with the keyboard has it where the focus was. */
-  #insertByKeys() {
+  /** Whoever chooses a block of a list by a key or a tap has it where the focus was. */
+  #insertWithoutDragging() {
     /** @type {Blockly.BlockSvg | null} */
     let lastFocused = null; // that had the focus of the program
+    const take = (/** @type {Blockly.BlockSvg} */ listBlock, /** @type {boolean} */ isByKey) => {
+      const workspace = this.#workspace;
+      const focusedBlock = lastFocused && workspace.getBlockById(lastFocused.id) === lastFocused ? lastFocused : null;
+      const isForStack = listBlock.previousConnection !== null; // a tap fills no place of a value: that may be meant to stay as it is
+      const block = insert(listBlock, workspace, isByKey || isForStack ? focusedBlock : null, !isByKey);
+      if (!block) return false;
+      this.#search?.clearSearch();
+      workspace.hideChaff();
+      workspace.getFlyout()?.hide();
+      Blockly.getFocusManager().focusNode(block);
+      return true;
+    };
     this.#container.addEventListener('focusin', ({ target }) => {
       const blockElement = /** @type {Element} */ (target).closest('.blocklyBlock');
       lastFocused = this.#workspace.getBlockById(blockElement?.getAttribute('data-id') ?? '') ?? lastFocused;
     });
     this.#container.addEventListener('keydown', (event) => {
-      const workspace = this.#workspace, listBlock = Blockly.getFocusManager().getFocusedNode();
-      const isInList = listBlock instanceof Blockly.BlockSvg && listBlock.isInFlyout && workspace === listBlock.workspace.targetWorkspace;
+      const listBlock = Blockly.getFocusManager().getFocusedNode();
+      const isInList = listBlock instanceof Blockly.BlockSvg && listBlock.isInFlyout && this.#workspace === listBlock.workspace.targetWorkspace;
       if (!isInList || !['Enter', ' '].includes(event.key) || event.shiftKey || event.ctrlKey || event.metaKey) return;
-      const isLastThere = lastFocused && workspace.getBlockById(lastFocused.id) === lastFocused;
-      const block = insert(/** @type {Blockly.BlockSvg} */ (listBlock.getRootBlock()), workspace, isLastThere ? lastFocused : null);
-      if (!block) return; // Blockly lets it be moved to a place
+      if (!take(/** @type {Blockly.BlockSvg} */ (listBlock.getRootBlock()), true)) return; // Blockly lets it be moved to a place
       event.preventDefault();
       event.stopPropagation();
-      this.#search?.clearSearch();
-      workspace.hideChaff();
-      workspace.getFlyout()?.hide();
-      Blockly.getFocusManager().focusNode(block);
     }, { capture: true });
+    const gesture = /** @type {any} */ (Blockly.Gesture.prototype), clickBlock = gesture.doBlockClick;
+    gesture.doBlockClick = function () { // Blockly would put it where the list was
+      if (!this.flyout || !take(this.targetBlock.getRootBlock(), false)) clickBlock.call(this);
+    };
   }
 
   #makeWorkspace() {

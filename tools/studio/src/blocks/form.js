@@ -489,6 +489,30 @@ export function makeRoom(workspace, isResized = false) {
   });
 }
 
+/**
+ * Puts a new block that is not joined where it covers no other one; one that is joined covers no loose stack, though its own has grown.
+ * @param {Blockly.BlockSvg} block
+ * @param {Blockly.WorkspaceSvg} workspace
+ */
+export function makeRoomFor(block, workspace) {
+  Blockly.renderManagement.triggerQueuedRenders(workspace); // it has no size before
+  if (block.getParent()) makeRoom(workspace);
+  else moveToFreePlace(block, workspace);
+  const stacks = workspace.getTopBlocks(false), boxes = stacks.filter((stack) => !isLoose(stack)).map((stack) => stack.getBoundingRectangle());
+  for (const stack of stacks.filter(isLoose)) if (boxes.some((box) => box.intersects(stack.getBoundingRectangle()))) moveToFreePlace(stack, workspace);
+}
+
+/** As high as it can be seen whole beside or below the others. @param {Blockly.BlockSvg} block @param {Blockly.WorkspaceSvg} workspace */
+function moveToFreePlace(block, workspace) {
+  const { width, height } = block.getHeightWidth(), view = workspace.getMetricsManager().getViewMetrics(true);
+  const boxes = workspace.getTopBlocks(false).filter((other) => other !== block).map((other) => other.getBoundingRectangle());
+  const places = boxes.flatMap(({ left, top, right, bottom }) => [{ x: right + STACK_GAP, y: top }, { x: left, y: bottom + STACK_GAP }])
+    .filter(({ x, y }) => !boxes.some((box) => box.intersects(new Blockly.utils.Rect(y, y + height, x, x + width))));
+  const isCut = (/** @type {{x: number}} */ { x }) => x + width > view.left + view.width;
+  places.sort((a, b) => Number(isCut(a)) - Number(isCut(b)) || a.y - b.y || a.x - b.x);
+  if (places[0]) block.moveTo(new Blockly.utils.Coordinate(places[0].x, places[0].y));
+}
+
 /** @typedef {(kind: string) => Blockly.BlockSvg} MakeBlock */
 
 /**

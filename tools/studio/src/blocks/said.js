@@ -82,6 +82,16 @@ export function labelOfLine(line) {
   return labelOfBlock({ kind, word: `${word.toUpperCase()} ${unit}`.trim(), values }).text;
 }
 
+/**
+ * @param {string} programText @param {{line: number, column: number}} place
+ * @returns {string} what the block of the instruction there says; nothing where it has none
+ */
+export function labelAt(programText, { line, column }) {
+  const lineText = programText.split('\n')[line - 1] ?? '';
+  const start = Math.max(...[';', '|'].map((separator) => lineText.lastIndexOf(separator, Math.max(0, column - 2)))) + 1;
+  return labelOfLine(lineText.slice(start).replace(/;.*/, '').trim());
+}
+
 /** @param {string} word alone @returns {Label | null} what is on its block; null where it has none */
 export function labelOfWord(word) {
   const device = deviceLabel(word);

@@ -141,7 +141,7 @@ function withoutAccents(text) {
 }
 
 /** Where a word that somebody looks for may be, the best first; in no place of them a block is not found. */
-const RANK_COUNT = 5;
+const RANK_COUNT = 6;
 
 /**
  * @param {string} words that somebody looks for
@@ -153,19 +153,26 @@ export function findItems(words, usedNames) {
   const rankedItems = makeGroups(usedNames).flatMap(([group, items]) => items.map(([, item]) => {
     const word = wordOfItem(item);
     const choiceLabels = word ? [] : (KINDS[item.type]?.words ?? []).map(blockLabel);
-    const label = withoutAccents([labelOf(item.type, word, null).text, word, item.type, ...choiceLabels].join(' '));
-    const peopleWords = ` ${wordsOfPeople(item.type, word)}`, tipText = withoutAccents(tipOf(item.type)), groupText = ` ${withoutAccents(text(textKey(`group/${group}`)))}`;
-    const ranks = wantedWords.map((wantedWord) => [label.startsWith(wantedWord), label.includes(wantedWord), peopleWords.includes(` ${wantedWord}`), tipText.includes(wantedWord), groupText.includes(` ${wantedWord}`), true].indexOf(true));
+    const label = withoutAccents(` ${[labelOf(item.type, word, null).text, word, item.type, ...choiceLabels].join(' ')} `);
+    const peopleWords = ` ${wordsOfPeople(item)}`, tipText = withoutAccents(tipOf(item.type)), groupText = ` ${withoutAccents(text(textKey(`group/${group}`)))}`;
+    const ranks = wantedWords.map((wantedWord) => [
+      label.includes(` ${wantedWord} `), label.includes(` ${wantedWord}`), peopleWords.includes(` ${wantedWord}`), label.includes(wantedWord),
+      tipText.includes(wantedWord), groupText.includes(` ${wantedWord}`), true,
+    ].indexOf(true));
     return { item, rank: Math.max(...ranks) };
   }));
   return rankedItems.filter(({ rank }) => rank < RANK_COUNT).sort((a, b) => a.rank - b.rank).slice(0, MOST_FOUND).map(({ item }) => ({ ...item, gap: 8 }));
 }
 
-/** What people say for the words that a block stands for, by the lexicon of their language. @param {string} kind @param {string} word @returns {string} */
-function wordsOfPeople(kind, word) {
-  const words = word ? [word] : KINDS[kind]?.words ?? [];
-  const meanings = [...words, ...[kind, ...words].flatMap((blockName) => wordsOnBlock(blockName)), ...words.some((blockWord) => KINDS['move']?.units[blockWord] === 'DEG') ? ['turn'] : []];
-  return withoutAccents(meanings.map((meaning) => (hasText(`words/${meaning}`) ? text(textKey(`words/${meaning}`)) : '')).join(' '));
+/** What people say for a block and for the words that it stands for, by the lexicon of their language. @param {ToolboxItem} item @returns {string} */
+function wordsOfPeople(item) {
+  const { type: kind } = item, word = wordOfItem(item), words = word ? [word] : KINDS[kind]?.words ?? [];
+  const hasElse = /** @type {{hasElse?: boolean} | undefined} */ (item.extraState)?.hasElse;
+  const meanings = [
+    kind, kind.toUpperCase(), ...words, ...[kind, ...words].flatMap((blockName) => wordsOnBlock(blockName)), ...hasElse ? ['else', 'ELSE'] : [],
+    ...words.some((blockWord) => KINDS['move']?.units[blockWord] === 'DEG') ? ['turn'] : [],
+  ];
+  return withoutAccents(meanings.map((meaning) => `${meaning} ${hasText(`words/${meaning}`) ? text(textKey(`words/${meaning}`)) : ''}`).join(' '));
 }
 
 /**

@@ -244,7 +244,7 @@ export class Programs {
       const openButton = makeButton('', () => {
         this.replaceProgram(version);
         this.#window.close();
-        pageState.note.set(text('opened_again', { time: timeText }));
+        pageState.note.set(text('opened', { name: title }));
       }, makeThumbnail(version.text, version.robot), makeElement('strong', '', title), timeElement);
       openButton.title = `${title}, ${robotLabel}`;
       const row = makeElement('li', '', openButton);

@@ -1,6 +1,8 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
+import { areBlocksSeen } from '../blocks/names.js';
+import { labelAt } from '../blocks/said.js';
 import { element } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -22,6 +24,7 @@ import { SensorWatch } from './watching.js';
 import { storeText, loadText } from '../page/kept.js';
 import { makeSymbolPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
+import { needStop } from '../page/stop_place.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
 import { messageWithFix } from '../writing/messages.js';
@@ -583,9 +586,10 @@ export class RobotPanel {
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    this.#speech.saySentence(text('say_fault', { line, what: sentence }));
-    // else the places are those of another text
-    if (movesCaret && pageState.checkResult.value === program) this.#page.goTo({ line, column, end_line, end_column });
+    const isShown = pageState.checkResult.value === program; // else the places are those of another text
+    const part = isShown && areBlocksSeen() ? labelAt(pageState.programText.value, { line, column }) : '';
+    this.#speech.saySentence(part ? text('say_fault_block', { part, what: sentence }) : text('say_fault', { line, what: sentence }));
+    if (movesCaret && isShown) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {
@@ -594,6 +598,7 @@ export class RobotPanel {
     element('link_drive', HTMLElement).hidden = !isConnected && !this.#isWitness;
     element('link_drive', HTMLElement).classList.toggle('witness', !isConnected);
     element('link_connected', HTMLElement).hidden = this.#transport === null;
+    needStop('link', this.#transport !== null);
     element('link_name', HTMLElement).textContent = this.#robotName;
     element('link_serial', HTMLButtonElement).hidden = !hasSerial;
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;

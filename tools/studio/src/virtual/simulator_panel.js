@@ -19,6 +19,7 @@ import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
 import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
+import { needStop } from '../page/stop_place.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 import { devicesOf, deviceName } from '../page/words.js';
@@ -589,6 +590,7 @@ export class SimulatorPanel {
     this.#showReadings();
     const { dataset } = document.documentElement, isOver = dataset['phase'] === 'running' && phase === 'ended';
     dataset['phase'] = phase;
+    needStop('run', this.#isDriving);
     if (isOver) this.#stage.runEnded();
     this.#offerRemote();
     if (!this.#isDriving) this.#onRunOver();

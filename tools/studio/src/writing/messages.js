@@ -1,9 +1,10 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
-import { areBlocksNamed, labelOfCode, sayAsSeen } from '../blocks/said.js';
+import { areBlocksNamed, labelAt, labelOfCode, sayAsSeen } from '../blocks/said.js';
 import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
+import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
 import { text } from '../page/texts.js';
 
@@ -15,6 +16,11 @@ const MOST_MESSAGES = 50; // messages that are shown at once
 export function messageWithFix({ message = '', fix = '' }) {
   const separator = /[.!?:]$/.test(message) ? ' ' : ' – ';
   return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(separator);
+}
+
+/** The block that a finding is about, for who sees blocks; nothing for who sees lines, and where it is no block. @param {Finding} finding */
+function blockOf(finding) {
+  return areBlocksNamed() ? labelAt(pageState.programText.value, finding) : '';
 }
 
 /** A finding on the page: code is shown as it looks in the program. @param {Finding} finding @returns {Node | string} */
@@ -32,11 +38,12 @@ function makeSentence(finding) {
 export function showMessages(list, findings, goTo) {
   let firstMessage = '';
   const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
-    const lineButton = makeButton('', () => goTo(finding), text('line', { line: finding.line }));
-    lineButton.className = 'place';
-    lineButton.ariaLabel = text('say_fault', { line: finding.line, what: messageWithFix(sayAsSeen(finding)) });
-    firstMessage ||= lineButton.ariaLabel;
-    const row = makeElement('li', '', lineButton, ' ', makeSentence(finding));
+    const { line } = finding, part = blockOf(finding), what = messageWithFix(sayAsSeen(finding));
+    const placeButton = makeButton('', () => goTo(finding), part || text('line', { line }));
+    placeButton.className = 'place';
+    placeButton.ariaLabel = part ? text('say_fault_block', { part, what }) : text('say_fault', { line, what });
+    firstMessage ||= placeButton.ariaLabel;
+    const row = makeElement('li', '', placeButton, ' ', makeSentence(finding));
     row.className = finding.severity;
     return row;
   });
@@ -55,7 +62,8 @@ export function showMessages(list, findings, goTo) {
 export function showRepair(list, findingIndex, finding, repair) {
   const repairButton = makeButton('repair', () => repair(finding));
   repairButton.className = 'repair';
-  repairButton.setAttribute('aria-label', text('repair_line', { line: finding.line, fix: sayAsSeen(finding).fix }));
+  const { line } = finding, part = blockOf(finding), { fix } = sayAsSeen(finding);
+  repairButton.setAttribute('aria-label', part ? text('repair_block', { part, fix }) : text('repair_line', { line, fix }));
   if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 
