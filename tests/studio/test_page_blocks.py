@@ -524,6 +524,11 @@ def test_the_names_of_the_program_are_blocks_unless_it_is_too_long(page: Page) -
     assert page.inner_text("#blocks_note") == ""
     assert "SPEED" in flyout(page, "Variables")
     assert "HOP" in flyout(page, "My words")
+    for number in (2, 3):  # a new word has a name that no other one has
+        drag(page, "My words", f"HOP_{number}", None)
+        page.locator(".cm-content", has_text=f"DEF HOP_{number}").wait_for()
+    wait_until_checked(page)
+    assert page.locator("#messages .mistake").count() == 0
 
 
 # Opens one group after the other and measures how many pixels its lowest block is below the pane,

@@ -588,7 +588,7 @@ export class SimulatorPanel {
     const { phase } = this.#simulator;
     this.#arena.draw(this.#shownState); // first: writing on a canvas has the browser compute the style that changes made stale
     this.#showReadings();
-    const { dataset } = document.documentElement, isOver = dataset['phase'] === 'running' && phase === 'ended';
+    const { dataset } = document.documentElement, isOver = ['running', 'paused'].includes(dataset['phase'] ?? '') && phase === 'ended';
     dataset['phase'] = phase;
     needStop('run', this.#isDriving);
     if (isOver) this.#stage.runEnded();
