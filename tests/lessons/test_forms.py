@@ -103,7 +103,7 @@ def test_block_users_get_findings_about_blocks(language: str) -> None:
     values = {"cm": "3", "seconds": "1.0", "least": "1", "found": "1", "times": "2", "name": "HOP"}
     rest = dict.fromkeys(("within", "limit", "low", "high", "number", "all", "degrees", "truth"))
     rest |= dict.fromkeys(("different", "pitches", "value", "wanted", "most", "fault"))
-    values |= dict.fromkeys(rest, "1")
+    values |= {**dict.fromkeys(rest, "1"), "truth": "TRUE"}
     kit = profile_of("tinibot").kit
     for key in (key for key in texts("lessons", language) if key.startswith("said/")):
         words = ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",)

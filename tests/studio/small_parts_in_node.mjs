@@ -798,6 +798,7 @@ const PARTS = {
     await learns(page);
     const { text } = await page.load('page/texts.js');
     const { blockLabel } = await page.load('page/words.js');
+    const { pageState } = await page.load('page/page_state.js');
     const { rangeOf } = await page.load('blocks/places.js');
     const { keyOfHertz, hertzOfKey, keyName, nextKeyFrom } = await page.load('blocks/tones.js');
     const { NumberField, NameField, LineField, UnitField, ArrowField, setTonePlayer, WAY_UNIT } = await page.load('blocks/fields.js');
@@ -840,6 +841,15 @@ const PARTS = {
         number.isBeingEdited_ = false;
         is([/^-?\d+(\.\d*[1-9])?$/.test(number.textValue()), Math.abs(Number(number.textValue()) - number.getValue()) < 0.001], [true, true], `its text ${number.textValue()}`);
         is(number.widgetCreate_().inputMode, low < 0 ? '' : 'decimal', 'the keys of a phone');
+      },
+      typesWords() {
+        const before = number.getValue(), typed = random.of(['sin fin', 'X', '1.2.3']);
+        Object.assign(number, { isBeingEdited_: true, valueWhenEditorWasOpened_: before });
+        number.setValue(` ${typed} `);
+        number.isBeingEdited_ = false;
+        number.onFinishEditing_(before);
+        is([number.getValue(), pageState.note.value], [before, text('no_number', { typed })], 'what is said of a word in place of a number');
+        pageState.note.set('');
       },
       takesBack() {
         const field = random.of(fields), before = field.getValue(), changesIt = random() < 0.6;

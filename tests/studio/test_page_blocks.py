@@ -307,7 +307,7 @@ def test_a_loose_block_is_kept(page: Page) -> None:
     place = box_of(loose_block)
     page.click("#undo")
     wait_for_text(page, "SI|F(2, 80);\nS;\n")
-    assert page.inner_text("#status").startswith("The program is correct")
+    assert page.inner_text("#status").startswith("Ready to run")
     assert path.evaluate("e => getComputedStyle(e).fill") != grey
     page.click("#redo")
     wait_for_text(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")

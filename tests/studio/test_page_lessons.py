@@ -328,6 +328,8 @@ def test_lessons_can_be_loaded_later_and_progress_is_kept(
     ):  # continues with the first unfinished one
         names = json.dumps([folder.name for folder in FOLDERS[:count]])
         page.evaluate("names => localStorage.setItem('tiniscript.lessons', names)", names)
+        page.click("#side_virtual")
+        page.evaluate("sessionStorage.removeItem('tiniscript.lesson_place')")  # as in another tab
         page.reload()
         wait_until_checked(page)
         page.click("#side_lessons")
@@ -490,9 +492,17 @@ def test_returning_to_a_lesson_restores_its_program(page: Page) -> None:
     editor.filter(has_text=first_text).wait_for()
     choose_lesson(page, 2)
     editor.filter(has_text=second_text).wait_for()
+    for step in (2, 0):
+        page.locator("#lesson_steps button").nth(step).click()
+        page.reload()
+        wait_until_checked(page)
+        assert editor.inner_text() == second_text
+        page.locator("#lesson_page[data-lesson='2']").wait_for()
+        page.locator(f"#lesson_steps li:nth-child({step + 1}) [aria-current]").wait_for()
+    page.click("#side_virtual")
     page.reload()
     wait_until_checked(page)
-    assert editor.inner_text() == second_text
+    assert not page.locator("#lesson_page").is_visible()
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
     choose_lesson(page, 1)

@@ -168,6 +168,7 @@ new Start({
     lessons.leave();
   },
 });
+if (!isStart()) lessons.comeBack();
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
     panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
@@ -187,7 +188,7 @@ pageState.checkResult.subscribe((answer) => {
   }
   editor.showFindings(answer.findings, repair);
   showFindings(answer.findings);
-  showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
+  showSummary(answer);
 });
 pageState.offeredFindingIndex.subscribe((findingIndex) => {
   const finding = pageState.checkResult.value?.findings[findingIndex];
@@ -196,6 +197,7 @@ pageState.offeredFindingIndex.subscribe((findingIndex) => {
 for (const observable of [pageState.view, pageState.areWordsShown]) observable.subscribe(() => { // which say another word for the same code
   const { findings = [] } = pageState.checkResult.value ?? {};
   showFindings(findings);
+  if (pageState.checkResult.value) showSummary(pageState.checkResult.value);
   findings.forEach((finding, findingIndex) => {
     if (finding.repair?.length) showRepair(messageList, findingIndex, finding, repair);
   });
@@ -231,6 +233,11 @@ function showStatus(sentence, className) {
   staleTimer = 0;
   statusElement.textContent = sentence;
   statusElement.className = className;
+}
+
+/** @param {import('./python.js').CheckResult} answer */
+function showSummary(answer) {
+  showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 }
 
 /** @param {Finding[]} findings */

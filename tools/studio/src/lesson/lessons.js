@@ -10,7 +10,7 @@ import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { storeDone, storeProgram, storeStars, loadDoneLessons, loadProgram, countAllStars } from './progress.js';
+import { storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadProgram, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
@@ -64,7 +64,9 @@ export class Lessons {
   #steps = [];
   /** The same for who sees blocks. @type {Step[]} */
   #blockSteps = [];
-  #stepIndex = 0;
+  /** Where this tab was before the page was loaded. */
+  #placeBefore = loadPlace();
+  #stepIndex = this.#placeBefore.step;
   #checkCount = 0; // the newest one goes on; others have been ended
   #requestCount = 0;
   #isShown = false;
@@ -119,6 +121,7 @@ export class Lessons {
     });
     pageState.robotName.subscribe(() => this.#fillStep());
     pageState.sideId.subscribe((sideId) => {
+      this.#keepPlace();
       if (sideId === 'side_lessons') return;
       const { text: programText, lesson: lessonName, own: ownProgram } = this.#page.work;
       if (!programText.trim()) this.leave();
@@ -136,6 +139,17 @@ export class Lessons {
     const resizeObserver = new ResizeObserver(markMore);
     for (const observedElement of [lessonPage, element('lesson_step', HTMLElement)]) resizeObserver.observe(observedElement);
     this.#setReady(false);
+  }
+
+  /** A page that is loaded again comes back to the lesson that was seen. */
+  comeBack() {
+    if (this.#placeBefore.isOpen) element('side_lessons', HTMLButtonElement).click();
+  }
+
+  #keepPlace() {
+    const openLesson = this.#steps.length ? this.#lessons[this.#lessonNumber - 1] : null;
+    const place = openLesson ? { lesson: openLesson.name, step: this.#stepIndex } : this.#placeBefore;
+    storePlace({ ...place, isOpen: pageState.sideId.value === 'side_lessons' });
   }
 
   #showLessons() {
@@ -174,7 +188,7 @@ export class Lessons {
       if (requestNumber !== this.#requestCount) return;
       this.#lessons = lessons;
       if (!this.#steps.length) {
-        const doneLessons = loadDoneLessons(), { lesson } = this.#page.work;
+        const doneLessons = loadDoneLessons(), lesson = this.#placeBefore.lesson || this.#page.work.lesson;
         this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
       }
       this.#listLessons();
@@ -214,14 +228,14 @@ export class Lessons {
     this.#forgetCheck();
     const { steps, block_steps, offered: offeredKinds, needed: neededKinds, new: newPieces, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number: lessonNumber, language });
     if (requestNumber !== this.#requestCount) return;
-    const isOther = lessonNumber !== this.#lessonNumber || !this.#steps.length;
+    const isFirst = !this.#steps.length, isOther = lessonNumber !== this.#lessonNumber || isFirst;
     this.#lessonNumber = lessonNumber; // from now on: until then the one before is seen and checked
     this.#lessonSelect.value = String(lessonNumber);
     this.#steps = steps;
     this.#blockSteps = block_steps;
     this.#spokenBlocks = spoken;
     pageState.taughtBlocks.set({ offered: offeredKinds, needed: neededKinds, fresh: newPieces });
-    this.#goToStep(isOther ? 0 : this.#stepIndex);
+    this.#goToStep(isOther && !isFirst ? 0 : Math.min(this.#stepIndex, steps.length - 1));
     if (isOther && !element('lessons', HTMLElement).hidden) await this.#enterLesson();
     this.#setReady(true);
   }
@@ -229,6 +243,7 @@ export class Lessons {
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
+    this.#keepPlace();
     if ([text('lesson_used'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
