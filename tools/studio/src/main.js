@@ -11,7 +11,7 @@ import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { makePictureOption, makeRobotPicture } from './page/pictures.js';
+import { goAmongPictures, makePictureOption, makeRobotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
 import { holdsProgram } from './programs/links.js';
@@ -51,6 +51,7 @@ const messageList = element('messages', HTMLElement);
 startTheme();
 showOwnRobot();
 ignoreSecondPresses();
+goAmongPictures();
 const storedWork = loadWork();
 const work = storedWork ?? {
   text: FIRST_PROGRAM,

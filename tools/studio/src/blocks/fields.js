@@ -84,7 +84,10 @@ export class NumberField extends Blockly.FieldNumber {
       return;
     }
     super.showEditor_(event, isQuiet || matchMedia('(pointer: coarse)').matches);
-    const piano = new Piano((hertz) => this.choosePitch(hertz));
+    const piano = new Piano((hertz) => {
+      this.choosePitch(hertz);
+      /** @type {any} */ (this).htmlInput_?.setAttribute('data-untyped-default-value', String(hertz)); // Escape takes back what was typed, and no key that was pressed
+    });
     piano.show(Number(this.getValue()));
     const { DropDownDiv } = Blockly;
     DropDownDiv.clearContent();

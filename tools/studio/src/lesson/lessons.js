@@ -10,7 +10,7 @@ import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadProgram, countAllStars } from './progress.js';
+import { storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadStars, loadProgram, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
@@ -204,10 +204,11 @@ export class Lessons {
   }
 
   #listLessons() {
-    const doneLessons = loadDoneLessons();
+    const doneLessons = loadDoneLessons(), stars = loadStars();
     replaceOptions(this.#lessonSelect, this.#lessons.map((lesson, index) => {
+      const starMark = stars.has(lesson.name) ? ` ★ ${stars.get(lesson.name)}/${lesson.worlds}` : '';
       const doneMark = doneLessons.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return makePictureOption(`${index + 1}. ${this.#titleOf(lesson)}${doneMark}`, String(index + 1), makeWorldPicture(lesson.world));
+      return makePictureOption(`${index + 1}. ${this.#titleOf(lesson)}${starMark}${doneMark}`, String(index + 1), makeWorldPicture(lesson.world));
     }));
     this.#lessonSelect.value = String(this.#lessonNumber);
   }
@@ -244,7 +245,7 @@ export class Lessons {
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
     this.#keepPlace();
-    if ([text('lesson_used'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
+    if ([text('lesson_used'), text('lesson_used_again'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
@@ -305,8 +306,9 @@ export class Lessons {
   #makeReader(lesson) {
     return {
       useProgram: (programText) => {
+        const isOwnReplaced = !this.#page.work.lesson;
         this.#page.put(this.#lendProgram(lesson, programText));
-        pageState.note.set(text('lesson_used'));
+        pageState.note.set(text(isOwnReplaced ? 'lesson_used' : 'lesson_used_again'));
       },
       labelOfCode: (code) => (this.#areBlocks ? labelOfCode(code, this.#spokenBlocks) : null),
       drawProgram: this.#areBlocks ? (programText, onDone) => {
@@ -455,8 +457,8 @@ export class Lessons {
     const areStarsStored = storeStars(lesson.name, stars); // first: one that is done has a star
     const isStored = (verdict !== 'passed' || storeDone(lesson.name)) && areStarsStored;
     this.#forgetCheck();
-    const hasPassed = verdict === 'passed';
-    if (hasPassed) this.#listLessons();
+    const hasPassed = verdict === 'passed', wasDone = !hasPassed && loadDoneLessons().has(lesson.name);
+    this.#listLessons();
     const [singleWorldKey, severalWorldsKey] = VERDICT_KEYS[verdict];
     const isInWorlds = worlds > 1 && (seed > 0 || hasPassed);
     const sentence = text(isInWorlds ? severalWorldsKey : singleWorldKey, { number: this.#lessonNumber, worlds, seed });
@@ -464,7 +466,7 @@ export class Lessons {
     this.#judgement = {
       programText: pageState.programText.value,
       verdict,
-      sentence: hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : sentence,
+      sentence: hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : wasDone ? `${sentence} ${text('lesson_was_done')}` : sentence,
       stars: verdict === 'mistakes' ? '' : '★'.repeat(stars) + '☆'.repeat(worlds - stars), // one for each world where it did its task
       said: sentences,
       block_said,

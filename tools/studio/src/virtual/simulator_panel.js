@@ -715,6 +715,8 @@ export class SimulatorPanel {
     if (phase === 'paused') return text('robot_paused');
     const { origin, program } = this.#timeLine.run;
     if (phase === 'ended') return text(program.places.length || origin.text !== pageState.programText.value ? 'robot_ended' : 'program_empty');
+    const { speed, shownSpeed } = this.#simulator;
+    if (shownSpeed > speed) return text('robot_running_fast', { times: shownSpeed.toFixed(1) }); // and not what somebody has chosen
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
   }
 
