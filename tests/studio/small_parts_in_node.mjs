@@ -745,6 +745,28 @@ const PARTS = {
     return { acts: { ...actions, worksMore: actions.works, reloadsMore: actions.reloads }, checks() {}, waits: [0] };
   },
 
+  // Where the camera looks that follows the robot: nearer to where a task leads, and always with the robot.
+  async camera(random) {
+    const matches = { matches: false };
+    globalThis.matchMedia = () => matches;
+    const { middleOf } = await freshPage({}, HTML).load('virtual/arena.js');
+    const isSeen = (place, middle, size) => Math.abs(place - middle) <= size / 2 + 1e-9;
+    const actions = {
+      looks() {
+        const size = 20 + random.below(200), robotLength = 1 + random.below(size / 3), robot = random.below(300), goal = random.below(300);
+        const middle = middleOf(robot, [goal], size, robotLength);
+        is(isSeen(robot, middle, size - 2 * robotLength), true, 'the robot is seen whole');
+        if (Math.abs(goal - robot) <= size - 2 * robotLength) is(isSeen(goal, middle, size), true, 'where its task leads is seen');
+        is(Math.abs(goal - middle) <= Math.abs(goal - robot), true, 'the goal is no farther from the middle than from the robot');
+      },
+      wanders() {
+        const robot = random.below(300);
+        is(middleOf(robot, [], 100, 10), robot, 'without a task the robot is in the middle');
+      },
+    };
+    return { acts: actions, checks() {} };
+  },
+
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
   async words(random) {
     playsNavigator({});

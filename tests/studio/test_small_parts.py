@@ -28,6 +28,7 @@ NEEDED_ACTS = {
     "keys": {"opens", "puts"},
     "tabs": {"opens", "copies", "reloads", "works", "draws", "damages"},
     "fields": {"types", "typesWords", "takesBack", "opens", "playsKey", "steps", "names"},
+    "camera": {"looks", "wanders"},
     "words": {"shows", "speaks"},
     "world": {"chooses", "brings", "puts", "keeps", "reloads"},
 }

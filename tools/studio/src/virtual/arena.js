@@ -365,7 +365,7 @@ export class Arena {
  * What is in the middle of a picture: halfway to where a task leads, as long as the robot is seen whole.
  * @param {number} robotPlace along one side @param {number[]} places where the task leads @param {number} size of the picture @param {number} robotLength
  */
-function middleOf(robotPlace, places, size, robotLength) {
+export function middleOf(robotPlace, places, size, robotLength) {
   if (!places.length) return robotPlace;
   const mostOffset = Math.max(0, size / 2 - robotLength), offset = (places.reduce((sum, place) => sum + place, 0) / places.length - robotPlace) / 2;
   return robotPlace + Math.max(-mostOffset, Math.min(mostOffset, offset));

@@ -126,7 +126,7 @@ export class Stage {
 
   /** A run is over: whoever is at a lesson reads on, and whoever has the mouse over the program goes on with it. */
   runEnded() {
-    if (pageState.sideId.value === 'side_lessons') this.#shrink();
+    if (pageState.sideId.value === 'side_lessons') this.shrink();
     else this.#awaitRest();
   }
 
