@@ -42,6 +42,28 @@ def test_a_lesson_mentions_blocks_to_block_users(number: int, language: str) -> 
             assert is_on_a_block(code, spoken_blocks), (code, step_sentence)
 
 
+# The place of a block among others; the order of blocks is not that of the text.
+PLACES_OF_BLOCKS = {
+    "en": r"\b(first|last|next|top|bottom|upper|lower)\b( \w+)? blocks?\b"
+    r"|\bblocks? (above|below)\b",
+    "es": r"\b(primer|últim|siguiente)\w*( \w+)? bloques?\b"
+    r"|\bbloques? (de (arriba|abajo)|últim|siguiente)",
+    "pt": r"\b(primeir|últim|seguinte|próxim)\w*( \w+)? blocos?\b"
+    r"|\bblocos? (de (cima|baixo)|últim|seguinte)",
+}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", LESSONS)
+def test_a_lesson_calls_blocks_by_name_and_not_by_place(number: int, language: str) -> None:
+    for step in page_lessons.steps(number, language, BLOCKS):
+        parts = [block for block in step["blocks"] if block["kind"] != "program"]
+        for said in [*(row[0] for block in parts for row in block["rows"] if row), step["hint"]]:
+            places = re.search(PLACES_OF_BLOCKS[language], said, re.IGNORECASE)
+            is_first_one = number == 1  # "your first block" of all
+            assert not places or is_first_one, said
+
+
 # A question, or an instruction for a pupil.
 INSTRUCTION_PATTERNS = {
     "en": r"\?|\b(Build|Change|Find|Follow|Guess|Invent|Press|Put|Read|Say|Think|Try|Write)\b",
@@ -81,7 +103,7 @@ def test_block_users_get_findings_about_blocks(language: str) -> None:
     values = {"cm": "3", "seconds": "1.0", "least": "1", "found": "1", "times": "2", "name": "HOP"}
     rest = dict.fromkeys(("within", "limit", "low", "high", "number", "all", "degrees", "truth"))
     rest |= dict.fromkeys(("different", "pitches", "value", "wanted", "most", "fault"))
-    values |= dict.fromkeys(rest, "1")
+    values |= {**dict.fromkeys(rest, "1"), "truth": "TRUE"}
     kit = profile_of("tinibot").kit
     for key in (key for key in texts("lessons", language) if key.startswith("said/")):
         words = ("KEY_UP",) if "obeys" in key else EXAMPLES if "uses" in key else ("UNTIL",)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,11 @@ from tiniscript.lessons import catalogue, text_judging
 from tiniscript.lessons.judging import JUDGES
 from tiniscript.lessons.lesson import Answer
 from tiniscript.lessons.markdown import blocks
+from tiniscript.lessons.marking import Marking
 from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.sheet import sheet
-from tiniscript.library.compiling import compile_source
+from tiniscript.library.compiling import compile_source, image_maker
+from tiniscript.studio import page_lessons
 from tools.builds.page_texts import page_texts
 
 FOLDERS = catalogue.folders()
@@ -170,6 +173,40 @@ def test_no_page_gives_away_the_answer(folder: Path) -> None:
             if block.kind == "program":
                 text = "\n".join(row for (row,) in block.rows)
                 assert findings_of(text, lesson, range(1, lesson.world_count + 1)), text
+
+
+def at_half_power(program: str) -> str:
+    return re.sub(
+        r"\b([FBLR]\([^,()]+, *)(\d+)\)", lambda move: f"{move[1]}{int(move[2]) // 2})", program
+    )
+
+
+# What follows from a word in a hint or in a message.
+ADVISED_CHANGES = {"slow": at_half_power, "FOREVER": text_judging.without_times}
+
+
+@each_lesson
+def test_advice_never_makes_a_program_worse(folder: Path) -> None:
+    """A program passes at least as many worlds as before if somebody follows a hint, or what the
+    checker says of it."""
+    number, lesson = int(folder.name[:2]), catalogue.load(folder)
+    seeds = range(1, lesson.world_count + 1)
+
+    @cache
+    def worlds_passed(program: str) -> int:
+        robot = robots.load(lesson.robot)
+        outcome = Marking(program, image_maker(robot), robot, lesson, seeds).run_to_end()
+        return outcome.seed - 1 if outcome.seed else lesson.world_count
+
+    hint = page_lessons.steps(number, "en")[-1]["hint"]
+    _, wrong_answers = catalogue.answers(folder)
+    for program, said in [
+        *((answer.program, answer.sentence_by_language["en"]) for answer in wrong_answers),
+        *((program, "") for program in page_lessons._programs(number, "en")),
+    ]:
+        for word, change in ADVISED_CHANGES.items():
+            if word in hint + said and change(program) != program:
+                assert worlds_passed(change(program)) >= worlds_passed(program), (word, program)
 
 
 def test_every_criterion_is_judged() -> None:

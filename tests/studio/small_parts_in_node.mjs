@@ -745,6 +745,28 @@ const PARTS = {
     return { acts: { ...actions, worksMore: actions.works, reloadsMore: actions.reloads }, checks() {}, waits: [0] };
   },
 
+  // Where the camera looks that follows the robot: nearer to where a task leads, and always with the robot.
+  async camera(random) {
+    const matches = { matches: false };
+    globalThis.matchMedia = () => matches;
+    const { middleOf } = await freshPage({}, HTML).load('virtual/arena.js');
+    const isSeen = (place, middle, size) => Math.abs(place - middle) <= size / 2 + 1e-9;
+    const actions = {
+      looks() {
+        const size = 20 + random.below(200), robotLength = 1 + random.below(size / 3), robot = random.below(300), goal = random.below(300);
+        const middle = middleOf(robot, [goal], size, robotLength);
+        is(isSeen(robot, middle, size - 2 * robotLength), true, 'the robot is seen whole');
+        if (Math.abs(goal - robot) <= size - 2 * robotLength) is(isSeen(goal, middle, size), true, 'where its task leads is seen');
+        is(Math.abs(goal - middle) <= Math.abs(goal - robot), true, 'the goal is no farther from the middle than from the robot');
+      },
+      wanders() {
+        const robot = random.below(300);
+        is(middleOf(robot, [], 100, 10), robot, 'without a task the robot is in the middle');
+      },
+    };
+    return { acts: actions, checks() {} };
+  },
+
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
   async words(random) {
     playsNavigator({});
@@ -798,6 +820,7 @@ const PARTS = {
     await learns(page);
     const { text } = await page.load('page/texts.js');
     const { blockLabel } = await page.load('page/words.js');
+    const { pageState } = await page.load('page/page_state.js');
     const { rangeOf } = await page.load('blocks/places.js');
     const { keyOfHertz, hertzOfKey, keyName, nextKeyFrom } = await page.load('blocks/tones.js');
     const { NumberField, NameField, LineField, UnitField, ArrowField, setTonePlayer, WAY_UNIT } = await page.load('blocks/fields.js');
@@ -840,6 +863,15 @@ const PARTS = {
         number.isBeingEdited_ = false;
         is([/^-?\d+(\.\d*[1-9])?$/.test(number.textValue()), Math.abs(Number(number.textValue()) - number.getValue()) < 0.001], [true, true], `its text ${number.textValue()}`);
         is(number.widgetCreate_().inputMode, low < 0 ? '' : 'decimal', 'the keys of a phone');
+      },
+      typesWords() {
+        const before = number.getValue(), typed = random.of(['sin fin', 'X', '1.2.3']);
+        Object.assign(number, { isBeingEdited_: true, valueWhenEditorWasOpened_: before });
+        number.setValue(` ${typed} `);
+        number.isBeingEdited_ = false;
+        number.onFinishEditing_(before);
+        is([number.getValue(), pageState.note.value], [before, text('no_number', { typed })], 'what is said of a word in place of a number');
+        pageState.note.set('');
       },
       takesBack() {
         const field = random.of(fields), before = field.getValue(), changesIt = random() < 0.6;

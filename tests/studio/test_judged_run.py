@@ -118,6 +118,10 @@ def test_the_shown_goals_match_the_judges() -> None:
     assert exit_at["y_cm"] == height_cm - mirrored["y_cm"]
     lamps = [page_lessons.goal_shapes(10, seed)[0]["x_cm"] for seed in (1, 2)]
     assert lamps[0] != lamps[1]
+    for seed in (1, 2):  # a wall is drawn already
+        (wall,) = page_lessons.goal_shapes(7, seed)
+        assert wall.keys() == {"x_cm", "y_cm", "is_flag"} and not wall["is_flag"]
+        assert wall["x_cm"] == page_lessons.varied_world(7, seed).walls[0][0].x
     assert page_lessons.goal_shapes(13, 1) == []
 
 

@@ -95,7 +95,7 @@ def test_an_internal_error_is_reported_with_its_name(page: Page) -> None:
 def test_typed_text_is_reported_as_correct_only_after_compilation(page: Page) -> None:
     write(page, "SI|F(3, 70);\nS")
     assert image(page) == compile("SI|F(3, 70);\nS").image
-    assert page.inner_text("#status") == "The program is correct: 4 bytes."
+    assert page.inner_text("#status") == "Ready to run: 4 bytes."
     write(page, "")
     assert image(page) == compile("").image
     write(page, "F(1, 80)")
@@ -120,7 +120,7 @@ def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -
     assert check("F(-2, 80)", language="es")[0].message in row.inner_text()
     row.get_by_role("button", name="Hacerlo").click()
     wait_until_checked(page)
-    assert page.inner_text("#status").startswith("El programa está bien")
+    assert page.inner_text("#status").startswith("Listo para probar")
     assert page.locator(".cm-content").inner_text().endswith("B(2, 80)")
     page.keyboard.press("Control+z")
     wait_until_checked(page)

@@ -388,7 +388,9 @@ def test_a_tone_is_chosen_by_its_name_and_written_in_hertz(page: Page) -> None:
         piano.locator("button").last.click()  # higher
         piano.locator(".white").first.click()
         wait_for_text(page, "SI|BEEP(0.5, 523);\nF(5, 80);\n")
-        page.keyboard.press("Escape")
+        page.keyboard.press("Escape")  # takes back no key that was pressed
+        piano.wait_for(state="detached")
+        wait_for_text(page, "SI|BEEP(0.5, 523);\nF(5, 80);\n")
     speak(page, "en")
 
 

@@ -146,6 +146,7 @@ def test_no_highlight_remains_after_a_run(page: Page, pytestconfig: pytest.Confi
         page.click("#lesson_check")
         page.locator("#lesson_end", has_text="Skip").wait_for()
         wait_for_running(page)
+        page.locator("#doing", has_text="times as fast").wait_for()  # than the speed that is chosen
         if end:
             page.click(end)
         page.locator("#lesson_said[data-verdict=failed]").wait_for()
@@ -321,19 +322,37 @@ def test_lessons_can_be_loaded_later_and_progress_is_kept(
     choose_lesson(page, 2)
     page.select_option("#speed", "20")
     assert check_answer(page, right_answers[0].program)[0] == "passed"
-    assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
+    assert page.locator("#lesson option:checked").inner_text().endswith(" ★ 1/1 ✓ done")
+    assert check_answer(page, "SI|F(1, 80)")[0] == "failed"
+    assert "it stays solved" in page.inner_text("#lesson_said")
     counts = (0, 2, len(FOLDERS))
     for count in sample_of(
         pytestconfig, "lessons done", counts
     ):  # continues with the first unfinished one
         names = json.dumps([folder.name for folder in FOLDERS[:count]])
         page.evaluate("names => localStorage.setItem('tiniscript.lessons', names)", names)
+        page.click("#side_virtual")
+        page.evaluate("sessionStorage.removeItem('tiniscript.lesson_place')")  # as in another tab
         page.reload()
         wait_until_checked(page)
         page.click("#side_lessons")
         number = count % len(FOLDERS) + 1
         page.locator(f"#lesson_page[data-lesson='{number}']").wait_for()
         assert locator.count() == count
+
+
+def test_arrow_keys_go_where_they_point_among_the_pictures_of_lessons(page: Page) -> None:
+    page.select_option("#lesson", "5")
+    page.locator("#lesson_page[data-lesson='5']").wait_for()
+    page.locator("#lesson").focus()
+    page.keyboard.press("Enter")
+    focused = page.locator("#lesson option:focus")
+    for key, number in (("Down", 8), ("Right", 9), ("Up", 6), ("Up", 3), ("Up", 3), ("Left", 2)):
+        focused.wait_for()
+        page.keyboard.press(f"Arrow{key}")
+        assert focused.get_attribute("value") == str(number), key
+    page.keyboard.press("Enter")
+    page.locator("#lesson_page[data-lesson='2']").wait_for()
 
 
 def test_the_keyboard_alone_leads_from_the_start_to_a_checked_lesson(pages: Pages) -> None:
@@ -447,6 +466,9 @@ def test_switching_lessons_reports_where_the_previous_program_is(page: Page) -> 
     page.locator("#lesson_steps button").first.click()
     page.locator("#lesson_page .program button").first.click()
     wait_for_note(page, "It is in the program now. Your own program is in My programs")
+    write(page, "SI|F(3, 70)")
+    page.locator("#lesson_page .program button").first.click()
+    wait_for_note(page, "It is in the program now. The one before is in My programs.")
     page.locator("#lesson_steps button").last.click()
     assert not page.locator("#note").is_visible()  # the previous step announced it
     page.click("#side_virtual")
@@ -490,9 +512,17 @@ def test_returning_to_a_lesson_restores_its_program(page: Page) -> None:
     editor.filter(has_text=first_text).wait_for()
     choose_lesson(page, 2)
     editor.filter(has_text=second_text).wait_for()
+    for step in (2, 0):
+        page.locator("#lesson_steps button").nth(step).click()
+        page.reload()
+        wait_until_checked(page)
+        assert editor.inner_text() == second_text
+        page.locator("#lesson_page[data-lesson='2']").wait_for()
+        page.locator(f"#lesson_steps li:nth-child({step + 1}) [aria-current]").wait_for()
+    page.click("#side_virtual")
     page.reload()
     wait_until_checked(page)
-    assert editor.inner_text() == second_text
+    assert not page.locator("#lesson_page").is_visible()
     page.click("#side_lessons")
     page.locator("#lesson_page[data-lesson='2']").wait_for()
     choose_lesson(page, 1)

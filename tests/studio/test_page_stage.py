@@ -119,24 +119,44 @@ def see_last_step(page: Page, size: tuple[int, int]) -> float:
     return size[0] * size[1] * (1 / 3 if size[0] == 1366 else 0.2)
 
 
+# The boxes of the choice of a lesson and of the visible tabs.
+CHOICE_AND_TABS_SCRIPT = """() => {
+  const all = [...document.querySelectorAll('#lesson, #sides button:not([hidden])')];
+  const sorted = all.sort((a, b) => Number(b.id === 'lesson') - Number(a.id === 'lesson'));
+  return sorted.map((each) => each.getBoundingClientRect().toJSON());
+}"""
+
+
+def do_overlap(a: dict[str, float], b: dict[str, float]) -> bool:
+    return (
+        a["left"] < b["right"] and b["left"] < a["right"]
+        and a["top"] < b["bottom"] and b["top"] < a["bottom"]
+    )  # fmt: skip
+
+
 @pytest.mark.sampled("size")
 @pytest.mark.parametrize("size", [(1366, 768), (1024, 600), (390, 844)], ids=str)
 def test_in_a_lesson_the_robot_view_is_large_until_the_next_step(
     page: Page, size: tuple[int, int]
 ) -> None:
-    """The step comes back by the lesson's own buttons, the check is in reach all the time."""
+    """The step comes back by the lesson's own buttons, and once the run is over; the check is in
+    reach all the time. No tab comes to where lessons are chosen, or goes from there."""
     large_area = see_last_step(page, size)
     small_area = page.evaluate(AREA_SCRIPT)
+    choice, *tabs = page.evaluate(CHOICE_AND_TABS_SCRIPT)
     for is_ended in (False, True):
         page.click("#run")
         wait_for_large_run(page, large_area)
         assert not page.locator("#lesson_page").is_visible()
+        large_choice, *large_tabs = page.evaluate(CHOICE_AND_TABS_SCRIPT)
+        assert not any(do_overlap(choice, tab) for tab in large_tabs)
+        assert not any(do_overlap(large_choice, tab) for tab in tabs)
         assert page.locator("#lesson_check").is_visible() and page.locator("#stop").is_visible()
         if is_ended:
             page.keyboard.press("Escape")
             wait_for_phase(page, "ended")
-            assert page.evaluate(AREA_SCRIPT) > small_area
-        page.locator("#lesson_steps button").last.click()
+        else:
+            page.locator("#lesson_steps button").last.click()
         assert (
             page.locator("#lesson_page").is_visible() and page.evaluate(AREA_SCRIPT) == small_area
         )

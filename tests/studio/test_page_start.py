@@ -78,7 +78,7 @@ def test_one_click_moves_the_robot(start: Page) -> None:
             start.keyboard.down("ArrowUp")
         wait_for(start, lambda: has_moved(start), "it moves")
         start.keyboard.up("ArrowUp")
-        assert start.inner_text("#status").startswith("The program is correct"), name
+        assert start.inner_text("#status").startswith("Ready to run"), name
         assert start.locator("#arena").is_visible()
         start.click("#home")
         wait_for_phase(start, "ended")

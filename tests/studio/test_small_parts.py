@@ -27,7 +27,8 @@ NEEDED_ACTS = {
     "runs": {"opens", "sees", "saves", "chooses", "drops"},
     "keys": {"opens", "puts"},
     "tabs": {"opens", "copies", "reloads", "works", "draws", "damages"},
-    "fields": {"types", "takesBack", "opens", "playsKey", "steps", "names"},
+    "fields": {"types", "typesWords", "takesBack", "opens", "playsKey", "steps", "names"},
+    "camera": {"looks", "wanders"},
     "words": {"shows", "speaks"},
     "world": {"chooses", "brings", "puts", "keeps", "reloads"},
 }

@@ -179,9 +179,12 @@ def _judge_distance(criterion: Criterion, task: Task) -> Finding | None:
     if low_cm <= driven_cm <= high_cm:
         return None
     key, limit_cm = ("short", low_cm) if driven_cm < low_cm else ("long", high_cm)
-    return Finding(
-        "drives", f"drives/{key}", {"cm": in_cm(driven_cm, limit_cm), "limit": f"{limit_cm:g}"}
-    )
+    stopped_ms = task.run.track[-1].ms
+    if key == "short" and task.run.ending == LIMIT and task.run.end_ms - stopped_ms >= REST_MS:
+        key = "stood"
+    values = {"cm": in_cm(driven_cm, limit_cm), "limit": f"{limit_cm:g}"}
+    values["seconds"] = in_seconds(stopped_ms)
+    return Finding("drives", f"drives/{key}", values)
 
 
 # -- times ----------------------------------------------------------------------------------------

@@ -119,6 +119,18 @@ def count_unasked(tokens: Sequence[Token]) -> int:
     )
 
 
+def times_before_until(tokens: Sequence[Token]) -> list[tuple[int, int]]:
+    """Return where the times or the ways of moves and waits with an UNTIL begin and end."""
+    spans = []
+    for k, token in enumerate(tokens):
+        closing_end = end_of_values(tokens, k)
+        next_token = next((each for each in tokens[k:] if each.start >= closing_end), None)
+        time = _values(tokens, k)[0]
+        if token.text in "FBLRW" and next_token and next_token.text == "UNTIL" and time:
+            spans.append((time[0].start, time[-1].end))
+    return spans
+
+
 def question(tokens: Sequence[Token], is_turned: bool, ending: str) -> Question | None:
     """Return what prevented each move of a robot, or all moves except turns; None if there is no
     question.

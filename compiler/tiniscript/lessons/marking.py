@@ -9,11 +9,17 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image
-from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.findings import STILL_CM, Finding
 from tiniscript.lessons.judging import judge_run
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.running import Run, Trial
-from tiniscript.lessons.text_judging import explain, idle_finding, judge_text, replace_word
+from tiniscript.lessons.text_judging import (
+    explain,
+    idle_finding,
+    judge_text,
+    replace_word,
+    without_times,
+)
 from tiniscript.robots.profile import Robot
 
 PASSED, FAILED = "passed", "failed"
@@ -35,7 +41,8 @@ class Marking:
     """A program on its way through the worlds of `seeds`, at least one.
 
     If a lesson requires a LOOP, a DEF, a WHEN or a TASK, a program that has passed runs the worlds
-    again without it, until it fails.
+    again without it, until it fails. A program that has failed runs its world again without the
+    times of its UNTILs, to find out whether they have ended a move too early.
     """
 
     def __init__(
@@ -66,6 +73,7 @@ class Marking:
         ]
         self._passed_run: Run | None = None  # the last run of the task, once it is done
         self._word_left_out = ""  # the word that the program is tried without now
+        self._failed_run: Run | None = None  # the run that is compared with one without times
 
     @property
     def seed(self) -> int:
@@ -92,6 +100,17 @@ class Marking:
         run_findings = judge_run(run, self._lesson)
         if run_findings and self._word_left_out:
             return self._try_next_word(run)
+        if self._failed_run is not None:
+            run, timeless_run, timeless_findings = self._failed_run, run, run_findings
+            run_findings = judge_run(run, self._lesson)
+            is_better = {finding.key for finding in timeless_findings} <= {
+                finding.key for finding in run_findings
+            }
+            if is_better and timeless_run.driven_cm > run.driven_cm + STILL_CM:
+                run_findings = [Finding("", "timed")]
+        elif run_findings and self._try_without_times():
+            self._failed_run = run
+            return None
         findings = explain(run_findings, self._text, self._lesson, run.ending)
         if findings:
             keys = {finding.key for finding in findings}
@@ -110,6 +129,14 @@ class Marking:
         if self._text_findings:
             return Outcome(FAILED, 0, tuple(self._text_findings), run)
         return self._try_next_word(run)
+
+    def _try_without_times(self) -> bool:
+        """Begin the world again without the times of UNTILs; return whether there are some."""
+        text = without_times(self._text)
+        image = self._compile_image(text) if text != self._text else None
+        if image is not None:
+            self._trial = Trial(image, self._robot, self._lesson, self.seed)
+        return image is not None
 
     def _try_next_word(self, run: Run) -> Outcome | None:
         """Try the program without the next word that the lesson needs; it passes without more."""

@@ -237,6 +237,15 @@ def replace_word(word: str, text: str) -> str:
     return "".join([*parts, text[end:]])
 
 
+def without_times(text: str) -> str:
+    """Return a program in which only its question ends each move or wait with UNTIL."""
+    tokens = scan(text).tokens
+    spans = kept.times_before_until(tokens)
+    for start, end in reversed(spans):
+        text = f"{text[:start]}FOREVER{text[end:]}"
+    return text
+
+
 def _end_of_block(tokens: Sequence[Token], index: int) -> int:
     ends = (token.end for token in tokens[index:]
             if ALIASES.get(token.text, token.text) == BLOCK_ENDS[tokens[index].text])  # fmt: skip

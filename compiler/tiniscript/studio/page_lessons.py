@@ -183,11 +183,15 @@ def world_form(number: int, seed: int) -> Form:
 
 
 def goal_shapes(number: int, seed: int) -> list[dict[str, Any]]:
-    """Return the goal of the task: a circle with a flag, or the area around a place."""
+    """Return the goal of the task: a circle with a flag, the area around a place, or the part of
+    the world before which the robot has to stand.
+    """
     lesson, drawn_world = _lesson(number), varied_world(number, seed)
     shapes = []
     for criterion in lesson.criteria:
-        if (criterion.kind not in GOALS and not criterion.area) or criterion.words:
+        is_before = criterion.kind == "stands_before"
+        is_goal = criterion.kind in GOALS or criterion.area or is_before
+        if not is_goal or criterion.words:
             continue
         for place in criterion.places:
             x_cm, y_cm = point_of(place, drawn_world, is_mirrored(lesson, seed))
@@ -197,7 +201,7 @@ def goal_shapes(number: int, seed: int) -> list[dict[str, Any]]:
                 (left, right), (low, high) = criterion.area
                 corners = ((left, low), (right, low), (right, high), (left, high))
                 goal["around"] = [[x_cm + x, y_cm + y] for x, y in corners]
-            else:
+            elif not is_before:
                 goal["radius_cm"] = criterion.number_by_key["within_cm"]
             shapes.append(goal)
     return shapes

@@ -11,7 +11,7 @@ import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { makePictureOption, makeRobotPicture } from './page/pictures.js';
+import { goAmongPictures, makePictureOption, makeRobotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
 import { holdsProgram } from './programs/links.js';
@@ -51,6 +51,7 @@ const messageList = element('messages', HTMLElement);
 startTheme();
 showOwnRobot();
 ignoreSecondPresses();
+goAmongPictures();
 const storedWork = loadWork();
 const work = storedWork ?? {
   text: FIRST_PROGRAM,
@@ -168,6 +169,7 @@ new Start({
     lessons.leave();
   },
 });
+if (!isStart()) lessons.comeBack();
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
     panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
@@ -187,7 +189,7 @@ pageState.checkResult.subscribe((answer) => {
   }
   editor.showFindings(answer.findings, repair);
   showFindings(answer.findings);
-  showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
+  showSummary(answer);
 });
 pageState.offeredFindingIndex.subscribe((findingIndex) => {
   const finding = pageState.checkResult.value?.findings[findingIndex];
@@ -196,6 +198,7 @@ pageState.offeredFindingIndex.subscribe((findingIndex) => {
 for (const observable of [pageState.view, pageState.areWordsShown]) observable.subscribe(() => { // which say another word for the same code
   const { findings = [] } = pageState.checkResult.value ?? {};
   showFindings(findings);
+  if (pageState.checkResult.value) showSummary(pageState.checkResult.value);
   findings.forEach((finding, findingIndex) => {
     if (finding.repair?.length) showRepair(messageList, findingIndex, finding, repair);
   });
@@ -231,6 +234,11 @@ function showStatus(sentence, className) {
   staleTimer = 0;
   statusElement.textContent = sentence;
   statusElement.className = className;
+}
+
+/** @param {import('./python.js').CheckResult} answer */
+function showSummary(answer) {
+  showStatus(summaryOf(answer), answer.image ? (answer.loose ? 'loose' : 'right') : 'wrong');
 }
 
 /** @param {Finding[]} findings */

@@ -45,6 +45,7 @@ export class NumberField extends Blockly.FieldNumber {
   doClassValidation_(value) {
     const typed = String(value ?? '');
     const validNumber = super.doClassValidation_(THOUSANDS.test(typed) ? typed : typed.replaceAll(',', '.'));
+    if (validNumber === null && this.isBeingEdited_) this.changeNotice = text('no_number', { typed: typed.trim() });
     if (validNumber === null || !this.isBeingEdited_) return validNumber;
     const { low, high } = rangeAt(this.getSourceBlock());
     const fittingNumber = Math.min(high, Math.max(low, validNumber));
@@ -52,7 +53,7 @@ export class NumberField extends Blockly.FieldNumber {
     return fittingNumber;
   }
 
-  /** Tells whoever has typed a number that does not fit which one took its place. @param {any} value */
+  /** Tells whoever has typed what does not fit which number took its place, or stayed. @param {any} value */
   onFinishEditing_(value) {
     super.onFinishEditing_(value);
     if (this.changeNotice) pageState.note.set(this.changeNotice);
@@ -83,7 +84,10 @@ export class NumberField extends Blockly.FieldNumber {
       return;
     }
     super.showEditor_(event, isQuiet || matchMedia('(pointer: coarse)').matches);
-    const piano = new Piano((hertz) => this.choosePitch(hertz));
+    const piano = new Piano((hertz) => {
+      this.choosePitch(hertz);
+      /** @type {any} */ (this).htmlInput_?.setAttribute('data-untyped-default-value', String(hertz)); // Escape takes back what was typed, and no key that was pressed
+    });
     piano.show(Number(this.getValue()));
     const { DropDownDiv } = Blockly;
     DropDownDiv.clearContent();

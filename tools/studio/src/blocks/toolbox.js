@@ -43,6 +43,13 @@ function makeCallItem(name, count) {
   return { ...makeItem('call', Array(count).fill(1), name), ...(count ? { extraState: { count } } : {}) };
 }
 
+/** @param {UsedNames} usedNames @returns {string} a name for a new word, which the program does not have yet */
+function freeWord({ names, words }) {
+  const takenNames = new Set([...names, ...words.map(([name]) => name)]);
+  const name = text('new_word');
+  for (let number = 2, freeName = name; ; freeName = `${name}_${number}`, number += 1) if (!takenNames.has(freeName)) return freeName;
+}
+
 /** What a question asks: what is ahead of the robot, where it can tell. */
 function sensorToAsk() {
   const sensors = devicesOfRole('sensor');
@@ -121,7 +128,7 @@ function makeGroups(usedNames) {
       ...(usedNames.names.length ? usedNames.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, ToolboxItem]} */ (['usual', makeItem('name', [], name)])),
     ]],
     ['words', [
-      ['usual', makeItem('def', [], text('new_word'))],
+      ['usual', makeItem('def', [], freeWord(usedNames))],
       ...usedNames.words.slice(0, MOST_NAMES).map(([name, count]) => /** @type {[Level, ToolboxItem]} */ (['usual', makeCallItem(name, count)])),
     ]],
     ['others', [['usual', makeItem('comment')], ['all', makeItem('start')]]],

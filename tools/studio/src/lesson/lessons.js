@@ -10,7 +10,7 @@ import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { storeDone, storeProgram, storeStars, loadDoneLessons, loadProgram, countAllStars } from './progress.js';
+import { storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadStars, loadProgram, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
@@ -64,7 +64,9 @@ export class Lessons {
   #steps = [];
   /** The same for who sees blocks. @type {Step[]} */
   #blockSteps = [];
-  #stepIndex = 0;
+  /** Where this tab was before the page was loaded. */
+  #placeBefore = loadPlace();
+  #stepIndex = this.#placeBefore.step;
   #checkCount = 0; // the newest one goes on; others have been ended
   #requestCount = 0;
   #isShown = false;
@@ -119,6 +121,7 @@ export class Lessons {
     });
     pageState.robotName.subscribe(() => this.#fillStep());
     pageState.sideId.subscribe((sideId) => {
+      this.#keepPlace();
       if (sideId === 'side_lessons') return;
       const { text: programText, lesson: lessonName, own: ownProgram } = this.#page.work;
       if (!programText.trim()) this.leave();
@@ -136,6 +139,17 @@ export class Lessons {
     const resizeObserver = new ResizeObserver(markMore);
     for (const observedElement of [lessonPage, element('lesson_step', HTMLElement)]) resizeObserver.observe(observedElement);
     this.#setReady(false);
+  }
+
+  /** A page that is loaded again comes back to the lesson that was seen. */
+  comeBack() {
+    if (this.#placeBefore.isOpen) element('side_lessons', HTMLButtonElement).click();
+  }
+
+  #keepPlace() {
+    const openLesson = this.#steps.length ? this.#lessons[this.#lessonNumber - 1] : null;
+    const place = openLesson ? { lesson: openLesson.name, step: this.#stepIndex } : this.#placeBefore;
+    storePlace({ ...place, isOpen: pageState.sideId.value === 'side_lessons' });
   }
 
   #showLessons() {
@@ -174,7 +188,7 @@ export class Lessons {
       if (requestNumber !== this.#requestCount) return;
       this.#lessons = lessons;
       if (!this.#steps.length) {
-        const doneLessons = loadDoneLessons(), { lesson } = this.#page.work;
+        const doneLessons = loadDoneLessons(), lesson = this.#placeBefore.lesson || this.#page.work.lesson;
         this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
       }
       this.#listLessons();
@@ -190,10 +204,11 @@ export class Lessons {
   }
 
   #listLessons() {
-    const doneLessons = loadDoneLessons();
+    const doneLessons = loadDoneLessons(), stars = loadStars();
     replaceOptions(this.#lessonSelect, this.#lessons.map((lesson, index) => {
+      const starMark = stars.has(lesson.name) ? ` ★ ${stars.get(lesson.name)}/${lesson.worlds}` : '';
       const doneMark = doneLessons.has(lesson.name) ? ` ✓ ${text('lesson_is_done')}` : '';
-      return makePictureOption(`${index + 1}. ${this.#titleOf(lesson)}${doneMark}`, String(index + 1), makeWorldPicture(lesson.world));
+      return makePictureOption(`${index + 1}. ${this.#titleOf(lesson)}${starMark}${doneMark}`, String(index + 1), makeWorldPicture(lesson.world));
     }));
     this.#lessonSelect.value = String(this.#lessonNumber);
   }
@@ -214,14 +229,14 @@ export class Lessons {
     this.#forgetCheck();
     const { steps, block_steps, offered: offeredKinds, needed: neededKinds, new: newPieces, spoken } = await this.#page.python.ask({ do: 'lesson_steps', number: lessonNumber, language });
     if (requestNumber !== this.#requestCount) return;
-    const isOther = lessonNumber !== this.#lessonNumber || !this.#steps.length;
+    const isFirst = !this.#steps.length, isOther = lessonNumber !== this.#lessonNumber || isFirst;
     this.#lessonNumber = lessonNumber; // from now on: until then the one before is seen and checked
     this.#lessonSelect.value = String(lessonNumber);
     this.#steps = steps;
     this.#blockSteps = block_steps;
     this.#spokenBlocks = spoken;
     pageState.taughtBlocks.set({ offered: offeredKinds, needed: neededKinds, fresh: newPieces });
-    this.#goToStep(isOther ? 0 : this.#stepIndex);
+    this.#goToStep(isOther && !isFirst ? 0 : Math.min(this.#stepIndex, steps.length - 1));
     if (isOther && !element('lessons', HTMLElement).hidden) await this.#enterLesson();
     this.#setReady(true);
   }
@@ -229,7 +244,8 @@ export class Lessons {
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
-    if ([text('lesson_used'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
+    this.#keepPlace();
+    if ([text('lesson_used'), text('lesson_used_again'), text('lesson_again')].includes(pageState.note.value)) pageState.note.set(''); // it was said of the step before
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
@@ -290,8 +306,9 @@ export class Lessons {
   #makeReader(lesson) {
     return {
       useProgram: (programText) => {
+        const isOwnReplaced = !this.#page.work.lesson;
         this.#page.put(this.#lendProgram(lesson, programText));
-        pageState.note.set(text('lesson_used'));
+        pageState.note.set(text(isOwnReplaced ? 'lesson_used' : 'lesson_used_again'));
       },
       labelOfCode: (code) => (this.#areBlocks ? labelOfCode(code, this.#spokenBlocks) : null),
       drawProgram: this.#areBlocks ? (programText, onDone) => {
@@ -440,8 +457,8 @@ export class Lessons {
     const areStarsStored = storeStars(lesson.name, stars); // first: one that is done has a star
     const isStored = (verdict !== 'passed' || storeDone(lesson.name)) && areStarsStored;
     this.#forgetCheck();
-    const hasPassed = verdict === 'passed';
-    if (hasPassed) this.#listLessons();
+    const hasPassed = verdict === 'passed', wasDone = !hasPassed && loadDoneLessons().has(lesson.name);
+    this.#listLessons();
     const [singleWorldKey, severalWorldsKey] = VERDICT_KEYS[verdict];
     const isInWorlds = worlds > 1 && (seed > 0 || hasPassed);
     const sentence = text(isInWorlds ? severalWorldsKey : singleWorldKey, { number: this.#lessonNumber, worlds, seed });
@@ -449,7 +466,7 @@ export class Lessons {
     this.#judgement = {
       programText: pageState.programText.value,
       verdict,
-      sentence: hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : sentence,
+      sentence: hasPassed ? `${sentence} ${text('lesson_total', { count: countAllStars() })}` : wasDone ? `${sentence} ${text('lesson_was_done')}` : sentence,
       stars: verdict === 'mistakes' ? '' : '★'.repeat(stars) + '☆'.repeat(worlds - stars), // one for each world where it did its task
       said: sentences,
       block_said,

@@ -8,6 +8,7 @@ import { storeText, loadJson } from '../page/kept.js';
 const STORAGE_KEY = 'tiniscript.lessons';
 const STARS_KEY = 'tiniscript.stars';
 const PROGRAMS_KEY = 'tiniscript.lesson_programs';
+const PLACE_KEY = 'tiniscript.lesson_place';
 const MOST_LESSONS = 100;
 const MOST_STARS = 100; // of a lesson
 const MOST_CHARACTERS = 20_000; // of a lesson's program
@@ -47,6 +48,17 @@ export function starsKeyOfWorld(name) {
 /** All stars of all lessons and worlds. */
 export function countAllStars() {
   return [...loadStars().values()].reduce((sum, count) => sum + count, 0);
+}
+
+/** @returns {{lesson: string, step: number, isOpen: boolean}} where this tab was in which lesson, and whether that was seen; an empty name for nowhere */
+export function loadPlace() {
+  const { lesson, step, isOpen } = loadJson(PLACE_KEY, 'sessionStorage') ?? {};
+  return { lesson: typeof lesson === 'string' && /^\w{1,60}$/.test(lesson) ? lesson : '', step: Number.isInteger(step) && step > 0 ? step : 0, isOpen: isOpen === true };
+}
+
+/** @param {{lesson: string, step: number, isOpen: boolean}} place */
+export function storePlace(place) {
+  storeText(PLACE_KEY, JSON.stringify(place), 'sessionStorage');
 }
 
 /** @returns {Map<string, string>} the newest program of each lesson for which there was one */

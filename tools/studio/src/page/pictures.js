@@ -72,6 +72,28 @@ export function replaceOptions(select, options) {
   select.replaceChildren(...select.querySelectorAll('button'), ...options);
 }
 
+/** In a list of pictures an arrow key goes to the picture that is there, and not to the next one. */
+export function goAmongPictures() {
+  document.addEventListener('keydown', (event) => {
+    const { target, key } = event, direction = { ArrowUp: [0, -1], ArrowDown: [0, 1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] }[key];
+    if (!(target instanceof HTMLOptionElement) || !direction) return;
+    const place = middleOf(target), [x = 0, y = 0] = direction;
+    const distances = [...target.parentElement?.querySelectorAll('option') ?? []].map((option) => {
+      const other = middleOf(option), along = (other.x - place.x) * x + (other.y - place.y) * y, beside = Math.abs((other.x - place.x) * y) + Math.abs((other.y - place.y) * x);
+      return /** @type {const} */ ([option, along > 1 && beside < target.offsetWidth / 2 ? along : Infinity]);
+    });
+    const [nearest, distance] = distances.reduce((best, next) => (next[1] < best[1] ? next : best));
+    event.preventDefault();
+    if (distance < Infinity) nearest.focus();
+  });
+}
+
+/** @param {HTMLElement} part */
+function middleOf(part) {
+  const { x, y, width, height } = part.getBoundingClientRect();
+  return { x: x + width / 2, y: y + height / 2 };
+}
+
 /** @param {number} cx @param {number} cy @param {number} r @param {string} fill */
 function makeDisc(cx, cy, r, fill) {
   return makeSvg('circle', { cx, cy, r, fill });

@@ -212,7 +212,7 @@ export class Arena {
    * Says where on the canvas the floor is. A robot that is changed by a finger is seen with all of its floor.
    * @param {World} world @param {number} x @param {number} y @param {number} heading of the robot
    */
-  #placeCamera({ width_cm, height_cm }, x, y, heading) {
+  #placeCamera({ width_cm, height_cm, flags }, x, y, heading) {
     const { width, height } = this.#canvas;
     const wholeSize = [width_cm + 2 * MARGIN_CM, height_cm + 2 * MARGIN_CM];
     const wholeScale = Math.min(width / (wholeSize[0] ?? 1), height / (wholeSize[1] ?? 1));
@@ -230,8 +230,10 @@ export class Arena {
       return;
     }
     const margin = MARGIN_CM * scale, floorHeight = height_cm * scale + margin;
-    const left = edgeOf(width / 2 - x * scale, width, width_cm * scale, margin);
-    const bottom = height - edgeOf(height / 2 - y * scale, height, height_cm * scale, margin);
+    const places = [...this.#goals, ...flags].map((place) => /** @type {Point} */ ([place.x_cm, place.y_cm]));
+    const seenX = middleOf(x, places.map(([placeX]) => placeX), width / scale, robotLength), seenY = middleOf(y, places.map(([, placeY]) => placeY), height / scale, robotLength);
+    const left = edgeOf(width / 2 - seenX * scale, width, width_cm * scale, margin);
+    const bottom = height - edgeOf(height / 2 - seenY * scale, height, height_cm * scale, margin);
     // Whole pixels of the floor are on whole ones of the picture: else it would be blurred.
     this.#floorToCanvas = new DOMMatrix([scale, 0, 0, -scale, Math.round(left - margin) + margin, Math.round(bottom - floorHeight) + floorHeight]);
   }
@@ -357,6 +359,16 @@ export class Arena {
       drawDot(pen, x, y, radius * 0.75, floorMark.pointIndex < 0 || index === floorMark.pointIndex ? '#b0186b' : '#7c8894');
     });
   }
+}
+
+/**
+ * What is in the middle of a picture: halfway to where a task leads, as long as the robot is seen whole.
+ * @param {number} robotPlace along one side @param {number[]} places where the task leads @param {number} size of the picture @param {number} robotLength
+ */
+export function middleOf(robotPlace, places, size, robotLength) {
+  if (!places.length) return robotPlace;
+  const mostOffset = Math.max(0, size / 2 - robotLength), offset = (places.reduce((sum, place) => sum + place, 0) / places.length - robotPlace) / 2;
+  return robotPlace + Math.max(-mostOffset, Math.min(mostOffset, offset));
 }
 
 /**

@@ -28,6 +28,12 @@ export class Simulator {
   heldControls = null;
   #leastSpeed = 0;
   failure = ''; // a mistake of ours
+
+  /** Times as quick as the robot, as what runs is shown. */
+  get shownSpeed() {
+    return Math.max(this.#leastSpeed, this.speed);
+  }
+
   #isAsking = false;
   isStopping = false; // it has not confirmed it yet
   #unasked_ms = 0; // of a millisecond that is not asked for yet
@@ -142,7 +148,7 @@ export class Simulator {
   async #onFrame(now_ms) {
     if (this.phase !== 'running') return;
     if (!this.#isAsking) {
-      this.#unasked_ms += Math.min(MOST_FRAME_MS, now_ms - this.#lastFrame_ms) * Math.max(this.#leastSpeed, this.speed);
+      this.#unasked_ms += Math.min(MOST_FRAME_MS, now_ms - this.#lastFrame_ms) * this.shownSpeed;
       this.#lastFrame_ms = now_ms;
       const duration_ms = Math.min(MOST_REQUEST_MS, Math.floor(this.#unasked_ms));
       if (duration_ms > 0) {

@@ -588,7 +588,7 @@ export class SimulatorPanel {
     const { phase } = this.#simulator;
     this.#arena.draw(this.#shownState); // first: writing on a canvas has the browser compute the style that changes made stale
     this.#showReadings();
-    const { dataset } = document.documentElement, isOver = dataset['phase'] === 'running' && phase === 'ended';
+    const { dataset } = document.documentElement, isOver = ['running', 'paused'].includes(dataset['phase'] ?? '') && phase === 'ended';
     dataset['phase'] = phase;
     needStop('run', this.#isDriving);
     if (isOver) this.#stage.runEnded();
@@ -715,6 +715,8 @@ export class SimulatorPanel {
     if (phase === 'paused') return text('robot_paused');
     const { origin, program } = this.#timeLine.run;
     if (phase === 'ended') return text(program.places.length || origin.text !== pageState.programText.value ? 'robot_ended' : 'program_empty');
+    const { speed, shownSpeed } = this.#simulator;
+    if (shownSpeed > speed) return text('robot_running_fast', { times: shownSpeed.toFixed(1) }); // and not what somebody has chosen
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
   }
 

@@ -124,9 +124,10 @@ export class Stage {
     this.#show();
   }
 
-  /** A run is over: whoever has the mouse over the program goes on with it. */
+  /** A run is over: whoever is at a lesson reads on, and whoever has the mouse over the program goes on with it. */
   runEnded() {
-    this.#awaitRest();
+    if (pageState.sideId.value === 'side_lessons') this.shrink();
+    else this.#awaitRest();
   }
 
   /** A mouse on its way to a block finds it where it was, and so does one that is over it. */

@@ -23,7 +23,7 @@ const THEMES = { dance: 'tiles', obstacles: 'kitchen', delivery: 'city', ring: '
 /**
  * @param {Pen} pen
  * @param {World} world
- * @param {Goal[]} goals where a task leads
+ * @param {Goal[]} goals where a task leads; one without a radius is part of the world
  * @param {number} takenFlags flags
  * @param {boolean} isEdited now, by a finger
  */
@@ -160,10 +160,11 @@ function drawRing(pen, { x_cm: x, y_cm: y, radius_cm, edge_cm }) {
 
 /** @param {Pen} pen @param {Goal} goal */
 function drawGoal(pen, { x_cm: x, y_cm: y, is_flag, radius_cm, around }) {
+  if (!around && !radius_cm) return; // a wall is seen as it is
   pen.setLineDash([4, 2.5]);
   if (around) drawPath(pen, around, '#0d6040', 0.8, 'transparent');
   else {
-    drawDot(pen, x, y, radius_cm ?? 0, '#2a9d6f22');
+    drawDot(pen, x, y, Number(radius_cm), '#2a9d6f22');
     pen.strokeStyle = '#0d6040';
     pen.lineWidth = 0.8;
     pen.stroke();

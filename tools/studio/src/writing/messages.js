@@ -73,7 +73,7 @@ export function summaryOf({ findings, bytes, places, loose: looseCount }) {
   const warnings = findings.length - mistakes;
   const parts = [];
   if (mistakes) parts.push(text('mistakes', { count: mistakes }));
-  else if (!looseCount) parts.push(places.length ? text('right', { bytes }) : text('program_empty'));
+  else if (!looseCount) parts.push(!places.length ? text('program_empty') : areBlocksNamed() ? text('right_blocks') : text('right', { bytes }));
   if (looseCount) parts.push(text('loose', { count: looseCount }));
   if (warnings) parts.push(text('warnings', { count: warnings }));
   return parts.join(mistakes || looseCount ? ', ' : ' ');
