@@ -59,6 +59,8 @@ from tools.builds.page_texts import page_texts
 from tools.builds.studio import BLOCKLY, unusable_reason
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from playwright.sync_api import Page
 
 sampled = pytest.mark.sampled(of="details of blocks", keep=4)
@@ -397,13 +399,14 @@ def test_a_message_names_what_its_reader_works_with(page: Page) -> None:
         page.click("#view_text")
         page.click("#view_blocks")
 
-    for step, is_typed in (
+    steps: tuple[tuple[Callable[[], object], bool], ...] = (
         (lambda: editor.press("Control+End"), False),
         (lambda: editor.press_sequentially("S;"), True),
         (lambda: page.click("#undo"), True),
         (choose_view_again, False),
         (lambda: editor.press("Backspace"), True),
-    ):
+    )
+    for step, is_typed in steps:
         step()
         wait_until_checked(page)
         rows.filter(has_text=message.fix if is_typed else "turn left 2 s at 80 %").wait_for()

@@ -74,8 +74,8 @@ VERIFY_AND_RUN = """{ uint16_t devices;
         sink = (uint8_t)machine.tick(sink, sink); }"""
 STORE = """{ static Store store; const Area area = (Area)sink;
         store.boot(); store.tick(sink); sink = (uint8_t)store.state(); sink = store.is_busy();
-        sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
-        sink = store.used(area); store.refuse();
+        sink = store.begin_save(bytes); sink = store.begin_save_record(area, bytes);
+        sink = store.current_slot(area); store.refuse();
         sink = store.fetch(area, sink, bytes); }"""
 PORT = """
 #include "link/link.h"
@@ -109,7 +109,7 @@ const uint8_t* port_run_image() { return bytes; }
 Answer port_image_byte(uint16_t offset, uint8_t* byte) { *byte = offset; return (Answer)sink; }
 uint8_t* port_text_memory(uint16_t*, bool* has_room) { *has_room = sink; return bytes; }
 uint8_t* port_text_room(uint16_t* room) { *room = sink; return (uint8_t*)0x300; }
-bool port_text_is_beside(bool) { return false; }
+bool port_text_is_separate(bool) { return false; }
 bool port_may_prepare_upload(bool) { return sink; }
 void port_take_text(uint8_t* image, bool) { sink = *image; }
 void port_end() { sink = 0; }
