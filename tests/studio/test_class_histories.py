@@ -1,9 +1,10 @@
 """A class obeys its laws after any history.
 
 Pupils come, report their work, want robots, fall silent, come back and are removed; robots are
-given and taken, are unreachable, or disconnect; the teacher gives work and begins anew. After each
-step: all reported work is there, a crash loses none of the saved state, and the turn belongs to the
-next in the queue. A class that was begun anew is as one that was just made.
+given and taken, are unreachable, or disconnect; the teacher gives work, hands programs out to all,
+and begins anew. After each step: all reported work is there, a crash loses none of the saved state,
+the turn belongs to the next in the queue, and the newest handout is offered to exactly those pages
+that have not said that they opened it. A class that was begun anew is as one that was just made.
 """
 
 from __future__ import annotations
@@ -37,6 +38,8 @@ class Page:
         self.lessons: list[str] = []
         self.robot: FakeRobot | None = None
         self.heard_s = 0.0
+        self.opened: list[str] = []  # keys of handouts
+        self.confirmed_handout = ""  # text of the last one that the class knows to be open
 
 
 class History:
@@ -51,6 +54,7 @@ class History:
         self.brought_texts: set[str] = set()
         self.texts = 0
         self.failed_s: dict[str, float] = {}  # time of each robot's last failed search, by port
+        self.handout = ""  # text of the newest one
         self.order: list[str] = []  # last seen order of waiting pupils
 
     def state(self) -> Json:
@@ -76,7 +80,8 @@ class History:
     def act(self) -> None:
         ways = (self.comes, self.tells, self.tells, self.tells, self.wants, self.wants,
                 self.connects, self.connects, self.ends, self.passes, self.passes, self.removes,
-                self.gives, self.takes_robot, self.next_one, self.brings)  # fmt: skip
+                self.gives, self.takes_robot, self.next_one, self.brings,
+                self.hands_out)  # fmt: skip
         self.rng.choice(ways)()
 
     def comes(self) -> None:
@@ -109,6 +114,7 @@ class History:
             return
         page.text = fields.get("text", page.text)
         page.lessons = fields.get("lessons", page.lessons)
+        self.opens(page, answer)
         given_work = answer.get("given")
         if given_work and self.rng.random() < 0.7:
             receipt = {"key": given_work["key"], "text": given_work["text"]}
@@ -126,6 +132,29 @@ class History:
                     if page_gone.text == page.text
                 ]:
                     del self.gone_pages[name]
+
+    def opens(self, page: Page, answer: Json) -> None:
+        """Open a handout, once; what the page says of it may be lost."""
+        handout = answer.get("handout")
+        assert (handout["text"] if handout else "") == self.offered(page)
+        if handout is None or self.rng.random() < 0.3:
+            return
+        if handout["key"] not in page.opened:
+            page.opened.append(handout["key"])
+        confirmed_key = self.rng.choice(page.opened[-2:])  # that of an earlier one may arrive late
+        is_heard = self.rng.random() < 0.7 and self.answer(page, "here", opened=confirmed_key)
+        if is_heard and confirmed_key == handout["key"]:
+            page.confirmed_handout = handout["text"]
+
+    def offered(self, page: Page) -> str:
+        """Return the text of the handout that a page has to be offered."""
+        return "" if page.confirmed_handout == self.handout else self.handout
+
+    def hands_out(self) -> None:
+        self.texts += 1
+        self.handout = f"H({self.texts})"
+        state = self.room.teaches("class_hand_out", text=self.handout, robot="tinibot")
+        assert state["handout"] == {"lesson": 0, "opened": 0}
 
     def version(self, page: Page) -> int:
         rows = self.state()["pupils"]
@@ -285,6 +314,13 @@ class History:
         whom = [sorted((row["name"], numbers(work).get(row["given"], "")) for row in work["kept"])
                 for work in (resumed_class, state)]  # fmt: skip
         assert whom[0] == whom[1], "what was given is given to nobody"
+        assert resumed_class["handout"] == state["handout"]
+        for page in self.gone_pages.values():  # who returns gets it only if it is not open there
+            request = {"do": "join", "code": state["code"], "name": page.name, "before": page.token}
+            assert room_after.classroom.answer("", "192.0.2.9", request)["token"] == page.token
+        for page in (*self.pages.values(), *self.gone_pages.values()):
+            handout = room_after.checks_in(page.token).get("handout", {"text": ""})
+            assert handout["text"] == self.offered(page)
 
 
 def numbers(state: Json) -> dict[int, str]:

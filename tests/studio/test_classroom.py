@@ -186,7 +186,7 @@ def test_no_name_reaches_another_pupils_turn() -> None:
 @pytest.mark.parametrize(
     "action",
     ["ports", "class", "class_over", "class_text", "class_work", "class_bring", "class_give_back",
-     "class_forget", "class_anew", "class_hand", "fly", None, ["stop"]],
+     "class_forget", "class_anew", "class_hand", "class_hand_out", "fly", None, ["stop"]],
 )  # fmt: skip
 def test_some_requests_are_reserved_for_the_teacher(action: object) -> None:
     room = Room()
@@ -194,6 +194,22 @@ def test_some_requests_are_reserved_for_the_teacher(action: object) -> None:
     with pytest.raises(BadRequest):
         room.classroom.answer(eve, PUPIL_ADDRESS, {"do": action, "erases": True, "pupil": 1})
     assert room.hosting.requests == [] and not room.classroom.has_ended
+
+
+@pytest.mark.parametrize(
+    "handout",
+    [{}, {"text": " ", "robot": "tinibot"}, {"text": 5, "robot": "tinibot"},
+     {"text": "F(1)", "robot": "x"}, {"lesson": -1}, {"lesson": 99}, {"lesson": "1"},
+     {"text": "F(1);" * class_keeping.TEXT_CHARACTERS, "robot": "tinibot"}],
+    ids=lambda handout: str(handout)[:40],
+)  # fmt: skip
+def test_what_is_no_handout_replaces_none(handout: Json) -> None:
+    """A program that is too long is refused: a part of it would be another program."""
+    room = Room()
+    room.teaches("class_hand_out", lesson=3)
+    with pytest.raises(BadRequest):
+        room.teaches("class_hand_out", **handout)
+    assert room.checks_in(room.joins("Ana"))["handout"]["lesson"] == 3
 
 
 @pytest.mark.parametrize(

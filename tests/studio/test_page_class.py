@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections.abc import Iterator
 from functools import partial
@@ -652,6 +653,73 @@ def test_work_is_kept_until_the_page_confirms_receipt(
     assert image(ana) == compile("F(1, 77)").image
     ana.click("#side_real")
     remove_all_but_ana(shared_class)
+
+
+@sampled
+def test_what_the_teacher_gives_to_all_is_opened_once_by_each_pupil(browser: Browser) -> None:
+    """Nothing is taken from a pupil, and who comes later gets it, too."""
+    with studio.serve_class([]) as class_:
+        pages = Pages(browser, class_.server.address)
+        hands_out(pages, class_)
+        pages.close()
+        assert not pages.errors
+
+
+def hands_out(pages: Pages, class_: Class) -> None:
+    ana = join_class(pages, class_, "Ana")
+    write(ana, "F(1, 33)")
+    teacher = open_teacher_page(pages, class_)
+    teacher.click("#class_studio")
+    write(teacher, "F(1, 77)")
+    teacher.click("#my_programs")
+    assert teacher.inner_text("#programs_stop") == teacher.inner_text("#stop") == "STOP ALL"
+    teacher.click("#programs_close")
+    teacher.click("#side_class")
+    give_to_all(teacher, "The program in your studio")
+    opened = teacher.locator("#class_said")
+    opened.filter(has_text="Your program has been opened by 0 of 1 pupils.").wait_for()
+    press = ana.locator("#class_handout button")
+    press.wait_for()
+    assert "F(1, 33)" in ana.inner_text(".cm-content")
+    ana.reload()
+    wait_until_checked(ana)
+    assert axe(ana, within="#class_handout") == []
+    ana.evaluate(LOSE_OPENED_SCRIPT)
+    press.click()
+    wait_for_note(ana, "This is your teacher’s program. Yours is in My programs.")
+    wait_until_checked(ana)
+    assert image(ana) == compile("F(1, 77)").image
+    write(ana, "F(1, 78)")
+    luz = join_class(pages, class_, "Luz")
+    luz.click("#class_handout button")
+    opened.filter(has_text="opened by 1 of 2 pupils.").wait_for()
+    ana.reload()  # her page's word was lost
+    opened.filter(has_text="opened by 2 of 2 pupils.").wait_for()
+    wait_until_checked(ana)
+    assert press.is_hidden() and image(ana) == compile("F(1, 78)").image
+    ana.click("#my_programs")
+    assert "F(1, 33)" in ana.inner_text("#versions")
+    ana.click("#programs_close")
+    give_to_all(teacher, "2[.] .")
+    for pupil in (ana, luz):
+        pupil.locator("#class_handout", has_text="Your teacher has sent you lesson 2.").wait_for()
+        pupil.click("#class_handout button")
+        pupil.locator("#lesson_page[data-lesson='2']").wait_for()
+    opened.filter(has_text="Lesson 2 has been opened by 2 of 2 pupils.").wait_for()
+
+
+# What a page says of a handout that it has opened is lost.
+LOSE_OPENED_SCRIPT = """() => { window.own = fetch; window.fetch = (where, what) =>
+  /"opened":"./.test(what?.body) ? Promise.reject(new TypeError('lost')) : own(where, what); }"""
+
+
+def give_to_all(teacher: Page, title: str) -> None:
+    teacher.click("#class_bar [data-text=class_hand_out]")
+    select = teacher.locator("#class_handout_window select")
+    option = select.locator("option").filter(has_text=re.compile(f"^{title}"))
+    option.wait_for(state="attached")
+    select.select_option(index=option.evaluate("(each) => each.index"))
+    teacher.click("#class_handout_window section button")
 
 
 def opened_row(teacher: Page, name: str) -> Locator:

@@ -71,6 +71,31 @@ class OwnRobot(NamedTuple):
 NO_OWN_ROBOT = OwnRobot()
 
 
+class Handout(NamedTuple):
+    """What the teacher gives to every pupil: a lesson, by its number, or a program."""
+
+    key: str = ""  # a new one for each handout
+    lesson: int = 0  # 0 for a program
+    text: str = ""
+    robot: str = ""
+
+    @classmethod
+    def of(cls, data: Json, key: str) -> Handout:
+        """Return the handout in data from elsewhere. Raises BadRequest. A program that is too long
+        is refused: one that is cut off is another program.
+        """
+        lesson = whole_number(data, "lesson", 0, len(catalogue.folders()), 0)
+        if lesson:
+            return cls(key, lesson)
+        text, work = data.get("text"), Work.of(data)
+        if work is None or not work.text.strip() or work.text != text:
+            raise BadRequest
+        return cls(key, 0, work.text, work.robot)
+
+
+NO_HANDOUT = Handout()
+
+
 @dataclass
 class RunRequest:
     """The newest run of a pupil's page, requested by the teacher: the received part of its file,
@@ -114,6 +139,7 @@ class Pupil:
     queue_number: int | None = None
     hand_number: int | None = None
     knows_end: bool = False
+    handout_key: str = ""  # key of the newest handout that the page has opened
     run_request: RunRequest | None = None
     # The page's name for `hosting`: no page of the teacher's has it.
     hosting_page: str = field(default_factory=lambda: f"pupil-{secrets.token_hex(16)}")
@@ -123,7 +149,8 @@ class Pupil:
 class KeptWork:
     """Work of who is not here. A pupil from a file has no token and no address.
 
-    `recipient_token` is that of the pupil whose page the teacher wants to have it.
+    `recipient_token` is that of the pupil whose page the teacher wants to have it, `handout_key`
+    that of the newest handout that the pupil's page had opened.
     """
 
     name: str
@@ -133,6 +160,7 @@ class KeptWork:
     address: str = ""
     recipient_token: str = ""
     key: str = field(default_factory=new_token)  # key that pages use for the pupil
+    handout_key: str = ""
 
 
 @dataclass(eq=False)
@@ -225,6 +253,7 @@ class Classroom:
         self._request_rate = Rate(*REQUEST_RATE)
         self._numbers = count(1)  # numbers of pupils, queue places and raised hands
         self._kept_work_by_key: dict[str, KeptWork] = {}  # keyed by the work's key
+        self._handout = NO_HANDOUT
         # Whether the class continues after a crash, without a decision by the teacher.
         self._is_continued = False
         self._ending = ""  # how the class ends, or whether works are kept
@@ -321,8 +350,9 @@ class Classroom:
         """Admit the author of this work to the class."""
         self._kept_work_by_key.pop(work.key, None)
         self._pupil_by_token[work.token] = Pupil(
-            next(self._numbers), work.token, work.name, work.typed_name, address, now_s, work.work
-        )
+            next(self._numbers), work.token, work.name, work.typed_name, address, now_s, work.work,
+            handout_key=work.handout_key,
+        )  # fmt: skip
 
     def _returning_pupil(
         self, token: object, typed_name: str, now_s: float
@@ -360,9 +390,9 @@ class Classroom:
         """A pupil is here no more; the work stays, for who comes back."""
         del self._pupil_by_token[pupil.token]
         if pupil.work.text:
-            self._keep(
-                KeptWork(pupil.name, pupil.typed_name, pupil.work, pupil.token, pupil.address)
-            )
+            work = KeptWork(pupil.name, pupil.typed_name, pupil.work, pupil.token, pupil.address)
+            work.handout_key = pupil.handout_key
+            self._keep(work)
         for work in self._kept_work_by_key.values():
             if work.recipient_token == pupil.token:
                 work.recipient_token = ""
@@ -427,6 +457,12 @@ class Classroom:
                 if given_work
                 else {}
             ),
+            # Until the page has opened it, however often it is reloaded or not heard.
+            **(
+                {"handout": self._handout._asdict()}
+                if pupil.handout_key != self._handout.key
+                else {}
+            ),
         }
 
     def _update_work(self, pupil: Pupil, request: Json) -> None:
@@ -446,6 +482,8 @@ class Classroom:
         if request.get("own_robot") is not None:
             pupil.own_robot = OwnRobot.of(request["own_robot"])
         self._confirm_receipt(pupil, request.get("took"))
+        if request.get("opened") == self._handout.key:
+            pupil.handout_key = self._handout.key
 
     def _confirm_receipt(self, pupil: Pupil, receipt: object) -> None:
         """A page says that it has what it was given: the very text proves it."""
@@ -643,6 +681,8 @@ class Classroom:
                 self._places_per_address = whole_number(request, "places", 1, MOST_PUPILS)
             elif action == "class_code":
                 self.code = _new_code()
+            elif action == "class_hand_out":
+                self._handout = Handout.of(request, new_token())
             elif action == "class_over":
                 self._end(request.get("erases") is True)
             elif action == "class_text":
@@ -751,6 +791,7 @@ class Classroom:
         self._groups.end()
         self._pupil_by_token.clear()
         self._kept_work_by_key.clear()
+        self._handout = NO_HANDOUT
         self.code = _new_code()
         self._is_continued = False
 
@@ -765,6 +806,7 @@ class Classroom:
                 "places": self._places_per_address,
                 "robots": [robot.port for robot in self._robots],
                 "groups": self._groups.state_to_keep(),
+                "handout": self._handout._asdict(),
                 "kept": [
                     {
                         "name": item.name,
@@ -773,6 +815,7 @@ class Classroom:
                         "address": item.address,
                         "given_to": item.recipient_token,
                         "key": item.key,
+                        "opened": item.handout_key,
                         **item.work._asdict(),
                     }
                     for item in self._kept_work_by_key.values()
@@ -783,6 +826,7 @@ class Classroom:
                         "name": pupil.name,
                         "written": pupil.typed_name,
                         "address": pupil.address,
+                        "opened": pupil.handout_key,
                         **pupil.work._asdict(),
                     }
                     for pupil in self._pupil_by_token.values()
@@ -817,6 +861,10 @@ class Classroom:
             code = state.get("code")
             if isinstance(code, str) and len(code) == CODE_LETTERS and set(code) <= set(LETTERS):
                 self.code = code
+            handout = state.get("handout")
+            if isinstance(handout, dict) and is_token(handout.get("key")):
+                with suppress(BadRequest):
+                    self._handout = Handout.of(handout, handout["key"])
             with suppress(BadRequest):
                 self._places_per_address = whole_number(state, "places", 1, MOST_PUPILS)
             if not self._is_turn_given:
@@ -864,6 +912,15 @@ class Classroom:
             "over": self._ending,
             "goes_on": self._is_continued,
             "lessons": len(catalogue.folders()),
+            "handout": {
+                "lesson": self._handout.lesson,
+                "opened": sum(
+                    pupil.handout_key == self._handout.key
+                    for pupil in self._pupil_by_token.values()
+                ),
+            }
+            if self._handout.key
+            else None,
             "kept": [
                 {
                     "key": item.key,
@@ -965,6 +1022,7 @@ def _work_of_row(row: Json, work: Work | None) -> KeptWork | None:
     kept_work.token = _token_of_row(row, "token")
     kept_work.recipient_token = _token_of_row(row, "given_to")
     kept_work.key = _token_of_row(row, "key") or kept_work.key
+    kept_work.handout_key = _token_of_row(row, "opened")
     return kept_work
 
 

@@ -172,7 +172,10 @@ new Start({
 if (!isStart()) lessons.comeBack();
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
-    panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
+    panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), openLesson: (lessonNumber) => {
+      phone.show('robot');
+      return lessons.open(lessonNumber);
+    }, clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
     newestRun: () => simulatorPanel.newestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
   }));
 }

@@ -11,7 +11,8 @@ import { isTeacher } from '../robot/host.js';
  * @property {import('../python.js').Python} python
  * @property {import('../writing/editor.js').Editor} editor
  * @property {import('../writing/views.js').Views} views
- * @property {() => void} keepProgram the program among the earlier ones
+ * @property {() => boolean} keepProgram the program among the earlier ones; whether nothing of it would be lost
+ * @property {(lessonNumber: number) => void} openLesson
  * @property {() => void} clearProgram takes the program off the page
  * @property {() => Promise<string>} newestRun its file, or nothing
  * @property {(file: File) => Promise<void>} openRun plays it

@@ -1,7 +1,8 @@
 // Work that is kept of who is not here goes to one pupil, whom the teacher chooses: anybody can write a name.
 
 import { makeButton, makeElement } from '../page/made.js';
-import { element, setText } from '../page/elements.js';
+import { closedWindow } from './windows.js';
+import { setText } from '../page/elements.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
 
@@ -10,7 +11,7 @@ import { text } from '../page/texts.js';
 /** @typedef {{item: HTMLElement, nameElement: HTMLElement, pupilSelect: HTMLSelectElement, giveButton: HTMLButtonElement, stateElement: HTMLElement}} KeptRowElements */
 
 export class GivingWindow {
-  window = makeElement('dialog');
+  window = closedWindow('class_giving', 'class_give_back');
   #listElement = makeElement('ul');
   #giveWork;
   /** @type {Map<string, KeptRowElements>} */
@@ -19,15 +20,7 @@ export class GivingWindow {
   /** @param {(key: string, pupil: number) => void} giveWork */
   constructor(giveWork) {
     this.#giveWork = giveWork;
-    this.window.id = 'class_giving';
-    this.window.className = 'class_window';
-    this.window.setAttribute('aria-labelledby', 'class_giving_title');
-    const titleElement = makeElement('h2', 'class_give_back');
-    titleElement.id = 'class_giving_title';
-    const stopButton = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
-    stopButton.className = 'stop'; // the page's own is behind this window
-    this.window.append(makeElement('header', '', titleElement, makeButton('close', () => this.window.close()), stopButton), makeElement('section', '', makeElement('p', 'class_give_told'), this.#listElement));
-    document.body.append(this.window);
+    this.window.append(makeElement('section', '', makeElement('p', 'class_give_told'), this.#listElement));
   }
 
   /** @param {KeptRow[]} keptRows @param {PupilRow[]} pupils */

@@ -6,7 +6,7 @@
 // The page asks once a second for its place. That keeps no robot going: only a page that drives does.
 
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
-import { element, setText } from '../page/elements.js';
+import { element, setHidden, setText } from '../page/elements.js';
 import { setToken, noteStopCount, post } from '../robot/host.js';
 import { storeDone, loadDoneLessons } from '../lesson/progress.js';
 import { asPlainText } from '../robot/plain_text.js';
@@ -23,17 +23,21 @@ import { forgetAll, storeText, loadText } from '../page/kept.js';
 
 const TOKEN_KEY = 'tiniscript.pupil';
 const LAST_TOKEN_KEY = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
+const OPENED_KEY = 'tiniscript.opened'; // the keys of what the teacher gave to all and this page has opened
 const POLL_MS = 1000;
 const QUICK_POLL_MS = 300; // while the next turn may be one's own
 
 /** @typedef {{key: string, text: string, robot: string, lessons: string[]}} GivenWork */
-/** @typedef {{place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: GivenWork, over?: string, groups?: import('./group.js').GroupRow[], driver?: string, run?: number, stops?: number}} PupilState */
+/** @typedef {{key: string, lesson: number, text: string, robot: string}} Handout what the teacher gives to all: a lesson by its number, or a program */
+/** @typedef {{handout?: Handout, place: number, waiting: number, robots: number, robot: string, left_s: number, name: string, hand: boolean, given?: GivenWork, over?: string, groups?: import('./group.js').GroupRow[], driver?: string, run?: number, stops?: number}} PupilState */
 
 function newStayState() {
   return {
     wantsRobot: /** @type {boolean | null} */ (null), // a robot, told at the next look
     isHandWanted: /** @type {boolean | null} */ (null), // help, told at the next look
     sentFields: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
+    handout: /** @type {Handout | null} */ (null), // what is still to be opened
+    openedKey: '', // of what was opened last
     takenWork: /** @type {GivenWork | null} */ (null), // the work that was given last
     runNumber: 0, // the newest question for a run
     isTakenUnconfirmed: false, // the class has yet to hear that this is here
@@ -64,6 +68,12 @@ export class Pupil {
     this.#poll();
   }, makeSign('hand', 26));
   #isHandUp = false;
+  /** It waits for a press, as nothing may come between a pupil and what is being written, dragged, run or edited together. */
+  #handoutButton = makeButton('class_handout_open', () => this.#openHandout());
+  #handoutSentence = makeElement('span');
+  #handoutBox = makeElement('p', '', this.#handoutSentence, this.#handoutButton);
+  /** @type {string[]} */
+  #openedKeys = loadText(OPENED_KEY, 'sessionStorage').split(' ');
   #group;
   #isJoining = false;
   #stayState = newStayState(); // in one class: an answer of the one before is none of the next one
@@ -77,6 +87,10 @@ export class Pupil {
     this.#handButton.id = 'class_hand';
     this.#handButton.hidden = true;
     element('stop', HTMLButtonElement).before(this.#handButton);
+    this.#handoutBox.id = 'class_handout';
+    this.#handoutSentence.setAttribute('role', 'status');
+    this.#entry.before(this.#handoutBox);
+    this.#showHandout();
     this.#showHand(false);
     for (const field of [this.#codeInput, this.#nameInput]) {
       field.autocomplete = 'off';
@@ -132,6 +146,7 @@ export class Pupil {
   #leaveClass(key) {
     clearTimeout(this.#pollTimer);
     this.#stayState = newStayState();
+    this.#showHandout();
     this.#showHand(false);
     this.#group.exit();
     setToken('');
@@ -157,7 +172,7 @@ export class Pupil {
     const { wantsRobot, isHandWanted } = stay, takenWork = stay.isTakenUnconfirmed ? stay.takenWork : null;
     const fields = takenWork ? stay.sentFields : this.#currentFields(); // two programs may be too large
     /** @type {Record<string, unknown>} */
-    const request = { do: 'here' };
+    const request = { do: 'here', opened: stay.openedKey };
     if (takenWork) request['took'] = { key: takenWork.key, text: takenWork.text };
     if (wantsRobot !== null) request['wants'] = wantsRobot;
     if (isHandWanted !== null) request['hand'] = isHandWanted;
@@ -180,6 +195,10 @@ export class Pupil {
       this.#showState(answer);
       if (takenWork) stay.isTakenUnconfirmed = false;
       this.#takeGiven(answer.given);
+      const { handout = null } = answer;
+      if (handout && this.#openedKeys.includes(handout.key)) [stay.openedKey, stay.handout] = [handout.key, null]; // the class has yet to hear of it
+      else stay.handout = handout;
+      this.#showHandout();
       if (answer.run && answer.run !== stay.runNumber) {
         stay.runNumber = answer.run;
         giveRun(answer.run, this.#page.newestRun).catch(() => {}); // the teacher asks again
@@ -226,6 +245,30 @@ export class Pupil {
     stay.takenWork = work;
     for (const name of work.lessons) storeDone(name);
     if (isShown || isKept) element('note', HTMLElement).textContent = text(isShown ? 'class_given' : 'class_given_kept');
+  }
+
+  #showHandout() {
+    const { handout } = this.#stayState;
+    setHidden(this.#handoutBox, !handout);
+    setText(this.#handoutSentence, handout ? text(handout.lesson ? 'class_handout_lesson' : 'class_handout_program', { number: handout.lesson }) : '');
+  }
+
+  /** Opens what the teacher gives to all, once. What is on the page is kept before; where it cannot be, it stays. */
+  #openHandout() {
+    const { handout } = this.#stayState;
+    if (!handout || this.#group.isJoining || !this.#page.keepProgram()) return;
+    if (handout.lesson) this.#page.openLesson(handout.lesson);
+    else {
+      const program = { text: handout.text, robot: isRobot(handout.robot) ? handout.robot : this.#work.robot, name: '' };
+      const isShown = this.#page.putProgram(program);
+      if (!isShown && !storeVersion(program)) return;
+      pageState.note.set(text(isShown ? 'class_handout_opened' : 'class_handout_kept'));
+    }
+    this.#openedKeys.push(handout.key);
+    storeText(OPENED_KEY, this.#openedKeys.join(' '), 'sessionStorage');
+    [this.#stayState.openedKey, this.#stayState.handout] = [handout.key, null];
+    this.#showHandout();
+    this.#poll(); // the teacher sees it
   }
 
   /** @param {boolean} isHandUp */

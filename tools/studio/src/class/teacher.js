@@ -5,12 +5,14 @@
 import { Pictures } from '../blocks/drawn.js';
 import { BigCode, BigPupil } from './big.js';
 import { GivingWindow } from './giving.js';
+import { HandoutWindow } from './handout.js';
 import { openWork, saveWork } from './keeping.js';
 import { Membership } from './member.js';
 import { fetchRun } from './run.js';
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { makeSign } from './signs.js';
 import { clockText, Wall } from './wall.js';
+import { closedWindow } from './windows.js';
 import { element, setText } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
 import { fetchPorts, post } from '../robot/host.js';
@@ -23,7 +25,7 @@ import { isSecondPress } from '../page/twice.js';
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
 /** @typedef {{key: string, name: string, lessons: string[], given: number, alike: number[]}} KeptRow `given` and `alike` are pupils: whose page is to have it, who may be who made it */
 /** @typedef {{key: string, name: string, pupils: number[], version: number}} GroupRow */
-/** @typedef {{code: string, groups: GroupRow[], turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} ClassState */
+/** @typedef {{code: string, groups: GroupRow[], turn_s: number, places: number, over: string, goes_on: boolean, lessons: number, handout: {lesson: number, opened: number} | null, kept: KeptRow[], pupils: PupilRow[], robots: RobotRow[]}} ClassState */
 /** @typedef {{text: string, robot: string, version: number, history: string[]}} KnownProgram what is known of a program */
 
 const POLL_MS = 1000;
@@ -58,7 +60,9 @@ export class Teacher {
   #minutesInput = makeNumberInput('1', '60');
   #placesInput = makeNumberInput('1', '60');
   #erasesInput = makeElement('input');
-  #settingsWindow = makeElement('dialog');
+  #settingsWindow = closedWindow('class_window', 'class_settings');
+  /** @type {HandoutWindow} */
+  #handoutWindow;
   #fileInput = makeElement('input');
   #endButton = makeConfirmedButton('class_end', () => this.#request({ do: 'class_over', erases: this.#erasesInput.checked }));
   #givingWindow = new GivingWindow((key, pupilNumber) => this.#request({ do: 'class_give_back', key, pupil: pupilNumber }));
@@ -84,6 +88,7 @@ export class Teacher {
   constructor(page) {
     this.#page = page;
     this.#blockPictures = new Pictures(page.python, 'class_blocks');
+    this.#handoutWindow = new HandoutWindow(page, (handout) => this.#request({ do: 'class_hand_out', ...handout }));
     this.#membership = new Membership(page, {
       say: (key) => this.#showVisit(key),
       onBug: (error) => pageState.note.set(bugSentence(error)),
@@ -104,7 +109,8 @@ export class Teacher {
     this.#giveBackButton.hidden = this.#anewButton.hidden = true;
     const settingsButton = makeButton('class_settings', () => this.#openSettings());
     settingsButton.id = 'class_settings';
-    const bar = makeElement('div', '', this.#statusElement, this.#robotChips, this.#giveBackButton, this.#anewButton, settingsButton);
+    const handoutButton = makeButton('class_hand_out', () => this.#openHandoutWindow());
+    const bar = makeElement('div', '', this.#statusElement, this.#robotChips, this.#giveBackButton, this.#anewButton, handoutButton, settingsButton);
     bar.id = 'class_bar';
     element('class', HTMLElement).append(bar, this.#wall.element, this.#emptyNotice);
     pageState.language.subscribe(() => this.#updateLanguage());
@@ -119,8 +125,10 @@ export class Teacher {
   #addHead() {
     const head = /** @type {HTMLElement} */ (document.querySelector('body > header'));
     const stopButton = element('stop', HTMLButtonElement);
-    stopButton.dataset['text'] = 'class_stop_all';
-    stopButton.textContent = text('class_stop_all');
+    for (const button of [stopButton, element('programs_stop', HTMLButtonElement)]) { // which stop the same robots
+      button.dataset['text'] = 'class_stop_all';
+      button.textContent = text('class_stop_all');
+    }
     const codeButton = makeButton('', () => this.#bigCode.show(this.#codeElement.textContent ?? ''), makeElement('span', 'class_address'), makeElement('strong', '', location.origin), makeElement('span', 'class_code'), this.#codeElement);
     codeButton.id = 'class_come';
     const studioButton = makeButton('class_studio', () => this.#showStudio());
@@ -132,19 +140,12 @@ export class Teacher {
   }
 
   #addSettings() {
-    const closeButton = makeButton('close', () => this.#settingsWindow.close());
-    const stopButton = makeButton('class_stop_all', () => element('stop', HTMLButtonElement).click());
-    stopButton.className = 'stop';
-    this.#settingsWindow.id = this.#settingsWindow.className = 'class_window';
-    this.#settingsWindow.setAttribute('aria-labelledby', 'class_window_title');
-    const title = makeElement('h2', 'class_settings');
-    title.id = 'class_window_title';
     this.#erasesInput.type = 'checkbox';
     this.#fileInput.type = 'file';
     this.#fileInput.accept = '.json,application/json';
     this.#fileInput.hidden = true;
     this.#fileInput.addEventListener('change', () => this.#openClassWork());
-    this.#settingsWindow.append(makeElement('header', '', title, closeButton, stopButton),
+    this.#settingsWindow.append(
       makeElement('section', '', makeElement('h3', 'class_robots'), this.#robotList,
         makeElement('p', '', makeLabel('link_port', this.#portSelect), makeButton('class_give', () => this.#lendPort()), makeButton('link_look', () => this.#lookForPorts())),
         makeElement('p', '', makeLabel('class_minutes', this.#minutesInput)), makeElement('p', '', makeLabel('class_places', this.#placesInput))),
@@ -155,7 +156,10 @@ export class Teacher {
         makeElement('p', '', makeButton('class_new_code', () => this.#request({ do: 'class_code' }))), makeElement('p', '', makeConfirmedButton('class_anew', () => this.#request({ do: 'class_anew' })))),
       makeElement('section', '', makeElement('h3', 'class_end'), makeElement('p', '', makeElement('span', 'class_end_told'), makeButton('class_save', () => this.#saveClassWork())),
         makeElement('p', '', makeElement('label', '', this.#erasesInput, makeElement('span', 'class_erases'))), makeElement('p', '', this.#endButton)));
-    document.body.append(this.#settingsWindow);
+  }
+
+  #openHandoutWindow() {
+    this.#handoutWindow.open(this.#classState?.lessons ?? 0).catch(() => {}); // the lessons have numbers, at least
   }
 
   #openSettings() {
@@ -303,7 +307,7 @@ export class Teacher {
 
   /** @param {ClassState} state */
   #showState(state) {
-    const { code, turn_s, places, over: overReason, goes_on, lessons, kept: keptRows, pupils, robots } = this.#classState = state;
+    const { code, turn_s, places, over: overReason, goes_on, lessons, handout, kept: keptRows, pupils, robots } = this.#classState = state;
     setText(this.#codeElement, code);
     this.#bigCode.setCode(code);
     if (document.activeElement !== this.#minutesInput) this.#minutesInput.value = String(Math.round(turn_s / 60));
@@ -313,13 +317,14 @@ export class Teacher {
       this.#settingsWindow.close();
       this.#bigPupil.window.close();
       this.#givingWindow.window.close();
+      this.#handoutWindow.window.close();
       element('class', HTMLElement).replaceChildren(this.#statusElement); // nobody is left to do the rest
       return;
     }
     const hands = pupils.filter(({ hand }) => hand).sort((first, second) => first.hand - second.hand);
     const handNames = hands.slice(0, MOST_NAMED_HANDS).map(({ name }) => asPlainText(name)).join(', ') + (hands.length > MOST_NAMED_HANDS ? ` +${hands.length - MOST_NAMED_HANDS}` : '');
     const count = text('class_count', { pupils: pupils.length, robots: robots.length, waiting: pupils.filter(({ place: queuePlace }) => queuePlace).length });
-    setText(this.#statusElement, [count, hands.length ? text('class_hands', { names: handNames }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
+    setText(this.#statusElement, [count, hands.length ? text('class_hands', { names: handNames }) : '', handout ? text(handout.lesson ? 'class_opened_lesson' : 'class_opened_program', { number: handout.lesson, opened: handout.opened, pupils: pupils.length }) : '', this.#notice || (goes_on ? text('class_goes_on') : '')].filter(Boolean).join(' '));
     document.documentElement.dataset['teacher'] = 'class_count';
     this.#giveBackButton.hidden = !keptRows.length || !pupils.length;
     this.#givingWindow.show(keptRows, pupils);

@@ -70,6 +70,7 @@ export class Lessons {
   #checkCount = 0; // the newest one goes on; others have been ended
   #requestCount = 0;
   #isShown = false;
+  #wantedNumber = 0; // of the lesson that is to be opened once the lessons are known
   #lessonSelect = element('lesson', HTMLSelectElement);
   #checkButton = element('lesson_check', HTMLButtonElement);
   #endButton = element('lesson_end', HTMLButtonElement);
@@ -161,6 +162,13 @@ export class Lessons {
     this.#fetchLessons();
   }
 
+  /** Opens a lesson, whichever is open. @param {number} lessonNumber */
+  open(lessonNumber) {
+    this.#wantedNumber = lessonNumber;
+    if (this.#lessons.length) this.#chooseLesson(lessonNumber).catch((error) => this.#showFailure(error));
+    element('side_lessons', HTMLButtonElement).click();
+  }
+
   /** Ends a check and forgets what was said. */
   #forgetCheck() {
     this.#checkCount += 1;
@@ -189,7 +197,7 @@ export class Lessons {
       this.#lessons = lessons;
       if (!this.#steps.length) {
         const doneLessons = loadDoneLessons(), lesson = this.#placeBefore.lesson || this.#page.work.lesson;
-        this.#lessonNumber = 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
+        this.#lessonNumber = this.#wantedNumber || 1 + Math.max(0, this.#lessons.findIndex(({ name }) => (lesson ? name === lesson : !doneLessons.has(name))));
       }
       this.#listLessons();
       await this.#chooseLesson(this.#lessonNumber);

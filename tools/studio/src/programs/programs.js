@@ -83,10 +83,11 @@ export class Programs {
     addEventListener('hashchange', () => this.openAddressProgram());
   }
 
-  /** Keeps what is in the editor among the earlier programs, unless the page has brought it. */
+  /** Keeps what is in the editor among the earlier programs, unless the page has brought it. Returns whether nothing of it would be lost. */
   storeVersion() {
-    if (isShippedProgram(this.#page.work.text)) return;
-    if (!storeVersion(this.#page.work)) pageState.note.set(text(this.#page.work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+    const isSafe = isShippedProgram(this.#page.work.text) || storeVersion(this.#page.work);
+    if (!isSafe) pageState.note.set(text(this.#page.work.text.length > MOST_CHARACTERS ? 'kept_too_long' : 'not_kept'));
+    return isSafe;
   }
 
   /**
