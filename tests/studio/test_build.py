@@ -158,11 +158,25 @@ def weights_of(page: Path) -> dict[str, int]:
 
 
 def test_the_files_of_a_group_are_small_enough(page: Path) -> None:
-    """Though this counts all that a class has, its wall, too."""
+    """This counts all that a pupil's page fetches for a class; the wall is the teacher's."""
     weights = weights_of(page)
-    names = [name for name in weights if name.startswith(("together.", "classroom-", "class."))]
+    names = {name for name in weights if name.startswith(("together.", "classroom-", "class."))}
     assert len(names) == 3
+    [classroom] = (name for name in names if name.endswith(".js"))
+    names |= imported_files(page, classroom) - imported_files(page, "main.js")
+    assert not any(name.startswith("teacher-") for name in names)
     assert sum(weights[name] for name in names) <= GROUP_LARGEST
+
+
+def imported_files(page: Path, name: str) -> set[str]:
+    """Return the scripts that a browser fetches with this one."""
+    names, new_names = set[str](), {name}
+    while new_names:
+        names |= new_names
+        texts = [(page / new_name).read_text(encoding="utf-8") for new_name in new_names]
+        imports = re.findall(r'(?:\bfrom|\bimport)\s*"\./([\w.-]+[.]js)"', "".join(texts))
+        new_names = set(imports) - names
+    return names
 
 
 def test_the_page_has_its_policy_and_no_inline_code(page: Path) -> None:

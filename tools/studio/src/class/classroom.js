@@ -1,7 +1,6 @@
 // A class: the page of a pupil, or of the teacher. Fetched only where `tsc studio --class` gives the page.
 
 import { Pupil } from './pupil.js';
-import { Teacher } from './teacher.js';
 import { isTeacher } from '../robot/host.js';
 
 /**
@@ -28,6 +27,8 @@ export async function openClass(page) {
   });
   document.head.append(stylesheet);
   await loading;
-  if (isTeacher) new Teacher(page);
-  else new Pupil(page);
+  if (isTeacher) {
+    const { Teacher } = await import('./teacher.js'); // no pupil's page fetches it
+    new Teacher(page);
+  } else new Pupil(page);
 }

@@ -14,7 +14,7 @@ import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
 import { giveRun } from './run.js';
 import { makeSign } from './signs.js';
-import { clockText } from './wall.js';
+import { clockText } from './clock.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';

@@ -5,6 +5,7 @@
 import { setText } from '../page/elements.js';
 import { makeButton, makeSvg, makeElement } from '../page/made.js';
 import { COLOURS } from '../page/own_robot.js';
+import { clockText } from './clock.js';
 import { makeSign } from './signs.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { text } from '../page/texts.js';
@@ -158,11 +159,6 @@ export class Wall {
 /** Nothing is kept of the picture in a tile. @param {Tile} tile */
 function releasePicture({ picture }) {
   if (picture.src.startsWith('blob:')) URL.revokeObjectURL(picture.src);
-}
-
-/** @param {number} seconds */
-export function clockText(seconds) {
-  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;
 }
 
 /** @param {HTMLElement} target @param {string} label */
