@@ -78,7 +78,7 @@ const Tuning& port_tuning() {
 }
 
 void robot_motors(int8_t left, int8_t right) {
-  const Levels levels = trimmed(port_tuning().trim, left, right);
+  const Levels levels = trimmed_levels(port_tuning().trim, left, right);
   board_motors(levels.left, levels.right);
 }
 

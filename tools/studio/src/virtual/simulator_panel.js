@@ -284,6 +284,7 @@ export class SimulatorPanel {
   beginAnew() {
     this.#arena.eraseTracks();
     this.begin();
+    this.#stage.shrink(); // it is written first
   }
 
   /** What a lesson has brought goes. */
