@@ -76,7 +76,7 @@ export function replaceOptions(select, options) {
 export function goAmongPictures() {
   document.addEventListener('keydown', (event) => {
     const { target, key } = event, direction = { ArrowUp: [0, -1], ArrowDown: [0, 1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] }[key];
-    if (!(target instanceof HTMLOptionElement) || !direction) return;
+    if (!(target instanceof HTMLElement) || target.localName !== 'option' || !direction) return;
     const place = middleOf(target), [x = 0, y = 0] = direction;
     const distances = [...target.parentElement?.querySelectorAll('option') ?? []].map((option) => {
       const other = middleOf(option), along = (other.x - place.x) * x + (other.y - place.y) * y, beside = Math.abs((other.x - place.x) * y) + Math.abs((other.y - place.y) * x);
