@@ -1128,7 +1128,8 @@ const PARTS = {
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
-    const said = () => [page.byId('lesson_said').textContent, page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
+    const { text } = await page.load('page/texts.js'); // that a lesson was solved before is kept as its stars are
+    const said = () => [page.byId('lesson_said').textContent.replace(` ${text('lesson_was_done')}`, ''), page.byId('lesson_said').dataset['verdict'], page.byId('lesson_stars').textContent, page.byId('lesson_end').hidden,
       page.byId('lesson_findings').children.length, page.byId('lesson_next').hidden, page.byId('lesson_end').textContent, page.byId('lesson_check').hidden];
     const actions = {
       check: () => page.byId('lesson_check').click(),
@@ -4580,7 +4581,7 @@ const PARTS = {
           moves();
           stage.runEnded();
           await passes(250);
-          if (isOver) has.big = false;
+          if (isOver || pageState.sideId.value === 'side_lessons') has.big = false; // its text is read again
           isOver = false;
         },
         async rests() { // a mouse
