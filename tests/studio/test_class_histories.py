@@ -321,6 +321,13 @@ class History:
         for page in (*self.pages.values(), *self.gone_pages.values()):
             handout = room_after.checks_in(page.token).get("handout", {"text": ""})
             assert handout["text"] == self.offered(page)
+        next_lesson = Room(0)  # it has handed out nothing yet
+        next_lesson.classroom.resume(kept_state, is_same_lesson=False)
+        code = next_lesson.teaches("class_places", places=MOST_PUPILS)["code"]
+        for page in (*self.pages.values(), *self.gone_pages.values()):
+            request = {"do": "join", "code": code, "name": page.name, "before": page.token}
+            token = next_lesson.classroom.answer("", "192.0.2.9", request)["token"]
+            assert "handout" not in next_lesson.checks_in(token)
 
 
 def numbers(state: Json) -> dict[int, str]:

@@ -460,7 +460,7 @@ class Classroom:
             # Until the page has opened it, however often it is reloaded or not heard.
             **(
                 {"handout": self._handout._asdict()}
-                if pupil.handout_key != self._handout.key
+                if self._handout.key not in ("", pupil.handout_key)
                 else {}
             ),
         }
