@@ -134,7 +134,8 @@ const PARTS = {
   // A pupil in a class, and in another one, or again after a teacher has taken them out, until it is over. Whichever looks
   // and answers were lost, the class has the newest of each thing that the teacher sees, and what was pressed last; the page
   // goes to its robot once in a turn, takes what it is given once, and gives its newest run once each time it is asked for.
-  // It sees the groups of this class, and stops its group's robot while somebody else drives it, and only then.
+  // It sees the groups of this class, and stops its group's robot while somebody else drives it, and only then. Each pupil
+  // opens what the teacher gives to all once, also the next one at the same page.
   async pupil() {
     const page = freshPage();
     document.documentElement.dataset['class'] = '';
@@ -150,17 +151,19 @@ const PARTS = {
     const notes = [];
     const panel = { isFree: true, connectByHost: () => notes.push('to the robot'), endWitness() {} };
     const work = { text: 'F(1)', robot: 'tinibot' };
+    let handout = null, openedTexts = []; // what the teacher gives to all, and what of it this pupil's page has opened
     const puts = (given) => {
-      notes.push(['given', given.text]);
+      if (given.text.startsWith('H')) openedTexts.push(given.text);
+      else notes.push(['given', given.text]);
       work.text = given.text;
       return true; // nobody is asked outside a group
     };
     const views = { join: () => {}, showMates: () => {}, isBusy: false };
-    new Pupil({ panel, work, views, putProgram: puts, clearProgram: () => notes.push('empty'), newestRun: async () => '' });
+    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: puts, clearProgram: () => notes.push('empty'), newestRun: async () => '' });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
-    const hand = page.byId('stop').placedBefore;
+    const hand = page.byId('stop').placedBefore, handoutBox = page.byId('class_entry').placedBefore;
     const { dataset } = document.documentElement;
     /** What the teacher sees of it; whether a program is right is not known before it is checked. */
     const shown = () => ({
@@ -177,6 +180,8 @@ const PARTS = {
       pageState.ownRobot.set({ name: '', colour: 0 });
       window.localStorage.removeItem('tiniscript.lessons');
       const has = { fields: {}, place: -1, isUp: false };
+      let hasOpened = '', isOffered = !isGood;
+      openedTexts = [];
       const wanted = { place: -1, isUp: false };
       let turns = 0;
       let joins = 0;
@@ -208,7 +213,8 @@ const PARTS = {
             given.push(request.asked);
             return answers({});
           }
-          notes.push([now() - began_ms, { ...request }]);
+          const { opened, ...asked } = request;
+          notes.push([now() - began_ms, asked]);
           if (over) lateCount += 1;
           const isOut = ends === 'removed';
           const travels = () => later(isCalm ? 5 : 5 + random.below(900));
@@ -216,13 +222,14 @@ const PARTS = {
           const lost = !isCalm && random() < (isGood ? 0.4 : 0.2) ? random.of(['look', 'answer']) : '';
           if (lost === 'look') throw new Broken();
           if (isOut) return { ok: false, status: 403 };
-          const { do: _, took, wants, hand: isUp = has.isUp, ...fields } = request;
+          if (isOffered && opened === handout?.key) hasOpened = opened;
+          const { do: _, took, wants, hand: isUp = has.isUp, ...fields } = asked;
           Object.assign(has.fields, fields);
           has.isUp = isUp;
           const before = has.place;
           if (wants !== undefined) has.place = wants ? 0 : -1;
           if (has.place === 0 && before !== 0) turns += 1;
-          const answer = over ? { over } : { ...group, place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !took && { given: told }) };
+          const answer = over ? { over } : { ...group, place: has.place, waiting: 0, robots: 1, robot: '', left_s: 9, name: 'Ana', hand: has.isUp, ...(told && !took && { given: told }), ...(isOffered && handout && hasOpened !== handout.key && { handout }) };
           await travels();
           if (lost) throw new Broken();
           if (!over) [driver, runAsked] = [answer.driver, answer.run];
@@ -246,6 +253,7 @@ const PARTS = {
         ownRobot: () => pageState.ownRobot.set({ name: '', colour: random.below(2) }),
         checks: () => { [dataset['state'], dataset['image']] = [random.of(['stale', 'checked']), random.of(['', '00'])]; },
       };
+      const handsOut = () => { handout = { key: `key ${(entries += 1)}`, lesson: 0, text: `H(${entries})`, robot: 'tinibot' }; };
       const presses = {
         ...changes,
         ask: () => { wanted.place = 0; ask.click(); },
@@ -255,6 +263,10 @@ const PARTS = {
         drives: () => { group.driver = random.of(['', 'Luz']); },
         run: () => { group.run = `run ${(entries += 1)}`; },
         stops: pressesStop,
+        ...(!isGood && {
+          handsOut,
+          opens: () => { if (!handoutBox.hidden) handoutBox.children[1].click(); },
+        }),
         nothing: () => {},
       };
       for (let k = random.of([1, 2]); k > 0; k -= 1) join.dispatchEvent(new Event('submit', { cancelable: true }));
@@ -272,9 +284,10 @@ const PARTS = {
       for (let k = random.below(isGood ? 1 : 4); k > 0; k -= 1) random.of([ask, quit, hand]).click();
       while (!isGood && join.hidden) await passes(50 + random.below(50));
       if (!isGood) {
-        if (![hand, ask, quit, connect, page.byId('side_class')].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
+        if (![hand, ask, quit, connect, handoutBox, page.byId('side_class')].every(({ hidden }) => hidden)) throw new Error('outside of a class there are its buttons');
         await pressesStop();
       }
+      if (new Set(openedTexts).size < openedTexts.length) throw new Error(`${openedTexts} are opened`);
       if (!isGood) return { ends: [ends], seen: [] };
       for (let k = random.below(3); k > 0; k -= 1) { // while the one before is on its way
         changes[random.of(Object.keys(changes))]();
@@ -298,6 +311,18 @@ const PARTS = {
       if (stops.some((number, k) => number < stops[k - 1])) throw new Error(`stops are counted ${stops}`);
       if (connect.hidden !== (has.place !== 0 || !panel.isFree)) throw new Error('who cannot connect may, or who can may not');
       seen.push([document.documentElement.dataset['pupil'], join.hidden, hand.attributes]);
+      if (random() < 0.3 || !handout) handsOut();
+      isOffered = true; // also what the pupil before at this page has opened
+      await passes(2500);
+      if (handoutBox.hidden) throw new Error('a pupil misses what the teacher gives to all');
+      isCalm = false;
+      for (let k = 40; k > 0; k -= 1) { // whoever sees it presses it
+        if (k > 38 || !handoutBox.hidden) handoutBox.children[1].click();
+        await passes(100);
+      }
+      isCalm = true;
+      await passes(2500);
+      if (`${openedTexts}` !== handout.text || hasOpened !== handout.key || !handoutBox.hidden) throw new Error(`${openedTexts} is opened, and the class knows of ${hasOpened}`);
       over = random.of(['', 'kept', 'erased']);
       await passes(5000);
       if (over && (!join.hidden || lateCount > 1 || loadText('tiniscript.pupil', 'sessionStorage'))) throw new Error(`it is over, and goes on: ${lateCount}`);

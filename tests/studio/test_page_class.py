@@ -691,7 +691,8 @@ def hands_out(pages: Pages, class_: Class) -> None:
     assert image(ana) == compile("F(1, 77)").image
     write(ana, "F(1, 78)")
     luz = join_class(pages, class_, "Luz")
-    luz.click("#class_handout button")
+    luz.click("#class_handout button")  # she has written nothing that would be kept
+    wait_for_note(luz, "Your teacher has sent you a program.")
     opened.filter(has_text="opened by 1 of 2 pupils.").wait_for()
     ana.reload()  # her page's word was lost
     opened.filter(has_text="opened by 2 of 2 pupils.").wait_for()

@@ -18,12 +18,13 @@ import { clockText } from './clock.js';
 import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 import { CLASS, isRobot } from '../page/words.js';
+import { isShippedProgram } from '../start/beginnings.js';
 import { storeVersion } from '../programs/versions.js';
 import { forgetAll, storeText, loadText } from '../page/kept.js';
 
 const TOKEN_KEY = 'tiniscript.pupil';
 const LAST_TOKEN_KEY = 'tiniscript.pupil_before'; // the token of the last page here: work belongs to it
-const OPENED_KEY = 'tiniscript.opened'; // the keys of what the teacher gave to all and this page has opened
+const OPENED_KEY = 'tiniscript.opened'; // the key of what the teacher gave to all and this pupil opened last
 const POLL_MS = 1000;
 const QUICK_POLL_MS = 300; // while the next turn may be one's own
 
@@ -37,7 +38,6 @@ function newStayState() {
     isHandWanted: /** @type {boolean | null} */ (null), // help, told at the next look
     sentFields: /** @type {Record<string, string>} */ ({}), // what the teacher's page knows
     handout: /** @type {Handout | null} */ (null), // what is still to be opened
-    openedKey: '', // of what was opened last
     takenWork: /** @type {GivenWork | null} */ (null), // the work that was given last
     runNumber: 0, // the newest question for a run
     isTakenUnconfirmed: false, // the class has yet to hear that this is here
@@ -72,8 +72,7 @@ export class Pupil {
   #handoutButton = makeButton('class_handout_open', () => this.#openHandout());
   #handoutSentence = makeElement('span');
   #handoutBox = makeElement('p', '', this.#handoutSentence, this.#handoutButton);
-  /** @type {string[]} */
-  #openedKeys = loadText(OPENED_KEY, 'sessionStorage').split(' ');
+  #openedKey = loadText(OPENED_KEY, 'sessionStorage');
   #group;
   #isJoining = false;
   #stayState = newStayState(); // in one class: an answer of the one before is none of the next one
@@ -151,6 +150,7 @@ export class Pupil {
     this.#group.exit();
     setToken('');
     storeText(TOKEN_KEY, '', 'sessionStorage');
+    this.#setOpened('');
     this.#joinForm.hidden = this.#entry.hidden = element('class_entry_title', HTMLElement).hidden = false;
     this.#entry.append(this.#boxElement);
     this.#askButton.hidden = this.#quitButton.hidden = this.#connectButton.hidden = this.#handButton.hidden = true;
@@ -172,7 +172,7 @@ export class Pupil {
     const { wantsRobot, isHandWanted } = stay, takenWork = stay.isTakenUnconfirmed ? stay.takenWork : null;
     const fields = takenWork ? stay.sentFields : this.#currentFields(); // two programs may be too large
     /** @type {Record<string, unknown>} */
-    const request = { do: 'here', opened: stay.openedKey };
+    const request = { do: 'here', opened: this.#openedKey };
     if (takenWork) request['took'] = { key: takenWork.key, text: takenWork.text };
     if (wantsRobot !== null) request['wants'] = wantsRobot;
     if (isHandWanted !== null) request['hand'] = isHandWanted;
@@ -196,8 +196,7 @@ export class Pupil {
       if (takenWork) stay.isTakenUnconfirmed = false;
       this.#takeGiven(answer.given);
       const { handout = null } = answer;
-      if (handout && this.#openedKeys.includes(handout.key)) [stay.openedKey, stay.handout] = [handout.key, null]; // the class has yet to hear of it
-      else stay.handout = handout;
+      stay.handout = handout?.key === this.#openedKey ? null : handout; // the class has yet to hear that it was opened
       this.#showHandout();
       if (answer.run && answer.run !== stay.runNumber) {
         stay.runNumber = answer.run;
@@ -259,16 +258,22 @@ export class Pupil {
     if (!handout || this.#group.isJoining || !this.#page.keepProgram()) return;
     if (handout.lesson) this.#page.openLesson(handout.lesson);
     else {
+      const wasShipped = isShippedProgram(this.#work.text); // such a one is not kept
       const program = { text: handout.text, robot: isRobot(handout.robot) ? handout.robot : this.#work.robot, name: '' };
       const isShown = this.#page.putProgram(program);
       if (!isShown && !storeVersion(program)) return;
-      pageState.note.set(text(isShown ? 'class_handout_opened' : 'class_handout_kept'));
+      pageState.note.set(text(!isShown ? 'class_handout_kept' : wasShipped ? 'class_handout_program' : 'class_handout_opened'));
     }
-    this.#openedKeys.push(handout.key);
-    storeText(OPENED_KEY, this.#openedKeys.join(' '), 'sessionStorage');
-    [this.#stayState.openedKey, this.#stayState.handout] = [handout.key, null];
+    this.#setOpened(handout.key);
+    this.#stayState.handout = null;
     this.#showHandout();
     this.#poll(); // the teacher sees it
+  }
+
+  /** @param {string} key of what the teacher gave to all; nothing for the next pupil at this page */
+  #setOpened(key) {
+    this.#openedKey = key;
+    storeText(OPENED_KEY, key, 'sessionStorage');
   }
 
   /** @param {boolean} isHandUp */
