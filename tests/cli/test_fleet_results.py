@@ -332,15 +332,23 @@ def test_a_row_that_comes_as_the_time_for_strangers_ends_is_printed(
     assert capsys.readouterr().out == "p1: It is broken.\n"
 
 
+@pytest.mark.parametrize("is_in_sentence", [False, True])
 @pytest.mark.parametrize("is_terminal", [False, True])
-def test_a_bug_in_one_thread_is_raised(is_terminal: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The terminal is left as it was."""
+def test_a_bug_in_one_thread_is_raised(
+    is_terminal: bool, is_in_sentence: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also one while a failure is put in words; the terminal is left as it was."""
+
+    class Broken(CommandError):
+        def plain_sentence(self, language: str) -> str:
+            raise ZeroDivisionError
+
     targets = [Target(port, "", True, True) for port in ("p1", "p2", "p3")]
     room = Room([Course(target, "done", True, 0, 0, False) for target in targets])
 
     def work(connection: Connection, member: Member) -> Result:
         if member.target.port == "p2":
-            raise ZeroDivisionError
+            raise Broken(3, "no_robots") if is_in_sentence else ZeroDivisionError
         return room.work(connection, member)
 
     use_room(room, monkeypatch, is_terminal)
@@ -439,7 +447,7 @@ PORTS = "/dev/a", "/dev/b", "ble://Tini 1", "BLE://tini 1", "ble://Tini 2", "tcp
 def test_each_port_that_may_have_a_robot_is_a_target_once(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """However many ways lead to it; the user's own spelling counts."""
+    """However many ways lead to it: the first one counts for its place and its spelling."""
     rng = random.Random(seed)
 
     def some() -> list[str]:
@@ -465,4 +473,4 @@ def test_each_port_that_may_have_a_robot_is_a_target_once(
         target = Target(port, name or "", not is_all, name is not None)
         wanted.setdefault(port.lower(), target)
     options = Namespace(all=is_all, ports=[] if is_all else named)
-    assert sorted(member_of.targets(options)) == sorted(wanted.values())
+    assert member_of.targets(options) == [*wanted.values()]

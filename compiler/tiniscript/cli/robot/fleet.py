@@ -191,12 +191,13 @@ class Fleet:
 
     def _work_on(self, member: Member, work: Work) -> None:
         try:
-            self._connect(member, work)
+            try:
+                self._connect(member, work)
+            except CommandError as error:
+                member.result = self._failure_result(member, error)
         except Reconnect:
             self._work_on(member, work)
             return
-        except CommandError as error:
-            member.result = self._failure_result(member, error)
         except Exception as bug:
             member.bug = bug
             member.result = Result(False, "")

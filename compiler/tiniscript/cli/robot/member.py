@@ -61,7 +61,9 @@ def targets(options: Namespace) -> list[Target]:
     name_by_canonical = {
         canonical_port(port): name for port, name in reversed(names_by_port.items())
     }
-    port_by_canonical = {canonical_port(port): port for port in reversed(candidate_ports)}
+    port_by_canonical: dict[str, str] = {}
+    for port in candidate_ports:
+        port_by_canonical.setdefault(canonical_port(port), port)
     return [
         Target(
             port,
@@ -69,7 +71,7 @@ def targets(options: Namespace) -> list[Target]:
             not options.all,
             canonical in name_by_canonical,
         )
-        for canonical, port in reversed(port_by_canonical.items())
+        for canonical, port in port_by_canonical.items()
     ]
 
 
