@@ -1,7 +1,6 @@
 // What code of a program is called by who sees it as blocks. Which block it is, Python knows, a moment later.
 
 import { labelOfCode } from './said.js';
-import { pageState } from '../page/page_state.js';
 
 export class BlockNames {
   #python;
@@ -33,9 +32,4 @@ export class BlockNames {
       this.#onKnown();
     }
   }
-}
-
-/** Whether the program is seen as blocks. */
-export function areBlocksSeen() {
-  return pageState.view.value === 'blocks';
 }

@@ -1,8 +1,7 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
-import { areBlocksSeen } from '../blocks/names.js';
-import { labelAt } from '../blocks/said.js';
+import { areBlocksNamed, labelAt } from '../blocks/said.js';
 import { element } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -587,7 +586,7 @@ export class RobotPanel {
     }
     const [, line, column, end_line, end_column] = place;
     const isShown = pageState.checkResult.value === program; // else the places are those of another text
-    const part = isShown && areBlocksSeen() ? labelAt(pageState.programText.value, { line, column }) : '';
+    const part = isShown && areBlocksNamed() ? labelAt(pageState.programText.value, { line, column }) : '';
     this.#speech.saySentence(part ? text('say_fault_block', { part, what: sentence }) : text('say_fault', { line, what: sentence }));
     if (movesCaret && isShown) this.#page.goTo({ line, column, end_line, end_column });
   }

@@ -1,8 +1,8 @@
 // The part of the page with the virtual robot: its buttons, its picture and what is said about it.
 
 import { Arena } from './arena.js';
-import { areBlocksSeen, BlockNames } from '../blocks/names.js';
-import { sayOnBlocks } from '../blocks/said.js';
+import { BlockNames } from '../blocks/names.js';
+import { areBlocksNamed, sayOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -738,7 +738,7 @@ export class SimulatorPanel {
 
   /** Code as it looks in the program. @param {string} code */
   #nameOf(code) {
-    return areBlocksSeen() ? this.#blockNames.nameOf(code.replace(/;.*/, ''), this.#shownRobotName) : code;
+    return areBlocksNamed() ? this.#blockNames.nameOf(code.replace(/;.*/, ''), this.#shownRobotName) : code;
   }
 
   /**
@@ -746,7 +746,7 @@ export class SimulatorPanel {
    * @param {string} key @param {string} blockKey @param {Record<string, string | number>} values @param {string} code
    */
   #say(key, blockKey, values, code) {
-    return areBlocksSeen() ? text(textKey(blockKey), { ...values, part: this.#nameOf(code) }) : text(textKey(key), values);
+    return areBlocksNamed() ? text(textKey(blockKey), { ...values, part: this.#nameOf(code) }) : text(textKey(key), values);
   }
 
   /** Why it was there: what was asked, with the values that the program had read, and whose motors they were. @param {RobotState} state */
