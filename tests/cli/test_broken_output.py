@@ -242,9 +242,9 @@ TALKING_PROGRAM = "SI|LOOP(FOREVER);M(40, 40);SHOW(12345);W(0.01);END_LOOP"
 PIPE_BYTES = 4096
 
 
-def start_unread_command(*words: str) -> Command:
-    """Return a command that writes to a full pipe."""
-    command = Command(*words)
+def start_unread_command(*words: str, data: bytes = b"") -> Command:
+    """Return a command that waits for the reader of a full pipe."""
+    command = Command(*words, data=data)
     pipe = command.process.stdout
     assert pipe
     fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
@@ -255,6 +255,8 @@ def start_unread_command(*words: str) -> Command:
         return count[0]
 
     until(lambda: count_waiting_bytes() > PIPE_BYTES - 100, "the pipe is full")
+    waits_in = Path(f"/proc/{command.process.pid}/wchan")  # "0" where the system does not say it
+    until(lambda: waits_in.read_text() == "0" or "pipe" in waits_in.read_text(), "it waits")
     return command
 
 
@@ -276,17 +278,18 @@ def test_a_fleet_with_unread_output_ends_with_ctrl_c(extra_options: list[str]) -
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux says how large a pipe is")
-@pytest.mark.parametrize("verb", ["upload", "monitor"])
+@pytest.mark.parametrize("verb", ["upload", "start", "live", "monitor", "monitor --hold"])
 def test_a_command_with_unread_output_ends_with_ctrl_c(pty_robot: PtyRobot, verb: str) -> None:
-    port_option = ("--port", pty_robot.port)
-    if verb == "monitor":
+    if verb not in ("upload", "live"):
         assert on(pty_robot, "upload", "-e", TALKING_PROGRAM, "--detach").code == 0
-    command = start_unread_command(
-        verb, *port_option, *(("-e", TALKING_PROGRAM) if verb == "upload" else ())
-    )
+    words = [*verb.split(), "--port", pty_robot.port]
+    if verb == "upload":
+        words += ["-e", TALKING_PROGRAM]
+    line = TALKING_PROGRAM.removeprefix("SI|").encode() + b"\n"
+    command = start_unread_command(*words, data=line if verb == "live" else b"")
     command.signal(signal.SIGINT)
     assert command.process.wait(HANG_LIMIT_S) in (0, 2)
-    if verb == "upload":
+    if "monitor" not in verb:
         pty_robot.until(lambda: not pty_robot.moves, "it stands")
     assert "Traceback" not in command.wait_for_result().err
 

@@ -8,6 +8,7 @@ from contextlib import suppress
 from time import monotonic
 from typing import ClassVar
 
+from tiniscript.cli import streams
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import printable_name
 from tiniscript.cli.robot.connect import Connection
@@ -97,6 +98,7 @@ def exit_code_of(event: Event, run: int | None) -> int | None:
 def stop_and_say(connection: Connection) -> int:
     """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
     is_confirmed = connection.stop()
+    streams.drop_unread_output()
     if connection.simulator is not None:
         connection.simulator.stop_drawing()  # the robot has stopped in the picture, too
     print(file=sys.stderr)  # the terminal has written ^C
