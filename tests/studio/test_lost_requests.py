@@ -327,9 +327,16 @@ def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
         asker.asks("beat", asker.run(stops), stops=stops)
         until(lambda: has_news(stops) and robot.moves, "it drives")
 
+    def count_stops() -> int:
+        return sum(item.get("event") == "STOPPED" for item in asker.news)
+
+    def wait_for_stop(count: int) -> None:
+        until(lambda: has_news(1) and count_stops() == count, "it has stopped")
+        assert not robot.moves
+
     start_drive(0)
     asker.asks("beat", stops=1)
-    until(lambda: has_news(1) and not robot.moves, "it stands")
+    wait_for_stop(1)
     start_drive(1)
     start_count = len(robot.received)
     asker.asks("stop", stops=1)  # late, or a repeated beat
@@ -339,9 +346,9 @@ def test_a_heartbeat_delivers_a_lost_stop_but_no_old_stop_ends_a_run(
     # Another tab, and a page without a count, always stop.
     other_tab = {"page": "other"} if asker.port == "turn" else {"tab": "other"}
     other_requests: list[Json] = [{"stops": 1, **other_tab}, {"stops": 0}]
-    for other_fields in other_requests:
+    for count, other_fields in enumerate(other_requests, start=2):
         asker.asks("stop", **other_fields)
-        until(lambda: has_news(1) and not robot.moves, "it stands")
+        wait_for_stop(count)
         start_drive(1)
 
 
