@@ -12,6 +12,8 @@ from tests.support.command import LONG_PROGRAM, OBSTACLE, Command, CommandResult
 from tests.support.pty_robot import PtyRobot, on, start_endless_upload
 from tests.support.terminal import Terminal
 from tiniscript import compile_text, robots
+from tiniscript.cli.commands import start_previous
+from tiniscript.cli.errors import CommandError
 
 KIT = robots.load("tinibot").kit
 
@@ -285,6 +287,29 @@ def test_undo_ends_the_program_of_another_terminal(pty_robot: PtyRobot) -> None:
     assert result.out.splitlines()[-1].startswith("Saved.")
     assert not pty_robot.moves
     assert command.wait_for_result().code in (0, 3)
+
+
+@pytest.mark.parametrize("is_saved", [False, True])
+def test_undo_through_a_port_that_is_lost_says_which_program_the_robot_has(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, is_saved: bool
+) -> None:
+    first_checksum, second_checksum = upload_two(pty_robot)
+    real_wait = start_previous.UndoSaving.wait
+
+    def lose(saving: start_previous.UndoSaving) -> None:
+        monkeypatch.setattr(start_previous.UndoSaving, "wait", real_wait)
+        if is_saved:
+            real_wait(saving)
+        pty_robot.power_cycle()
+        raise CommandError(3, "port_lost")
+
+    monkeypatch.setattr(start_previous.UndoSaving, "wait", lose)
+    pty_robot.ask(lambda robot: robot.supply(is_low=not is_saved))
+    result = run_in_process("start", "--previous", "--port", pty_robot.port)
+    assert result.code == (0 if is_saved else 3), result
+    assert ("newer program again" in result.err) != is_saved
+    checksum = json.loads(on(pty_robot, "doctor", "--json").out)["robot"]["program"]
+    assert checksum == (first_checksum if is_saved else second_checksum)
 
 
 @pytest.mark.sampled(of="slow commands")

@@ -377,15 +377,18 @@ def test_an_out_of_range_reading_becomes_the_nearest_valid_one() -> None:
 
 
 def test_readings_have_the_robots_time_whenever_they_arrive() -> None:
-    """Also where more than 65 s go by between two of them, and each is 300 ms under way."""
+    """Also where more than 65 s go by between two of them, each is 300 ms under way, and the
+    computer's clock is faster or slower.
+    """
     kit, rng = TINIBOT.kit, random.Random(1)
     for _ in range(200):
+        speed = rng.uniform(0.99, 1.01)
         reading_rows, ms, ms_of = ReadingRows(kit), 0, dict[str, list[int]]()
         for _ in range(20):
             ms += rng.choice((0, 1, 20, 999, 40_000, 70_000, 150_000))
             is_untold = rng.random() < 0.1
             event = ReadingEvent(1, 2 | UNTOLD * is_untold, rng.randrange(400_000), ms % 65_536)
-            rows = reading_rows.rows(event, ms + rng.randrange(300))
+            rows = reading_rows.rows(event, round(ms * speed) + rng.randrange(300))
             assert (rows[-1].ms, rows[-1].is_reading) == (ms, True)
             if len(rows) == 2:
                 last_ms = ms_of.get("DISTANCE", [-1])[-1]
