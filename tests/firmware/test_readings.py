@@ -23,7 +23,7 @@ from tests.support.sensed_runs import (
 from tests.support.shown_in_loops import largest_difference_ms, program
 from tiniscript.link import handshake
 from tiniscript.link.frames import Frame, encode_frame
-from tiniscript.link.messages import BY_NAME, READINGS, STATUSES, UNTOLD, encode_payload
+from tiniscript.link.messages import AFTER_GAP, BY_NAME, READINGS, STATUSES, encode_payload
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -63,14 +63,14 @@ def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
     full_run, limited_run = (
         sensed_run(text, seed, True, ticks, every_ms) for ticks in (FAST_TICKS, BYTE_TICKS)
     )
-    assert not [event for event in full_run.readings if event.sensor & UNTOLD]
+    assert not [event for event in full_run.readings if event.sensor & AFTER_GAP]
     for sensor in range(len(KIT.sensors)):
         all_of_it = [event for event in full_run.readings if event.sensor == sensor]
         position = 0
         for event in limited_run.readings:
-            if event.sensor & ~UNTOLD != sensor:
+            if event.sensor & ~AFTER_GAP != sensor:
                 continue
-            if not event.sensor & UNTOLD:
+            if not event.sensor & AFTER_GAP:
                 assert event == all_of_it[position], "nothing is left out before it"
                 position += 1
             else:  # the value is the last reading
@@ -87,7 +87,7 @@ def test_missing_readings_are_reported_for_their_sensor(seed: int) -> None:
 
 def test_a_too_slow_line_is_reported() -> None:
     run = sensed_run(TOO_MANY_READINGS, 1, True, BYTE_TICKS, most_ms=5)
-    assert [event for event in run.readings if event.sensor & UNTOLD]
+    assert [event for event in run.readings if event.sensor & AFTER_GAP]
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -3403,7 +3403,7 @@ const PARTS = {
         assertSame(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
         if (older) assertSame(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
-        const notice = unread ? textOf('record_untold', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
+        const notice = unread ? textOf('record_incomplete', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
         const place = page.byId('record_lacks');
         if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
         if (isTold) assertSame([place.hidden, place.textContent], [!notice, notice], 'what was not read');

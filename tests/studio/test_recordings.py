@@ -11,7 +11,7 @@ import pytest
 
 from tests.studio.runs_again import differs, record_run
 from tiniscript import compile, robots
-from tiniscript.link.messages import UNTOLD
+from tiniscript.link.messages import AFTER_GAP
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.studio import recordings
 from tiniscript.studio.playing import Divergence, PlayedRun, play, prepare
@@ -315,7 +315,7 @@ def test_a_replay_accepts_no_input_from_the_viewer() -> None:
     assert played_run.divergence == Divergence("again", len(rows))
 
 
-UNTOLD_TEXT = "SHOW(1);\nX = DISTANCE + 0;\nW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
+GAP_TEXT = "SHOW(1);\nX = DISTANCE + 0;\nW(1);\nX = DISTANCE + 0;\nSHOW(X);\nSHOW(2)"
 
 
 @pytest.mark.parametrize("value", ["8", "9"])
@@ -327,10 +327,10 @@ def test_no_divergence_is_marked_after_an_unreported_reading(
             (1060, "SHOW 2"), (1061, "DONE")]  # fmt: skip
     if is_known_again:
         rows.insert(4, (1030, "READ DISTANCE 8"))
-    divergence = parting(*rows, text=UNTOLD_TEXT)
+    divergence = parting(*rows, text=GAP_TEXT)
     assert (divergence.outcome, divergence.agreed) == ("unread", 1)
     assert (divergence.line, divergence.sensor) == (4, "DISTANCE")
-    wrong = parting(*rows[:2], (20, "SHOW 7"), *rows[3:], text=UNTOLD_TEXT)
+    wrong = parting(*rows[:2], (20, "SHOW 7"), *rows[3:], text=GAP_TEXT)
     assert wrong.outcome == "value", "before it"
 
 
@@ -387,7 +387,7 @@ def test_readings_have_the_robots_time_whenever_they_arrive() -> None:
         for _ in range(20):
             ms += rng.choice((0, 1, 20, 999, 40_000, 70_000, 150_000))
             is_untold = rng.random() < 0.1
-            event = ReadingEvent(1, 2 | UNTOLD * is_untold, rng.randrange(400_000), ms % 65_536)
+            event = ReadingEvent(1, 2 | AFTER_GAP * is_untold, rng.randrange(400_000), ms % 65_536)
             rows = reading_rows.rows(event, round(ms * speed) + rng.randrange(300))
             assert (rows[-1].ms, rows[-1].is_reading) == (ms, True)
             if len(rows) == 2:

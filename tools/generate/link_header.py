@@ -42,7 +42,7 @@ def header(command: str) -> str:
             "LONG_MS", "CLAIM_MS", "FORGET_MS", "NETWORK_BYTES",
             "WIFI_TEXT_BYTES", "PASSWORD_BYTES", "LEAST_PASSWORD", "CLASS_BYTES",
             "BROKER_PLACE_BYTES", "BROKER_NAME_BYTES", "TRUST_BYTES", "MOST_PAD", "HOLD_MS",
-            "MOST_BREAKPOINTS", "UNTOLD",
+            "MOST_BREAKPOINTS", "AFTER_GAP",
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),

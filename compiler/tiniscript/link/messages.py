@@ -99,7 +99,7 @@ MOST_BREAKPOINTS = 4
 VARIABLE_BYTES, TASK_BYTES = 4, 7  # bytes of one variable, and of one task
 VARIABLES_BYTES = 13 * VARIABLE_BYTES  # variables in one frame
 ALL_TASKS_BYTES = 5 * TASK_BYTES  # all tasks; the main one is last
-UNTOLD = 0x80  # flag in READING's sensor: earlier readings were not sent
+AFTER_GAP = 0x80  # flag in READING's sensor: earlier readings were not sent
 SHOW_PLACE_BYTES = 3  # bytes of a SHOW's place: its run, and its instruction (16 bits)
 COUNTER_BYTES = 4
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from tiniscript import robots
 from tiniscript.base.kit import Kit
 from tiniscript.base.version import __version__
-from tiniscript.link.messages import UNTOLD
+from tiniscript.link.messages import AFTER_GAP
 from tiniscript.link.payloads import ReadingEvent
 from tiniscript.link.remote import RemoteState
 from tiniscript.robots.profile import ProfileRefused, Robot
@@ -165,14 +165,14 @@ class ReadingRows:
         """Return the rows of an event at a time since the start of its run, which may precede the
         last row.
         """
-        number = event.sensor & ~UNTOLD
+        number = event.sensor & ~AFTER_GAP
         device = self._devices[number] if number < len(self._devices) else None
         if device is None or not device.name:
             return []
         self._ms += (event.ms - self._ms) % MS_MODULUS
         self._ms += max(0, round((since_ms - self._ms) / MS_MODULUS)) * MS_MODULUS
         rows = []
-        if event.sensor & UNTOLD and device.name not in self.incomplete_names:
+        if event.sensor & AFTER_GAP and device.name not in self.incomplete_names:
             self.incomplete_names.append(device.name)
             rows.append(Row(self._next_ms.get(device.name, 0), f"{UNREAD} {device.name}"))
         self._next_ms[device.name] = self._ms + 1

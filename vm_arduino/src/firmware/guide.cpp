@@ -42,7 +42,7 @@ struct Wheel {
   uint16_t edge_ms;           // when the last edge came,
   uint16_t previous_edge_ms;  // and the one before
   uint16_t two_edges_ms;      // how long the last two took; 0: not known
-  uint8_t first;              // how far the first one was, in parts of the way between two
+  uint8_t first_edge_part;    // how far the first one was, in parts of the way between two
   bool is_backward : 1;       // the move
   bool is_returning : 1;      // its motor last drove it against the move
   bool is_standing : 1;       // its motor is off, and it cannot turn
@@ -82,13 +82,13 @@ int32_t clamp(int32_t value, int32_t limit) {
 
 // The position of a wheel at rest: in the middle between two edges, as far as is known.
 int32_t rest_position(const Wheel& wheel) {
-  return (wheel.edges - 1) * kEdge + wheel.first + kEdge / 2;
+  return (wheel.edges - 1) * kEdge + wheel.first_edge_part + kEdge / 2;
 }
 
 // Changes the result of `rest_position`.
 void put(Wheel* wheel, int32_t new_position) {
   new_position -= kEdge / 2;
-  wheel->first = static_cast<uint8_t>(new_position & (kEdge - 1));
+  wheel->first_edge_part = static_cast<uint8_t>(new_position & (kEdge - 1));
   wheel->edges = (new_position >> 6) + 1;
 }
 
@@ -116,7 +116,7 @@ void find_first_edge(Wheel* wheel) {
       static_cast<uint16_t>(distance_after(elapsed_ms(guide.start_ms)) - first_distance);
   const uint32_t first =
       next_distance == 0 ? kEdge : uint32_t{first_distance} * (2 * kEdge) / next_distance;
-  wheel->first = first < kEdge ? static_cast<uint8_t>(first) : kEdge;
+  wheel->first_edge_part = first < kEdge ? static_cast<uint8_t>(first) : kEdge;
 }
 
 // How far it will roll on once its motor is off.
@@ -371,7 +371,7 @@ void guide_go(int8_t left, int8_t right, int32_t distance) {
   if (guide.roll_ms == 0) guide.roll_ms = kRollMs;
   for (Wheel& wheel : guide.wheels) {
     wheel.edges = 0;
-    wheel.first = kEdge / 2;
+    wheel.first_edge_part = kEdge / 2;
   }
   guide.wheels[0].is_backward = left < 0;
   guide.wheels[1].is_backward = right < 0;

@@ -79,7 +79,7 @@ ReadingReport port_next_reading() {
   if (count == 0) {
     const uint8_t sensor = dropped_sensors.first();
     dropped_sensors.remove(sensor);
-    return reading_of(sensor | kUntold, board_readings()[sensor]);
+    return reading_of(sensor | kAfterGap, board_readings()[sensor]);
   }
   const ReadingReport& reading = reports[oldest];
   oldest = static_cast<uint8_t>((oldest + 1) % kMostReadings);

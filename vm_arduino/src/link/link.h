@@ -350,7 +350,7 @@ class Link {
   void put16(uint16_t value);
   void put_all(const void* bytes, uint8_t length);
   void close();
-  bool separate();
+  bool sends_separator();
   void hand_over();
   void hand_over_frame();
 

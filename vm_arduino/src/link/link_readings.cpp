@@ -58,7 +58,7 @@ void Link::send_late_value() {
 }
 
 void Link::send_reading() {
-  if (separate()) return;
+  if (sends_separator()) return;
   const ReadingReport reading = port_next_reading();
   begin_event(Message::kReading);
   put_all(&reading, sizeof reading);

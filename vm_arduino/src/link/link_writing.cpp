@@ -73,8 +73,8 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
   const bool is_heard = is_listened_to();
   if (!is_heard && !console_.is_talking()) return true;
   // An answer in text waits until no frames come: a value for a client does not wait for that.
-  const uint8_t first = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
-  const bool is_busy = bytes_left_ != 0 || (due_ & first) != 0;
+  const uint8_t waited_for = is_heard ? static_cast<uint8_t>(~kDueText) : 0xff;
+  const bool is_busy = bytes_left_ != 0 || (due_ & waited_for) != 0;
   if (is_busy && !(kTellsReadings && is_heard && is_free_without_readings())) return false;
   if (has_late_value()) return false;
   if (!is_heard) {
@@ -83,7 +83,7 @@ tini_noinline bool Link::show(int32_t value, bool is_yes_no) {
     return true;
   }
   if (kTellsReadings && keep_value(value, is_yes_no)) return true;
-  if (separate()) return false;
+  if (sends_separator()) return false;
   const ShownValue shown_value = {value, is_yes_no, port_status().run, port_shown_at()};
   begin_event(Message::kShow);
   put_all(&shown_value, sizeof shown_value);
@@ -101,27 +101,27 @@ void Link::send() {
   if (kHasBreakpoints && (!is_listened_to() || !port_is_halted())) {
     due_ &= static_cast<uint8_t>(~kDueHalted);
   }
-  const uint8_t first = static_cast<uint8_t>(due_ & -due_);
-  if (kTellsReadings && has_late_value_ && first != kDueReply) return send_late_value();
-  if (kTellsReadings && (first & kBeforeReadings) == 0 && has_reading()) return send_reading();
-  if (first == 0) return;
-  if (kHasText && first == kDueText) return send_text();
-  if (separate()) return;
-  due_ ^= first;
-  if (first == kDueReply) {
+  const uint8_t next_due = static_cast<uint8_t>(due_ & -due_);
+  if (kTellsReadings && has_late_value_ && next_due != kDueReply) return send_late_value();
+  if (kTellsReadings && (next_due & kBeforeReadings) == 0 && has_reading()) return send_reading();
+  if (next_due == 0) return;
+  if (kHasText && next_due == kDueText) return send_text();
+  if (sends_separator()) return;
+  due_ ^= next_due;
+  if (next_due == kDueReply) {
     reply();
-  } else if (first == kDueStopped) {
+  } else if (next_due == kDueStopped) {
     begin_event(Message::kStopped);
     put(byte_of(cause_));
-  } else if (kHasBreakpoints && first == kDueHalted) {
+  } else if (kHasBreakpoints && next_due == kDueHalted) {
     tell_halt();
   } else {
-    begin_event(first == kDueFault ? Message::kFault : Message::kDone);
+    begin_event(next_due == kDueFault ? Message::kFault : Message::kDone);
     put(ended_run_);
-    if (first == kDueFault) put_all(&port_status().fault, kFaultBytes);
+    if (next_due == kDueFault) put_all(&port_status().fault, kFaultBytes);
   }
   close();
-  if (kTellsReadings && first == kDueReply) reply_bytes_ = size_;
+  if (kTellsReadings && next_due == kDueReply) reply_bytes_ = size_;
 }
 
 void Link::reply() {
@@ -206,19 +206,19 @@ void Link::describe() {
 
 void Link::fetch() {
   const uint16_t length = port_image_length();
-  const uint8_t first = kHasSeals ? static_cast<uint8_t>(size_ - 1) : kPayloadAt;
-  const bool is_sealed = first != kPayloadAt;
+  const uint8_t answer_at = kHasSeals ? static_cast<uint8_t>(size_ - 1) : kPayloadAt;
+  const bool is_sealed = answer_at != kPayloadAt;
   const uint8_t max_size =
       static_cast<uint8_t>(kLargestFrame + kTypeAt - kCrcBytes - (is_sealed ? kTagBytes : 0));
   if (kHasLargeFrames && !is_sealed && reply_.detail + kSmallFetch < length) {
-    put(out_[first]);
-    out_[first] = 0;
+    put(out_[answer_at]);
+    out_[answer_at] = 0;
   }
   put16(length);
   for (uint16_t offset = reply_.detail; offset < length && size_ < max_size; offset++) {
     const Answer answer = port_image_byte(offset, out_ + size_++);
     if (answer != Answer::kOk) {
-      size_ = first;
+      size_ = answer_at;
       put(byte_of(answer));
       put16(0);
       return;
@@ -256,7 +256,7 @@ void Link::close() {
 }
 
 // Sends the 0x00 that is before a frame, unless frames have come until now. False: none is needed.
-bool Link::separate() {
+bool Link::sends_separator() {
   if (left_ms_[kFrameSent] > kTextMs - kZeroMs) return false;
   size_ = 0;
   put(0);

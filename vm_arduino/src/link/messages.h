@@ -52,7 +52,7 @@ constexpr uint16_t kTrustBytes = 2048;
 constexpr uint8_t kMostPad = 100;
 constexpr uint16_t kHoldMs = 500;
 constexpr uint8_t kMostBreakpoints = 4;
-constexpr uint8_t kUntold = 128;
+constexpr uint8_t kAfterGap = 128;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;

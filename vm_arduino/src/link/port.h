@@ -208,7 +208,7 @@ bool port_report_task(uint8_t task, TaskReport* report);
 // The readings of a program, as READING sends them.
 struct tini_packed ReadingReport {
   uint8_t run;
-  uint8_t sensor;  // with kUntold
+  uint8_t sensor;  // with kAfterGap
   int32_t value;
   uint16_t ms;
 };

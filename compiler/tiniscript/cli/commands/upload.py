@@ -172,7 +172,9 @@ def _upload(
         if recorder is not None:
             recorder.close()
             if recorder.unreadable_sensors:
-                say_aside("record_untold", language, sensors=", ".join(recorder.unreadable_sensors))
+                say_aside(
+                    "record_incomplete", language, sensors=", ".join(recorder.unreadable_sensors)
+                )
 
 
 def _ask_for_readings(connection: Connection) -> bool:

@@ -141,7 +141,7 @@ export class Recorder {
   #show() {
     setHidden(this.#playButton, !this.#run?.rows.length);
     const notice = element('record_lacks', HTMLElement);
-    const noticeKey = this.#incompleteSensors.size ? 'record_untold' : this.#lacksReadings && this.#readsSensor ? 'record_no_readings' : null;
+    const noticeKey = this.#incompleteSensors.size ? 'record_incomplete' : this.#lacksReadings && this.#readsSensor ? 'record_no_readings' : null;
     setHidden(notice, !this.#run || !noticeKey);
     notice.textContent = this.#run && noticeKey ? textOf(noticeKey, { sensors: [...this.#incompleteSensors].join(', ') }) : '';
   }
