@@ -19,20 +19,11 @@ export class TimeLine {
   #onLook;
   #drawnKey = ''; // of which marks the picture is
   #size = [0, 0]; // of the canvas, whose layout nobody waits for
-  #isDragged = false;
 
   /** @param {() => void} onLook another moment is looked at */
   constructor(onLook) {
     this.#onLook = onLook;
     this.#slider.addEventListener('input', () => this.lookAt(Number(this.#slider.value)));
-    this.#slider.addEventListener('pointerdown', () => { this.#isDragged = true; });
-    for (const type of ['pointerup', 'pointercancel']) {
-      window.addEventListener(type, () => {
-        if (!this.#isDragged) return;
-        this.#isDragged = false;
-        if (this.#seen_ms !== null) this.#onLook();
-      });
-    }
     this.#slider.addEventListener('keydown', (event) => {
       const direction = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
       if (!direction || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -44,11 +35,6 @@ export class TimeLine {
       this.#size = [this.#marksCanvas.clientWidth, this.#marksCanvas.clientHeight];
       this.#drawMarks();
     }).observe(this.#marksCanvas);
-  }
-
-  /** Whether a finger or a mouse holds it. */
-  get isDragged() {
-    return this.#isDragged;
   }
 
   /** The run that is seen. */
