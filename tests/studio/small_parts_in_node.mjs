@@ -339,7 +339,7 @@ const PARTS = {
     Object.defineProperty(canvas, 'height', { set() {}, get: () => size[1] * ratio, configurable: true });
     let size = [0, 0], ratio = 1, looks = 0, wantedLooks = 0, paintings = 0;
     const line = new TimeLine(() => { looks += 1; });
-    let run = null, at_ms = null, isDragged = false, isShown = false, isDrawn = false, count = 0, bumps = 0, now_ms = 0;
+    let run = null, at_ms = null, isShown = false, isDrawn = false, count = 0, bumps = 0, now_ms = 0;
     const EMPTY = new Run({ of: 'virtual', text: '', robot: '', program: '' }, { places: [], shows: [], variables: [] }, null);
     const seen = () => run ?? EMPTY;
     const momentOf = () => seen().moments.momentAt(at_ms ?? Infinity);
@@ -410,15 +410,6 @@ const PARTS = {
         if (isOurs) looksAt(moments.at(moment).now_ms);
         isShown = false;
       },
-      presses() {
-        slider.dispatchEvent(new Event('pointerdown'));
-        isDragged = true;
-      },
-      releases() {
-        window.dispatchEvent(new Event(random.of(['pointerup', 'pointercancel'])));
-        if (isDragged && at_ms !== null) wantedLooks += 1;
-        isDragged = false;
-      },
       resizes() {
         size = random.of([[0, 0], [100, 20], [300, 20]]);
         [canvas.clientWidth, canvas.clientHeight] = size;
@@ -433,7 +424,7 @@ const PARTS = {
     };
     const checks = () => {
       is(looks, wantedLooks, 'times that somebody looked back');
-      is([line.isDragged, line.run === seen() || !run], [isDragged, true], 'what is held or seen');
+      is(line.run === seen() || !run, true, 'the run that is seen');
       const { moments, marks } = seen();
       is(line.seenState, at_ms === null ? null : moments.at(momentOf()), 'the state');
       const { shown = [] } = moments.at(momentOf());

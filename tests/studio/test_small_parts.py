@@ -22,7 +22,7 @@ NEEDED_ACTS = {
     "own": {"opens", "names", "paints", "fills"},
     "twice": {"presses", "keys", "hides"},
     "stop": {"begins", "ends", "connects", "leaves", "presses"},
-    "timeLine": {"begins", "moves", "keys", "presses", "releases", "resizes"},
+    "timeLine": {"begins", "moves", "keys", "resizes"},
     "editor": {"halts", "runs", "ends", "types"},
     "runs": {"opens", "sees", "saves", "chooses", "drops"},
     "keys": {"opens", "puts"},
