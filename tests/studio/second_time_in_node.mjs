@@ -2651,7 +2651,7 @@ const PARTS = {
         if (place.dataset['confirmed'] !== `${confirmedCount}`) throw new Error(`${confirmedCount} have confirmed, and it says ${place.dataset['confirmed']}`);
         await passes(20_000); // a robot that has not confirmed may drive; that all stood says nothing of now
         if (place.hidden === confirmedCount < robots.length) throw new Error(`${confirmedCount} have confirmed, and later it is ${place.hidden ? 'hidden' : `said: ${shown()}`}`);
-      }
+      } else if (!isGood) await passes(random.below(14_000)); // what it says of this stop hides nothing of the next one
       return { ends: [isGood ? 'over' : robots.some((item) => item.late_ms > 1e6) ? 'silent' : 'confirmed'], seen };
     };
   },
