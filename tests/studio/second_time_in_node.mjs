@@ -3727,7 +3727,7 @@ const PARTS = {
         if (!kept.has(name)) kept.set(name, new Map());
         return storeOf(kept.get(name));
       },
-      match: async (name) => [...kept.values()].map((all) => all.get(name)).find(Boolean),
+      match: async (name, { cacheName = '' } = {}) => [...kept].filter(([store]) => !cacheName || store === cacheName).map(([, all]) => all.get(name)).find(Boolean),
       delete: async (name) => kept.delete(name),
       keys: async () => [...kept.keys()],
     };
