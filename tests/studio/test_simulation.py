@@ -124,6 +124,7 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
     assert simulation.state()["events"] == []
 
 
+LOOPING_PROGRAM = "SI|LOOP(FOREVER);\nSHOW(TIME);\nF(0.07, 60);\nR(0.03, 40);\nW(0.01);\nEND_LOOP"
 BUTTON_PROGRAM = "SB|LOOP(3);SHOW(TIME);F(0.1, 60);R(0.1, 40);END_LOOP;F(60, 20)"
 
 
@@ -162,6 +163,31 @@ def test_a_run_after_any_history_equals_the_first(seed: int) -> None:
         assert one_simulation.held_at is None
         runs.append(trace_of(one_simulation))
     assert runs[0] == runs[1] and len(runs[0]) > 10
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_breakpoints_count_from_whenever_they_are_set(seed: int) -> None:
+    """The program halts as if they had been set at its start, in place of any others."""
+    rng = random.Random(seed)
+    parts = started_simulation(LOOPING_PROGRAM).marks.part_offsets
+    breakpoints = rng.sample(parts[1:], rng.randint(1, 2))
+    set_ms = rng.randrange(500)
+    halts = list[list[tuple[int, int]]]()
+    for breakpoints_before in (breakpoints, rng.sample(parts, rng.randint(0, 1)), ()):
+        simulation = started_simulation(LOOPING_PROGRAM)
+        start_ms = simulation.robot.now_ms
+        simulation.set_breakpoints(breakpoints_before)
+        halts.append([])
+        for ms in range(1000):
+            if ms == set_ms:
+                simulation.set_breakpoints(breakpoints)
+            while simulation.robot.now_ms - start_ms <= ms:
+                simulation.advance(1)
+                if simulation.held_at is not None:
+                    if ms >= set_ms:
+                        halts[-1].append((ms, simulation.held_at))
+                    simulation.go_on()
+    assert halts[0] and halts[1] == halts[2] == halts[0]
 
 
 def test_a_fault_is_named() -> None:
