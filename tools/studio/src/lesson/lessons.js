@@ -78,6 +78,8 @@ export class Lessons {
   #findingsElement = element('lesson_findings', HTMLElement);
   #nextButton = element('lesson_next', HTMLButtonElement);
   #hintElement = element('lesson_hint', HTMLDetailsElement);
+  /** Where the step is above the program, on a phone. */
+  #unfoldButton = element('lesson_unfold', HTMLButtonElement);
   #pictures;
   /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').SpokenBlock>} */
   #spokenBlocks = {};
@@ -134,6 +136,7 @@ export class Lessons {
       } else this.#showJudgement();
       this.#keepProgram();
     });
+    this.#unfoldButton.addEventListener('click', () => this.#unfold(this.#unfoldButton.getAttribute('aria-expanded') === 'false'));
     const lessonPage = element('lesson_page', HTMLElement);
     const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - SCROLL_TOLERANCE_PX);
     lessonPage.addEventListener('scroll', markMore, { passive: true });
@@ -249,6 +252,12 @@ export class Lessons {
     this.#setReady(true);
   }
 
+  /** @param {boolean} isWhole the step lies over the blocks, where it is two lines above them otherwise */
+  #unfold(isWhole) {
+    this.#unfoldButton.setAttribute('aria-expanded', String(isWhole));
+    element('lesson_page', HTMLElement).scrollTop = 0;
+  }
+
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
@@ -257,7 +266,7 @@ export class Lessons {
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
-    element('lesson_page', HTMLElement).scrollTop = 0;
+    this.#unfold(false);
     this.#hintElement.open = false;
     this.#hintElement.hidden = !this.#steps[stepIndex]?.hint;
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, index) => {
