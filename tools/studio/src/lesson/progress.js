@@ -89,6 +89,12 @@ export function loadProgram(name) {
   return loadPrograms().get(name) ?? '';
 }
 
+/** A lesson has no program any more. @param {string} name */
+export function forgetProgram(name) {
+  const programs = loadPrograms();
+  if (programs.delete(name)) storeText(PROGRAMS_KEY, JSON.stringify(Object.fromEntries(programs)));
+}
+
 /** Keeps the newest program of a lesson. @param {string} name @param {string} text */
 export function storeProgram(name, text) {
   if (text.trim() && text.length <= MOST_CHARACTERS) storeText(PROGRAMS_KEY, JSON.stringify(Object.fromEntries(loadPrograms().set(name, text))));
