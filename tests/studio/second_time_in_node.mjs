@@ -3127,7 +3127,7 @@ const PARTS = {
     const { dataset } = document.documentElement;
     const text = 'F(1)\nF(2)\nF(3)\nF(4)\nF(5)\nF(6)\nF(7)\nF(8)\nF(9)';
     const places = text.split('\n').map((_, k) => [10 * k, k + 1, 1, k + 1, 5]), halts = places.map(([offset]) => offset + 1);
-    const programs = ['a', 'b'].map((program) => ({ program, places, halts, variables: [{ name: 'X', is_yes_no: false }] }));
+    const programs = ['a', 'b'].map((program) => ({ program, text, places, halts, variables: [{ name: 'X', is_yes_no: false }] }));
     const points = places.map(() => ({}));
     pageState.programText.set(text);
     let answersLate = () => 5, loses = () => false, wrong = '';
@@ -3158,7 +3158,7 @@ const PARTS = {
         if (isLost || by !== info) return null; // also of a robot that is gone
         return action === 'variables' ? { variables: [7] } : action === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
       },
-      uploadPaused: () => actions.uploads(null, true), say() {}, canGetHalting: async () => false, getHalting() {},
+      uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHalting: async () => false, getHalting() {},
       place: { hold: () => {}, goOn: () => {} },
       recorder: { halt: () => { clock = 1; }, goOn: () => { clock = 0; } },
     });

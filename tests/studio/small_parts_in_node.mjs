@@ -55,6 +55,7 @@ const PARTS = {
     const { BEGINNINGS } = await page.load('start/beginnings.js');
     const versions = await page.load('programs/versions.js');
     const progress = await page.load('lesson/progress.js');
+    const { STARS } = await page.load('page/words.js');
     const hasStart = random() < 0.8, isProgram = random() < 0.2;
     location.hash = random.of(['', '', '#editor', '#p=given']);
     let entries = 0;
@@ -138,8 +139,9 @@ const PARTS = {
         pageState.view.set(pageState.view.value);
       },
       stars() {
-        if (random() < 0.5) progress.storeDone(random.of(['one', 'two']));
-        else progress.storeStars(random.of(['one', 'three']), 1 + random.below(3));
+        const names = [...Object.keys(STARS.lessons).slice(-3), 'gone']; // a lesson that is no more counts nothing
+        if (random() < 0.5) progress.storeDone(random.of(names));
+        else progress.storeStars(random.of([...names, ...Object.keys(STARS.worlds).map(progress.starsKeyOfWorld)]), 1 + random.below(9));
         pageState.language.set(pageState.language.value);
       },
       forgets() {
@@ -167,8 +169,57 @@ const PARTS = {
       is(page.byId('start_programs').children.map((row) => [saidOf(row.querySelector('strong')), saidOf(row.querySelector('time'))]),
         earlier.map((version, k) => [versions.versionTitle(version, earlier.length - k), times.format(new Date(version.at_ms))]).slice(0, 6), 'the programs');
       is(page.byId('start_programs_title').hidden, !earlier.length, 'no title');
-      const stars = progress.countAllStars(), badge = page.byId('start_badge'), done = progress.loadDoneLessons().size;
-      is([badge.hidden, ...badge.children.map(saidOf)], [!stars, `${done ? `✓ ${done}  ` : ''}★ ${stars}`, text('lesson_progress', { done, stars })], 'the stars');
+      const badge = page.byId('start_badge'), doneLessons = progress.loadDoneLessons(), earned = progress.loadStars();
+      const most = [...Object.entries(STARS.lessons), ...Object.entries(STARS.worlds).map(([name, count]) => [progress.starsKeyOfWorld(name), count])];
+      const [stars, all] = [most.map(([name, count]) => Math.min(count, earned.get(name) ?? 0)), most.map(([, count]) => count)].map((counts) => counts.reduce((sum, count) => sum + count, 0));
+      const lessons = Object.keys(STARS.lessons).length, done = Object.keys(STARS.lessons).filter((name) => doneLessons.has(name)).length;
+      is([badge.hidden, ...badge.children.map(saidOf)], [!stars, `✓ ${done}/${lessons}  ★ ${stars}/${all}`, text('lesson_progress', { done, lessons, stars, most: all })], 'the stars');
+    };
+    return { acts: actions, checks };
+  },
+
+  // Earlier programs, of two tabs and of a storage that may bring anything: each is there once.
+  async versions(random) {
+    const page = freshPage();
+    await learns(page);
+    const { deleteVersion, loadVersions, restoreVersion, sameProgramAs, storeVersion } = await page.load('programs/versions.js');
+    const KEY = 'tiniscript.versions';
+    let model = [], at_ms = 1e12, deleted = [];
+    const same = (one, other) => one.robot === other.robot && one.text.replace(/\s/g, '') === other.text.replace(/\s/g, '');
+    const some = () => ({ text: random.of(['F(1);', 'F( 1 );', 'F(2);', 'F(1);B(2);', 'S;']), robot: random.of(['tinibot', 'liner']), name: random.of(['', 'one.ts', 'two.ts']) });
+    const actions = {
+      keeps() {
+        const program = some();
+        at_ms += random.of([1, 1, 1000, -5000]); // a clock may be set back
+        is(storeVersion(program, at_ms), true, 'whether it is kept');
+        model = [{ ...program, at_ms }, ...model.filter((other) => !same(other, program))];
+      },
+      deletes() {
+        if (!model.length) return;
+        const version = random.of(model);
+        deleteVersion(version);
+        deleted.push(version);
+        model = model.filter((other) => other !== version);
+      },
+      restores() {
+        if (!deleted.length) return;
+        const version = random.of(deleted);
+        is(restoreVersion(version), true, 'whether it is back');
+        if (model.some((other) => same(other, version))) return;
+        const older = model.findIndex((other) => other.at_ms < version.at_ms);
+        model.splice(older < 0 ? model.length : older, 0, version);
+      },
+      opensWindow: () => { deleted = []; },
+      stores() { // another tab, or an older page, which knew no such law
+        const versions = Array.from({ length: random.below(9) }, () => ({ ...some(), at_ms: at_ms + random.below(9) }));
+        window.localStorage.setItem(KEY, JSON.stringify(versions));
+        model = versions.filter((version, k) => !versions.slice(0, k).some((other) => same(other, version)));
+      },
+    };
+    const checks = () => {
+      const versions = loadVersions();
+      is(versions, model, 'the programs');
+      for (const [k, version] of versions.entries()) if (versions.slice(k + 1).some(sameProgramAs(version))) throw new Fails(`${version.text} is there twice`);
     };
     return { acts: actions, checks };
   },

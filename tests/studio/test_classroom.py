@@ -20,6 +20,7 @@ from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, classroom, recordings
 from tiniscript.studio import rates as rate_of
 from tiniscript.studio.class_keeping import Keeper
+from tiniscript.studio.classroom import CHANGES
 from tiniscript.studio.rates import Rate
 from tiniscript.studio.robot_link import BadRequest
 
@@ -670,6 +671,47 @@ def test_a_crash_ends_no_class(class_file: Path, keeper: Keeper) -> None:
     room.teaches("class_over")
     keeper.keep(room.classroom.state_to_keep())
     assert not class_file.exists() and resume_class(Room(), keeper) == 0
+
+
+def test_no_crash_loses_what_the_teacher_was_told(class_file: Path, keeper: Keeper) -> None:
+    """It is kept before the answer, whatever the loop of the command does meanwhile."""
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.checks_in(luz, text="S")
+    class_ = command._Class(room.classroom, keeper)
+    for action, fields in (
+        ("class_hand_out", {"lesson": 3}),
+        ("class_hand_out", {"text": "F(1, 50)", "robot": "tinibot"}),
+        ("class_turn", {"seconds": 70}),
+        ("class_places", {"places": 7}),
+        ("class_code", {}),
+        ("class_robot", {"port": "port9", "gives": True}),
+        ("class_bring", {"name": "Eve", "text": "B(1, 50)", "robot": "tinibot"}),
+        ("class_remove", {"pupil": room.number("Luz")}),
+        ("class_anew", {}),
+    ):
+        class_.teach({"do": action, **fields})
+        assert_nothing_is_lost(room, keeper)
+        if action == "class_hand_out":
+            room_after = Room(0)
+            resume_class(room_after, keeper)
+            assert room_after.checks_in(ana)["handout"] == room.checks_in(ana)["handout"]
+    class_.teach({"do": "class_over"})
+    assert not class_file.exists()
+
+
+def assert_nothing_is_lost(room: Room, keeper: Keeper) -> None:
+    saved_class = keeper.read()
+    assert saved_class is not None
+    state = room.classroom.state_to_keep()
+    assert json.loads(json.dumps(state)).items() <= saved_class.state.items()
+
+
+@pytest.mark.parametrize("action", CHANGES)
+def test_a_change_is_for_the_teacher_alone(action: str) -> None:
+    room = Room()
+    with pytest.raises(BadRequest):
+        room.classroom.answer(room.joins("Eve"), PUPIL_ADDRESS, {"do": action})
 
 
 def test_a_damaged_class_continues_with_the_intact_parts(class_file: Path, keeper: Keeper) -> None:

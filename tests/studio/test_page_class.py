@@ -247,11 +247,17 @@ def test_features_missing_in_plain_http_are_not_offered(ana: Page) -> None:
     assert ana.inner_text("#side_class") == "Your group"  # there is no wall in this state
 
 
-@pytest.mark.parametrize("size", [(1366, 768), (390, 844)], ids=str)
+# The most pixels of a page's height that the entrance takes, by the size of the page.
+ENTRANCE_HEIGHTS = {(1366, 768): 110, (1024, 600): 130, (390, 844): 280}
+
+
+@pytest.mark.parametrize("size", ENTRANCE_HEIGHTS, ids=str)
 def test_opening_the_address_of_a_class_shows_its_entrance(
     pages: Pages, shared_class: Class, size: tuple[int, int]
 ) -> None:
-    """Code and name come before everything else; the focus is in the code."""
+    """Code and name come before everything else, and leave the page its room; the focus is in the
+    code. What is said there follows the language.
+    """
     page = pages.open("blocks", viewport={"width": size[0], "height": size[1]}, locale="es-AR")
     page.locator("#class_entry").wait_for()
     assert page.inner_text("#class_entry h2") == "Entra a la clase"
@@ -261,7 +267,12 @@ def test_opening_the_address_of_a_class_shows_its_entrance(
         assert (
             box and box["y"] + box["height"] <= size[1] / 2 and box["x"] + box["width"] <= size[0]
         )
+    assert page.locator("#class_entry").evaluate("e => e.offsetHeight") <= ENTRANCE_HEIGHTS[size]
+    for language, words in (("en", "To send a program"), ("es", "Para enviar un programa")):
+        speak(page, language)
+        page.locator("#class_entry [role=status]", has_text=words).wait_for()
     assert axe(page) == []
+    page.locator("#class_entry input").first.focus()
     page.keyboard.type(shared_class.room.code)
     page.keyboard.press("Tab")
     page.keyboard.type("Eva")

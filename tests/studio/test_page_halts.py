@@ -21,7 +21,15 @@ from tests.support.page_link import (
 from tests.support.page_robot import running
 from tests.support.pty_robot import PtyRobot
 from tests.support.silent_serial import SILENT_SERIAL
-from tests.support.studio import UPLOADS, Pages, enter, wait_for, wait_until_checked, write
+from tests.support.studio import (
+    UPLOADS,
+    Pages,
+    enter,
+    wait_for,
+    wait_for_blocks,
+    wait_until_checked,
+    write,
+)
 from tiniscript import robots
 from tiniscript.flash.ready import title_of
 from tiniscript.studio import robot_link
@@ -169,6 +177,28 @@ def test_a_halt_reports_where_the_other_tasks_are(page: Page) -> None:
         "task on line 5\nusing the motors",
         "task on line 9\nwaiting for the motors",
     ]
+
+
+@sampled
+def test_a_halt_and_a_fault_name_blocks_where_they_are_seen(page: Page) -> None:
+    """The same ones, whatever has been built since."""
+    text = "TASK;\nW(0.5);\nEND_TASK;\nZ = 0;\nW(0.05);\nF(0.05, 60);\nSHOW(2 / Z)"
+    write_with_breakpoints(page, text, (6,))
+    page.click("#view_blocks")
+    wait_for_blocks(page)
+    page.click("#link_upload")
+    wait_for_message(page, "Stopped before “forward 0.05 s at 60 %”.")
+    page.locator("html[data-halt=read]").wait_for(state="attached")
+    tasks = page.locator("#link_values div").filter(has_text="task")
+    assert tasks.all_inner_texts() == ["task at “wait 0.5 s”\nwaiting"]
+    page.click("#view_text")
+    wait_for_message(page, "Stopped before line 6.")
+    assert tasks.all_inner_texts() == ["task on line 2\nwaiting"]
+    write(page, "// a note\n" + text)
+    page.click("#view_blocks")
+    wait_for_message(page, "Stopped before “forward 0.05 s at 60 %”.")
+    page.click("#link_go_on")
+    wait_for_message(page, re.compile("^“show …”: "))
 
 
 LOOP_PROGRAM = "SHOW(1);\nLOOP(FOREVER);\nF(0.05, 80);\nSHOW(2);\nEND_LOOP"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_lessons import check_answer, choose_lesson
+from tests.support.page_programs import list_programs
 from tests.support.page_robot import wait_for_nothing_running, wait_for_running
 from tests.support.sampling import sample_of
 from tests.support.studio import (
@@ -530,6 +531,66 @@ def test_returning_to_a_lesson_restores_its_program(page: Page) -> None:
     page.click("#home")
     page.click("#start_write")
     editor.filter(has_text=own_text).wait_for()
+
+
+# The names of the buttons nearer than 24 pixels to the one that begins a lesson again, at the end
+# of its page.
+NEAR_SCRIPT = """() => {
+  const button = document.querySelector('#lesson_anew');
+  const page = document.querySelector('#lesson_page');
+  page.scrollTop = page.scrollHeight;
+  const own = button.getBoundingClientRect();
+  const others = document.querySelectorAll('button, select, summary');
+  return [...others].filter((each) => {
+    if (each === button || !each.checkVisibility()) return false;
+    const box = each.getBoundingClientRect();
+    const aside = Math.max(box.left - own.right, own.left - box.right, 0);
+    const above = Math.max(box.top - own.bottom, own.top - box.bottom, 0);
+    return Math.hypot(aside, above) < 24;
+  }).map((each) => each.id || each.textContent);
+}"""
+
+
+@sampled
+def test_a_solved_lesson_can_be_started_again(page: Page) -> None:
+    """Its program is kept before, and undo brings it back; the lesson stays solved."""
+    page.evaluate("localStorage.removeItem('tiniscript.lessons')")
+    anew = page.locator("#lesson_anew")
+    editor = page.locator(".cm-content")
+    solution = catalogue.answers(FOLDERS[0])[0][0].program
+    choose_lesson(page, 1)
+    page.locator("#lesson_steps button").first.click()
+    page.locator("#lesson_page .program button").first.click()
+    page.locator("#lesson_steps button").last.click()
+    write(page, solution)
+    assert not anew.is_visible()  # it is not solved
+    assert check_answer(page, solution)[0] == "passed"
+    for size in PAGES:
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        turn(page, "robot")
+        assert page.evaluate(NEAR_SCRIPT) == [], size
+    page.set_viewport_size({"width": 1366, "height": 768})
+    for is_again in (False, True):
+        anew.click()
+        wait_for_note(page, "The lesson starts again. Your program is in My programs")
+        wait_until_checked(page)
+        assert editor.inner_text().strip() == "" and not anew.is_visible()
+        page.locator("#lesson_steps li:first-child [aria-current]").wait_for()
+        assert page.locator("#lesson_said[data-verdict]").count() == 0
+        assert page.locator("#lesson option:checked").inner_text().endswith(" ✓ done")
+        if not is_again:
+            page.click("#undo")
+            editor.filter(has_text=solution.splitlines()[0]).wait_for()
+            anew.wait_for()
+    page.click("#home")
+    page.click("#start_lessons")
+    page.locator("#lesson:enabled").wait_for()
+    page.click("#my_programs")
+    assert catalogue.load(FOLDERS[0]).title("en") in list_programs(page)
+    page.click("#programs_close")
+    choose_lesson(page, 2)
+    choose_lesson(page, 1)
+    assert solution.splitlines()[0] not in editor.inner_text()
 
 
 def test_a_program_that_suits_the_lesson_is_kept(page: Page) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.support.page_blocks import PROGRAM, box_of, start
+from tests.support.page_lessons import choose_lesson
 from tests.support.page_robot import wait_for_running
 from tests.support.studio import (
     SETTLED_SCRIPT,
@@ -373,3 +374,95 @@ def test_stop_takes_the_place_of_run_while_something_runs(phone: Page, language:
     turn(phone, "program")
     assert boxes() == boxes_before
     speak(phone, "en")
+
+
+# The lowest height of the blocks beside the step of a lesson, by the size of the phone.
+LESSON_SIZES = {(390, 844): 400, (320, 640): 200, (844, 390): 150}
+SMALLEST_TARGET = 24
+# Whether the first words of what is to be done are seen, and whether the last ones are.
+READ_SCRIPT = """() => {
+  const step = document.querySelector('#lesson_step');
+  const strip = document.querySelector('#lesson_page').getBoundingClientRect();
+  const paragraphs = [...step.querySelectorAll('p')].filter((each) => each.checkVisibility());
+  const isSeen = (text, end) => {
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    const boxes = [...range.getClientRects()];
+    const { top, bottom } = boxes.at(end);
+    return top >= strip.top && bottom <= strip.bottom;
+  };
+  return [isSeen(paragraphs[0], 0), isSeen(paragraphs.at(-1), -1)];
+}"""
+BOXES_SCRIPT = """() => Object.fromEntries(['lessons', 'blocks', 'said', 'views', 'run']
+  .map((id) => [id, document.getElementById(id).getBoundingClientRect().toJSON()]))"""
+UNDER_SCRIPT = """(id) => {
+  const { left, top, width, height } = document.getElementById(id).getBoundingClientRect();
+  return document.elementFromPoint(left + width / 2, top + height / 2)?.id;
+}"""
+
+
+@sampled
+@pytest.mark.parametrize("size", LESSON_SIZES, ids=lambda size: "x".join(map(str, size)))
+def test_the_step_of_a_lesson_is_above_its_program(phone: Page, size: tuple[int, int]) -> None:
+    """It is two lines until somebody taps on it. Nothing moves then, and nothing with a run."""
+    write(phone, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+    phone.click("#view_blocks")
+    phone.set_viewport_size({"width": size[0], "height": size[1]})
+    turn(phone, "robot")
+    phone.click("#side_lessons")
+    choose_lesson(phone, 4)
+    turn(phone, "program")
+    wait_for_blocks(phone)
+    phone.evaluate(SETTLED_SCRIPT)
+    boxes = phone.evaluate(BOXES_SCRIPT)
+    line_height = phone.locator("#lesson_step").evaluate(
+        "e => parseFloat(getComputedStyle(e).lineHeight)"
+    )
+    assert boxes["lessons"]["height"] <= 3 * line_height
+    assert boxes["blocks"]["height"] >= LESSON_SIZES[size]
+    assert phone.evaluate(READ_SCRIPT) == [True, False]
+    assert phone.get_attribute("#lesson_unfold", "aria-expanded") == "false"
+    target = phone.locator("#lesson_unfold").bounding_box()
+    assert target and min(target["width"], target["height"]) >= SMALLEST_TARGET
+    phone.click("#lessons", position={"x": 30, "y": 20})  # its words
+    assert phone.get_attribute("#lesson_unfold", "aria-expanded") == "true"
+    phone.locator("#lesson_page").evaluate("e => { e.scrollTop = e.scrollHeight; }")
+    assert phone.evaluate(READ_SCRIPT)[1] and phone.evaluate(BOXES_SCRIPT) == boxes
+    assert phone.evaluate(UNDER_SCRIPT, "stop") == "stop"
+    assert axe(phone, within="#lessons") == []
+    phone.click("#lesson_unfold")
+    phone.click("#run")
+    wait_for_phase(phone, "running")
+    turn(phone, "program")
+    running_boxes = phone.evaluate(BOXES_SCRIPT)
+    assert phone.evaluate(READ_SCRIPT)[0] and running_boxes == boxes
+    phone.click("#stop")
+    wait_for_phase(phone, "ended")
+    assert phone.evaluate(BOXES_SCRIPT) == boxes
+    phone.evaluate("document.documentElement.dataset.peek = ''")  # a block is tried
+    assert phone.locator("#arena").is_visible() and phone.evaluate(BOXES_SCRIPT) == boxes
+    phone.evaluate("delete document.documentElement.dataset.peek")
+    assert not phone.locator("#arena").is_visible()
+    turn(phone, "robot")
+    phone.click("#side_virtual")
+    turn(phone, "program")
+    assert not phone.locator("#lesson_step").is_visible()
+
+
+@sampled
+def test_the_first_lines_above_a_program_are_an_instruction(phone: Page) -> None:
+    """What introduces the lesson is above it once all is shown."""
+    turn(phone, "robot")
+    phone.click("#side_lessons")
+    choose_lesson(phone, 1)
+    phone.locator("#lesson_steps button").first.click()
+    intro = phone.locator("#lesson_step .intro")
+    assert intro.is_visible() and phone.locator("#lesson_step .program").is_visible()
+    turn(phone, "program")
+    assert phone.locator("#lesson_step p").last.is_visible() and not intro.is_visible()
+    assert not phone.locator("#lesson_step .program").is_visible()
+    phone.click("#lesson_unfold")
+    assert intro.is_visible() and phone.locator("#lesson_step .program button").is_visible()
+    phone.click("#lesson_step .program button")
+    wait_until_checked(phone)
+    assert phone.locator(".cm-content").inner_text().startswith("SI|F(1, 80)")

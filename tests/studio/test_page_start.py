@@ -22,6 +22,7 @@ from tests.support.studio import (
     write,
 )
 from tiniscript import compile
+from tiniscript.lessons import catalogue
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page, Route
@@ -273,7 +274,8 @@ def test_a_solved_world_is_celebrated_and_its_stars_are_kept(start: Page) -> Non
     start.click("#stop")
     assert ("★" * stars) in str(start.locator("#world option[value=line]").text_content())
     start.click("#home")
-    assert start.locator("#start_badge").inner_text().startswith(f"★ {stars}")
+    lessons = len(catalogue.folders())
+    assert start.locator("#start_badge").inner_text().startswith(f"✓ 0/{lessons} ★ {stars}/")
 
 
 def test_a_new_program_puts_the_robot_at_its_start(start: Page) -> None:

@@ -22,6 +22,7 @@ from tests.support.crowd import HALF_A_REQUEST, crowd
 from tests.support.page_server import ask, serves
 from tests.support.studio import Class
 from tests.support.waiting import HANG_LIMIT_S
+from tiniscript.cli.commands import studio as command
 from tiniscript.studio import class_keeping, serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
@@ -179,6 +180,22 @@ def test_the_command_reports_errors(
     result = tsc("studio", "--no-browser", "--lang", "en", *words)
     assert result.code == code and message in result.err, result.err
     assert "\x1b" not in result.err
+
+
+def test_the_command_keeps_what_is_given_before_it_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n')
+    monkeypatch.setattr(serving, "files", lambda read=serving.files: read(tmp_path))
+    room = Classroom(Hosting(), [])
+    with closing(class_keeping.Keeper()) as keeper:
+        server = command._server(0, HOST, Hosting(), command._Class(room, keeper))
+        with serves(server):
+            request = {"do": "class_hand_out", "lesson": 3}
+            assert post(Class(server, room), request, server.entrances.token) == 200
+        kept_class = keeper.read()
+        assert kept_class is not None and kept_class.state["handout"]["lesson"] == 3
+        class_keeping.forget()
 
 
 def test_a_users_second_class_is_refused_without_effects(

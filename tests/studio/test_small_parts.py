@@ -19,6 +19,7 @@ HISTORIES = 12
 # What the histories of each part have to have done, for them to be about something.
 NEEDED_ACTS = {
     "start": {"begins", "ends", "back", "keeps", "opens", "stars"},
+    "versions": {"keeps", "deletes", "restores", "stores"},
     "own": {"opens", "names", "paints", "fills"},
     "twice": {"presses", "keys", "hides"},
     "stop": {"begins", "ends", "connects", "leaves", "presses"},

@@ -225,6 +225,10 @@ WRONG_CODE_RATE = (20, 1 / 3)
 REQUEST_RATE = (80, 40)
 # The robot requests that a pupil may make. Its name, its trim and its owner are the teacher's.
 ALLOWED_REQUESTS = ("hello", "upload", "live", "start", "identify", "trim", "keys", "stop")
+# Requests of the teacher's page that change what a class goes on with after a crash.
+CHANGES = ("class_robot", "class_turn", "class_places", "class_code", "class_hand_out",
+           "class_over", "class_remove", "class_bring", "class_forget", "class_give_back",
+           "class_anew")  # fmt: skip
 
 Clock = Callable[[], float]
 

@@ -13,6 +13,7 @@ from tiniscript.base.kit import REMOTE, REMOTE_SIGNS, Device
 from tiniscript.base.languages import languages, text
 from tiniscript.base.limits import PARAMETERS
 from tiniscript.base.words import WORDS
+from tiniscript.lessons import catalogue
 from tiniscript.library import opening
 from tiniscript.link.messages import MOST_BREAKPOINTS, NAME_BYTES, STOP_BYTES
 from tiniscript.link.remote import REPEAT_MS
@@ -22,6 +23,7 @@ from tiniscript.studio import class_keeping
 from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
+from tiniscript.virtual.score import MOST_STARS, Score
 
 
 def description() -> dict[str, Any]:
@@ -62,6 +64,17 @@ def description() -> dict[str, Any]:
         },
         "worlds": [form_of(worlds.load(name)) for name in worlds.names()],
         "world_limits": limits(),
+        "stars": _stars(),
+    }
+
+
+def _stars() -> dict[str, dict[str, int]]:
+    """Return the most stars of each lesson, and of each world that has a task."""
+    lessons = map(catalogue.load, catalogue.folders())
+    task_worlds = [name for name in worlds.names() if Score(worlds.load(name)).state()]
+    return {
+        "lessons": {lesson.name: lesson.world_count for lesson in lessons},
+        "worlds": dict.fromkeys(task_worlds, MOST_STARS),
     }
 
 

@@ -51,10 +51,12 @@ def titles(language: str) -> list[dict[str, Any]]:
 
 
 def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
-    """Return the steps with their blocks and hints. The last step is the task."""
+    """Return the steps with their blocks and hints. The last step is the task; what introduces the
+    lesson is of the kind `intro`, at the first step.
+    """
     page = catalogue.whole_page(_folder(number), catalogue.PUPIL, language, form)
     blocks_and_hints: list[tuple[list[Block], list[str]]] = []
-    intro_blocks: list[Block] = []  # blocks that the lesson introduces, at its first step
+    intro_blocks: list[Block] = []
     section = 0
     for block in blocks(studio_part(page)):
         if block.kind == "heading":
@@ -62,7 +64,7 @@ def steps(number: int, language: str, form: str = TEXT) -> list[dict[str, Any]]:
             if section == TASK_HEADING:
                 blocks_and_hints.append(([], []))
         elif section == 0 and block.kind == "paragraph":
-            intro_blocks.append(block)
+            intro_blocks.append(block._replace(kind="intro"))
         elif section == STEPS_HEADING and block.kind == "steps":
             blocks_and_hints += (([Block("paragraph", (row,))], []) for row in block.rows)
         elif section in (STEPS_HEADING, TASK_HEADING) and block.kind in ("paragraph", "program"):

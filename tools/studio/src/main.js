@@ -131,6 +131,7 @@ const lessons = new Lessons({
   python,
   work,
   put: (program) => programs.replaceProgram(program),
+  keep: () => programs.storeVersion(),
   exchange: (program) => {
     programs.storeVersion();
     openProgram(program);

@@ -28,6 +28,7 @@ import { watchPromise } from './page/progress.js';
 
 /**
  * @typedef {object} CheckResult
+ * @property {string} text that was compiled
  * @property {string} image hexadecimal; empty where there are mistakes
  * @property {string} program the image's checksum, in hexadecimal; empty where there are mistakes
  * @property {number} bytes of code

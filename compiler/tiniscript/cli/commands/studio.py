@@ -6,9 +6,9 @@ import socket
 import webbrowser
 from argparse import Namespace
 from contextlib import closing
+from dataclasses import dataclass, field
 from ipaddress import IPv4Address
-from threading import Thread
-from typing import NamedTuple
+from threading import Lock, Thread
 
 from tiniscript.cli import inputs, page_build
 from tiniscript.cli.errors import CommandError
@@ -18,16 +18,32 @@ from tiniscript.cli.terminal.progress import show_wait
 from tiniscript.cli.terminal.signals import handle_signals
 from tiniscript.cli.texts import say_aside
 from tiniscript.studio import building, class_keeping, serving
-from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.classroom import CHANGES, Classroom
 from tiniscript.studio.hosting import Hosting
+from tiniscript.studio.robot_link import Json
 
 PORT = 7070
 UNUSED_ADDRESS = "198.51.100.1"  # an address for documentation, which is never assigned
 
 
-class _Class(NamedTuple):
+@dataclass
+class _Class:
     room: Classroom
     keeper: class_keeping.Keeper
+    _lock: Lock = field(default_factory=Lock)
+
+    def teach(self, request: Json) -> Json:
+        """Answer the teacher's page. What it has changed is kept before the page is told of it, so
+        that no crash loses it.
+        """
+        answer = self.room.teach(request)
+        if request.get("do") in CHANGES:
+            self.keep()
+        return answer
+
+    def keep(self) -> None:
+        with self._lock:  # an older state never replaces a newer one
+            self.keeper.keep(self.room.state_to_keep())
 
 
 def run(options: Namespace, language: str) -> int:
@@ -56,7 +72,7 @@ def _serve(
         page_build.prepare(options, language)
     host, port = host_and_port
     try:
-        server = _server(port, host, hosting, class_.room if class_ else None)
+        server = _server(port, host, hosting, class_)
     except OSError as error:
         address = f"http://{host}:{port}/"
         key = "studio_no_address" if options.is_class else "studio_taken"
@@ -84,7 +100,7 @@ def _serve(
                     print(entrance, flush=True)
                 if class_ is not None:
                     class_.room.tend()
-                    class_.keeper.keep(class_.room.state_to_keep())
+                    class_.keep()
                     if class_.room.has_ended:
                         break
     except KeyboardInterrupt:
@@ -115,11 +131,11 @@ def _resume_class(class_: _Class) -> int:
     return pupils
 
 
-def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None) -> serving.Server:
+def _server(port: int, host: str, hosting: Hosting, class_: _Class | None) -> serving.Server:
     page = serving.files()
-    if classroom is None:
+    if class_ is None:
         return serving.Server(serving.with_firmware(page), port, hosting.answer)
-    return serving.Server(serving.for_class(page), port, classroom.teach, classroom, host)
+    return serving.Server(serving.for_class(page), port, class_.teach, class_.room, host)
 
 
 def _address() -> str:

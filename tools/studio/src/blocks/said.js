@@ -3,7 +3,7 @@
 import { COLOURS } from './colours.js';
 import { devicesOf, KINDS, deviceName, blockLabel, REMOTE } from '../page/words.js';
 import { pageState } from '../page/page_state.js';
-import { hasText } from '../page/texts.js';
+import { hasText, text } from '../page/texts.js';
 
 /** @typedef {import('./form.js').Value} Value */
 /** @typedef {{kind: string, word: string, values: Value[]}} SpokenBlock a block; of a value one without a kind */
@@ -83,13 +83,25 @@ export function labelOfLine(line) {
 }
 
 /**
+ * What somebody with blocks hears of a place in a program in place of its line, which nobody sees there.
  * @param {string} programText @param {{line: number, column: number}} place
- * @returns {string} what the block of the instruction there says; nothing where it has none
+ * @returns {string} what the block of the instruction there says; where no block has it, the instruction, and where there is none, the program
  */
 export function labelAt(programText, { line, column }) {
   const lineText = programText.split('\n')[line - 1] ?? '';
   const start = Math.max(...[';', '|'].map((separator) => lineText.lastIndexOf(separator, Math.max(0, column - 2)))) + 1;
-  return labelOfLine(lineText.slice(start).replace(/;.*/, '').trim());
+  const instruction = lineText.slice(start).replace(/;.*/, '').trim();
+  return labelOfLine(instruction) || instruction || text('editor');
+}
+
+/**
+ * Says something of a place in a program: of its block to who works with blocks, and else of its line.
+ * @param {import('../page/texts.js').Key} lineKey @param {import('../page/texts.js').Key} blockKey
+ * @param {string} programText @param {{line: number, column: number}} place @param {Record<string, string | number>} [values]
+ * @returns {string}
+ */
+export function sayOfPlace(lineKey, blockKey, programText, place, values = {}) {
+  return areBlocksNamed() ? text(blockKey, { ...values, part: labelAt(programText, place) }) : text(lineKey, { ...values, line: place.line });
 }
 
 /** @param {string} word alone @returns {Label | null} what is on its block; null where it has none */

@@ -57,6 +57,8 @@ export class Pupil {
   #nameInput = makeElement('input');
   #joinForm = makeElement('form', '', makeLabel('class_code', this.#codeInput), makeLabel('class_name', this.#nameInput), makeElement('button', 'class_join'));
   #statusElement = makeElement('p');
+  /** What it says, in any language. @type {{key: import('../page/texts.js').Key, values: Record<string, string | number>}} */
+  #status = { key: 'class_welcome', values: {} };
   #askButton = makeButton('class_ask', () => this.#wantRobot(true));
   #quitButton = makeButton('class_quit', () => this.#wantRobot(false));
   /** In the own turn, where the page has not come to its robot by itself. */
@@ -107,6 +109,7 @@ export class Pupil {
     });
     this.#boxElement.append(this.#joinForm, this.#statusElement, makeElement('p', '', this.#askButton, this.#quitButton, this.#connectButton, this.#ownRobotButton));
     this.#boxElement.hidden = false;
+    pageState.language.subscribe(() => this.#sayStatus());
     this.#group = new Group(page);
     const token = loadText(TOKEN_KEY, 'sessionStorage');
     if (token) this.#onJoined(token);
@@ -316,7 +319,12 @@ export class Pupil {
 
   /** @param {import('../page/texts.js').Key} key @param {Record<string, string | number>} values */
   #showStatus(key, values = {}) {
-    setText(this.#statusElement, text(key, values));
+    this.#status = { key, values };
+    this.#sayStatus();
     document.documentElement.dataset['pupil'] = key;
+  }
+
+  #sayStatus() {
+    setText(this.#statusElement, text(this.#status.key, this.#status.values));
   }
 }

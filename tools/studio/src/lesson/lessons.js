@@ -10,7 +10,7 @@ import { labelOfCode } from '../blocks/said.js';
 import { Pictures } from '../blocks/drawn.js';
 import { makeBlockElement } from './page.js';
 import { celebrate } from './celebration.js';
-import { storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadStars, loadProgram, countAllStars } from './progress.js';
+import { forgetProgram, storeDone, storeProgram, storeStars, loadPlace, storePlace, loadDoneLessons, loadStars, loadProgram, countAllStars } from './progress.js';
 import { replaceOptions, makePictureOption, makeWorldPicture } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
 import { makeTextElement } from '../page/sentences.js';
@@ -39,6 +39,7 @@ import { robotOf } from '../page/words.js';
  * @property {import('../programs/work.js').Work} work
  * @property {(program: Program) => void} put another program into the editor, which is seen then
  * @property {(program: Program) => void} exchange it, whatever is seen
+ * @property {() => boolean} keep it among the earlier programs; whether nothing of it would be lost
  * @property {import('../virtual/simulator_panel.js').SimulatorPanel} simulatorPanel
  */
 
@@ -75,9 +76,12 @@ export class Lessons {
   #checkButton = element('lesson_check', HTMLButtonElement);
   #endButton = element('lesson_end', HTMLButtonElement);
   #verdictElement = element('lesson_said', HTMLElement);
+  #anewButton = element('lesson_anew', HTMLButtonElement);
   #findingsElement = element('lesson_findings', HTMLElement);
   #nextButton = element('lesson_next', HTMLButtonElement);
   #hintElement = element('lesson_hint', HTMLDetailsElement);
+  /** Where the step is above the program, on a phone. */
+  #unfoldButton = element('lesson_unfold', HTMLButtonElement);
   #pictures;
   /** What each code in the lesson's sentences is as a block. @type {Record<string, import('../blocks/said.js').SpokenBlock>} */
   #spokenBlocks = {};
@@ -103,6 +107,7 @@ export class Lessons {
       this.#verdictElement.textContent = text('lesson_ended');
       this.#checkButton.focus();
     });
+    this.#anewButton.addEventListener('click', () => this.#beginAnew());
     this.#nextButton.addEventListener('click', (event) => {
       if (isSecondPress(event)) return; // one step is seen after the other
       if (this.#stepIndex < this.#steps.length - 1) this.#goToStep(this.#stepIndex + 1);
@@ -134,6 +139,7 @@ export class Lessons {
       } else this.#showJudgement();
       this.#keepProgram();
     });
+    this.#unfoldButton.addEventListener('click', () => this.#unfold(this.#unfoldButton.getAttribute('aria-expanded') === 'false'));
     const lessonPage = element('lesson_page', HTMLElement);
     const markMore = () => lessonPage.classList.toggle('more', lessonPage.scrollTop + lessonPage.clientHeight < lessonPage.scrollHeight - SCROLL_TOLERANCE_PX);
     lessonPage.addEventListener('scroll', markMore, { passive: true });
@@ -249,6 +255,12 @@ export class Lessons {
     this.#setReady(true);
   }
 
+  /** @param {boolean} isWhole the step lies over the blocks, where it is two lines above them otherwise */
+  #unfold(isWhole) {
+    this.#unfoldButton.setAttribute('aria-expanded', String(isWhole));
+    element('lesson_page', HTMLElement).scrollTop = 0;
+  }
+
   /** Shows a step. @param {number} stepIndex */
   #goToStep(stepIndex) {
     this.#stepIndex = stepIndex;
@@ -257,7 +269,7 @@ export class Lessons {
     const lessonPage = element('lesson_page', HTMLElement);
     this.#fillStep();
     lessonPage.dataset['lesson'] = String(this.#lessonNumber);
-    element('lesson_page', HTMLElement).scrollTop = 0;
+    this.#unfold(false);
     this.#hintElement.open = false;
     this.#hintElement.hidden = !this.#steps[stepIndex]?.hint;
     element('lesson_steps', HTMLElement).replaceChildren(...this.#steps.map((_, index) => {
@@ -332,7 +344,26 @@ export class Lessons {
     this.#checkButton.hidden = !isTask || !this.#endButton.hidden;
     this.#nextButton.hidden = isTask && !(this.#hasPassed && this.#lessonNumber < this.#lessons.length);
     this.#nextButton.textContent = text(isTask ? 'lesson_other' : 'lesson_next');
+    this.#anewButton.hidden = !this.#canBeginAnew;
     if (activeElement instanceof HTMLElement && activeElement.hidden) element('lesson_page', HTMLElement).focus();
+  }
+
+  /** Whether the lesson has been solved, and there is a program in it. A group has one of its own. */
+  get #canBeginAnew() {
+    const lesson = this.#lessons[this.#lessonNumber - 1];
+    return Boolean(lesson && pageState.programText.value.trim()) && !pageState.groupName.value && loadDoneLessons().has(lesson?.name ?? '');
+  }
+
+  /** The lesson is as it was at first: the program is among the earlier ones, and the stars stay. */
+  #beginAnew() {
+    const lesson = this.#lessons[this.#lessonNumber - 1];
+    if (!lesson || !this.#canBeginAnew || !this.#page.keep()) return;
+    this.#forgetCheck();
+    this.#page.exchange(this.#lendProgram(lesson, ''));
+    forgetProgram(lesson.name);
+    this.#goToStep(0);
+    pageState.note.set(text('lesson_begun_anew'));
+    this.#showWorld(1).catch((error) => this.#showFailure(error));
   }
 
   /** Has the lesson's robot and world seen. */

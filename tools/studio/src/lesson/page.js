@@ -21,7 +21,10 @@ const PICTURE_RATIO = 2.6; // of a picture of blocks, for one of the page
  */
 export function makeBlockElement({ kind, rows }, reader) {
   const lines = rows.map(([line = '']) => line).join('\n');
-  return kind === 'program' ? makeProgramElement(lines, reader) : makeTextElement('p', lines, reader);
+  if (kind === 'program') return makeProgramElement(lines, reader);
+  const paragraph = makeTextElement('p', lines, reader);
+  paragraph.className = kind;
+  return paragraph;
 }
 
 /**

@@ -4,6 +4,7 @@
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
 import { storeText, loadJson } from '../page/kept.js';
+import { STARS } from '../page/words.js';
 
 const STORAGE_KEY = 'tiniscript.lessons';
 const STARS_KEY = 'tiniscript.stars';
@@ -45,9 +46,24 @@ export function starsKeyOfWorld(name) {
   return `world_${name}`;
 }
 
-/** All stars of all lessons and worlds. */
+/** The most stars that each lesson and each world of this page brings, as they are kept. @type {Map<string, number>} */
+const MOST_STARS_BY_NAME = new Map([...Object.entries(STARS.lessons), ...Object.entries(STARS.worlds).map(([name, most]) => /** @type {[string, number]} */ ([starsKeyOfWorld(name), most]))]);
+
+/** All stars of all lessons and worlds of this page: what is kept may be of another one. */
 export function countAllStars() {
-  return [...loadStars().values()].reduce((sum, count) => sum + count, 0);
+  const stars = loadStars();
+  return [...MOST_STARS_BY_NAME].reduce((sum, [name, most]) => sum + Math.min(most, stars.get(name) ?? 0), 0);
+}
+
+/** What there is to be done, and what of it is done. @returns {{done: number, lessons: number, stars: number, most: number}} */
+export function loadProgress() {
+  const lessonNames = Object.keys(STARS.lessons), doneLessons = loadDoneLessons();
+  return {
+    done: lessonNames.filter((name) => doneLessons.has(name)).length,
+    lessons: lessonNames.length,
+    stars: countAllStars(),
+    most: [...MOST_STARS_BY_NAME.values()].reduce((sum, most) => sum + most),
+  };
 }
 
 /** @returns {{lesson: string, step: number, isOpen: boolean}} where this tab was in which lesson, and whether that was seen; an empty name for nowhere */
@@ -71,6 +87,12 @@ function loadPrograms() {
 /** @param {string} name of a lesson @returns {string} its newest program; empty for none */
 export function loadProgram(name) {
   return loadPrograms().get(name) ?? '';
+}
+
+/** A lesson has no program any more. @param {string} name */
+export function forgetProgram(name) {
+  const programs = loadPrograms();
+  if (programs.delete(name)) storeText(PROGRAMS_KEY, JSON.stringify(Object.fromEntries(programs)));
 }
 
 /** Keeps the newest program of a lesson. @param {string} name @param {string} text */

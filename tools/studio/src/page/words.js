@@ -31,6 +31,7 @@ export const CLASS = description.class;
 export const WORLDS = /** @type {import('../world/parts.js').World[]} */ (/** @type {unknown} */ (description.worlds));
 export const WORLD_LIMITS = description.world_limits;
 export const LINK = description.link;
+export const STARS = /** @type {{lessons: Record<string, number>, worlds: Record<string, number>}} */ (description.stars);
 
 /** @type {Map<string, Map<string, Word>>} */
 const WORDS = new Map(

@@ -1,5 +1,8 @@
 // Earlier programs, kept on this device: newest first, and no more than a device has room for.
 //
+// No two of them are the same to a robot. The one that was kept last stays, with its text and its name, before all others;
+// of two that are stored, the first.
+//
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
 import { labelOfLine } from '../blocks/said.js';
@@ -17,7 +20,11 @@ export const MOST_CHARACTERS = 400_000; // in all; a browser keeps about five mi
 /** @returns {Version[]} */
 export function loadVersions() {
   const stored = loadJson(STORAGE_KEY);
-  return Array.isArray(stored) ? stored.filter(isVersion).slice(0, MOST_VERSIONS) : [];
+  if (!Array.isArray(stored)) return [];
+  /** @type {Map<string, Version>} */
+  const versionByKey = new Map();
+  for (const version of stored.filter(isVersion)) if (!versionByKey.has(keyOf(version))) versionByKey.set(keyOf(version), version);
+  return [...versionByKey.values()].slice(0, MOST_VERSIONS);
 }
 
 /**
@@ -36,14 +43,17 @@ export function storeVersion({ text, robot: robotName, name }, at_ms = Date.now(
 }
 
 /** @param {Version} version */
-export function deleteVersion({ text, robot: robotName }) {
-  storeAll(loadVersions().filter((version) => version.text !== text || version.robot !== robotName));
+export function deleteVersion(version) {
+  const isSame = sameProgramAs(version);
+  storeAll(loadVersions().filter((other) => !isSame(other)));
 }
 
 /** Keeps a program again that was deleted, where it was, unless another tab has. @param {Version} version @returns {boolean} whether it is kept */
 export function restoreVersion(version) {
-  const otherVersions = loadVersions();
-  return otherVersions.some(sameProgramAs(version)) || storeAll([...otherVersions, version].sort((first, second) => second.at_ms - first.at_ms), version);
+  const versions = loadVersions();
+  if (versions.some(sameProgramAs(version))) return true;
+  const olderIndex = versions.findIndex(({ at_ms }) => at_ms < version.at_ms), index = olderIndex < 0 ? versions.length : olderIndex;
+  return storeAll([...versions.slice(0, index), version, ...versions.slice(index)], version); // the others stay where they are, whatever the clock said
 }
 
 /**
@@ -67,9 +77,14 @@ function storeAll(versions, wantedVersion = versions[0]) {
  * @param {{text: string, robot: string}} program
  * @returns {(other: {text: string, robot: string}) => boolean}
  */
-export function sameProgramAs({ text, robot: robotName }) {
-  const essence = essenceOf(text);
-  return (other) => other.robot === robotName && essenceOf(other.text) === essence;
+export function sameProgramAs(program) {
+  const key = keyOf(program);
+  return (other) => keyOf(other) === key;
+}
+
+/** What two programs share that are the same to a robot. @param {{text: string, robot: string}} program */
+function keyOf({ text, robot: robotName }) {
+  return `${robotName} ${essenceOf(text)}`;
 }
 
 /** A program without what changes nothing: spaces, empty lines, and what ends a line. Each step takes as long as the text is. @param {string} text */

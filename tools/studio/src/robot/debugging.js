@@ -1,5 +1,6 @@
 // Breakpoints and steps of a program on a real robot, and the values where it is halted.
 
+import { sayOfPlace } from '../blocks/said.js';
 import { element, setHidden } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { showRows, variableText } from '../page/rows.js';
@@ -14,7 +15,8 @@ import { StopOffsets } from '../writing/parts.js';
  * @typedef {object} Page
  * @property {(request: Record<string, unknown>, onDone?: () => void, isQuiet?: boolean) => Promise<Answer | null>} ask null if nothing came of it, which was said unless it is quiet
  * @property {() => void} uploadPaused sends the program, and has it halt before its first instruction
- * @property {(key: import('../page/texts.js').Key, values?: Record<string, number>) => void} say
+ * @property {(key: import('../page/texts.js').Key) => void} say
+ * @property {(sentence: () => string, name: string) => void} sayAnew a sentence that is made anew in another language or view
  * @property {() => Promise<boolean>} canGetHalting whether there is a firmware with breakpoints for such a robot
  * @property {() => void} getHalting
  * @property {import('./place.js').RunningPlace} place
@@ -56,7 +58,7 @@ export class Debugging {
     element('link_get_halting', HTMLButtonElement).addEventListener('click', () => page.getHalting());
     pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
     pageState.programText.subscribe(() => { this.#places = []; });
-    pageState.language.subscribe(() => this.#show());
+    for (const observable of [pageState.language, pageState.view]) observable.subscribe(() => this.#show());
   }
 
   /** A robot is connected, or none any more. @param {RobotInfo | null} robotInfo */
@@ -186,7 +188,7 @@ export class Debugging {
   /** @param {number} offset @param {number} taskNumber */
   #onHalt(offset, taskNumber) {
     if (!this.#program) return;
-    const { places, halts, program: checksum } = this.#program;
+    const { places, halts, program: checksum, text: programText } = this.#program;
     const place = places[halts.lastIndexOf(offset)];
     this.#page.recorder.halt();
     if (!place && (this.#isStepping || this.#isHaltingFirst)) { // within one instruction of the text
@@ -197,9 +199,14 @@ export class Debugging {
     this.#isHaltingFirst = false;
     this.#sendPlaces();
     this.#page.place.hold(place?.[0] ?? offset, checksum);
-    if (place) this.#page.say('robot_held', { line: place[1] });
+    if (place) this.#page.sayAnew(() => this.#sayOf('robot_held', 'robot_held_block', programText, place), 'robot_held');
     this.#show();
     this.#readValues(halt, taskNumber);
+  }
+
+  /** @param {import('../page/texts.js').Key} lineKey @param {import('../page/texts.js').Key} blockKey @param {string} programText @param {CheckResult['places'][number]} place */
+  #sayOf(lineKey, blockKey, programText, [, line, column]) {
+    return sayOfPlace(lineKey, blockKey, programText, { line, column });
   }
 
   /** @param {object} halt @param {number} taskNumber */
@@ -238,11 +245,11 @@ export class Debugging {
     setHidden(notice, !lacksBreakpoints && !isTooMany);
     this.#offerHalting(lacksBreakpoints);
     const valueList = element('link_values', HTMLElement);
-    const { places = [], variables = [] } = this.#program ?? {};
+    const { places = [], variables = [], text: programText = '' } = this.#program ?? {};
     const rows = this.#variables.length || this.#otherTasks.length ? [
       ...variables.map(({ name, is_yes_no }, index) => [name, variableText(this.#variables[index], is_yes_no)]),
       ...this.#otherTasks.map(([state, taskOffset]) => [
-        text('task_at', { line: places.findLast(([offset]) => offset <= taskOffset)?.[1] ?? 0 }), text(textKey(`task_${state}`)),
+        this.#sayOf('task_at', 'task_at_block', programText, places.findLast(([offset]) => offset <= taskOffset) ?? [0, 1, 1, 1, 1]), text(textKey(`task_${state}`)),
       ]),
     ] : [];
     showRows(valueList, rows);

@@ -1,7 +1,7 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
-import { areBlocksNamed, labelAt } from '../blocks/said.js';
+import { sayOfPlace } from '../blocks/said.js';
 import { element } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -91,7 +91,8 @@ export class RobotPanel {
         return this.#ask(request, onDone, isQuiet);
       },
       uploadPaused: () => this.#upload(true, true),
-      say: (key, values) => this.#speech.say(key, values),
+      say: (key) => this.#speech.say(key),
+      sayAnew: (sentence, name) => this.#speech.sayAnew(sentence, name),
       place: page.place,
       recorder: page.recorder,
       canGetHalting: () => this.#flashing.canHalt(),
@@ -399,9 +400,9 @@ export class RobotPanel {
     if (!line.trim() || !this.#robotInfo) return;
     const stopCount = this.#stopCount, transport = this.#transport;
     const robotName = pageState.robotName.value;
-    const data = new TextEncoder().encode(`SI|${line}`);
+    const lineText = `SI|${line}`;
     /** @type {CheckResult} */
-    const checkResult = await this.#page.python.ask({ do: 'check', robot: robotName, language: currentLanguage() }, data);
+    const checkResult = { ...await this.#page.python.ask({ do: 'check', robot: robotName, language: currentLanguage() }, new TextEncoder().encode(lineText)), text: lineText };
     if (stopCount !== this.#stopCount || transport !== this.#transport) return; // STOP was pressed since, or this is another robot
     const mistake = checkResult.findings.find((finding) => finding.severity === 'mistake');
     if (mistake) {
@@ -567,7 +568,7 @@ export class RobotPanel {
     if (!checksum) return '';
     if (this.#runningProgram?.program !== checksum) this.#runningProgram = this.#programOf(checksum);
     const show = this.#runningProgram && showAt(this.#runningProgram, offset);
-    return show ? shownName(show, show[1], false) : '';
+    return show ? shownName(this.#runningProgram?.shows ?? [], show, show[1], false) : '';
   }
 
   /** The robot is silent. */
@@ -585,10 +586,8 @@ export class RobotPanel {
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    const isShown = pageState.checkResult.value === program; // else the places are those of another text
-    const part = isShown && areBlocksNamed() ? labelAt(pageState.programText.value, { line, column }) : '';
-    this.#speech.saySentence(part ? text('say_fault_block', { part, what: sentence }) : text('say_fault', { line, what: sentence }));
-    if (movesCaret && isShown) this.#page.goTo({ line, column, end_line, end_column });
+    this.#speech.saySentence(sayOfPlace('say_fault', 'say_fault_block', program?.text ?? '', { line, column }, { what: sentence }));
+    if (movesCaret && pageState.checkResult.value === program) this.#page.goTo({ line, column, end_line, end_column });
   }
 
   #show() {

@@ -11,7 +11,7 @@ const MOST_SHOWN_LINES = 200; // lines of what the robot shows
 const MOST_SENTENCE_CHARACTERS = 1000;
 
 export class Speech {
-  /** What is said, so that it can be said in another language. @type {() => string} */
+  /** What is said, so that it can be said in another language or view. @type {() => string} */
   #sentence = () => '';
   #sentenceName = ''; // of it
   isHeldByStop = false; // by a stop, which alone says what becomes of it
@@ -21,7 +21,7 @@ export class Speech {
   #shownElement = element('link_shown', HTMLElement);
 
   constructor() {
-    pageState.language.subscribe(() => this.#showSentence());
+    for (const observable of [pageState.language, pageState.view]) observable.subscribe(() => this.#showSentence());
   }
 
   #showSentence() {
@@ -33,7 +33,7 @@ export class Speech {
     const key = `why_${failure.reason}`;
     const sentence = asPlainText(failure.details, MOST_SENTENCE_CHARACTERS);
     const isKnown = hasText(key) && (!sentence || failure.reason.startsWith('link_'));
-    this.#setSentence(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${addition()}`.trim(), failure.reason);
+    this.sayAnew(() => `${isKnown ? text(key) : sentence || text('why_bug')} ${addition()}`.trim(), failure.reason);
   }
 
   /**
@@ -42,7 +42,7 @@ export class Speech {
    * @param {string} [placeKey]
    */
   say(key, values = {}, placeKey = '') {
-    this.#setSentence(() => text(key, placeKey ? { ...values, saved: text(textKey(placeKey)) } : values), key);
+    this.sayAnew(() => text(key, placeKey ? { ...values, saved: text(textKey(placeKey)) } : values), key);
   }
 
   /** @param {string} sentence */
@@ -53,8 +53,8 @@ export class Speech {
     this.#showSentence();
   }
 
-  /** @param {() => string} sentence @param {string} name for tests */
-  #setSentence(sentence, name) {
+  /** Says a sentence that is made anew in another language or view. @param {() => string} sentence @param {string} name for tests */
+  sayAnew(sentence, name) {
     if (this.isHeldByStop) return;
     // A robot is lost once, whether a request says so or an event.
     if (name.endsWith('link_lost') && this.#sentenceName.endsWith('link_lost') && sentence() === this.#sentence()) return;

@@ -2,7 +2,7 @@
 
 import { element } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
-import { loadDoneLessons, countAllStars } from '../lesson/progress.js';
+import { loadProgress } from '../lesson/progress.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import { versionTitle, loadVersions } from '../programs/versions.js';
@@ -69,9 +69,9 @@ export class Start {
 
   /** Shows beside the lessons what they have brought. */
   #showProgress() {
-    const badge = element('start_badge', HTMLElement), doneCount = loadDoneLessons().size, starCount = countAllStars();
-    badge.hidden = !starCount;
-    const shownProgress = makeElement('span', '', `${doneCount ? `✓ ${doneCount}  ` : ''}★ ${starCount}`), spokenProgress = makeElement('span', '', text('lesson_progress', { done: doneCount, stars: starCount }));
+    const badge = element('start_badge', HTMLElement), progress = loadProgress(), { done, lessons, stars, most } = progress;
+    badge.hidden = !stars;
+    const shownProgress = makeElement('span', '', `✓ ${done}/${lessons}  ★ ${stars}/${most}`), spokenProgress = makeElement('span', '', text('lesson_progress', progress));
     shownProgress.ariaHidden = 'true';
     spokenProgress.className = 'heard';
     badge.replaceChildren(shownProgress, spokenProgress);

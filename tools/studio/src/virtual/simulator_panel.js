@@ -2,7 +2,7 @@
 
 import { Arena } from './arena.js';
 import { BlockNames } from '../blocks/names.js';
-import { areBlocksNamed, sayOnBlocks } from '../blocks/said.js';
+import { areBlocksNamed, labelAt, sayOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -687,8 +687,8 @@ export class SimulatorPanel {
     for (const [at_ms, event, offset] of events) {
       if (!event.startsWith('SHOW ')) continue;
       const value = event.slice('SHOW '.length);
-      const show = showAt(this.#timeLine.seenState ? this.#timeLine.run.program : this.#program, offset);
-      shownValues.set(show ? shownName(show, `SHOW(${show[1]})`, true) : 'SHOW', value);
+      const program = this.#timeLine.seenState ? this.#timeLine.run.program : this.#program, show = showAt(program, offset);
+      shownValues.set(show ? shownName(program.shows, show, `SHOW(${show[1]})`, true) : 'SHOW', value);
       this.#arena.showBubble(value, at_ms);
     }
     return shownValues;
@@ -700,7 +700,7 @@ export class SimulatorPanel {
     if (isStopping) return text('robot_stopping');
     const { parting } = this.#timeLine.run;
     const isAtParting = parting && (this.#timeLine.seenState ? parting.at_ms !== null && Math.abs(this.#timeLine.seenState.now_ms - parting.at_ms) < NEAR_MOMENT_MS : phase === 'ended');
-    if (parting && isAtParting) return partingText(parting);
+    if (parting && isAtParting) return partingText(parting, this.#timeLine.run.origin.text);
     if (this.#timeLine.seenState) return this.#pastText(this.#timeLine.seenState);
     if (phase === 'off' || !state) return this.#taskText() || text('robot_off');
     if (state.fault) {
@@ -813,11 +813,11 @@ export class SimulatorPanel {
   }
 }
 
-/** Where a recorded run and the one that was played part, in words. @param {import('../python.js').Parting} parting */
-function partingText({ outcome: key, agreed, line, robot, virtual, sensor, began_ms }) {
+/** Where a recorded run and the one that was played part, in words. @param {import('../python.js').Parting} parting @param {string} programText */
+function partingText({ outcome: key, agreed, line, robot, virtual, sensor, began_ms }, programText) {
   /** @param {{ms: number, event: string} | null} row */
   const rowText = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
-  const placeText = line ? text('line', { line }) : text('record_end');
+  const placeText = !line ? text('record_end') : areBlocksNamed() ? `“${labelAt(programText, { line, column: 1 })}”` : text('line', { line });
   return text(textKey(`record_${key}`), { count: agreed, line, place: placeText, robot: rowText(robot), virtual: rowText(virtual), sensor });
 }
 

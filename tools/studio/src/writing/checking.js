@@ -84,7 +84,7 @@ export class Checker {
     try {
       for (let source = currentSource(); this.#newestCheck.key !== JSON.stringify(source); source = currentSource()) {
         const request = { do: 'check', robot: source.robot, language: source.language };
-        const answer = /** @type {CheckResult} */ (await this.#python.ask(request, new TextEncoder().encode(source.text)));
+        const answer = /** @type {CheckResult} */ ({ ...await this.#python.ask(request, new TextEncoder().encode(source.text)), text: source.text });
         this.#newestCheck = { key: JSON.stringify(source), answer };
         pageState.isRobotNamed.set(answer.names_robot);
         if (answer.robot !== source.robot && pageState.robotName.value === source.robot) pageState.robotName.set(answer.robot); // and once more

@@ -1,7 +1,7 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
-import { areBlocksNamed, labelAt, labelOfCode, sayAsSeen } from '../blocks/said.js';
+import { areBlocksNamed, labelAt, labelOfCode, sayAsSeen, sayOfPlace } from '../blocks/said.js';
 import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
@@ -16,11 +16,6 @@ const MOST_MESSAGES = 50; // messages that are shown at once
 export function messageWithFix({ message = '', fix = '' }) {
   const separator = /[.!?:]$/.test(message) ? ' ' : ' – ';
   return [message, fix && `${text('try')} ${fix}`].filter(Boolean).join(separator);
-}
-
-/** The block that a finding is about, for who sees blocks; nothing for who sees lines, and where it is no block. @param {Finding} finding */
-function blockOf(finding) {
-  return areBlocksNamed() ? labelAt(pageState.programText.value, finding) : '';
 }
 
 /** A finding on the page: code is shown as it looks in the program. @param {Finding} finding @returns {Node | string} */
@@ -38,10 +33,10 @@ function makeSentence(finding) {
 export function showMessages(list, findings, goTo) {
   let firstMessage = '';
   const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
-    const { line } = finding, part = blockOf(finding), what = messageWithFix(sayAsSeen(finding));
-    const placeButton = makeButton('', () => goTo(finding), part || text('line', { line }));
+    const programText = pageState.programText.value, placeText = areBlocksNamed() ? labelAt(programText, finding) : text('line', { line: finding.line });
+    const placeButton = makeButton('', () => goTo(finding), placeText);
     placeButton.className = 'place';
-    placeButton.ariaLabel = part ? text('say_fault_block', { part, what }) : text('say_fault', { line, what });
+    placeButton.ariaLabel = sayOfPlace('say_fault', 'say_fault_block', programText, finding, { what: messageWithFix(sayAsSeen(finding)) });
     firstMessage ||= placeButton.ariaLabel;
     const row = makeElement('li', '', placeButton, ' ', makeSentence(finding));
     row.className = finding.severity;
@@ -62,8 +57,8 @@ export function showMessages(list, findings, goTo) {
 export function showRepair(list, findingIndex, finding, repair) {
   const repairButton = makeButton('repair', () => repair(finding));
   repairButton.className = 'repair';
-  const { line } = finding, part = blockOf(finding), { fix } = sayAsSeen(finding);
-  repairButton.setAttribute('aria-label', part ? text('repair_block', { part, fix }) : text('repair_line', { line, fix }));
+  const { fix } = sayAsSeen(finding);
+  repairButton.setAttribute('aria-label', sayOfPlace('repair_line', 'repair_block', pageState.programText.value, finding, { fix }));
   if (findingIndex < MOST_MESSAGES) list.children[findingIndex]?.append(' ', repairButton);
 }
 

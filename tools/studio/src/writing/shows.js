@@ -1,5 +1,6 @@
 // Which SHOW of a program's text has shown a value: its expression names the value.
 
+import { areBlocksNamed } from '../blocks/said.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
@@ -16,11 +17,14 @@ export function showAt({ places, shows }, codeOffset = -1) {
 }
 
 /**
- * @param {Show} show
+ * @param {Show[]} shows of the program, in their order
+ * @param {Show} show one of them
  * @param {string} name its expression, or that in other words
  * @param {boolean} isApart it is told from others of its line, too
  */
-export function shownName([, , line, column, sharesText, sharesLine], name, isApart) {
+export function shownName(shows, show, name, isApart) {
+  const [, expression, line, column, sharesText, sharesLine] = show;
   if (!sharesText) return name;
+  if (areBlocksNamed()) return text('shown_block', { what: name, number: 1 + shows.filter((other) => other[1] === expression).indexOf(show) });
   return text('shown_line', { what: name, line: isApart && sharesLine ? `${line}:${column}` : line });
 }

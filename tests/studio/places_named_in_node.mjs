@@ -1,0 +1,29 @@
+// node places_named_in_node.mjs SOURCES MADE SEEDS: places in texts of any kind, named for who sees blocks and for who sees text.
+// Prints how many places were named.
+
+import { chanceOf, freshPage, learns, words } from './page_in_node.mjs';
+
+const page = freshPage();
+await learns(page);
+const { pageState } = await page.load('page/page_state.js');
+const { text } = await page.load('page/texts.js');
+const { labelAt, sayOfPlace } = await page.load('blocks/said.js');
+const PARTS = ['F(1, 80)', 'X = 3', 'SHOW(X)', '// a note', '', 'END_LOOP', 'LOOP(FOREVER)', '?!', 'SI|W(1)', 'TWICE(2)', ';'];
+let count = 0;
+for (let seed = 0; seed < Number(words[0]); seed += 1) {
+  const random = chanceOf(seed + 1);
+  const lines = Array.from({ length: 1 + random.below(6) }, () => Array.from({ length: 1 + random.below(3) }, () => random.of(PARTS)).join(random.of([';', '; '])));
+  const place = { line: 1 + random.below(lines.length + 2), column: 1 + random.below(20) }, program = lines.join('\n');
+  pageState.isTyped.set(false);
+  for (const key of ['say_fault', 'robot_held', 'task_at', 'no_breakpoint', 'repair_line']) {
+    const blockKey = key.replace(/_line$|$/, '_block'), values = { what: 'what', fix: 'fix' };
+    pageState.view.set('blocks');
+    const part = labelAt(program, place), said = sayOfPlace(key, blockKey, program, place, values);
+    if (!part.trim()) throw new Error(`a place without a name in ${JSON.stringify(program)}`);
+    if (said !== text(blockKey, { ...values, part })) throw new Error(said);
+    pageState.view.set('text');
+    if (sayOfPlace(key, blockKey, program, place, values) !== text(key, { ...values, line: place.line })) throw new Error(`${key} names no line to who sees text`);
+    count += 1;
+  }
+}
+console.log(count);
