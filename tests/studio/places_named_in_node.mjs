@@ -8,6 +8,7 @@ await learns(page);
 const { pageState } = await page.load('page/page_state.js');
 const { text } = await page.load('page/texts.js');
 const { labelAt, sayOfPlace } = await page.load('blocks/said.js');
+const { shownName } = await page.load('writing/shows.js');
 const PARTS = ['F(1, 80)', 'X = 3', 'SHOW(X)', '// a note', '', 'END_LOOP', 'LOOP(FOREVER)', '?!', 'SI|W(1)', 'TWICE(2)', ';'];
 let count = 0;
 for (let seed = 0; seed < Number(words[0]); seed += 1) {
@@ -25,5 +26,12 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
     if (sayOfPlace(key, blockKey, program, place, values) !== text(key, { ...values, line: place.line })) throw new Error(`${key} names no line to who sees text`);
     count += 1;
   }
+}
+// Values of a SHOW that is there several times are told apart: by their lines, or as the first and the second.
+for (const [view, wanted] of [['text', ['X (line 2)', 'Y', 'X (line 5)']], ['blocks', ['X (1)', 'Y', 'X (2)']]]) {
+  pageState.view.set(view);
+  const shows = [[0, 'X', 2, 1, true, false], [4, 'Y', 3, 1, false, false], [8, 'X', 5, 1, true, false]];
+  const names = shows.map((show) => shownName(shows, show, show[1], false));
+  if (JSON.stringify(names) !== JSON.stringify(wanted)) throw new Error(`${names} in place of ${wanted}`);
 }
 console.log(count);
