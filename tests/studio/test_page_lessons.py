@@ -586,7 +586,8 @@ def test_a_solved_lesson_can_be_started_again(page: Page) -> None:
     page.click("#start_lessons")
     page.locator("#lesson:enabled").wait_for()
     page.click("#my_programs")
-    assert catalogue.load(FOLDERS[0]).title("en") in list_programs(page)
+    title = catalogue.load(FOLDERS[0]).title("en")
+    assert any(name.startswith(title) for name in list_programs(page))  # also of other tests
     page.click("#programs_close")
     choose_lesson(page, 2)
     choose_lesson(page, 1)
