@@ -373,7 +373,7 @@ export function chanceOf(seed) {
   return random;
 }
 
-export const PROGRAM = { image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
+export const PROGRAM = { text: 'X = DISTANCE;', image: '00ff', places: [[0, 1, 1, 1, 9]], shows: [[0, 'X', 1, 1, false, false]], variables: [{ name: 'X', is_yes_no: false }], remote: ['KEY_A'] };
 
 /** As the worker's: each picture of it goes on, bumps, says and ends. */
 export function virtualRobot(random, isGood) {
