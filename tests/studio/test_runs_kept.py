@@ -10,26 +10,30 @@ from tests.support.node import in_node
 
 SCRIPT = Path(__file__).parent / "runs_kept_in_node.mjs"
 MOST_RUNS, MOST_CHARACTERS = 10, 2_000_000
-LARGE_RUN = (9_900, 188, 0)  # nearly as much as there is room for
-TOO_LARGE_RUN = (9_900, 188, 50_000)
+LARGE_RUN = (9_900, 188, 0, 0)  # nearly as much as there is room for
+TOO_LARGE_RUN = (9_900, 188, 50_000, 0)
 ROW_CHARACTERS = 12  # of a row, beside its text
 
 
-Kept = tuple[int, int, int]  # rows, characters of each, and of a file
+Kept = tuple[int, int, int, int]  # rows, characters of each, and of a file; pictures
 
 
 def run(rng: random.Random, kind: int) -> Kept:
-    """Return a small run, a middling one, a large one, or one of which nothing is known."""
-    small_run = rng.randint(1, 20), rng.randint(1, 60), 0
-    middling = rng.randint(500, 3000), rng.randint(1, 80), rng.choice((0, 600_000))
-    return (small_run, middling, rng.choice((LARGE_RUN, TOO_LARGE_RUN)), (0, 0, 0))[kind]
+    """Return a small run, a middling one, a large one, one of which nothing is known, or one that
+    was opened from a file and seen.
+    """
+    small_run = rng.randint(1, 20), rng.randint(1, 60), 0, rng.randint(0, 3)
+    middling = rng.randint(500, 3000), rng.randint(1, 80), rng.choice((0, 600_000)), 2
+    opened = (0, 0, rng.randint(100, 5000), rng.randint(2, 20))
+    large = rng.choice((LARGE_RUN, TOO_LARGE_RUN))
+    return (small_run, middling, large, (0, 0, 0, rng.randint(0, 1)), opened)[kind]
 
 
 def stories() -> list[list[Kept]]:
     """Return runs of one kind, and of all kinds."""
     rng = random.Random(1)
     runs = [[run(rng, kind) for _ in range(25)] for kind in range(3) for _ in range(3)]
-    return runs + [[run(rng, rng.randrange(4)) for _ in range(25)] for _ in range(20)]
+    return runs + [[run(rng, rng.randrange(5)) for _ in range(25)] for _ in range(20)]
 
 
 def trimmed(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -47,14 +51,14 @@ def test_the_newest_runs_are_kept_while_there_is_room() -> None:
     lines = in_node(SCRIPT, input_text=json.dumps(histories))
     for history, line in zip(histories, lines, strict=True):
         kept_runs: list[tuple[int, int]] = []  # numbers and sizes, the oldest first
-        for number, (at_start, at_end, size, run_size) in enumerate(json.loads(line), 1):
-            if number > 1 and not history[number - 2][0]:
+        for number, (at_start, at_end, size, run_size, seen) in enumerate(json.loads(line), 1):
+            if number > 1 and not history[number - 2][0] and history[number - 2][3] < 2:
                 by_nothing += 1
                 kept_runs.pop()
             kept_runs = trimmed([*kept_runs, (number, 0)])
             assert at_start == [run_number for run_number, _ in reversed(kept_runs)]
-            rows, characters, file = history[number - 1]
-            assert run_size == rows * (characters + ROW_CHARACTERS) + file
+            rows, characters, file, _ = history[number - 1]
+            assert run_size == rows * (characters + ROW_CHARACTERS) + file + seen
             kept_before, kept_runs = kept_runs, trimmed([*kept_runs[:-1], (number, run_size)])
             by_size += len(kept_runs) < len(kept_before)
             by_count += len(kept_runs) == MOST_RUNS < number
