@@ -234,3 +234,27 @@ def test_of_two_equal_blocks_the_touched_one_is_changed() -> None:
     ana.writes()
     ana.sends()
     assert program.tree[ROOT].children.index(other_id) == 2
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_is_written_in_a_block_that_others_delete_is_kept(seed: int) -> None:
+    """As a draft where its instruction is gone; the head of a block alone would mean nothing."""
+    rng = Random(seed)
+    program = program_of()
+    ana = Ana(program)
+    deleted_id = rng.choice([id for id in program.tree.subtree_ids() if id not in (ROOT, START)])
+    program.submit([Made("z:1", (Delete(tuple(program.tree.subtree_ids(deleted_id))),))])
+    if rng.random() < 0.8:
+        ana.step()
+    written_by_block: dict[str, str] = {}
+    for number in range(301, 305):
+        data = rng.choice([data for data in ana.inside(ana.form["body"])
+                           if data["values"] and not data["bodies"]])  # fmt: skip
+        data["values"][0] = [["NUMBER", str(number)]]
+        data["said"] = []
+        written_by_block[data["id"]] = str(number)
+        if rng.random() < 0.5:
+            ana.writes()
+    ana.writes()
+    ana.sends()
+    assert all(number in ana.text for number in written_by_block.values()), ana.text
