@@ -354,6 +354,21 @@ def test_surplus_network_clients_are_disconnected(seed: int) -> None:
         assert len(guests) == radios(robot).sockets - sockets <= CLIENT_PLACES
 
 
+@drawn
+def test_owners_on_the_network_keep_their_places_while_they_speak() -> None:
+    """However long they have been there, and whoever else comes."""
+    robot, end, owner = far_owner(keys := Keys())
+    clients: list[tuple[Network, Session]] = [(end, owner)]
+    clients += [(Network(robot), remote(robot, keys, 1 + k)) for k in range(1, CLIENT_PLACES)]
+    for _ in range(5):
+        for _, client in clients:
+            assert wait_for_outcome(robot, [*clients], client.clear())
+        talk(robot, [*clients], PLACE_MS // 2)
+        newcomer = Network(robot)
+        talk(robot, [*clients, (newcomer, RawClient(bytes(STOP_BYTES)))], 100)
+        assert newcomer.has_ended and not any(end.has_ended for end, _ in clients)
+
+
 def has_client(robot: Esp32Robot) -> bool:
     return robot.radio("E") == b"\1"
 
