@@ -80,6 +80,110 @@ const PARTS = {
     };
   },
 
+  // A port of the browser, as the Web Serial API has it: an error of the line ends its stream, and it has a new one; a port with a
+  // locked stream is not closed. Whatever was on the line, all bytes come, a port that has gone says so once, and one that was
+  // closed is free.
+  async serial() {
+    const page = freshPage();
+    playsNavigator({ serial: {} });
+    const { SerialPort } = await page.load('robot/serial.js');
+    const failure = (name) => new DOMException(name, name);
+    class Device {
+      isOpen = false;
+      isGone = false;
+      isStuck = false;
+      taken = [];
+      signals = [];
+      #stream = null;
+      #controller = null;
+      writable = null;
+      get readable() {
+        if (!this.isOpen || this.isGone) return null;
+        this.#stream ??= new ReadableStream({ start: (controller) => { this.#controller = controller; }, cancel: () => { this.#stream = null; } });
+        return this.#stream;
+      }
+      getInfo() { return {}; }
+      async open() {
+        await later(5);
+        if (this.isOpen) throw failure('InvalidStateError');
+        if (this.isGone) throw failure('NetworkError');
+        this.isOpen = true;
+        const ends = () => { this.writable = null; };
+        this.writable = new WritableStream({
+          close: ends,
+          abort: ends,
+          write: async (chunk) => {
+            if (this.isGone) throw failure('NetworkError');
+            if (this.isStuck) await new Promise(() => {});
+            this.taken.push(...chunk);
+          },
+        });
+      }
+      gives(bytes) { this.#controller.enqueue(new Uint8Array(bytes)); }
+      errs(name) {
+        this.#stream = null;
+        this.#controller.error(failure(name));
+      }
+      goes() {
+        this.isGone = true;
+        this.#stream = null;
+        this.#controller.error(failure('NetworkError'));
+      }
+      async setSignals(signals) {
+        await later(1);
+        if (!this.isOpen) throw failure('InvalidStateError');
+        this.signals.push(signals);
+      }
+      async close() {
+        await later(5);
+        if (!this.isOpen) throw failure('InvalidStateError');
+        if (this.#stream?.locked || this.writable?.locked) throw new TypeError('a stream is locked');
+        this.isOpen = false;
+      }
+    }
+    const device = new Device();
+    return async (random, isGood) => {
+      device.isGone = device.isStuck = false;
+      device.taken = [];
+      device.signals = [];
+      const given = [], heard = [], ends = [], written = [];
+      let gone = 0, settled = 0;
+      const port = new SerialPort(device, 9600);
+      await Promise.all([port.open((bytes) => heard.push(...bytes), () => { gone += 1; }), passes(10)]);
+      for (let k = random.below(8); k > 0; k -= 1) {
+        const act = random.of(isGood ? ['hears', 'writes', 'reset'] : ['hears', 'hears', 'errs', 'errs', 'writes', 'reset', 'goes', 'stuck']);
+        if (act === 'hears') {
+          const bytes = Array.from({ length: 1 + random.below(5) }, () => random.below(256));
+          device.gives(bytes);
+          given.push(...bytes);
+        } else if (act === 'errs') device.errs(random.of(['FramingError', 'ParityError', 'BreakError', 'BufferOverrunError']));
+        else if (act === 'writes') {
+          written.push(k);
+          port.write(new Uint8Array([k])).catch(() => ends.push('failed')).finally(() => { settled += 1; });
+        } else if (act === 'reset') port.reset();
+        else if (act === 'stuck') device.isStuck = true;
+        else device.goes();
+        ends.push(act);
+        await passes(act === 'reset' ? 400 : 5);
+        if (device.isGone) break;
+      }
+      if (`${heard}` !== `${given}`) throw new Error(`${given} were on the line, and ${heard} are heard`);
+      if (gone !== Number(device.isGone)) throw new Error(`it is ${device.isGone ? '' : 'not '}gone, which is said ${gone} times`);
+      if (!device.isStuck && !device.isGone && `${device.taken}` !== `${written}`) throw new Error(`${written} are written, and ${device.taken} taken`);
+      if (ends.filter((end) => end === 'reset').length * 2 !== device.signals.length) throw new Error('a board is restarted otherwise than asked');
+      const opened = new SerialPort(device, 9600).open(() => {}, () => {}).catch(({ reason }) => reason);
+      await passes(4000);
+      if (await opened !== 'port_busy') throw new Error(`a port that is open is ${await opened}`);
+      if (settled !== written.length) throw new Error('a write has no end');
+      let isFree = false;
+      port.close().then(() => { isFree = true; }, () => {});
+      await passes(10_000);
+      if (!isFree || device.isOpen) throw new Error(`it was closed after ${ends}, and is not free`);
+      if (gone !== Number(device.isGone)) throw new Error('who closes it hears that it is gone');
+      return { ends, seen: [heard, device.taken, device.signals] };
+    };
+  },
+
   // A run of the virtual robot.
   async simulator() {
     const page = freshPage();

@@ -21,6 +21,7 @@ SEEDS = 80
 # What the first one has to have met, for the row to be about something.
 ENDS_BY_PART = {
     "bluetooth": {"open", "failed", "link_silent"},
+    "serial": {"hears", "errs", "writes", "reset", "goes", "stuck", "failed"},
     "simulator": {"stop", "leave", "wait", "failure", "ended"},
     "panel": {"stop", "wait", "running", "paused", "ended", "off", "refused", "breaks", "fault"},
     "sounds": {"begins", "beeps", "crash", "cheers", "silence", "mute"},
