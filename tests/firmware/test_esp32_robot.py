@@ -387,6 +387,19 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     assert restarted_robot.is_latched
 
 
+def test_each_stall_stops_the_motors() -> None:
+    """However many a robot has recovered from."""
+    robot, session = switched_on(Esp32Robot()), computer()
+    for _ in range(3):
+        assert robot.until(session, session.clear()) == OK
+        send(robot, session, AWAY_PROGRAM)
+        robot.talk(session, 100)
+        robot.did.clear()
+        robot.hang(150)
+        robot.wait(20)
+        assert actions_of(robot)[:1] == ["MOTORS 0 0"]
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_only_a_stall_that_is_too_long_by_itself_stops_a_robot(seed: int) -> None:
     """However many short ones there have been, and however briefly the main loop ran between."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import random
 from collections.abc import Callable
 from functools import lru_cache
@@ -20,6 +21,7 @@ from tests.support.esp32_radio import (
     session,
     talk,
 )
+from tests.support.esp32_wifi import make_owned_robot
 from tests.support.images import image_of
 from tests.support.owners import Keys
 from tests.support.robot_on_esp32 import (
@@ -430,6 +432,21 @@ def test_the_button_confirms_neither_of_two_claims() -> None:
     talk(robot, clients[:1], 2300, flags=1)
     talk(robot, clients[:1], 500, flags=2)
     assert claims[0].outcome and claims[0].outcome.status == 0
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_changed_key_ends_the_authority_of_all_others(make: Make) -> None:
+    """Whoever has the key of before does nothing more, also in a session that it has opened."""
+    robot, owner = make_owned_robot(keys := Keys())
+    talk(robot, [], AUTHORITY_MS + 100)
+    copied_keys = copy.deepcopy(keys)
+    other = Session(8, 115200, robot.robot.kit.fingerprint, keys=copied_keys)
+    clients: Ends = [(None, owner), (make(robot), other)]
+    assert wait_for_outcome(robot, clients, other.clear()) == "OK"
+    claim_robot(robot, clients, owner)
+    talk(robot, clients, AUTHORITY_MS + 100)
+    assert wait_for_outcome(robot, clients, other.clear()) == "WRONG_KEY"
+    assert wait_for_outcome(robot, clients, owner.clear()) == "OK"
 
 
 def test_a_teachers_stop_holds_on_every_transport() -> None:
