@@ -645,7 +645,7 @@ const PARTS = {
     };
     const page = freshPage({
       Arena: beginning('arena'), Plot: beginning('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
+      starsText: String, boutEnd: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -4957,7 +4957,7 @@ const PARTS = {
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
+      starsText: String, boutEnd: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');

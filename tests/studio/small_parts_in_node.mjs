@@ -810,6 +810,25 @@ const PARTS = {
   },
 
   // The words of devices and blocks: in the language of the page, and those of the text for who wants them.
+  /** Which side of the robot has bumped into something, wherever it stands and looks. */
+  async bumps(random) {
+    playsNavigator({});
+    const page = freshPage();
+    await learns(page);
+    const { bumpSentence } = await page.load('virtual/where.js');
+    const pose = [0, 0, 0];
+    const touchesAt = (degrees, distance) => {
+      const angle = ((pose[2] + degrees) * Math.PI) / 180;
+      return [pose[0] + distance * Math.cos(angle), pose[1] + distance * Math.sin(angle)];
+    };
+    const bumps = (key, degrees) => () => is(bumpSentence({ pose, touches: degrees === null ? null : touchesAt(degrees + random.below(81) - 40, 1 + random.below(12)) }), TEXTS[key], `the side at ${degrees}° of ${pose}`);
+    const actions = {
+      drives: () => pose.splice(0, 3, random.below(200), random.below(150), random.below(1080) - 540),
+      front: bumps('where_bump_front', 0), left: bumps('where_bump_left', 90), back: bumps('where_bump_back', 180), right: bumps('where_bump_right', 270), free: bumps('where_bump', null),
+    };
+    return { acts: actions, checks: () => {} };
+  },
+
   async words(random) {
     playsNavigator({});
     const page = freshPage();

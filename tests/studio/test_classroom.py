@@ -32,7 +32,7 @@ def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
     robot = room.connects(ana)
     room.now_s += 500
     assert room.checks_in(ana) | {"name": ""} == {
-        "name": "", "place": 0, "waiting": 0, "robots": 1, "robot": "", "left_s": 0,
+        "name": "", "place": 0, "waiting": 0, "robots": 1, "robot": "TINI", "left_s": 0,
         "hand": False,
     }  # fmt: skip
     room.checks_in(luz, True)
@@ -860,9 +860,9 @@ def test_the_teacher_watches_stops_and_reclaims_robots() -> None:
     robot = room.connects(ana)
     state = room.teaches("class")
     assert [(pupil["name"], pupil["place"], pupil["robot"]) for pupil in state["pupils"]] == [
-        ("Ana", 0, "port0"), ("Luz", 1, ""),
+        ("Ana", 0, "TINI"), ("Luz", 1, ""),
     ]  # fmt: skip
-    assert state["robots"] == [{"port": "port0", "name": "", "pupil": "Ana", "left_s": 60}]
+    assert state["robots"] == [{"port": "port0", "name": "TINI", "pupil": "Ana", "left_s": 60}]
     number = room.number("Ana")
     assert room.teaches("class_text", pupil=number)["text"] == "F(1, 50)"
     room.teaches("class_stop", pupil=number)
@@ -957,7 +957,7 @@ def test_stops_and_heartbeats_do_not_wait_for_port_names(monkeypatch: pytest.Mon
     monkeypatch.setattr(classroom, "list_ports", list_slowly)
     state = room.teaches("class_robot", port="port9", gives=True)
     assert answered_actions == ["stop", "beat", "here", "listed"]
-    assert [robot["name"] for robot in state["robots"]] == ["", "NINE"]
+    assert [robot["name"] for robot in state["robots"]] == ["TINI", "NINE"]
 
 
 def test_an_address_has_at_most_three_places_unless_allowed() -> None:

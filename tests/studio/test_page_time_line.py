@@ -192,7 +192,7 @@ def test_why_says_that_the_robot_has_bumped_while_it_looks_so(page: Page) -> Non
     page.keyboard.press("ArrowLeft")
     page.click("#why")
     page.focus("#time_at")
-    bump_text = str(page_texts("en")["where_bump"])
+    bump_text = str(page_texts("en")["where_bump_front"])
     wait_for(page, lambda: bump_text in status_text(page), "it stands at the wall")
     page.keyboard.press("Home")
     wait_for(page, lambda: bump_text not in status_text(page), "it stands free")

@@ -30,6 +30,7 @@ NEEDED_ACTS = {
     "tabs": {"opens", "copies", "reloads", "works", "draws", "damages"},
     "fields": {"types", "typesWords", "takesBack", "opens", "playsKey", "steps", "names"},
     "camera": {"looks", "wanders"},
+    "bumps": {"front", "left", "back", "right", "free"},
     "words": {"shows", "speaks"},
     "world": {"chooses", "brings", "puts", "keeps", "reloads"},
 }

@@ -612,9 +612,11 @@ class Classroom:
                 self._begin_turn(robot, now_s)
 
     def _check_turn(self, robot: ClassRobot, now_s: float) -> None:
-        """End a turn that has to end."""
+        """End a turn that has to end, and learn the name of a robot that has answered."""
         hosted_robot, pupil = robot.hosted_robot, robot.pupil
         assert pupil is not None
+        if hosted_robot is not None:
+            robot.name = hosted_robot.name or robot.name
         if hosted_robot is None:
             # The page was closed, and a returning pupil keeps the place.
             if now_s - pupil.heard_s > PRESENCE_S:
@@ -625,7 +627,6 @@ class Classroom:
         elif hosted_robot.has_ended and hosted_robot.attending.is_half_made:
             robot.hosted_robot = None  # the page does not know of it: it may connect again
         elif hosted_robot.has_ended:
-            robot.name = hosted_robot.name or robot.name
             if not hosted_robot.name and not hosted_robot.was_left:  # another robot may answer
                 robot.free_at_s = now_s + REST_S
             robot.end()

@@ -28,7 +28,7 @@ import { celebrate } from '../lesson/celebration.js';
 import { storeStars, starsKeyOfWorld } from '../lesson/progress.js';
 import { WorldChoice } from '../world/choice.js';
 import { showRows, variableText } from '../page/rows.js';
-import { boutEnd, starsText, RunAnnouncer } from './where.js';
+import { boutEnd, bumpSentence, starsText, RunAnnouncer } from './where.js';
 import { blocksOf, conditionsAt } from './why.js';
 import { WorldDrawing } from '../world/drawing.js';
 
@@ -757,7 +757,7 @@ export class SimulatorPanel {
     const values = new Map(variables.map(({ name, is_yes_no }, index) => [name, variableText(state.variables[index], is_yes_no)]));
     const conditions = conditionsAt(run.origin.text, places, offset, (name) => run.readAt(name, state.now_ms) ?? values.get(name));
     const joiner = new Intl.ListFormat(currentLanguage());
-    const bumpSentences = this.#arena.isDizzy(state) ? [text('where_bump')] : [];
+    const bumpSentences = this.#arena.isDizzy(state) ? [bumpSentence(state)] : [];
     const sentences = conditions.flatMap(({ line, condition, values: conditionValues, is: isTrue }) => [
       this.#say('why_asks', 'why_asks_block', { line, condition }, condition),
       conditionValues.length ? asSentence(joiner.format(conditionValues.map(([name, value]) => text('why_value', { name: this.#nameOf(name), value })))) : '',

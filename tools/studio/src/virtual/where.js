@@ -10,6 +10,7 @@ import { text } from '../page/texts.js';
 
 const ANNOUNCE_INTERVAL_MS = 5000; // of this computer's time, while it drives
 const DIRECTIONS = /** @type {const} */ (['where_right', 'where_up_right', 'where_up', 'where_up_left', 'where_left', 'where_down_left', 'where_down', 'where_down_right']);
+const BUMP_SIDES = /** @type {const} */ (['where_bump_front', 'where_bump_left', 'where_bump_back', 'where_bump_right']); // of the robot, counterclockwise
 const MOST_STARS = 3;
 
 export class RunAnnouncer {
@@ -35,7 +36,7 @@ export class RunAnnouncer {
     const takenFlags = score?.taken ?? 0;
     const hasJustStopped = phase !== phaseBefore && (phase === 'ended' || phase === 'paused');
     const sentences = [];
-    if (bumps > this.#bumpCount && !hasJustStopped) sentences.push(text('where_bump'));
+    if (bumps > this.#bumpCount && !hasJustStopped) sentences.push(bumpSentence(state));
     if (takenFlags > this.#takenFlags && !hasJustStopped) sentences.push(text('score_flags', { taken: takenFlags, of: score?.of ?? 0 }));
     const endText = score ? boutEnd(score) : '';
     if (endText !== this.#endText && endText && !hasJustStopped) sentences.push(endText);
@@ -49,6 +50,13 @@ export class RunAnnouncer {
     if (hasJustStopped && score) sentences.push(scoreSentence(score));
     this.#announcement.textContent = [...sentences, placeSentence(state.pose)].join(' ');
   }
+}
+
+/** @param {RobotState} state @returns {string} that the robot has bumped, and with which side, where it still touches what it has bumped into */
+export function bumpSentence({ touches, pose: [x = 0, y = 0, heading = 0] }) {
+  if (!touches) return text('where_bump');
+  const angle = (Math.atan2(touches[1] - y, touches[0] - x) * 180) / Math.PI - heading;
+  return text(BUMP_SIDES.at(Math.round((angle * BUMP_SIDES.length) / 360) % BUMP_SIDES.length) ?? 'where_bump');
 }
 
 /** @param {number[]} pose */

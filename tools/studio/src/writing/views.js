@@ -78,6 +78,7 @@ export class Views {
     // A block that is touched while the text is ahead of it must not take the text back.
     for (const eventName of ['pointerdown', 'focusin']) {
       this.#blocksPane.addEventListener(eventName, (event) => {
+        pageState.isTyped.set(false); // whoever touches blocks reads of blocks
         if (!this.#isStale() || (this.#group && this.#shownText !== null)) return; // a group has changes by their blocks
         if (eventName === 'pointerdown') event.stopPropagation();
         this.#refreshBlocks(true);
