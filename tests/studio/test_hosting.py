@@ -18,10 +18,16 @@ from tests.support.waiting import HANG_LIMIT_S, until
 from tiniscript import compile, robots
 from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
+from tiniscript.link import known_ports, ports
+from tiniscript.link.known_ports import KnownPorts
 from tiniscript.link.messages import STOP_BYTES
+from tiniscript.link.ports import ListedPort
 from tiniscript.studio import attending, hosted_robot
+from tiniscript.studio import hosting as hosting_module
 from tiniscript.studio.hosting import Hosting
 from tiniscript.studio.robot_link import BadRequest
+from tiniscript.virtual import directory
+from tiniscript.virtual.directory import RunningRobot
 
 KIT = robots.load("tinibot").kit
 BEAT_S = 0.1
@@ -544,3 +550,27 @@ def test_the_unread_event_queue_is_bounded() -> None:
     news = robot.attending.on_beat([], 0)
     assert len(news) == attending.MOST_PENDING_NEWS and news[-1]["event"] == "DONE"
     robot.join(HANG_LIMIT_S)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_ports_with_known_robots_are_offered_first(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last used one before all others, each once."""
+    rng = random.Random(seed)
+    plugged, virtual, remembered = (
+        [port for port in "abcdef" if rng.random() < 0.5] for _ in "pvr"
+    )
+    last_port = rng.choice([None, *remembered])
+    running = [RunningRobot(port, "tinibot", "room", "", "") for port in virtual]
+    names = dict.fromkeys(remembered, "TINI")
+    monkeypatch.setattr(directory, "unclaimed_robots", lambda: running)
+    monkeypatch.setattr(directory, "is_gone", lambda _: False)
+    monkeypatch.setattr(hosting_module, "exists", lambda port: port in remembered)
+    monkeypatch.setattr(ports, "list_ports", lambda: [ListedPort(port, "") for port in plugged])
+    monkeypatch.setattr(known_ports, "remembered_ports", lambda: KnownPorts(last_port, names))
+    offered = [row["port"] for row in hosting_module.list_ports()]
+    assert sorted(offered) == sorted({*plugged, *virtual, *remembered})
+    assert last_port is None or offered[0] == last_port
+    are_known = [port in virtual or port in remembered for port in offered]
+    assert are_known == sorted(are_known, reverse=True)

@@ -173,7 +173,8 @@ class Hosting:
 
 
 def list_ports() -> list[Json]:
-    """Return the ports of this computer, the last used one first. Opens none of them.
+    """Return the ports of this computer: the last used one, then those where a robot is known, then
+    any others. Opens none of them.
 
     `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
     """
@@ -189,7 +190,12 @@ def list_ports() -> list[Json]:
         for port in port_memory.name_by_port
         if port not in port_names and exists(port) and not directory.is_gone(port)
     ]
-    port_names.sort(key=lambda port: port != port_memory.last_port)
+    port_names.sort(
+        key=lambda port: (
+            port != port_memory.last_port,
+            port not in virtual_robots and port not in port_memory.name_by_port,
+        )
+    )
     return [
         {
             "port": port,
