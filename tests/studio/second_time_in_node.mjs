@@ -1646,10 +1646,10 @@ const PARTS = {
         if (number) presses(within(tile, className), (request) => request.do === what && request.pupil === number);
       };
       const actions = {
-        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
+        comes: () => { const who = name(); if (!here.has(who)) here.set(who, { number: (numbers += 1), text: '', version: 0, silent_s: 0, place: 0, robot: '', is_running: false, left_s: 0, is_right: true, hand: 0, lessons: [], own_robot: { name: '', colour: 0 } }); },
         writes: changes(() => ({ text: random() < 0.2 ? '' : `W(${numbers})`, version: (numbers += 1) })),
         waves: changes(() => ({ hand: random.below(3), place: random.below(3), silent_s: random.of([0, 9]), is_right: random() < 0.5 })),
-        drives: changes(() => ({ robot: random.of(['', 'Bo']), left_s: random.below(99) })),
+        drives: changes(() => ({ robot: random.of(['', 'Bo']), is_running: random() < 0.5, left_s: random.below(99) })),
         learns: changes(() => ({ lessons: ['1 one', '2 two'].slice(random.below(3)), own_robot: { name: random.of(['', 'Zip']), colour: 0 } })),
         goes: () => { here.delete(name()); },
         kept: () => { const key = `old ${name()}`; if (!kept.delete(key)) kept.set(key, { text: `S(${numbers})`, version: 0 }); },
@@ -1724,15 +1724,15 @@ const PARTS = {
       const joined = members.map(([key, { text: program, all }]) => [key, {
         text: program, isGroup: true, own_robot: { name: all.map(([name]) => name).join(', ') }, lessons: all.flatMap(([, { lessons }]) => lessons),
         silent_s: Math.min(...all.map(([, row]) => row.silent_s)), is_right: all.every(([, row]) => row.is_right),
-        hand: Math.max(...all.map(([, row]) => row.hand)), place: Math.max(...all.map(([, row]) => row.place)), ...(({ robot, left_s }) => ({ robot, left_s }))((all.find(([, { robot }]) => robot) ?? all[0])[1]),
+        hand: Math.max(...all.map(([, row]) => row.hand)), place: Math.max(...all.map(([, row]) => row.place)), ...(({ robot, is_running, left_s }) => ({ robot, is_running, left_s }))((all.find(([, { robot }]) => robot) ?? all[0])[1]),
       }]);
       const all = [...[...here].filter(([, { number }]) => !members.some(([, { pupils }]) => pupils.includes(number))), ...joined, ...kept].sort(([one], [other]) => one.localeCompare(other));
       const isSame = (actual, expected, label) => { if (JSON.stringify(actual) !== JSON.stringify(expected)) throw new Error(`${label}: ${JSON.stringify(actual)} in place of ${JSON.stringify(expected)}`); };
       const wordsIn = (part) => (typeof part === 'string' ? part : part.textContent + part.children.map(wordsIn).join(''));
       isSame(wall.children.map((tile) => [tile.children[0].textContent, tile.dataset['state'], tile.children[2].children[1].textContent, !within(tile, 'badge').hidden && wordsIn(within(tile, 'badge')), tile.children[2].children[0].children.filter(({ className }) => className).length, ...['hand', 'play', 'out', 'join'].map((item) => !within(tile, item).hidden)]),
-        all.map(([name, { own_robot, silent_s, is_right, robot, left_s, place, lessons = [], hand, isGroup = false }]) => {
+        all.map(([name, { own_robot, silent_s, is_right, robot, is_running, left_s, place, lessons = [], hand, isGroup = false }]) => {
           const state = !own_robot ? 'gone' : silent_s ? 'away' : is_right ? 'right' : 'wrong';
-          return [[name, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
+          return [[name, own_robot?.name].filter(Boolean).join(' · '), state, state === 'right' ? '✓' : text(`class_is_${state}`), robot ? `${is_running ? '▶ ' : ''}${robot} ${clock(left_s)}` : place ? text('class_place_short', { place }) : false, new Set(lessons).size, Boolean(hand), !isGroup && ['right', 'wrong'].includes(state), !isGroup, isGroup];
         }), 'the tiles');
       const hands = [...here].filter(([, { hand }]) => hand).sort(([, one], [, other]) => one.hand - other.hand).map(([name]) => name).join(', ');
       const said = [text('class_count', { pupils: here.size, robots: robots.size, waiting: [...here.values()].filter(({ place }) => place).length }), hands && text('class_hands', { names: hands })].filter(Boolean).join(' ');
@@ -1751,9 +1751,9 @@ const PARTS = {
       const own = big && all.find(([name]) => name === big[0]);
       if (big && !own) throw new Error(`${big[0]} is seen large, and is not here`);
       if (own) {
-        const { text: program, robot = '', hand = 0, isGroup, own_robot } = own[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
+        const { text: program, robot = '', is_running = false, hand = 0, isGroup, own_robot } = own[1], [, , , said_, lower, stop, next, remove] = large.children[0].children;
         if (program) isSame(big.slice(1), [program, wanted[all.indexOf(own)][1]], 'what is seen large');
-        isSame([said_.textContent.startsWith(text('class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${own[0]}, who is seen large ${Boolean(own_robot)}`);
+        isSame([said_.textContent.startsWith(text(is_running ? 'class_runs' : 'class_drives', { robot })), lower.hidden, stop.hidden, next.hidden, remove.hidden, large.children[1].children[2].hidden, large.children[1].children[0].hidden], [Boolean(robot), !hand, !robot, !robot, Boolean(isGroup), !isGroup, !program], `beside ${own[0]}, who is seen large ${Boolean(own_robot)}`);
       }
       if (giving.open && !kept.size) throw new Error('there is nothing to give');
       const tile = wall.children.find((item) => numberOf(item) && !within(item, 'play').hidden), before = played;

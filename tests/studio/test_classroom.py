@@ -863,6 +863,10 @@ def test_the_teacher_watches_stops_and_reclaims_robots() -> None:
         ("Ana", 0, "TINI"), ("Luz", 1, ""),
     ]  # fmt: skip
     assert state["robots"] == [{"port": "port0", "name": "TINI", "pupil": "Ana", "left_s": 60}]
+    for is_running in (True, False):
+        robot.is_running = is_running
+        rows = {pupil["name"]: pupil["is_running"] for pupil in room.teaches("class")["pupils"]}
+        assert rows == {"Ana": is_running, "Luz": False}
     number = room.number("Ana")
     assert room.teaches("class_text", pupil=number)["text"] == "F(1, 50)"
     room.teaches("class_stop", pupil=number)

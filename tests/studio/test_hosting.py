@@ -388,13 +388,17 @@ def test_a_port_has_one_page(
     other_page = Page(hosting, "other")
     assert other_page.connect(robot.port) == {"failure": "other_tab"}
     assert page.connect(robot.port) == {}  # the page already has this robot
+    hosted_robot = hosting.robot_of(page.name)
+    assert hosted_robot and not hosted_robot.is_running
     start_drive(page, robot)
+    assert hosted_robot.is_running
     # STOP of a page without a robot
     stop_report = {"name": robot.port, "stop": "asked"}
     assert hosting.answer({"do": "stop_all"}) == {"robots": [stop_report]}
     page.until(lambda item: item.get("event") == "STOPPED")
     stop_report["stop"] = "confirmed"
     assert hosting.answer({"do": "stops"}) == {"robots": [stop_report]}
+    until(lambda: not hosted_robot.is_running, "it is known to stand")
     image = compile(FOREVER).image.hex()
     # The upload was under way.
     response = page.ask("upload", image=image, robot="tinibot", runs=True)

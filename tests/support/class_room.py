@@ -26,6 +26,7 @@ class FakeRobot:
     was_left: bool = False
     silent_s: float = 0.0
     is_half_made: bool = False
+    is_running: bool = False
     witness: Callable[[list[Json]], object] | None = None
 
     def leave(self, reason: str) -> None:

@@ -180,6 +180,10 @@ class ClassRobot:
     stop_number: int = 0
     group_runs: GroupRuns | None = None
 
+    @property
+    def is_running(self) -> bool:
+        return self.hosted_robot is not None and self.hosted_robot.is_running
+
     def begin(self, pupil: Pupil, now_s: float) -> None:
         self.pupil, self.hosted_robot, self.began_s = pupil, None, now_s
         self.queue_number, pupil.queue_number = pupil.queue_number, None
@@ -947,6 +951,7 @@ class Classroom:
                     "silent_s": round(now_s - pupil.heard_s),
                     "place": waiting_pupils.index(pupil) + 1 if pupil in waiting_pupils else 0,
                     "robot": turn.name or turn.port if (turn := self._turn(pupil)) else "",
+                    "is_running": turn is not None and turn.is_running,
                     "left_s": self._remaining_s(turn) if turn else 0,
                     "version": pupil.version,
                     "is_right": pupil.is_right,

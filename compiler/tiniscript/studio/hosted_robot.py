@@ -68,6 +68,12 @@ class HostedRobot:
         self._is_leaving = True
 
     @property
+    def is_running(self) -> bool:
+        """Return whether a run that the page has started may be running."""
+        link = self._link
+        return link is not None and not self.has_ended and link.has_run
+
+    @property
     def is_parting(self) -> bool:
         """Return whether a stop has to be confirmed, or the port to be closed."""
         return (self.has_ended or self._is_leaving) and self._thread.is_alive()

@@ -12,7 +12,7 @@ import { fetchRun } from './run.js';
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { makeSign } from './signs.js';
 import { clockText } from './clock.js';
-import { Wall } from './wall.js';
+import { robotText, Wall } from './wall.js';
 import { closedWindow } from './windows.js';
 import { element, setText } from '../page/elements.js';
 import { bugSentence } from '../page/faults.js';
@@ -22,7 +22,7 @@ import { pageState } from '../page/page_state.js';
 import { textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 
-/** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[], own_robot: import('../page/own_robot.js').OwnRobot}} PupilRow */
+/** @typedef {{number: number, name: string, silent_s: number, place: number, robot: string, is_running: boolean, left_s: number, version: number, is_right: boolean, hand: number, lessons: string[], own_robot: import('../page/own_robot.js').OwnRobot}} PupilRow */
 /** @typedef {{port: string, name: string, pupil: string, left_s: number}} RobotRow */
 /** @typedef {{key: string, name: string, lessons: string[], given: number, alike: number[]}} KeptRow `given` and `alike` are pupils: whose page is to have it, who may be who made it */
 /** @typedef {{key: string, name: string, pupils: number[], version: number}} GroupRow */
@@ -407,7 +407,7 @@ export class Teacher {
     }
     const { pupil } = tile;
     const program = this.#knownPrograms.get(key);
-    const drivesText = pupil?.robot ? text('class_drives', { robot: asPlainText(pupil.robot) }) : '';
+    const drivesText = robotText(pupil);
     const lessonsText = text('class_lessons', { done: tile.lessons.length, all: this.#classState?.lessons ?? 0 });
     this.#bigPupil.show({
       key, title: asPlainText(tile.name), stateText: [drivesText, lessonsText].filter(Boolean).join(', '), picture: this.#wall.pictureOf(key), text: program?.text || text('class_empty'), history: program?.history ?? [],

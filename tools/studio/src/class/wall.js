@@ -28,6 +28,11 @@ const LEAST_HEIGHT_PX = 84; // and of height
 const MOST_HEIGHT_PX = 260;
 const GAP_PX = 6;
 
+/** What a pupil does with which robot; nothing for one without a robot. @param {import('./teacher.js').PupilRow | null} pupil */
+export function robotText(pupil) {
+  return pupil?.robot ? text(pupil.is_running ? 'class_runs' : 'class_drives', { robot: asPlainText(pupil.robot) }) : '';
+}
+
 export class Wall {
   element = makeElement('ul');
   #actions;
@@ -111,7 +116,7 @@ export class Wall {
     tile.play.hidden = isGroup || state === 'gone' || state === 'away';
     tile.out.hidden = isGroup;
     tile.join.hidden = !isGroup;
-    const badge = drivenRobot ? `${drivenRobot} ${clockText(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
+    const badge = drivenRobot ? `${pupil?.is_running ? '▶ ' : ''}${drivenRobot} ${clockText(pupil?.left_s ?? 0)}` : pupil?.place ? text('class_place_short', { place: pupil.place }) : '';
     tile.badge.hidden = !badge;
     if (tile.badge.dataset['said'] !== badge) {
       tile.badge.dataset['said'] = badge;
@@ -127,7 +132,7 @@ export class Wall {
         return pip;
       }));
     }
-    const details = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', drivenRobot && text('class_drives', { robot: drivenRobot }),
+    const details = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', robotText(pupil),
       pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: lessonsDone.length, all: lessonCount })];
     setLabel(tile.see, `${text('class_see_of', { name: plainName })} ${details.filter(Boolean).join(', ')}`);
     setLabel(tile.hand, text('class_lower', { name: plainName }));
