@@ -27,6 +27,16 @@ for (let seed = 0; seed < Number(words[0]); seed += 1) {
     count += 1;
   }
 }
+// What the robot's panel says is said anew to whoever types, touches blocks or chooses a view.
+const { Speech } = await page.load('robot/speech.js');
+const speech = new Speech(), sentenceOf = () => sayOfPlace('robot_held', 'robot_held_block', 'SI|F(1, 80)', { line: 1, column: 4 });
+speech.sayAnew(sentenceOf, 'robot_held');
+for (const [view, isTyped] of [['blocks', false], ['blocks', true], ['blocks', false], ['text', false], ['blocks', true], ['text', true]]) {
+  pageState.view.set(view);
+  pageState.isTyped.set(isTyped);
+  if (page.byId('link_said').textContent !== sentenceOf()) throw new Error(`the panel says something else in ${view}, typed: ${isTyped}`);
+}
+pageState.isTyped.set(false);
 // Values of a SHOW that is there several times are told apart: by their lines, or as the first and the second.
 for (const [view, wanted] of [['text', ['X (line 2)', 'Y', 'X (line 5)']], ['blocks', ['X (1)', 'Y', 'X (2)']]]) {
   pageState.view.set(view);

@@ -389,7 +389,7 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
 
 
 def test_a_message_names_what_its_reader_works_with(page: Page) -> None:
-    """Beside the blocks somebody can type a line: what its message says can be typed there, too."""
+    """Who types a line beside the blocks reads what can be typed there; who touches blocks, of blocks."""
     start(page, "SI|S;\nTURN(2);\n")
     message = check("S;\nTURN(2)")[0]
     rows = page.locator("#messages li")
@@ -405,6 +405,8 @@ def test_a_message_names_what_its_reader_works_with(page: Page) -> None:
         (lambda: page.click("#undo"), True),
         (choose_view_again, False),
         (lambda: editor.press("Backspace"), True),
+        (lambda: page.locator(f"{PROGRAM} .blocklyBlock .blocklyText").first.click(), False),
+        (lambda: editor.press("Enter"), True),
     )
     for step, is_typed in steps:
         step()

@@ -47,7 +47,7 @@ def test_no_sentence_about_a_line_is_said_without_a_choice(key: str) -> None:
         for number, line in enumerate(lines):
             if re.search(rf"text\('{key}'|\('{key}',", line):
                 near = "\n".join(lines[max(0, number - 1) : number + 1])
-                assert partner_of(key) in near or "areBlocksNamed()" in near, (path.name, line)
+                assert partner_of(key) in near or "areBlocksNamed.value" in near, (path.name, line)
 
 
 def test_a_place_has_a_name_without_a_line(page_data: Path) -> None:

@@ -199,7 +199,7 @@ pageState.offeredFindingIndex.subscribe((findingIndex) => {
   const finding = pageState.checkResult.value?.findings[findingIndex];
   if (finding) showRepair(messageList, findingIndex, finding, repair);
 });
-for (const observable of [pageState.view, pageState.areWordsShown]) observable.subscribe(() => { // which say another word for the same code
+for (const observable of [pageState.areBlocksNamed, pageState.areWordsShown]) observable.subscribe(() => { // which say another word for the same code
   const { findings = [] } = pageState.checkResult.value ?? {};
   showFindings(findings);
   if (pageState.checkResult.value) showSummary(pageState.checkResult.value);

@@ -101,7 +101,7 @@ export function labelAt(programText, { line, column }) {
  * @returns {string}
  */
 export function sayOfPlace(lineKey, blockKey, programText, place, values = {}) {
-  return areBlocksNamed() ? text(blockKey, { ...values, part: labelAt(programText, place) }) : text(lineKey, { ...values, line: place.line });
+  return pageState.areBlocksNamed.value ? text(blockKey, { ...values, part: labelAt(programText, place) }) : text(lineKey, { ...values, line: place.line });
 }
 
 /** @param {string} word alone @returns {Label | null} what is on its block; null where it has none */
@@ -132,14 +132,9 @@ export function labelOfCode(code, spokenBlocks) {
   return { text: namesAsWritten.reduce((text, name) => text.replace(name.toUpperCase(), name), labelText), colour };
 }
 
-/** Whether somebody works with blocks: whoever has just typed a line reads of its words. */
-export function areBlocksNamed() {
-  return pageState.view.value === 'blocks' && !pageState.isTyped.value;
-}
-
 /** What the compiler says, as this person works with the program. @param {import('../python.js').Finding} finding @returns {{message: string, fix: string}} */
 export function sayAsSeen(finding) {
-  return areBlocksNamed() ? sayOnBlocks(finding) : finding;
+  return pageState.areBlocksNamed.value ? sayOnBlocks(finding) : finding;
 }
 
 /**

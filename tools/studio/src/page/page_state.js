@@ -50,6 +50,7 @@ export const pageState = {
   isRobotNamed: new Observable(false), // by the text: `// robot: liner`
   programText: new Observable(''),
   isTyped: new Observable(false), // somebody wrote the newest change of it as text, in this view
+  areBlocksNamed: new Observable(true), // in sentences: whoever has just typed a line reads of its words
   groupName: new Observable(''), // of pupils who edit this program together
   /** What the compiler says of the newest text; null while it is at work. */
   checkResult: new Observable(/** @type {import('../python.js').CheckResult | null} */ (null)),
@@ -63,3 +64,10 @@ export const pageState = {
   robotRun: new Observable({ range: /** @type {Range | null} */ (null), isHeld: false }),
   fault: new Observable({ range: /** @type {Range | null} */ (null), sentence: '' }), // of a run
 };
+
+for (const observable of [pageState.view, pageState.isTyped]) {
+  observable.subscribe(() => {
+    const areBlocksNamed = pageState.view.value === 'blocks' && !pageState.isTyped.value;
+    if (areBlocksNamed !== pageState.areBlocksNamed.value) pageState.areBlocksNamed.set(areBlocksNamed);
+  });
+}

@@ -58,7 +58,7 @@ export class Debugging {
     element('link_get_halting', HTMLButtonElement).addEventListener('click', () => page.getHalting());
     pageState.breakpoints.subscribe(() => this.#breakpointsChanged());
     pageState.programText.subscribe(() => { this.#places = []; });
-    for (const observable of [pageState.language, pageState.view]) observable.subscribe(() => this.#show());
+    for (const observable of [pageState.language, pageState.areBlocksNamed]) observable.subscribe(() => this.#show());
   }
 
   /** A robot is connected, or none any more. @param {RobotInfo | null} robotInfo */

@@ -21,7 +21,7 @@ export class Speech {
   #shownElement = element('link_shown', HTMLElement);
 
   constructor() {
-    for (const observable of [pageState.language, pageState.view, pageState.isTyped]) observable.subscribe(() => this.#showSentence());
+    for (const observable of [pageState.language, pageState.areBlocksNamed]) observable.subscribe(() => this.#showSentence());
   }
 
   #showSentence() {

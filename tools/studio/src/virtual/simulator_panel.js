@@ -2,7 +2,7 @@
 
 import { Arena } from './arena.js';
 import { BlockNames } from '../blocks/names.js';
-import { areBlocksNamed, labelAt, sayOnBlocks } from '../blocks/said.js';
+import { labelAt, sayOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -199,7 +199,7 @@ export class SimulatorPanel {
     }).observe(element('arena', HTMLCanvasElement));
     pageState.language.subscribe(() => this.#show());
     pageState.areWordsShown.subscribe(() => this.#show());
-    pageState.view.subscribe(() => {
+    pageState.areBlocksNamed.subscribe(() => {
       if (pageState.language.value) this.#show();
     });
     pageState.robotName.subscribe(() => this.begin());
@@ -738,7 +738,7 @@ export class SimulatorPanel {
 
   /** Code as it looks in the program. @param {string} code */
   #nameOf(code) {
-    return areBlocksNamed() ? this.#blockNames.nameOf(code.replace(/;.*/, ''), this.#shownRobotName) : code;
+    return pageState.areBlocksNamed.value ? this.#blockNames.nameOf(code.replace(/;.*/, ''), this.#shownRobotName) : code;
   }
 
   /**
@@ -746,7 +746,7 @@ export class SimulatorPanel {
    * @param {string} key @param {string} blockKey @param {Record<string, string | number>} values @param {string} code
    */
   #say(key, blockKey, values, code) {
-    return areBlocksNamed() ? text(textKey(blockKey), { ...values, part: this.#nameOf(code) }) : text(textKey(key), values);
+    return pageState.areBlocksNamed.value ? text(textKey(blockKey), { ...values, part: this.#nameOf(code) }) : text(textKey(key), values);
   }
 
   /** Why it was there: what was asked, with the values that the program had read, and whose motors they were. @param {RobotState} state */
@@ -817,7 +817,7 @@ export class SimulatorPanel {
 function partingText({ outcome: key, agreed, line, robot, virtual, sensor, began_ms }, programText) {
   /** @param {{ms: number, event: string} | null} row */
   const rowText = (row) => row ? text('record_at', { what: row.event.replace(/^SHOW /, ''), seconds: ((row.ms - began_ms) / 1000).toFixed(1) }) : text('record_nothing');
-  const placeText = !line ? text('record_end') : areBlocksNamed() ? `“${labelAt(programText, { line, column: 1 })}”` : text('line', { line });
+  const placeText = !line ? text('record_end') : pageState.areBlocksNamed.value ? `“${labelAt(programText, { line, column: 1 })}”` : text('line', { line });
   return text(textKey(`record_${key}`), { count: agreed, line, place: placeText, robot: rowText(robot), virtual: rowText(virtual), sensor });
 }
 

@@ -1,7 +1,7 @@
 // The list of messages beneath the editor. Everything of a program is put there as text, never
 // as markup. A screen reader hears the first one.
 
-import { areBlocksNamed, labelAt, labelOfCode, sayAsSeen, sayOfPlace } from '../blocks/said.js';
+import { labelAt, labelOfCode, sayAsSeen, sayOfPlace } from '../blocks/said.js';
 import { element, setText } from '../page/elements.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
@@ -21,7 +21,7 @@ export function messageWithFix({ message = '', fix = '' }) {
 /** A finding on the page: code is shown as it looks in the program. @param {Finding} finding @returns {Node | string} */
 function makeSentence(finding) {
   const { spoken, ...sentences } = finding.on_blocks;
-  return areBlocksNamed()
+  return pageState.areBlocksNamed.value
     ? makeTextElement('span', messageWithFix(sentences), { labelOfCode: (code) => labelOfCode(code, spoken) }) : messageWithFix(finding);
 }
 
@@ -33,7 +33,7 @@ function makeSentence(finding) {
 export function showMessages(list, findings, goTo) {
   let firstMessage = '';
   const rows = findings.slice(0, MOST_MESSAGES).map((finding) => {
-    const programText = pageState.programText.value, placeText = areBlocksNamed() ? labelAt(programText, finding) : text('line', { line: finding.line });
+    const programText = pageState.programText.value, placeText = pageState.areBlocksNamed.value ? labelAt(programText, finding) : text('line', { line: finding.line });
     const placeButton = makeButton('', () => goTo(finding), placeText);
     placeButton.className = 'place';
     placeButton.ariaLabel = sayOfPlace('say_fault', 'say_fault_block', programText, finding, { what: messageWithFix(sayAsSeen(finding)) });
@@ -68,7 +68,7 @@ export function summaryOf({ findings, bytes, places, loose: looseCount }) {
   const warnings = findings.length - mistakes;
   const parts = [];
   if (mistakes) parts.push(text('mistakes', { count: mistakes }));
-  else if (!looseCount) parts.push(!places.length ? text('program_empty') : areBlocksNamed() ? text('right_blocks') : text('right', { bytes }));
+  else if (!looseCount) parts.push(!places.length ? text('program_empty') : pageState.areBlocksNamed.value ? text('right_blocks') : text('right', { bytes }));
   if (looseCount) parts.push(text('loose', { count: looseCount }));
   if (warnings) parts.push(text('warnings', { count: warnings }));
   return parts.join(mistakes || looseCount ? ', ' : ' ');

@@ -1,6 +1,6 @@
 // Which SHOW of a program's text has shown a value: its expression names the value.
 
-import { areBlocksNamed } from '../blocks/said.js';
+import { pageState } from '../page/page_state.js';
 import { text } from '../page/texts.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
@@ -25,6 +25,6 @@ export function showAt({ places, shows }, codeOffset = -1) {
 export function shownName(shows, show, name, isApart) {
   const [, expression, line, column, sharesText, sharesLine] = show;
   if (!sharesText) return name;
-  if (areBlocksNamed()) return text('shown_block', { what: name, number: 1 + shows.filter((other) => other[1] === expression).indexOf(show) });
+  if (pageState.areBlocksNamed.value) return text('shown_block', { what: name, number: 1 + shows.filter((other) => other[1] === expression).indexOf(show) });
   return text('shown_line', { what: name, line: isApart && sharesLine ? `${line}:${column}` : line });
 }
