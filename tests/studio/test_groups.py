@@ -626,18 +626,29 @@ def test_a_group_has_one_place_in_the_queue_and_one_turn(school: School) -> None
     assert places == {0, -1}
 
 
-def test_a_joining_pupil_brings_an_earlier_place_in_the_queue(school: School) -> None:
-    teo = school.joins("Teo")
-    school.checks_in(teo, True)
-    school.connects(teo)
-    ana = Member(school, "Ana")
-    luz, eva = school.joins("Luz"), school.joins("Eva")
-    for token in (luz, eva, ana.token):
+@pytest.mark.parametrize("seed", range(10))
+def test_a_group_keeps_the_earliest_place_of_its_pupils(school: School, seed: int) -> None:
+    """Whoever joins whom, and whoever of them waited first."""
+    rng = Random(seed)
+    driver = school.joins("Teo")
+    school.checks_in(driver, True)
+    school.connects(driver)
+    tokens = [school.joins(name) for name in NAMES if name != "Teo"]
+    for token in rng.sample(tokens, k=rng.randint(2, len(tokens))):
         school.checks_in(token, True)
-    assert school.checks_in(ana.token)["place"] == 3
-    school.classroom.answer(luz, PUPIL_ADDRESS, {"do": "group_join", "name": "Red", "text": ""})
-    assert school.checks_in(ana.token)["place"] == school.checks_in(luz)["place"] == 1
-    assert school.checks_in(teo)["waiting"] == 2
+    pupils = school.classroom._pupil_by_token
+    for token in rng.choices(tokens, k=6):
+        numbers = {
+            pupil.token: pupil.queue_number
+            for pupil in pupils.values()
+            if pupil.queue_number is not None
+        }
+        fields = {"do": "group_join", "name": rng.choice(("Red", "Blue")), "text": ""}
+        school.classroom.answer(token, PUPIL_ADDRESS, fields)
+        mates = school.classroom._mates(pupils[token])
+        waiting_numbers = [numbers[mate.token] for mate in mates if mate.token in numbers]
+        kept_numbers = [mate.queue_number for mate in mates if mate.queue_number is not None]
+        assert kept_numbers == sorted(waiting_numbers)[:1]
 
 
 @pytest.mark.parametrize("seed", range(20))
