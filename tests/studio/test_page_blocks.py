@@ -389,7 +389,7 @@ def test_compiler_messages_are_shown_at_their_block(page: Page) -> None:
 
 
 def test_a_message_names_what_its_reader_works_with(page: Page) -> None:
-    """Whoever types a line reads what can be typed there; whoever touches blocks reads of blocks."""
+    """Whoever types a line reads what to type there; whoever touches blocks reads of blocks."""
     start(page, "SI|S;\nTURN(2);\n")
     message = check("S;\nTURN(2)")[0]
     rows = page.locator("#messages li")
