@@ -5,8 +5,10 @@ The results of a good profile are in `test_robots`.
 
 from __future__ import annotations
 
+import json
 import random
 import re
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -15,7 +17,7 @@ from tests.support.edited_robots import TEXTS, edit_profile
 from tests.support.rows import each_row
 from tests.support.texts import LANGUAGES, catalogue_texts
 from tiniscript import robots
-from tiniscript.robots.boards import ABILITIES
+from tiniscript.robots.boards import ABILITIES, CHIPS
 from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe, printable_value
@@ -222,6 +224,38 @@ def test_unsuitable_pins_of_esp32s_are_refused(
     if name == "tinibot32" and code in ("pin_at_boot", "pin_of_reset"):
         sentence = describe(refusals, "en")[0]
         assert sentence.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
+
+
+SWITCH = """
+[[kit.sensors]]
+name = "SWITCH"
+kind = "yes/no"
+
+[board.sensors.SWITCH]
+driver = "digital"
+pin = {pin}
+pull_up = {pull_up}
+"""
+
+
+@pytest.mark.parametrize("name", ["tinibot", "liner", "grabber", "tinibot32", "tinibotc3"])
+def test_a_pull_up_needs_a_pin_that_has_one(name: str) -> None:
+    """A pin that only reads takes a sensor without one."""
+    chip = CHIPS[read(TEXTS[name], "test").board.chip]
+    for pin, pull_up in product(chip.digital_pins | chip.reading_pins, ("true", "false")):
+        text_before, mark, text_after = TEXTS[name].partition("[board.motors]")
+        switch_text = SWITCH.format(pin=json.dumps(_parse_pin(chip.pin_name(pin))), pull_up=pull_up)
+        try:
+            read(text_before + switch_text + mark + text_after, "test")
+            reasons = []
+        except ProfileRefused as refusal:
+            reasons = [(code, values["path"]) for code, values in refusal.reasons]
+        is_refused = ("pin_cannot", "board.sensors.SWITCH.pin") in reasons
+        assert is_refused == (pull_up == "true" and pin not in chip.digital_pins), (pin, reasons)
+
+
+def _parse_pin(name: str) -> object:
+    return int(name) if name.isdigit() else name
 
 
 def test_too_many_pwm_pins_of_an_esp32_c3_are_refused() -> None:
