@@ -18,9 +18,11 @@ class Broken extends Error {
   }
 }
 
+const UART_BYTE_MS = 10_000 / 9600; // ten bits
+
 /** Each gives what tells a story, of a page that was just loaded; one that `isGood` loses nothing. */
 const PARTS = {
-  // A robot by Bluetooth: the same device each time.
+  // A robot by Bluetooth: the same device each time. An HM-10 has room for two writes, and passes bytes on as fast as its UART.
   async bluetooth() {
     playsNavigator({ bluetooth: {} });
     const page = freshPage();
@@ -28,6 +30,7 @@ const PARTS = {
     const device = new EventTarget();
     let fails = () => false;
     let sent = [];
+    let isHm10 = false, free_ms = 0; // its UART is free from then on
     const step = async (value) => {
       await later(5);
       if (fails()) throw new Broken();
@@ -36,7 +39,15 @@ const PARTS = {
     const way = Object.assign(new EventTarget(), {
       properties: { writeWithoutResponse: true },
       startNotifications: () => step(),
-      writeValueWithoutResponse: async (data) => { await step(); sent.push(...data); },
+      writeValueWithoutResponse: async (data) => {
+        await step();
+        for (const byte of data) {
+          const begin_ms = Math.max(now(), free_ms);
+          if (isHm10 && begin_ms - now() > 40 * UART_BYTE_MS) continue; // no room: it is lost
+          free_ms = begin_ms + UART_BYTE_MS;
+          sent.push(byte);
+        }
+      },
     });
     const service = { getCharacteristic: () => step(way) };
     device.gatt = {
@@ -44,7 +55,11 @@ const PARTS = {
       connect: async () => {
         await step();
         device.gatt.connected = true;
-        return { getPrimaryService: () => step(service) };
+        return { getPrimaryService: async (name) => {
+          await step();
+          if (isHm10 !== (name === 0xffe0)) throw new Broken('NotFoundError');
+          return service;
+        } };
       },
       disconnect() {
         device.gatt.connected = false;
@@ -54,6 +69,7 @@ const PARTS = {
     return async (random, isGood) => {
       sent = [];
       const notes = [];
+      isHm10 = random() < 0.5;
       fails = () => !isGood && random() < 0.15;
       const port = new BluetoothPort(device, 9600);
       const opened = port.open(() => {}, () => notes.push('gone')).then(() => 'open', (error) => error.reason);
@@ -62,11 +78,14 @@ const PARTS = {
       const ends = [how];
       if (how === 'open') {
         const count = 1 + random.below(5);
+        const writes = [];
         for (let k = 0; k < count; k += 1) {
-          port.write(new Uint8Array(1 + random.below(50)).fill(k + 1)).then(() => notes.push('done'), () => { notes.push('failed'); ends.push('failed'); });
+          writes.push(new Uint8Array(1 + random.below(50)).fill(k + 1));
+          port.write(writes[k]).then(() => notes.push('done'), () => { notes.push('failed'); ends.push('failed'); });
           if (random() < 0.5) await passes(random.below(60));
         }
         await passes(500);
+        if (isGood && String(sent) !== String(writes.flatMap((data) => [...data]))) throw new Error(`bytes were lost: ${sent}`);
         fails = () => false;
         sent = isGood ? sent : [];
         port.write(new Uint8Array(4)).then(() => notes.push('stopped'), () => notes.push('not stopped'));
