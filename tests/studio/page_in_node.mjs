@@ -36,7 +36,7 @@ registerHooks({
     if (!query) return next(specifier, context);
     const name = Object.keys(PLAYED).find((item) => specifier === item || (!item.startsWith('@') && specifier.endsWith(`/${item.split('/')[1]}`)));
     if (name && PLAYED[name][0] in played) return { url: `played:${name}${query}`, shortCircuit: true };
-    if (specifier.endsWith('/pyodide.asm.mjs')) return { url: 'data:text/javascript,', shortCircuit: true };
+    if (specifier.endsWith('/pyodide.asm.mjs')) return { url: `data:text/javascript,await globalThis.played.moduleComes?.()//${query}`, shortCircuit: true };
     if (specifier.endsWith('.json')) return { url: `made:${specifier.split('/').at(-1)}${query}`, shortCircuit: true };
     const found = next(specifier, context);
     return found.url.includes('/node_modules/') ? found : { ...found, url: found.url + query };

@@ -1039,6 +1039,42 @@ const PARTS = {
     };
   },
 
+  // Python comes over a slow line, and its module last: it is ready as long as something has come within the last 20 s.
+  async loading() {
+    const TIMEOUT_MS = 20_000, FILES = ['tiniscript.zip', 'messages.en.json', 'pyodide.asm.wasm', 'python.zip'];
+    return async (random) => {
+      const pieces = new Map(FILES.map((name) => [name, Array.from({ length: 1 + random.below(5) }, () => 100 + random.below(TIMEOUT_MS - 200))]));
+      const lastPiece_ms = Math.max(...[...pieces.values()].map((gaps) => gaps.reduce((sum, gap) => sum + gap)));
+      const module_ms = random() < 0.3 ? random.below(lastPiece_ms) : lastPiece_ms + random.below(2 * TIMEOUT_MS);
+      let state = '';
+      globalThis.postMessage = ({ waits, begun, error }) => {
+        if (!waits && !begun) state ||= error ? 'silent' : 'ready';
+      };
+      globalThis.name = 'en';
+      playsFetch(async (address) => new Response(new ReadableStream({
+        async start(controller) {
+          for (const gap of pieces.get(String(address).split('/').at(-1))) {
+            await later(gap);
+            controller.enqueue(new Uint8Array(1));
+          }
+          controller.close();
+        },
+      })));
+      const page = freshPage({
+        moduleComes: () => later(module_ms),
+        loadPyodide: async () => {
+          for (const response of await Promise.all(['./pyodide.asm.wasm', './python.zip'].map((name) => globalThis.fetch(name)))) await response.arrayBuffer();
+          return { FS: { mkdirTree() {} }, unpackArchive() {}, runPython: () => () => '{}' };
+        },
+      });
+      await page.load('worker.js');
+      await passes(lastPiece_ms + 4 * TIMEOUT_MS);
+      const wanted = module_ms < lastPiece_ms + TIMEOUT_MS ? 'ready' : 'silent';
+      if (state !== wanted) throw new Error(`${state || 'nothing'} in place of ${wanted}: ${JSON.stringify([[...pieces], module_ms])}`);
+      return { ends: [wanted], seen: [] };
+    };
+  },
+
   // What is fetched: each piece is told, that nothing comes is told once, and that not all will come to whom it concerns. It
   // ends 20 s after the last piece, or sooner, and then nothing is told of it any more.
   async fetching() {

@@ -31,6 +31,7 @@ ENDS_BY_PART = {
     "returning": {"yes", "no", "lost", "reload", "joins", "leaves", "mate", "full"},
     "pictures": {"made", "none"},
     "worker": {"good", "failed", "none"},
+    "loading": {"ready", "silent"},
     "fetching": {"whole", "broken", "refused", "lost", "cancelled", "silent"},
     "checking": {"changed", "checked"},
     "again": {"parted", "whole"},
