@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import signal
 from collections.abc import Callable
+from itertools import permutations
+from types import SimpleNamespace
 from typing import cast
 
 import pytest
@@ -21,10 +23,12 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.description import trim_in_words
 from tiniscript.cli.texts import causes
 from tiniscript.doctor.findings import Finding
+from tiniscript.link.connection import STATUS, reason_of
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.names import fault_name
+from tiniscript.link.outcomes import CANCELLED, DETAIL_MIDWAY
 from tiniscript.link.payloads import TrimReply
-from tiniscript.link.requests import OK
+from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session
 from tiniscript.link.trim import Pace, Trim, trim_from_reply
 
@@ -170,7 +174,9 @@ def test_a_robot_that_cannot_be_trimmed_keeps_its_trim(pty_robot: PtyRobot) -> N
 def test_a_stop_from_elsewhere_during_trimming_keeps_the_previous_trim(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Another terminal stops the robot in the moment in which it is given a trim to try."""
+    """Another terminal stops the robot in the moment in which it is given a trim to try.
+
+    Whatever a robot that answers has answered to the trial or to the former trim."""
     given_bytes: list[bytes] = []
     stops: list[str] = []
 
@@ -189,8 +195,16 @@ def test_a_stop_from_elsewhere_during_trimming_keeps_the_previous_trim(
 
     monkeypatch.setattr(trim_wizard.TrimWizard, "ask_trim", refuse_step)
     monkeypatch.setattr(trim_wizard.TrimWizard, "__init__", lambda wizard, connection: None)
-    for key in ("stopped_elsewhere", "plain"):
-        stops[:] = ["stopped_elsewhere", "plain"]  # the robot runs on, so these causes are stale
+    connection = cast("Connection", SimpleNamespace(connection=SimpleNamespace(robot=object())))
+    replies: list[Reply[object]] = [
+        *map(Reply, STATUSES.values()),
+        Reply(CANCELLED),
+        Reply(CANCELLED, DETAIL_MIDWAY),
+    ]
+    reasons = {reason_of(connection.connection, reply) for reply in replies}
+    keys = {"plain" if reason == STATUS else reason for reason in reasons}
+    for key, *stale_keys in permutations(keys, 3):  # the robot runs on, so the others are stale
+        stops[:] = stale_keys
         with pytest.raises(CommandError, match=key):
             trim_wizard.guide(cast("Connection", Connected()), Trim(balance=7))
         assert given_bytes.pop() == Trim(balance=7).data() and not given_bytes
