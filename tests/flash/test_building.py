@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 from argparse import Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from functools import cache, partial
 from pathlib import Path
@@ -753,6 +753,33 @@ def test_a_package_without_sources_names_their_origin(tmp_path: Path) -> None:
 ])  # fmt: skip
 def test_progress_is_parsed_from_the_output(expected: str, progress: StepProgress | None) -> None:
     assert building.parse_progress(expected, 10) == progress
+
+
+PLATFORM_OF_ROBOT = {"tinibot": "atmelavr", "tinibot32": "espressif32"}
+
+
+@pytest.mark.parametrize("suffix", ["", "@6.9.0"])
+@pytest.mark.parametrize("present_robot", PLATFORM_OF_ROBOT)
+@pytest.mark.parametrize("files", [(), ("README.md",), ("README.md", "platform.json")])
+@pytest.mark.parametrize(("variable", "subfolder"), [
+    ("HOME", ".platformio/platforms"), ("PLATFORMIO_CORE_DIR", "platforms"),
+    ("PLATFORMIO_PLATFORMS_DIR", "."),
+])  # fmt: skip
+def test_compilers_are_there_once_their_platform_is_whole(
+    variable: str, subfolder: str, files: Sequence[str], present_robot: str, suffix: str,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """An interrupted download leaves a folder; what tells of all of it comes last."""
+    for name in ("PLATFORMIO_CORE_DIR", "PLATFORMIO_PLATFORMS_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv(variable, str(tmp_path))
+    folder = tmp_path / subfolder / f"{PLATFORM_OF_ROBOT[present_robot]}{suffix}"
+    folder.mkdir(parents=True)
+    for file in files:
+        (folder / file).write_text("{}", encoding="utf-8")
+    for name in PLATFORM_OF_ROBOT:
+        is_there = name == present_robot and "platform.json" in files
+        assert (building.missing_mb(robots.load(name)) == 0) == is_there
 
 
 def test_a_build_needs_more_than_the_sources(
