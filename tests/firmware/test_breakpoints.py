@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import pytest
 
 from tests.machines.host_firmware import drives
@@ -477,6 +479,32 @@ def test_breakpoints_may_change_while_running_or_halted() -> None:
     assert it.places() == OK
     it.go()
     assert it.halt(500) is None and state(it) == STATE_RUNNING
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_program_halts_where_the_last_accepted_request_said(seed: int) -> None:
+    """A refused request changes nothing, whichever of its places is wrong."""
+    rng = Random(seed)
+    it = debug("SI|N = 0;LOOP(FOREVER);W(0.1);N = N + 1;SHOW(N);N = N - 1;END_LOOP")
+    starts = statement_starts(it.image.code)
+    round_offsets = starts[2:-1]
+    wrong_offsets = [offset for offset in range(len(it.image.code) + 9) if offset not in starts]
+    accepted: set[int] = set()
+    for _ in range(8):
+        offsets = rng.sample(round_offsets, rng.randint(0, 3))
+        is_wrong = rng.random() < 0.6
+        if is_wrong:
+            offsets.insert(rng.randint(0, len(offsets)), rng.choice(wrong_offsets))
+        assert it.places(*offsets) == (BAD_VALUE if is_wrong else OK)
+        accepted = accepted if is_wrong else set(offsets)
+        reached = set()
+        for _ in range(2 * len(round_offsets)):
+            if it.is_halted():
+                it.go()
+            halt = it.halt(300)
+            if halt is not None:
+                reached.add(halt.offset)
+        assert reached == accepted, (offsets, accepted)
 
 
 def test_a_step_stays_in_its_task_unless_another_task_reaches_a_breakpoint() -> None:
