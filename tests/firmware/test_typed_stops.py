@@ -11,7 +11,7 @@ from __future__ import annotations
 import random
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -284,6 +284,34 @@ def test_after_the_stop_sequence_a_second_of_silence_is_needed(
         assert answer_lines(uno, count_before).count(PAUSE_LINE) == 1
         uno.run_ms(SILENCE_MS)
         assert repeat_until_it_drives(uno, 3000) == STEP_MS
+
+
+STOPS: dict[str, Callable[[Uno], object]] = {
+    "typed": lambda uno: uno.send(b"S\n"),
+    "letters": lambda uno: uno.send(b"SSS"),
+    "sequence": lambda uno: uno.send(bytes(8)),
+    "button": lambda uno: uno.press("button"),
+}
+
+
+@pytest.mark.parametrize("stop", STOPS)
+def test_how_long_a_stop_lasts_does_not_depend_on_an_earlier_one(
+    driving_at: tuple[Uno, int], stop: str
+) -> None:
+    waits_ms: dict[str, int] = {}
+    for earlier in ("", *STOPS):
+        uno, _ = driving_at
+        with uno.try_out():
+            if earlier:
+                STOPS[earlier](uno)
+                uno.run_ms(SILENCE_MS + 100)
+                assert states(uno) == OFF
+                assert repeat_until_it_drives(uno, 3000) == STEP_MS
+            STOPS[stop](uno)
+            uno.run_ms(100)
+            assert states(uno) == OFF
+            waits_ms[earlier] = repeat_until_it_drives(uno, 2 * SILENCE_MS)
+    assert set(waits_ms.values()) == {waits_ms[""]}, waits_ms
 
 
 def test_in_an_open_block_a_spelling_belongs_to_the_program(
