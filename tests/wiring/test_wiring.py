@@ -168,7 +168,7 @@ def test_absent_parts_of_a_robot_are_not_mentioned() -> None:
     assert "tsc doctor --module" not in texts_by_robot["tinibot"]
     assert "STATE tells" in texts_by_robot["tinibot"]
     assert "STATE stays unconnected" in texts_by_robot["liner"]
-    assert "10 kΩ resistors on STBY" in texts_by_robot["liner"]
+    assert "10 kΩ from STBY to GND" in texts_by_robot["liner"]
     assert "Unplug the HC-05" in texts_by_robot["liner"]
 
 

@@ -34,7 +34,7 @@ MOST_MS, MOST_SHARE_PERCENT = 4, 4
 ROWS = (
     "one group, until the others receive a change: median, 95 of 100",
     f"{PUPIL_COUNT} pupils, until the others in a group receive a change: median, 95 of 100",
-    f"{PUPIL_COUNT} pupils, share of a core, and memory in all",
+    f"{PUPIL_COUNT} pupils, share of one core, and total memory",
 )
 CHANGE_INTERVAL_S = (2.0, 6.0)  # range of time between a pupil's changes
 PROGRAM = "F(1, 80)\nLOOP(3)\nB(1, 40)\nEND_LOOP\nS\n"

@@ -38,10 +38,11 @@ MOST_HELD_MS = {9600: 25.0, 115_200: 4.0}
 MOST_LET_GO_MS = {9600: 25.0 + GAP_MS, 115_200: 8.0}
 MOST_LOST_MS = HOLD_MS + 3  # the clock and the program look after that time
 ROWS = (
-    "stick held, to the motor pins",
-    "stick released, to the motor pins",
-    "stick held, to the motor pins, with `examples/remote.ts`, which reads it 20 times a second",
-    f"line lost, to motors off, in {TRY_COUNT} of {TRY_COUNT}",
+    "stick held, until the motor pins change",
+    "stick released, until the motor pins change",
+    "stick held, until the motor pins change, with `examples/remote.ts`, "
+    "which reads it 20 times a second",
+    f"line lost, until the motors are off, in {TRY_COUNT} of {TRY_COUNT}",
 )
 FORMATS = (".1f", ".1f", ".1f", ".0f")
 

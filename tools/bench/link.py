@@ -37,9 +37,9 @@ MOST_STOP_US = 12
 # Limit for an ATmega328P; a Mega's timers and ports need longer instructions.
 MOST_TOGETHER_US = 12.0
 ROWS = (
-    f"first start bit of `{SHORT_PROGRAM}` to the motor pins",
-    "last byte of the same line, sent by `tsc live`, to the motor pins",
-    "last byte of a stop to motors off, in a busy robot: the slowest",
+    f"from the first start bit of `{SHORT_PROGRAM}` to the motor pins",
+    "from the last byte of the same line, if `tsc live` sends it, to the motor pins",
+    "from the last byte of a stop to motors off, in a busy robot: the slowest",
     "the same: the median",
     "the same: at most, if everything that can delay a stop happens at the same time",
 )

@@ -38,7 +38,7 @@ TRUST_DEFINE = "#define tiniscript_trusts_samples\n"
 ROWS = (
     "wrong readings, one wrong sample in fifty",
     "3 s runs with a wrong reading",
-    "until it detects that an obstacle at 50 cm/s is near: median, most",
+    "until it detects that an obstacle approaching at 50 cm/s is near: median, most",
     "until it detects one that suddenly appears: median, most",
 )
 

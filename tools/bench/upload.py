@@ -33,7 +33,7 @@ BYTES_PER_MS = 12  # about 115200 baud
 ROWS = (
     "with `tsc monitor --hold` on the port",
     "opening the port itself (this resets an Uno, which takes 1.4 s more)",
-    "a Python process that does nothing",
+    "for comparison: a Python process that does nothing",
     "`upload` to thirty robots, until the last one moves",
     "`stop` of thirty robots, until the last one has stopped",
 )

@@ -23,10 +23,10 @@ from tools.release.facts import AUTHORS, address
 SOURCES = ROOT / "vm_arduino" / "src"
 LIBRARY_SOURCES = ROOT / "vm_arduino" / "extras" / "library"
 MODULES = ("vm", "link", "text")  # the link has the reader of text, which gets no memory here
-SENTENCE = "The machine of TiniScript, a language of single lines for robots."
+SENTENCE = "The machine of TiniScript, a small language for cheap robots."
 PARAGRAPH = (
-    "Runs images that tsc compile has made on motors and sensors of your own sketch: verified "
-    "before they run, without heap and without waiting. With the link tsc sends programs."
+    "With the motors and sensors of your own sketch, it runs images made by tsc compile, each "
+    "verified before it runs. It uses no heap and never waits. With the link, tsc sends programs."
 )
 ARCHITECTURES = ("avr", "esp32", "esp8266")
 PLATFORMS = ("atmelavr", "espressif32", "espressif8266")

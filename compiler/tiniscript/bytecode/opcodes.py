@@ -128,7 +128,7 @@ CONTROL_ROLES = {
     "end":       "ends the program",
     "value":     "part of an expression",
     "join":      "part of an expression; if the left side decides the result, it jumps to `to`",
-    "read":      "takes a reading; stands between instructions or in the check of an UNTIL",
+    "read":      "takes a reading; stands between instructions or in the check of an UNTIL or a WHEN",
     "until":     "ends the check of an UNTIL",
     "plain":     "an instruction: leaves the stack empty",
     "watch":     "begins the check of an UNTIL",
@@ -178,7 +178,7 @@ def _comparison_ops(code: int, name: str, operands: str, effect: str, role: str,
             for i, (comparator, sign) in enumerate(COMPARATORS)]
 
 
-_MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
+_MOVES = ("F", "drive forward"), ("B", "drive backward"), ("L", "turn left"), ("R", "turn right")
 
 # Numbers that one byte pushes: counters, and their powers.
 PUSHED_NUMBERS = (*range(11), *range(20, 101, 10))
@@ -203,17 +203,17 @@ OPS = (
     _op(0x11, "SUB",             "",                    "a b -- a-b",      "value", "Subtract."),
     _op(0x12, "MUL",             "",                    "a b -- a*b",      "value", "Multiply; round half away from zero."),
     _op(0x13, "DIV",             "",                    "a b -- a/b",      "value", "Divide; round half away from zero."),
-    _op(0x14, "MOD",             "",                    "a b -- a%b",      "value", "The exact remainder, with the sign of `b`."),
+    _op(0x14, "MOD",             "",                    "a b -- a%b",      "value", "Push the exact remainder of `a / b`, with the sign of `b`."),
     _op(0x15, "NEG",             "",                    "a -- -a",         "value", "Change the sign."),
     _op(0x16, "ABS",             "",                    "a -- |a|",        "value", "Drop the sign."),
-    _op(0x17, "MIN",             "",                    "a b -- least",    "value", "The smaller one."),
-    _op(0x18, "MAX",             "",                    "a b -- most",     "value", "The larger one."),
+    _op(0x17, "MIN",             "",                    "a b -- least",    "value", "Push the smaller one."),
+    _op(0x18, "MAX",             "",                    "a b -- most",     "value", "Push the larger one."),
     _op(0x19, "ROUND",           "",                    "a places -- n",   "value", "Round `a` half away from zero to `places` decimals."),
     *(_op(0x20 + i, name,        "",                    f"a b -- a{sign}b", "value", f"Push TRUE if `a {sign} b`, else FALSE.")
       for i, (name, sign) in enumerate(COMPARATORS)),
-    _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "TRUE if `a` is FALSE, else FALSE."),
-    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are TRUE, else FALSE."),
-    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if at least one is TRUE, else FALSE."),
+    _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "Push TRUE if `a` is FALSE, else FALSE."),
+    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "Push TRUE if both are TRUE, else FALSE."),
+    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "Push TRUE if at least one is TRUE, else FALSE."),
     _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE, go to `to` with `a` on the stack; else drop it."),
     _op(0x2B, "AND_THEN_FAR",    "to:fwd16",            "a --",            "join",  "The same, with a longer jump."),
     _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE, go to `to` with `a` on the stack; else drop it."),
@@ -230,14 +230,14 @@ OPS = (
     _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to all listeners."),
     _op(0x3A, "SHOW_YES_NO",     "",                    "yes --",          "plain", "Send TRUE or FALSE."),
     _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a` to the value, rounded and limited to its range."),
-    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {direction_word} for `time`, then turn the motors off.")
-      for i, (d, direction_word) in enumerate(_MOVES)),
-    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"Drive {direction_word} for `time`, then turn the motors off.")
-      for i, (d, direction_word) in enumerate(_MOVES)),
-    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {direction_word} for `time`, or until a check is TRUE.")
-      for i, (d, direction_word) in enumerate(_MOVES)),
-    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {direction_word} until a check is TRUE.")
-      for i, (d, direction_word) in enumerate(_MOVES)),
+    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"{action.capitalize()} for `time`, then turn the motors off.")
+      for i, (d, action) in enumerate(_MOVES)),
+    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"{action.capitalize()} for `time`, then turn the motors off.")
+      for i, (d, action) in enumerate(_MOVES)),
+    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to {action} for `time`, or until a check is TRUE.")
+      for i, (d, action) in enumerate(_MOVES)),
+    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to {action} until a check is TRUE.")
+      for i, (d, action) in enumerate(_MOVES)),
     _op(0x50, "WAIT",            "",                    "time --",         "plain", "Wait."),
     _op(0x51, "WAIT8",           "time:time8",          "--",              "plain", "Wait."),
     _op(0x52, "WATCH_WAIT",      "",                    "time --",         "watch", "Prepare to wait for `time`, or until a check is TRUE."),
@@ -283,10 +283,10 @@ OPS = (
         _op(0x7E, "WHEN",        "to:fwd16",            "--",              "when",  "A WHEN begins here; go to `to`, its end."),
     )),
     # centimetres and degrees
-    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"Drive {direction_word} by `way`, then turn the motors off.")
-      ._replace(needs=NEEDS_GO, since_minor=1) for i, (d, direction_word) in enumerate(_MOVES)),
-    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to drive {direction_word} by `way`, or until a check is TRUE.")
-      ._replace(needs=NEEDS_GO, since_minor=1) for i, (d, direction_word) in enumerate(_MOVES)),
+    *(_op(0xFF40 + i, f"GO_{d}", "", "way power --", "plain", f"{action.capitalize()} by `way`, then turn the motors off.")
+      ._replace(needs=NEEDS_GO, since_minor=1) for i, (d, action) in enumerate(_MOVES)),
+    *(_op(0xFF48 + i, f"WATCH_GO_{d}", "", "way power --", "watch", f"Prepare to {action} by `way`, or until a check is TRUE.")
+      ._replace(needs=NEEDS_GO, since_minor=1) for i, (d, action) in enumerate(_MOVES)),
     # One-byte instructions.
     *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push the value of variable {}."),
     *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),

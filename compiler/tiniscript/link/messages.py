@@ -159,7 +159,7 @@ FEATURES = (
     (
         SEALS,
         "SEALS",
-        "It seals messages that need a key, and accepts nothing unsealed from a session that has shown one.",
+        "It accepts requests that need a key only if they are sealed, and seals its messages to the session that has authenticated.",
     ),
     (
         WIFI_RESTS,
@@ -292,7 +292,7 @@ MESSAGES = (
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES + PACE_BYTES}", f"wheels:u8 balance:i8 least:u8 pace:rest=0..{PACE_BYTES}",
              "Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. Answers OK as NAME does."),
     _message(16, "CLAIM", True, f"kind:u8 key:rest=0..{KEY_BYTES}", "",
-             "Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does."),
+             "Gives the robot the key with the number `kind` after its button has been held. If `key` is empty, it removes the key with that number. Answers OK as NAME does."),
     _message(17, "AUTHENTICATE", True, f"kind:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
              "Without a tag, it asks for a challenge. With a tag, it proves possession of a key of the robot."),
     _message(18, "IDENTIFY", True, "", "", "Makes the robot blink and play the tune of its id."),
@@ -305,9 +305,9 @@ MESSAGES = (
              "next:u16", "Begins a longer program, with the fields of its image's header before the checksum."),
     _message(23, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(24, "KEYS", True, "keys:u8 x:i8 y:i8", _PULSE,
-             "Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat."),
+             "Sends the state of a remote control: a bit for each key that is held, and the position of its stick. Also a heartbeat."),
     _message(25, "BREAK", True, f"places:rest=0..{2 * MOST_BREAKPOINTS}", "",
-             "Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits."),
+             "Sets all places where a program halts, as 16-bit offsets: in the running program or, if none is running, in the one that the robot holds."),
     _message(26, "RESUME", True, "how:u8", "run:u8 was_halted:u8",
              "Continues a halted program; `how` says how far."),
     _message(27, "READ_VARIABLES", True, "first:u8", f"run:u8 is_halted:u8 values:rest=0..{VARIABLES_BYTES}",
@@ -408,7 +408,7 @@ CAUSES = (
     ("SEQUENCE", "By the stop sequence."),
     ("MESSAGE",  "By STOP."),
     ("BUTTON",   "By the button."),
-    ("CABLE",    "The radio module says that nobody is connected."),
+    ("CABLE",    "By a lost connection: nobody is connected any more."),
     ("TEXT",     "By a line of text."),
 )
 RESUMES = (

@@ -1,4 +1,4 @@
-"""Determines the meaning of a program with mistakes, and reports only certain findings.
+"""Determines the meaning of a program with mistakes, and reports only what is certain.
 
 Seven steps, a module each: meanings of words (`meanings`, with a lexicon for each language),
 rewrites (`rewrites`, with the table `rows`), slots, blocks, candidates (`search`, of whose lines

@@ -94,7 +94,7 @@ enum class Message : uint8_t {
   kCommit = 12,  // Ends a longer program, with its image's checksum.
   kName = 14,  // Names the robot, in UTF-8. The answer is OK once the name is saved; until then it is SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the motors' trim, with the fields of the reply, with or without `pace`. Without any bytes, it only asks for the trim. Answers OK as NAME does.
-  kClaim = 16,  // Gives the robot the key with the number `kind` after its button has been held. Without a key, it removes that key. Answers OK as NAME does.
+  kClaim = 16,  // Gives the robot the key with the number `kind` after its button has been held. If `key` is empty, it removes the key with that number. Answers OK as NAME does.
   kAuthenticate = 17,  // Without a tag, it asks for a challenge. With a tag, it proves possession of a key of the robot.
   kIdentify = 18,  // Makes the robot blink and play the tune of its id.
   kUndo = 19,  // Brings back the previous program. The running program ends; no program starts.
@@ -102,8 +102,8 @@ enum class Message : uint8_t {
   kWifi = 21,  // Sets, forgets or reports the robot's WiFi, in several steps. It must be sealed. Answers OK as NAME does.
   kBegin = 22,  // Begins a longer program, with the fields of its image's header before the checksum.
   kAbort = 23,  // Drops the program that was begun.
-  kKeys = 24,  // Sends the state of a remote control: a bit for each key that is held, and its pad. Also a heartbeat.
-  kBreak = 25,  // Sets all places where the running program halts or, if none is running, the one that the robot holds: offsets of 16 bits.
+  kKeys = 24,  // Sends the state of a remote control: a bit for each key that is held, and the position of its stick. Also a heartbeat.
+  kBreak = 25,  // Sets all places where a program halts, as 16-bit offsets: in the running program or, if none is running, in the one that the robot holds.
   kResume = 26,  // Continues a halted program; `how` says how far.
   kReadVariables = 27,  // Asks for the variables of the running program, starting with the variable `first`: 32 bits each.
   kReadTasks = 28,  // Asks for the tasks of the running program, and where each of them is.
@@ -223,7 +223,7 @@ enum class Cause : uint8_t {
   kSequence = 1,  // By the stop sequence.
   kMessage = 2,  // By STOP.
   kButton = 3,  // By the button.
-  kCable = 4,  // The radio module says that nobody is connected.
+  kCable = 4,  // By a lost connection: nobody is connected any more.
   kText = 5,  // By a line of text.
 };
 

@@ -369,7 +369,7 @@ enum class ControlRole : uint8_t {
   kEnd = 1,  // ends the program
   kValue = 2,  // part of an expression
   kJoin = 3,  // part of an expression; if the left side decides the result, it jumps to `to`
-  kRead = 4,  // takes a reading; stands between instructions or in the check of an UNTIL
+  kRead = 4,  // takes a reading; stands between instructions or in the check of an UNTIL or a WHEN
   kUntil = 5,  // ends the check of an UNTIL
   kPlain = 6,  // an instruction: leaves the stack empty
   kWatch = 7,  // begins the check of an UNTIL

@@ -62,7 +62,7 @@ void $drive_motor(int pwmPin, int forwardPin, int percent) {
                 Terminal("VCC", rail=BOARD_5V),
                 Terminal("GND", rail=GROUND),
             ),
-            "PWM, DIR",
+            "PWM/DIR",
             ("AO1, AO2", "BO1, BO2"),
             ("mind_pwm_dir",),
             power_key="power_volts_pwm_dir",

@@ -40,7 +40,7 @@ void $drive_motor(int forwardPin, int backwardPin, int percent) {
             Terminal("VM", rail=MOTOR_BATTERY),
             Terminal("GND", rail=GROUND),
         ),
-        "DRV8833, L9110S",
+        "DRV8833/L9110S",
         ("OUT1, OUT2", "OUT3, OUT4"),
         ("mind_two_wire",),
         power_key="power_volts_two_wire",
