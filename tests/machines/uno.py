@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from pathlib import Path
 
@@ -21,7 +22,7 @@ def skip_unless_available() -> None:
 
 @lru_cache(maxsize=16)
 def build_uno(name: str, **constants: int) -> Path:
-    """Return `tests/uno/NAME.cpp` as an ELF file, with these constants in it."""
+    """Return `tests/uno/NAME.cpp` as an ELF file, with these constants and what it includes."""
     skip_unless_available()
     given_words = [f"-Dk{constant}={value}L" for constant, value in constants.items()]
     source = SOURCES / f"{name}.cpp"
@@ -32,4 +33,6 @@ def build_uno(name: str, **constants: int) -> Path:
         "-DF_CPU=16000000L",
         *given_words,
     )
-    return compile_sources(source.name, flags, [str(source)], [source.read_bytes()])
+    included = re.findall(r'(?m)^#include "(.+)"', source.read_text(encoding="utf-8"))
+    contents = [(SOURCES / path).read_bytes() for path in (source.name, *included)]
+    return compile_sources(source.name, flags, [str(source)], contents)
