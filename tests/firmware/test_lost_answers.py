@@ -81,6 +81,7 @@ def memory() -> bytes:
 
 
 @pytest.mark.parametrize("seed", range(4))
+@pytest.mark.sampled("first", keep=2)
 @pytest.mark.parametrize("first", REQUESTS)
 def test_a_request_is_done_once_whatever_answers_are_lost(
     memory: bytes, first: str, seed: int

@@ -294,6 +294,7 @@ STOPS: dict[str, Callable[[Uno], object]] = {
 }
 
 
+@pytest.mark.sampled("stop", keep=1)
 @pytest.mark.parametrize("stop", STOPS)
 def test_how_long_a_stop_lasts_does_not_depend_on_an_earlier_one(
     driving_at: tuple[Uno, int], stop: str
