@@ -77,7 +77,7 @@ def test_a_name_that_no_robot_has_is_a_mistake(verb: str, tsc: Tsc, tmp_path: Pa
     result = tsc(verb, *(OPTIONS_BY_VERB[verb] or []), path).gives(1)
     assert result.err.count("[TS") == 1  # the words of this robot are unknown
     assert "line 1:  // robot: linar\n                   ^^^^^\n" in result.err
-    assert "No robot is called linar; TiniScript includes: tinibot, elegoo4" in result.err
+    assert "No robot is called linar; these come with TiniScript: tinibot, elegoo4" in result.err
     assert "Try:  // robot: liner   [TS138]" in result.err
 
 

@@ -105,7 +105,7 @@ def test_numbers_are_set_one_by_one_and_reset_at_once(pty_robot: PtyRobot) -> No
     assert run_trim(pty_robot, "--balance", "-5", "--least", "12").out.startswith("tinibot (")
     result = run_trim(pty_robot, "--exchange", "yes", "--reverse-right", "yes")
     assert result.out.endswith(
-        "has saved: motors swapped, right wheel reversed, right motor 5 % weaker, "
+        "has saved: motors swapped, right wheel reversed, right motor with 5 % less power, "
         "the wheels begin to turn at 12 %, uses its kit's speeds for CM and DEG\n"
     )
     assert stored_trim(pty_robot) == Trim(True, False, True, -5, 12, Pace())

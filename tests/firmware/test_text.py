@@ -51,7 +51,7 @@ STOP_MESSAGE = b"\0" + encode_frame(Frame(BY_NAME["STOP"].number, 99, 0))
 ANSWERS = (
     ("S~00000000", "1: Line damaged. Send it again", "1: Linea danada. Enviala de nuevo"),
     ("F(2,80)#", "8: Unknown sign", "8: Signo desconocido"),
-    ("W(5.)", "3: Write it like 5 or 0.5", "3: Escribelo como 5 o 0.5"),
+    ("W(5.)", "3: Write a number like 5 or 0.5", "3: Escribe un numero como 5 o 0.5"),
     ("X = 2147483.648", "5: Max is 2147483.647", "5: Lo maximo es 2147483.647"),
     ("Si F(1,80)", "4: Put | before this. Phone: ?123 then =\\<",
      "4: Pon | antes de esto. Movil: ?123 y =\\<"),

@@ -162,7 +162,7 @@ def test_a_nano_is_tried_with_both_of_its_bootloaders(
     body = f'{silent_body}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
     result = tsc(package, "--port", board.pty, "--chip", "nano", **fake(tmp_path, body))
     assert result.code == 3
-    assert "trying an older Nano" in result.err and "Is it a nano" in result.err
+    assert "the speed of an older Nano" in result.err and "Is nano the right" in result.err
     assert (tmp_path / "bauds").read_text() == "115200 57600 "
 
 

@@ -98,7 +98,7 @@ def test_no_repair_of_a_warning_makes_a_new_one() -> None:
         ("F(5, 60);IF(NOT (DISTANCE < 20));S;ENDIF", "After F(5, 60), the robot is standing still"),
         ("D = 2;LOOP(3);F(5, 60);IF(DISTANCE < D);S;ENDIF;END_LOOP", "F(5, 60) UNTIL(DISTANCE < D"),
         ("D = DISTANCE;F(5, 60) UNTIL(NOT (D < 20))", "Check a sensor in UNTIL"),
-        ("F(007, 60)", "Write 7, or write the seconds with a point."),
+        ("F(007, 60)", "Write 7, or write the seconds with a decimal point."),
         ("LOOP(VECES);S;END_LOOP", "give it a value first: VECES = 5"),
         ("BEEP(1, NOTA)", "Which number is NOTA?"),
     ],

@@ -194,7 +194,7 @@ enum class Answer : uint8_t {
   kHeldBack = 88,  // The teacher has stopped the robot.
   kNoPrevious = 90,  // The robot has no earlier program that it can run.
   kOtherDriver = 91,  // Somebody else is driving the robot over another connection.
-  kUnowned = 92,  // The robot has no owner, and a robot without one does not drive over WiFi.
+  kUnowned = 92,  // The robot has no owner, and a robot without an owner cannot be driven over WiFi.
   kUnreadable = 93,  // The robot cannot read its memory, so it does not know its owner: nobody can drive it.
   kNoRemote = 94,  // The robot's firmware has no remote control: no KEY_UP, no PAD_X.
   kNoBreakpoints = 95,  // The robot's firmware cannot halt a program at a breakpoint.

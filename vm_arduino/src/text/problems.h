@@ -16,7 +16,7 @@ enum class Problem : uint8_t {
   kNone = 0,
   kChecksum = 1,  // Line damaged. Send it again
   kCharacter = 2,  // Unknown sign
-  kNumber = 3,  // Write it like 5 or 0.5
+  kNumber = 3,  // Write a number like 5 or 0.5
   kTooBig = 4,  // Max is 2147483.647
   kSetup = 5,  // Put | before this. Phone: ?123 then =\<
   kPing = 6,  // PING|CHECK_CONNECTION alone
