@@ -175,11 +175,14 @@ def send_data(robot: Esp32Robot, end: tuple[End | None, Client], data: bytes) ->
         end[0].send(data)
 
 
-def test_the_next_client_drives_once_the_first_is_silent() -> None:
+@pytest.mark.parametrize("is_detached", [False, True])
+def test_the_next_client_drives_once_the_first_is_silent(is_detached: bool) -> None:
+    """Also while a detached program of the first runs on."""
     robot = boot()
     first, second = session(1, robot), session(2, robot)
     clients: Ends = [(None, first), (LowEnergy(robot), second)]
-    assert upload_text(robot, clients, first, "SI|F(0.1, 30)") == "OK"
+    image = image_of("SI|F(20, 30)" if is_detached else "SI|F(0.1, 30)")
+    assert wait_for_outcome(robot, clients, first.upload(image, is_detached=is_detached)) == "OK"
     talk(robot, clients, 300)
     assert upload_text(robot, clients, second) == "OTHER_DRIVER"
     only: Ends = clients[1:]
