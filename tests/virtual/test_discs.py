@@ -101,6 +101,20 @@ def test_the_controller_learns_how_its_wheels_roll_on(monkeypatch: pytest.Monkey
     assert at_s[5] - at_s[2] < at_s[2] - 0.25
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("lag_ms", [30, 60, 90])
+def test_later_turns_are_as_exact_as_the_first(
+    monkeypatch: pytest.MonkeyPatch, lag_ms: int, seed: int
+) -> None:
+    """Each may be corrected, however many were before it and however long the wheels roll on."""
+    monkeypatch.setattr(wheels, "LAG_MS", lag_ms)
+    robot, _ = started_robot(
+        "LOOP(12); R(90 DEG, 60); W(0.3); END_LOOP", seed, slip=0.0, is_detached=True
+    )
+    robot.step(robot.now_ms + 40_000)
+    assert abs(displacement(robot)[2] + 12 * 90) <= 20
+
+
 def test_backward_short_and_zero_moves_are_exact() -> None:
     robot, talk = started_robot("B(30 CM, 100); F(2 CM, 40); F(0 CM, 0)")
     talk.wait(6000)
