@@ -263,7 +263,7 @@ const PARTS = {
       return true; // nobody is asked outside a group
     };
     const views = { join: () => {}, showMates: () => {}, isBusy: false };
-    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: puts, clearProgram: () => notes.push('empty'), newestRun: async () => '' });
+    new Pupil({ panel, work, views, keepProgram: () => true, putProgram: puts, clearProgram: () => notes.push('empty'), fetchNewestRunFile: async () => '' });
     const box = page.byId('class_pupil');
     const [join, , buttons] = box.children;
     const [ask, quit, connect] = buttons.children;
@@ -503,7 +503,7 @@ const PARTS = {
           editor: { setUndoHandler() {}, extend: () => view },
           views: { isBusy: false, showMates() {}, join() {} },
           keepProgram: () => programs.storeVersion(), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
-          clearProgram() {}, newestRun: async () => '',
+          clearProgram() {}, fetchNewestRunFile: async () => '',
         });
         const [join] = page.byId('class_pupil').children;
         for (let k = 0; !join.hidden && k < 50; k += 1) { // one may be lost
@@ -1989,7 +1989,7 @@ const PARTS = {
       editor: { setUndoHandler: (callback) => { undo = callback; }, extend: () => view },
       views: { isBusy: false, showMates() {}, join: (shared) => { group = shared; } },
       panel: { onGroupEvent: () => { isWitness = true; }, endWitness: () => { isWitness = false; } },
-    }, { say() {}, onBug() {}, onOthers: (all) => { others = all; } });
+    }, { onStateChange() {}, onBug() {}, onMatesChange: (all) => { others = all; } });
     let asked = []; // of the class, since the newest join or leave
     let isGone = () => false;
     playsFetch(async (_, { body }) => {
@@ -2180,8 +2180,8 @@ const PARTS = {
       const { doc: { length } } = view.state;
       view.dispatch({ changes: { from: 0, to: length }, annotations: Transaction.addToHistory.of(false) });
       const shared = new SharedEditor(python, editor, {
-        fails: (error) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${error?.stack}`; }, left: () => { heard.left += 1; }, others: (others) => { heard.others = others; }, refused: () => { heard.refused += 1; }, keep: (kept) => { heard.kept = kept; },
-        answers: (is) => { heard.answers = is; }, places: (places) => { heard.places = places; }, runs: () => { heard.runs += 1; }, isBusy: () => false,
+        onBug: (error) => { if (isBroken) heard.fails += 1; else wrong = `it fails: ${error?.stack}`; }, onLeft: () => { heard.left += 1; }, onMatesChange: (others) => { heard.others = others; }, onRefusal: () => { heard.refused += 1; }, storePage: (kept) => { heard.kept = kept; },
+        onRequestEnd: (is) => { heard.answers = is; }, onMatesMove: (places) => { heard.places = places; }, onRobotEvent: () => { heard.runs += 1; }, isBusy: () => false,
       });
       let hasBegun = false;
       shared.showProgram({}, null).then(() => { hasBegun = true; });
@@ -2289,8 +2289,8 @@ const PARTS = {
   // answer at once, again and again.
   async news() {
     const page = freshPage();
-    const { HeardNews } = await page.load('class/heard.js');
-    const heard = new HeardNews();
+    const { NewsCursor } = await page.load('class/news_cursor.js');
+    const heard = new NewsCursor();
     let classes = 0;
     return async (random, isGood) => {
       const key = `class ${(classes += 1)}`;
@@ -3523,7 +3523,7 @@ const PARTS = {
     const { GivingWindow } = await page.load('class/giving.js');
     const given = [];
     const giving = new GivingWindow((key, pupil) => given.push([key, pupil]));
-    const list = giving.window.children[1].children[1];
+    const list = giving.dialog.children[1].children[1];
     let works = 0;
     return async (random, isGood) => {
       given.length = 0;
@@ -3554,7 +3554,7 @@ const PARTS = {
           }
         });
       }
-      const windows = [giving.window.open];
+      const windows = [giving.dialog.open];
       giving.show([], here);
       return { ends: [...ends], seen: isGood && [given.map(([, number]) => number), windows, list.children.length] };
     };

@@ -26,7 +26,7 @@ import { RunningPlace } from './robot/place.js';
 import { listenToSideButtons } from './page/sides.js';
 import { ignoreSecondPresses } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
-import { openFirstScreen, isStart, showScreen as showScreen } from './start/screens.js';
+import { openFirstScreen, isStart, showScreen } from './start/screens.js';
 import { OwnWindow } from './start/own_window.js';
 import { Start } from './start/start.js';
 import { startTheme } from './page/theme.js';
@@ -177,7 +177,7 @@ if ('class' in document.documentElement.dataset) {
       phone.show('robot');
       return lessons.open(lessonNumber);
     }, clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
-    newestRun: () => simulatorPanel.newestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
+    fetchNewestRunFile: () => simulatorPanel.newestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
   }));
 }
 

@@ -297,7 +297,7 @@ export class Blocks {
   showMates(matePlaces) {
     const { createSvgElement } = Blockly.utils.dom;
     for (const mark of this.#mateMarks) mark.remove();
-    this.#mateMarks = matePlaces.flatMap(({ line, color, said: label }) => {
+    this.#mateMarks = matePlaces.flatMap(({ line, color, label }) => {
       const block = this.#workspace.getBlockById(this.#places.find(([, [firstLine]]) => firstLine === line)?.[0] ?? '');
       if (!block) return [];
       const { width, height } = block.getHeightWidth();

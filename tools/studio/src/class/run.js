@@ -18,8 +18,8 @@ export async function giveRun(questionNumber, newestRunFile) {
 
 /** Asks a pupil's page for it; nothing where it has none, null where it does not answer. @param {number} pupilNumber @returns {Promise<string | null>} */
 export async function fetchRun(pupilNumber) {
-  const end_ms = performance.now() + ANSWER_LIMIT_MS;
-  for (let isFirst = true; performance.now() < end_ms; isFirst = false) {
+  const deadline_ms = performance.now() + ANSWER_LIMIT_MS;
+  for (let isFirst = true; performance.now() < deadline_ms; isFirst = false) {
     const { run } = await post({ do: 'class_run', pupil: pupilNumber, asks: isFirst });
     if (typeof run === 'string') return run;
     await new Promise((resolve) => { setTimeout(resolve, POLL_MS); });
