@@ -20,7 +20,7 @@ const PLAYED = {
   'blocks/blocks.js': ['Blocks'],
   'robot/host.js': ['HostRobot', 'hasHost', 'fetchPorts', 'isPupil', 'isTeacher', 'post'],
   'robot/serial.js': ['hasSerial', 'choosePort', 'listKnownPorts', 'SerialPort'],
-  'robot/flash.js': ['fetchFirmwares', 'loadFirmware', 'flashBoard'],
+  'robot/flash.js': ['fetchFirmwareList', 'loadFirmware', 'flashBoard'],
   '@codemirror/view': ['Decoration', 'EditorView', 'GutterMarker', 'WidgetType', 'gutter', 'highlightActiveLine', 'keymap', 'lineNumbers'],
   pyodide: ['loadPyodide'],
   'lean-qr': ['generate', 'correction'],

@@ -896,7 +896,7 @@ const PARTS = {
     const page = freshPage({
       hasSerial: true,
       choosePort: () => failed('port', 'port'),
-      fetchFirmwares: async () => [{ board: 'uno' }],
+      fetchFirmwareList: async () => [{ board: 'uno' }],
       loadFirmware: (which, board) => {
         notes.push([which.name ?? structuredClone(which), board, page.byId('flash_progress').value]);
         return failed('firmware', 'data');
@@ -914,7 +914,7 @@ const PARTS = {
     const { Flashing } = await page.load('robot/flashing.js');
     const speech = { say: (key) => notes.push(key), sayFailure: (failure) => notes.push(failure.reason) };
     let isFree = true;
-    new Flashing({ speech, port: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, meet: () => failed('meet') });
+    new Flashing({ speech, getChosenPort: () => null, isFree: () => isFree, setBusy: (isBusy) => { isFree = !isBusy; }, connect: () => failed('meet') });
     return async (random, isGood) => {
       notes = [];
       const end = isGood ? 'good' : random.of(['good', 'port', 'firmware', 'flash', 'meet', 'cancel']);
@@ -1382,7 +1382,7 @@ const PARTS = {
       asking.send = async () => {
         const sent = asking.requests.splice(0);
         await later(isGood ? 5 : random.below(300));
-        for (const { id, what } of sent) if (!isOver) asking.takeNews({ id, ok: what });
+        for (const { id, what } of sent) if (!isOver) asking.handleNews({ id, ok: what });
       };
       for (let k = 0; k < 6; k += 1) {
         open += 1;
@@ -1922,7 +1922,7 @@ const PARTS = {
         return { ok: true };
       },
       say() {},
-      tell() {},
+      onWatchingChange() {},
     });
     const seen = () => page.byId('senses').hidden || page.byId('gauges').children.map((row) => row.children[1].textContent);
     return async (random, isGood) => {
@@ -1930,7 +1930,7 @@ const PARTS = {
       robot = random.of(['tinibot', 'liner']);
       told = new Map();
       line = '';
-      watch.meet({ robot, owner: 'free', is_idle: true, is_running: false });
+      watch.onRobotChange({ robot, owner: 'free', is_idle: true, is_running: false });
       if (!wasWanted) page.byId('link_watch').click();
       wasWanted = true;
       const all = [seen()];
@@ -1948,7 +1948,7 @@ const PARTS = {
       }
       const end = told.size ? 'told' : 'silent';
       robot = null;
-      watch.meet(null);
+      watch.onRobotChange(null);
       await passes(500);
       return { ends: [end], seen: [all, line] };
     };
@@ -3262,9 +3262,9 @@ const PARTS = {
         if (isLost || by !== info) return null; // also of a robot that is gone
         return action === 'variables' ? { variables: [7] } : action === 'tasks' ? { tasks: [['RUNNING', 0], ['WAITING', 20]] } : { ok: true };
       },
-      uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHalting: async () => false, getHalting() {},
-      place: { hold: () => {}, goOn: () => {} },
-      recorder: { halt: () => { clock = 1; }, goOn: () => { clock = 0; } },
+      uploadPaused: () => actions.uploads(null, true), say() {}, sayAnew() {}, canGetHaltingFirmware: async () => false, getHaltingFirmware() {},
+      place: { halt: () => {}, resume: () => {} },
+      recorder: { halt: () => { clock = 1; }, resume: () => { clock = 0; } },
     });
     let program = null, isRunning = false, isStepping = false;
     const tells = (event) => debugging.onEvent(event);
@@ -3278,7 +3278,7 @@ const PARTS = {
         info = random() < 0.9 ? { has_breakpoints: random() < 0.8, is_running: random() < 0.2 } : null;
         [program, known, newest] = [null, '', null];
         over(info?.is_running ?? false);
-        debugging.meet(info);
+        debugging.onRobotChange(info);
       },
       uploads(random, paused = random() < 0.3) {
         if (!info || isRunning) return;
@@ -3307,7 +3307,7 @@ const PARTS = {
       },
       line() {
         if (known) known = 'none'; // what it halts at is gone
-        debugging.onLine();
+        debugging.onLineSent();
       },
       breaks(random) {
         const lines = places.filter(() => random() < 0.3).map(([, line]) => line);
@@ -3425,7 +3425,7 @@ const PARTS = {
       sends: (random) => sends(`p${random.below(30)}`, random() < 0.5),
       meets(random) {
         lacks = random() < 0.5;
-        recorder.meet({ has_readings: !lacks });
+        recorder.onRobotChange({ has_readings: !lacks });
       },
       ours(random) {
         const { name } = random.of(sent), ms = random() < 0.2 ? random.below(50) : undefined;
@@ -3479,7 +3479,7 @@ const PARTS = {
       },
       goesOn() {
         goesOn();
-        recorder.goOn();
+        recorder.resume();
       },
       lasts: (random) => passes(random.of([1000, 700_000])),
     };
@@ -3659,7 +3659,7 @@ const PARTS = {
     let wasLeft = false; // and opened after that
     const port = (own) => ({
       isRadio: true,
-      goneBy: 'port_gone',
+      lossReason: 'port_gone',
       async open(_, gone) {
         wasLeft ||= own.robot.isOver;
         if (state !== 'closed') throw new ConnectionFailure('port_busy');
@@ -3742,7 +3742,7 @@ const PARTS = {
       breaks = () => false;
       [given, bytes] = [[], []];
       let hears = () => {};
-      const port = { isRadio: true, goneBy: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
+      const port = { isRadio: true, lossReason: 'port_gone', async open(onData) { hears = onData; }, async write() {}, async close() {} };
       const robot = new DirectRobot(python, port, { onEvent() {}, onEnd() {} }, NO_KEYS);
       robot.connect('tinibot', 'en').catch(() => {});
       await passes(1000);
@@ -5069,7 +5069,7 @@ const PARTS = {
 };
 
 /** A browser in which nobody has the key of a robot. */
-const NO_KEYS = { load: () => '', keep() {} };
+const NO_KEYS = { load: () => '', store() {} };
 
 /** What the side with a real robot imports, where a part plays the robot. */
 const REAL_SIDE = {

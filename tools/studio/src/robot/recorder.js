@@ -39,7 +39,7 @@ export class Recorder {
   }
 
   /** A robot is connected. @param {RobotInfo} robotInfo */
-  meet(robotInfo) {
+  onRobotChange(robotInfo) {
     this.#lacksReadings = !robotInfo.has_readings;
   }
 
@@ -61,14 +61,14 @@ export class Recorder {
   }
 
   /** It goes on. */
-  goOn() {
+  resume() {
     if (this.#began_ms !== null && this.#halted_ms !== null) this.#began_ms += performance.now() - this.#halted_ms;
     this.#halted_ms = null;
   }
 
   /** The recording is over, if there is one. @param {string} event the last one */
   end(event) {
-    this.goOn();
+    this.resume();
     if (this.#isOver) return;
     const duration_ms = Math.min(this.#elapsed_ms, MOST_MS);
     this.#run?.addRow([duration_ms, event]);
@@ -86,12 +86,12 @@ export class Recorder {
       else this.end('STOPPED');
     }
     if (event.event === 'READING') this.#addReadings(event.rows ?? []);
-    const row = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', OVER: 'LOST', MISSED: 'MISSED' }[event.event];
-    if (!row || this.#isOver || !this.#run) return;
+    const rowText = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', RESTARTED: 'LOST', LOST: 'LOST', OVER: 'LOST', MISSED: 'MISSED' }[event.event];
+    if (!rowText || this.#isOver || !this.#run) return;
     this.#began_ms = Math.min(this.#began_ms ?? Infinity, performance.now() - (event.ms ?? 0));
-    if (event.event !== 'SHOW') this.end(row);
+    if (event.event !== 'SHOW') this.end(rowText);
     else if (this.#run.rows.length >= MOST_EVENTS || this.#elapsed_ms > MOST_MS) this.end('STOPPED');
-    else this.#run.addRow([event.ms ?? this.#elapsed_ms, row]);
+    else this.#run.addRow([event.ms ?? this.#elapsed_ms, rowText]);
     this.#show();
   }
 
