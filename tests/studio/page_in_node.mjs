@@ -12,7 +12,7 @@ export const [sources, made, ...words] = process.argv.slice(2);
 const PLAYED = {
   'virtual/arena.js': ['Arena'],
   'virtual/plot.js': ['Plot'],
-  'virtual/where.js': ['RunAnnouncer', 'boutEnd', 'bumpSentence', 'starsText'],
+  'virtual/where.js': ['RunAnnouncer', 'boutEndText', 'bumpSentence', 'starsText'],
   'virtual/sounds.js': ['Sounds'],
   'world/choice.js': ['WorldChoice'],
   'world/drawing.js': ['WorldDrawing'],

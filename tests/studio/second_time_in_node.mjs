@@ -220,7 +220,7 @@ const PARTS = {
       };
       let told = async () => {};
       for (let k = random.below(8); k > 0; k -= 1) {
-        random.of([() => simulator.pause(), () => simulator.goOn(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
+        random.of([() => simulator.pause(), () => simulator.resume(), () => simulator.step(), () => simulator.pressButton(), setPoints, () => {}])();
         await passes(random.below(400));
         await told();
         told = async () => {};
@@ -639,13 +639,13 @@ const PARTS = {
     const beginning = (name) => function made() { // what is drawn is what came since it has begun
       let count = 0;
       return new Proxy(this, { get: (_, property) => (...args) => {
-        count = property === 'begin' ? 0 : count + 1;
+        count = property === 'begin' || property === 'clear' ? 0 : count + 1;
         notes.push([name, property, count, ...args]);
       } });
     };
     const page = freshPage({
       Arena: beginning('arena'), Plot: beginning('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
+      starsText: String, boutEndText: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -688,7 +688,7 @@ const PARTS = {
       },
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled: async () => PROGRAM, remember() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, remember() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const line = page.byId('time_at');
     const marked = [];
@@ -824,7 +824,7 @@ const PARTS = {
         mute() {
           isMuted = random() < 0.6;
           if (isMuted) silences();
-          sounds.mute(isMuted);
+          sounds.setMuted(isMuted);
         },
         touches: () => { activation.hasBeenActive = random() < 0.8; },
         device: () => { hasDevice = random() < 0.7; },
@@ -1148,11 +1148,11 @@ const PARTS = {
     let run = null;
     return async (random, isGood) => {
       const [of, file] = isGood ? ['virtual', 'a run'] : random.of([['virtual', 'a run'], ['virtual', 'a run'], ['virtual', ''], ['real', ''], ['real', 'a run']]);
-      if (isGood && run?.origin.of === of && run.file) run.restart(); // it is played again
+      if (isGood && run?.origin.of === of && run.fileText) run.restart(); // it is played again
       else run = new Run({ of, text, robot: 'tinibot', program: '1' }, { ...PROGRAM, places }, null);
-      run.file = file;
+      run.fileText = file;
       run.fileRows = file ? [[5, 'READ DISTANCE 1'], [500, 'READ DISTANCE 2']] : [];
-      const isKept = run.origin.of === 'virtual' && !run.file; // what comes is what its file has
+      const isKept = run.origin.of === 'virtual' && !run.fileText; // what comes is what its file has
       const marks = [], rows = [];
       let now_ms = random.below(100), bumps = 0, parting = null, begun = [], end_ms = run.end_ms;
       const marked = (at_ms, kind) => {
@@ -1190,9 +1190,9 @@ const PARTS = {
       assertSame(run.marks, marks, 'marks');
       assertSame([run.rows, run.end_ms, run.parting], [rows, end_ms, parting], 'what its file has, its end, and where it parts');
       const known = rows.length ? rows : run.fileRows;
-      for (const at_ms of [0, 50, 600, now_ms / 2]) assertSame(run.readAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
-      const { moments, seconds } = run;
-      return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, seconds]) };
+      for (const at_ms of [0, 50, 600, now_ms / 2]) assertSame(run.readingAt('DISTANCE', at_ms) ?? null, known.filter(([when, row]) => when <= at_ms && row.startsWith('READ')).at(-1)?.[1].split(' ').at(-1) ?? null, `read at ${at_ms}`);
+      const { moments, duration_s } = run;
+      return { ends: [parting ? 'parted' : 'whole'], seen: isGood && structuredClone([moments.length, moments.events, moments.parts, moments.at(moments.length - 1).shown, moments.last_ms, duration_s]) };
     };
   },
 
@@ -3122,7 +3122,7 @@ const PARTS = {
     canvas.getContext = () => pen;
     const plot = new Plot(canvas);
     return async (random, isGood) => {
-      plot.begin();
+      plot.clear();
       const count = random.of([3, 100, 1999, 2001, 9000]);
       for (let k = 0; k < count; k += 1) plot.add(20 * k, [{ name: random.of(['X', 'Y']), value: random.below(100) }]);
       drawn.length = 0;
@@ -3375,7 +3375,7 @@ const PARTS = {
     const runs = new Runs();
     let trims = 0;
     page.byId('record_play').hidden = true; // as in index.html
-    const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), trim: () => { trims += 1; runs.trim(); } }, play() {} });
+    const recorder = new Recorder({ runs: { addRun: (run) => runs.addRun(run), forgetOldest: () => { trims += 1; runs.forgetOldest(); } }, play() {} });
     let sent = []; // the programs that robots have from here, the newest last
     const sends = (name, isSensing) => {
       const text = `// ${name}${isSensing ? ' DISTANCE' : ''}`;
@@ -3504,9 +3504,9 @@ const PARTS = {
         const run = runs.newestFirst[0];
         assertSame(run.rows, own, 'its rows');
         assertSame([run.origin.text, run.origin.is_by_button, run.end_ms], [ran.text, byButton, end_ms], 'of which program, and until when');
-        assertSame(run.clock(), Math.min(MOST_MS, elapsed()), 'its clock');
+        assertSame(run.readClock(), Math.min(MOST_MS, elapsed()), 'its clock');
         const older = runs.newestFirst[1];
-        if (older) assertSame(older.clock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
+        if (older) assertSame(older.readClock(), Math.min(MOST_MS, older.rows.at(-1)?.[0] ?? 0), 'the clock of the one before');
         const notice = unread ? textOf('record_incomplete', { sensors: 'DISTANCE' }) : lacks && ran.text.includes('DISTANCE') ? textOf('record_no_readings') : '';
         const place = page.byId('record_lacks');
         if (['meets', 'ours', 'waits'].includes(end)) isTold = end !== 'meets'; // what a robot that is met tells is of the next run
@@ -4691,7 +4691,7 @@ const PARTS = {
     let camera = '', stops = 0, isOver = false; // the mouse the program
     document.querySelector = (selector) => (isOver && selector === '#writing:hover' ? writing : null);
     page.byId('runs_open').parent = new (page.byId('runs_open').constructor)();
-    const stage = new Stage({ look: (from) => { camera = from; }, stop: () => { stops += 1; } });
+    const stage = new Stage({ setCamera: (from) => { camera = from; }, stop: () => { stops += 1; } });
     const [cameraButton, fullButton] = page.byId('runs_open').parent.children;
     const [writing, lessons] = ['writing', 'lessons'].map(page.byId);
     const has = { full: false, big: false, held: false, whole: false, turns: 0 };
@@ -4708,7 +4708,7 @@ const PARTS = {
           root.dataset['phase'] = 'ended';
           isOver = random() < 0.5;
           moves();
-          stage.runEnded();
+          stage.onRunEnd();
           await passes(250);
           if (isOver || pageState.sideId.value === 'side_lessons') has.big = false; // its text is read again
           isOver = false;
@@ -4957,7 +4957,7 @@ const PARTS = {
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),
-      starsText: String, boutEnd: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
+      starsText: String, boutEndText: String, bumpSentence: String, WorldChoice: Choice, WorldDrawing: Drawing, replaceOptions() {}, makePictureOption() {}, makeDialPicture() {},
     });
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -4983,14 +4983,14 @@ const PARTS = {
         return worker;
       },
     };
-    const whenCompiled = async () => {
+    const whenChecked = async () => {
       await later(delay());
       pageState.checkResult.set(program);
       return program;
     };
     robot = virtualRobot(chanceOf(1), true);
     page.byId('arena').checkVisibility = () => true;
-    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenCompiled, remember() {}, pad: { offerRobot() {} } });
+    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked, remember() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
     let lastPlace = '', driven_ms = 0; // the place of STOP stays for a while, however a run has ended

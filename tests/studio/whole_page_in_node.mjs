@@ -143,7 +143,7 @@ async function opens(stores) {
     terminate() {}
   };
   const page = freshPage({
-    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEnd: () => '', bumpSentence: () => '', ...playedEditor,
+    Arena, Blocks, Plot: still(''), RunAnnouncer: still(''), Sounds: still(''), starsText: String, boutEndText: () => '', bumpSentence: () => '', ...playedEditor,
     generate: () => ({ toCanvas() {} }), correction: {},
   }, HTML);
   for (const [name, kept] of Object.entries(stores)) for (const [key, value] of kept) window[name].setItem(key, value);

@@ -109,8 +109,8 @@ const views = new Views({
 const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
   python, work, remember: storeCurrentWork, pad,
-  whenCompiled: () => checker.whenChecked(),
-  put: ({ text: programText, robot: robotName }) => {
+  whenChecked: () => checker.whenChecked(),
+  putProgram: ({ text: programText, robot: robotName }) => {
     element('side_virtual', HTMLButtonElement).click();
     if (programText !== work.text || robotName !== work.robot) programs.replaceProgram({ text: programText, robot: robotName, name: '' });
     phone.show('robot');
@@ -177,7 +177,7 @@ if ('class' in document.documentElement.dataset) {
       phone.show('robot');
       return lessons.open(lessonNumber);
     }, clearProgram: () => editor.replace(''), putProgram: (program) => programs.replaceProgram({ ...program, name: '' }),
-    fetchNewestRunFile: () => simulatorPanel.newestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
+    fetchNewestRunFile: () => simulatorPanel.fetchNewestRunFile(), openRun: (file) => simulatorPanel.openRun(file),
   }));
 }
 

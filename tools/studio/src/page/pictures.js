@@ -36,7 +36,7 @@ export function makeRobotPicture(robot) {
   const pen = picture.getContext('2d');
   const scale = WIDTH_PX / VISIBLE_CM;
   pen?.setTransform(scale, 0, 0, -scale, WIDTH_PX / 2 - 2 * scale, HEIGHT_PX / 2);
-  if (pen) drawRobot(pen, robot, null, { rolled: [0, 0], isBeeping: false, colours: COLOURS[pageState.ownRobot.value.colour] ?? COLOURS[0] });
+  if (pen) drawRobot(pen, robot, null, { rolled_cm: [0, 0], isBeeping: false, colours: COLOURS[pageState.ownRobot.value.colour] ?? COLOURS[0] });
   return picture;
 }
 

@@ -74,7 +74,7 @@ export class Recorder {
     this.#run?.addRow([duration_ms, event]);
     if (this.#run) this.#run.end_ms = duration_ms;
     this.#isOver = true;
-    this.#page.runs.trim();
+    this.#page.runs.forgetOldest();
     this.#show();
   }
 
@@ -122,7 +122,7 @@ export class Recorder {
     if (sentProgram) {
       const { checkResult, text, robot: robotName } = sentProgram;
       const run = this.#run = new Run({ of: 'real', text, robot: robotName, program: checksum, is_by_button: began_ms === null }, checkResult, null);
-      run.clock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
+      run.readClock = () => Math.min(MOST_MS, run === this.#run ? this.#elapsed_ms : run.rows.at(-1)?.[0] ?? 0);
       this.#page.runs.addRun(run);
     }
     this.#show();

@@ -79,7 +79,7 @@ export class SensorWatch {
     this.#isProgramWaiting = this.#isOwnLine = false;
     this.#readings.clear();
     this.#sensorsRead.clear();
-    this.#plot.begin();
+    this.#plot.clear();
     this.#began_ms = performance.now();
     this.#stopWatching();
     this.#followSide();
