@@ -634,7 +634,7 @@ const PARTS = {
     let notes = [];
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
     class Choice { shownWorld = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
-    class Drawing { notice = ''; allow() {} forget() {} letGo() {} end() {} }
+    class Drawing { notice = ''; enable() {} reset() {} cancelDrag() {} end() {} }
     const notingClass = (name) => function made() { return noting(notes, name); };
     const beginning = (name) => function made() { // what is drawn is what came since it has begun
       let count = 0;
@@ -2868,15 +2868,15 @@ const PARTS = {
       start: { x_cm: 30, y_cm: 30, heading: 0 }, walls: [], boxes: [], lines: [], lamps: [], flags: [], rings: [], rivals: [],
     });
     let world = empty('w0');
-    const choice = { isOwn: false, write: async () => ({ text: 'w' }), keepOwn: async () => true };
+    const choice = { isOwn: false, write: async () => ({ text: 'w' }), storeOwn: async () => true };
     const drawing = new WorldDrawing({ ask: async () => ({ world: empty('opened') }) }, noting([], 'arena'), {
-      world: () => world, worldChoice: choice, robot: () => [0, 0], isDriving: () => false, switchOff() {}, preview() {}, tell() {},
-      put(changed) {
+      getWorld: () => world, worldChoice: choice, getRobotPlace: () => [0, 0], isDriving: () => false, switchOff() {}, previewWorld() {}, refresh() {},
+      putWorld(changed) {
         world = changed;
         choice.isOwn = true;
       },
     });
-    drawing.allow();
+    drawing.enable();
     page.byId('world_draw').click();
     const presses = (id, detail = 1) => page.byId(`world_${id}`).dispatchEvent(Object.assign(new Event('click'), { detail }));
     const types = (key) => page.byId('arena').dispatchEvent(Object.assign(new Event('keydown'), { key, preventDefault() {} }));
@@ -2896,7 +2896,7 @@ const PARTS = {
       enters() {
         world = empty(`w${(worlds += 1)}`);
         choice.isOwn = false;
-        drawing.forget();
+        drawing.reset();
       },
       async opens() {
         choosesFile(page.byId('world_file'), new File(['w'], 'w.toml'));
@@ -4953,7 +4953,7 @@ const PARTS = {
   async presses() {
     const shapes = { start: { x_cm: 0, y_cm: 0 }, flags: [], rivals: [], rings: [], seconds: 0, name: 'w' };
     class Choice { shownWorld = shapes; goals = []; request = 'w'; async restoreOwn() { return true; } }
-    class Drawing { notice = ''; allow() {} forget() {} letGo() {} end() {} }
+    class Drawing { notice = ''; enable() {} reset() {} cancelDrag() {} end() {} }
     const notingClass = (name) => function made() { return noting([], name); };
     const page = freshPage({
       Arena: notingClass('arena'), Plot: notingClass('plot'), RunAnnouncer: notingClass('announcer'), Sounds: notingClass('sounds'),

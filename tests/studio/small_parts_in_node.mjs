@@ -1086,7 +1086,7 @@ const PARTS = {
         chooses(OWN);
       },
       keeps() {
-        choice.keepOwn();
+        choice.storeOwn();
         isKept = true;
         if (newest) isDamaged = false; // else what is damaged stays
       },

@@ -118,9 +118,9 @@ export class SimulatorPanel {
       else this.#show();
     });
     this.#worldDrawing = new WorldDrawing(python, this.#arena, {
-      world: () => this.#shownWorld,
+      getWorld: () => this.#shownWorld,
       worldChoice: this.#worldChoice,
-      robot: () => {
+      getRobotPlace: () => {
         const [x, y] = this.#simulator.state?.pose ?? [this.#shownWorld.start.x_cm, this.#shownWorld.start.y_cm];
         return [x, y];
       },
@@ -129,17 +129,17 @@ export class SimulatorPanel {
         this.#switchOff();
         this.#chooseView('seen_arena');
       },
-      put: (world, isOther) => {
+      putWorld: (world, isOther) => {
         this.#previewWorld = null;
         this.#worldChoice.putOwn(world, isOther);
         remember();
         this.#switchOff();
       },
-      preview: (world) => {
+      previewWorld: (world) => {
         this.#previewWorld = world;
         this.#switchOff();
       },
-      tell: () => this.#show(),
+      refresh: () => this.#show(),
     });
     this.#runButton.addEventListener('click', () => this.#start(false));
     this.#pauseButton.addEventListener('click', (event) => {
@@ -428,9 +428,9 @@ export class SimulatorPanel {
 
   /** Another robot or world: what drove there has ended. */
   reset() {
-    this.#worldDrawing.letGo();
+    this.#worldDrawing.cancelDrag();
     this.#previewWorld = null;
-    this.#worldDrawing.forget();
+    this.#worldDrawing.reset();
     this.#switchOff();
     this.#stage?.showWorld();
   }
@@ -456,16 +456,16 @@ export class SimulatorPanel {
   /** Brings the worlds back that were drawn here; none is drawn before, for it would take their place. */
   async #restoreWorlds() {
     try {
-      const isWhole = await this.#worldChoice.restoreOwn();
+      const isNewestRestored = await this.#worldChoice.restoreOwn();
       if (this.#page.work.world !== OWN_WORLD) return;
       this.reset();
-      if (isWhole) return;
+      if (isNewestRestored) return;
       this.#note = text('world_lost');
       this.#show();
     } catch {
       // the page says that there is no compiler
     } finally {
-      this.#worldDrawing.allow();
+      this.#worldDrawing.enable();
     }
   }
 
