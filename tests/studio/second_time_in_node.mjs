@@ -583,7 +583,7 @@ const PARTS = {
     class Blocks {
       constructor() { if (story.breaks()) throw new Broken(); }
       updateLanguage() {}
-      async pictureOfForm(form) {
+      async makeFormPicture(form) {
         most = Math.max(most, (drawing += 1));
         await later(20);
         drawing -= 1;
@@ -1550,7 +1550,7 @@ const PARTS = {
       Blocks: class {
         words = 'words';
         updateLanguage() { this.words = `words ${languages}`; }
-        async pictureOfForm({ text }) { await later(20); return `${text} ${this.words}`; }
+        async makeFormPicture({ text }) { await later(20); return `${text} ${this.words}`; }
       },
     });
     let languages = 0;
@@ -1895,7 +1895,7 @@ const PARTS = {
 
   // Sensors of a real robot that are watched, and then another robot: what is seen is what it has told itself.
   async watching() {
-    const page = freshPage({ Plot: class { begin() {} add() {} draw() {} } });
+    const page = freshPage({ Plot: class { clear() {} add() {} draw() {} } });
     playsNavigator({});
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
@@ -2439,7 +2439,7 @@ const PARTS = {
     const page = freshPage({
       ...REAL_SIDE,
       Plot: class {
-        begin() { plotted = []; }
+        clear() { plotted = []; }
         add(at_ms, values) { plotted.push([Math.round(at_ms), ...values.map(({ value }) => value)]); }
         draw() {}
       },
@@ -3977,7 +3977,7 @@ const PARTS = {
     const page = freshPage({
       replaceOptions() {}, makePictureOption() {}, makeDialPicture() {}, makeBlocksPicture() {},
       Blocks: class {
-        isBusy = false;
+        isDragging = false;
         focusedLine = 1;
         has = {};
         stands = 'L0';
@@ -3991,11 +3991,11 @@ const PARTS = {
         set layoutText(layout) { this.next = layout; }
         get lines() { return this.form.body.map((_, line) => [`${line}`, line]); }
         readForm() {
-          if (this.isBusy) fails('blocks are read while one is in a hand');
+          if (this.isDragging) fails('blocks are read while one is in a hand');
           return { form: structuredClone(this.form), ids: [] };
         }
         show(form) {
-          if (this.isBusy) fails('a block is taken out of a hand');
+          if (this.isDragging) fails('a block is taken out of a hand');
           if (textOf(form) !== textOf(formOf(editor.text))) fails('blocks are made of an older text');
           if (form.body.some(({ kind }) => kind === 'grey') && editor.hasFocus && now() - asked_ms > 2500) fails('blocks are made of what somebody is typing');
           this.form = structuredClone(form);
@@ -4025,7 +4025,7 @@ const PARTS = {
           if (group) this.shown = textOf(formOf(editor.text));
         }
         showFault(range, sentence) { this.has.fault = JSON.stringify([range, sentence]); }
-        setLevel() {} setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
+        setLevel() {} setRobot() {} setTaughtBlocks() {} setGivenBlocks() {} updateLanguage() {} resize() {} beginProgram() {}
       },
     });
     let isTyped = false; // since blocks were shown
@@ -4057,7 +4057,7 @@ const PARTS = {
         editor.put(text);
       },
       undo() {
-        if (blocks.isBusy) fails('undo comes while a block is in a hand');
+        if (blocks.isDragging) fails('undo comes while a block is in a hand');
         if (hasTouched && !isTyped && !hasFailed) fails('undo comes before what was done to blocks');
         const [text, before, after] = past.pop() ?? [editor.text, '', ''];
         editor.put(text);
@@ -4142,10 +4142,10 @@ const PARTS = {
         pane.dispatchEvent(pressed);
         if (pressed.isStopped) return; // it is a moment too early
         for (let more = true; more; more = random() < 0.3) { // and takes the next one at once
-          blocks.isBusy = true;
+          blocks.isDragging = true;
           if (!group && random() < 0.2) presses('undo');
           await passes(random.below(random.of([2, 120])));
-          blocks.isBusy = false;
+          blocks.isDragging = false;
           const isNew = random() < 0.7, line = isNew ? `b${(count += 1)}` : blocks.form.body.pop()?.text;
           hasFailed = false;
           if (!isNew) mine = mine.filter((item) => item !== line);

@@ -97,7 +97,7 @@ async function opens(stores) {
   class Blocks {
     form = { body: [], loose: [] };
     layoutText = 'L0';
-    isBusy = false;
+    isDragging = false;
     begins = 0; // of other programs
     has = {};
     constructor(_, __, level, page) {
@@ -117,7 +117,7 @@ async function opens(stores) {
     setLevel(level) { this.has.level = level; }
     beginProgram() { this.begins += 1; }
     levelOf() { return 'few'; }
-    setRobot() {} setTaught() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
+    setRobot() {} setTaughtBlocks() {} setGivenBlocks() {} updateLanguage() {} resize() {} setRanges() {} showMates() {} goTo() {}
     async makePicture() { return null; }
   }
   const still = (name) => function made() { return new Proxy(this, { get: (_, property) => (property === 'then' ? undefined : () => name) }); };

@@ -1,6 +1,6 @@
 // Breakpoints and steps of a program on a real robot, and the values where it is halted.
 
-import { sayOfPlace } from '../blocks/said.js';
+import { sentenceAtPlace } from '../blocks/said.js';
 import { element, setHidden } from '../page/elements.js';
 import { pageState } from '../page/page_state.js';
 import { showRows, variableText } from '../page/rows.js';
@@ -206,7 +206,7 @@ export class Debugging {
 
   /** @param {import('../page/texts.js').Key} lineKey @param {import('../page/texts.js').Key} blockKey @param {string} programText @param {CheckResult['places'][number]} place */
   #sentenceAt(lineKey, blockKey, programText, [, line, column]) {
-    return sayOfPlace(lineKey, blockKey, programText, { line, column });
+    return sentenceAtPlace(lineKey, blockKey, programText, { line, column });
   }
 
   /** @param {object} halt @param {number} taskNumber */

@@ -1,7 +1,7 @@
 // The part of the page with a real robot: how it is reached, what it is told, and what it says.
 // Everything that a robot says is put there as text, never as markup.
 
-import { sayOfPlace } from '../blocks/said.js';
+import { sentenceAtPlace } from '../blocks/said.js';
 import { element } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -586,7 +586,7 @@ export class RobotPanel {
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    this.#speech.saySentence(sayOfPlace('say_fault', 'say_fault_block', program?.text ?? '', { line, column }, { what: sentence }));
+    this.#speech.saySentence(sentenceAtPlace('say_fault', 'say_fault_block', program?.text ?? '', { line, column }, { what: sentence }));
     if (movesCaret && pageState.checkResult.value === program) this.#page.goTo({ line, column, end_line, end_column });
   }
 

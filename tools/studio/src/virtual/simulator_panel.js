@@ -2,7 +2,7 @@
 
 import { Arena } from './arena.js';
 import { BlockNames } from '../blocks/names.js';
-import { areBlocksNamed, labelAt, sayOnBlocks } from '../blocks/said.js';
+import { areBlocksNamed, labelAt, findingOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
@@ -258,7 +258,7 @@ export class SimulatorPanel {
     if (startNumber !== this.#startCount) return;
     if (!checkResult.image) {
       const mistake = checkResult.findings.find(({ severity }) => severity === 'mistake');
-      pageState.note.set(text('alone_wrong', { why: mistake ? sayOnBlocks(mistake).message : '' })); // it is a block that is tried alone
+      pageState.note.set(text('alone_wrong', { why: mistake ? findingOnBlocks(mistake).message : '' })); // it is a block that is tried alone
       return;
     }
     const endPeek = isPeek ? this.#stage.peek() : () => {};

@@ -13,7 +13,7 @@ import { breakpointExtension, offsetsIn, breakpointsIn, onMarginPress, setBreakp
 import { highlighting, completionsForRobot, languageOfRobot } from './language.js';
 import { messageWithFix } from './messages.js';
 import { partAt } from './parts.js';
-import { sayOfPlace } from '../blocks/said.js';
+import { sentenceAtPlace } from '../blocks/said.js';
 import { pageState } from '../page/page_state.js';
 import { text, textsOf } from '../page/texts.js';
 
@@ -235,7 +235,7 @@ export class Editor {
       return;
     }
     const partStart = this.#partAt(offset, isLine);
-    if (partStart === null) pageState.note.set(sayOfPlace('no_breakpoint', 'no_breakpoint_block', this.text, this.#positionAt(offset)));
+    if (partStart === null) pageState.note.set(sentenceAtPlace('no_breakpoint', 'no_breakpoint_block', this.text, this.#positionAt(offset)));
     else setBreakpoints(this.#view, [partStart], !offsetsIn(this.#view.state).includes(partStart));
   }
 

@@ -135,7 +135,7 @@ export class Views {
   /** Offers what lessons have spoken of. The level rises to what the open one needs, and stays there: none takes blocks away. */
   #offerTaught() {
     const taughtBlocks = pageState.taughtBlocks.value;
-    this.#blocks?.setTaught(taughtBlocks);
+    this.#blocks?.setTaughtBlocks(taughtBlocks);
     const levelOrder = LEVELS.map(([level]) => level);
     const leastLevel = this.#blocks?.levelOf(taughtBlocks.needed) ?? 'few';
     if (levelOrder.indexOf(leastLevel) > levelOrder.indexOf(this.#page.work.level)) {
@@ -292,7 +292,7 @@ export class Views {
 
   /** Whether a block is in somebody's hand, or one of its fields is open. */
   get isBusy() {
-    return Boolean(this.#blocks?.isBusy || (this.#group && this.#blocks?.isOpen));
+    return Boolean(this.#blocks?.isDragging || (this.#group && this.#blocks?.isFieldOpen));
   }
 
   #isStale() {
