@@ -688,7 +688,7 @@ const PARTS = {
       },
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, remember() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, storeCurrentWork() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
     await settles();
     const line = page.byId('time_at');
     const marked = [];
@@ -1126,7 +1126,7 @@ const PARTS = {
           checking.markFailed();
           await settles();
           if (open) throw new Error('they wait for a compiler that cannot be had');
-          checking.markBeginning();
+          checking.markRetry();
         }
       }
       if (!isGood) await passes(1000); // a try that fails ends, too
@@ -2259,7 +2259,7 @@ const PARTS = {
       assertSame(lines, room.lines.map(({ text }) => text), 'the program');
       for (const name of [...mine, ...theirs]) if (lines.filter((line) => line === name).length !== 1) throw new Error(`${name} is ${lines.filter((line) => line === name).length} times in ${lines}`);
       const mates = room.others.map(({ at, name, writes: isWriting }) => [room.lines.findIndex(({ id }) => id === at) + 1, isWriting ? `${name} …` : name]).filter(([line]) => line);
-      assertSame(heard.places.map(({ line, said }) => [line, said]), [...mates, ...known.drafts.map((item) => [item, textFor('group_draft')])], 'where the others are, and what no other page has');
+      assertSame(heard.places.map(({ line, label }) => [line, label]), [...mates, ...known.drafts.map((item) => [item, textFor('group_draft')])], 'where the others are, and what no other page has');
       assertSame(heard.others, room.others, 'who is here');
       const line = place.line || view.state.doc.lineAt(view.state.selection.main.head).number;
       if (room.lines[line - 1]) assertSame(room.caret, { at: room.lines[line - 1].id, writes: place.line ? place.writes : false }, 'where this page is');
@@ -4118,7 +4118,7 @@ const PARTS = {
       settle: () => later(delay()),
       chooseLine() { if (group !== this) fails('a group that was left hears where somebody is'); },
     });
-    const views = new Views({ python, editor, work, remember() {}, tryAlone() {}, playTone() {} });
+    const views = new Views({ python, editor, work, storeCurrentWork() {}, tryAlone() {}, playTone() {} });
     const pane = page.byId('blocks');
     views.markReady();
     views.wake();
@@ -4488,7 +4488,7 @@ const PARTS = {
           const def = workspace().getBlocksByType('def')[0];
           if (!def) return;
           const before = changes;
-          random.of([() => def.addOne(), () => def.removeOne(), () => def.names().length && def.setFieldValue(`Z${random.below(99)}`, 'P0')])();
+          random.of([() => def.addValue(), () => def.removeValue(), () => def.names().length && def.setFieldValue(`Z${random.below(99)}`, 'P0')])();
           await passes(100);
           const calls = workspace().getBlocksByType('call');
           for (const call of calls) {
@@ -4990,7 +4990,7 @@ const PARTS = {
     };
     robot = virtualRobot(chanceOf(1), true);
     page.byId('arena').checkVisibility = () => true;
-    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked, remember() {}, pad: { offerRobot() {} } });
+    const panel = new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked, storeCurrentWork() {}, pad: { offerRobot() {} } });
     await settles();
     const { dataset } = document.documentElement;
     let lastPlace = '', driven_ms = 0; // the place of STOP stays for a while, however a run has ended

@@ -96,7 +96,7 @@ pageState.robotName.set(work.robot);
 
 const editor = new Editor(element('editor', HTMLElement));
 const views = new Views({
-  python, editor, work, remember: storeCurrentWork,
+  python, editor, work, storeCurrentWork,
   tryAlone: (programText, isAsked) => {
     forgetNote();
     return simulatorPanel.tryAlone(programText, isAsked, () => {
@@ -108,7 +108,7 @@ const views = new Views({
 });
 const pad = new Pad();
 const simulatorPanel = new SimulatorPanel({
-  python, work, remember: storeCurrentWork, pad,
+  python, work, storeCurrentWork, pad,
   whenChecked: () => checker.whenChecked(),
   putProgram: ({ text: programText, robot: robotName }) => {
     element('side_virtual', HTMLButtonElement).click();
@@ -218,7 +218,7 @@ python.listen({
   },
   onBegin: () => {
     statusElement.textContent = text('starting');
-    checker.markBeginning();
+    checker.markRetry();
   },
   onFail: () => {
     statusElement.textContent = text('no_compiler');
@@ -229,7 +229,7 @@ python.ready.then(() => {
   isReady = true;
   checker.markReady();
   views.markReady();
-  if (isStart()) views.fetchAhead();
+  if (isStart()) views.prefetchBlocks();
 });
 
 /** @param {string} sentence of the newest text @param {string} className */

@@ -227,13 +227,13 @@ export class Lessons {
     this.#lessonSelect.value = String(this.#lessonNumber);
   }
 
-  get #areBlocks() {
+  get #isBlockView() {
     return pageState.view.value === 'blocks';
   }
 
   /** @param {Lesson} lesson */
   #titleOf(lesson) {
-    return this.#areBlocks ? lesson.block_title : lesson.title;
+    return this.#isBlockView ? lesson.block_title : lesson.title;
   }
 
   /** @param {number} lessonNumber */
@@ -287,7 +287,7 @@ export class Lessons {
 
   /** Shows what the step says and what a check has found, as this person writes programs. */
   #fillStep() {
-    const shownStep = (this.#areBlocks ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
+    const shownStep = (this.#isBlockView ? this.#blockSteps : this.#steps)[this.#stepIndex], lesson = this.#lessons[this.#lessonNumber - 1];
     if (!shownStep || !lesson) return;
     const reader = this.#makeReader(lesson);
     element('lesson_name', HTMLElement).textContent = this.#titleOf(lesson);
@@ -318,7 +318,7 @@ export class Lessons {
 
   #showFindings() {
     const lesson = this.#lessons[this.#lessonNumber - 1];
-    const sentences = (this.#areBlocks ? this.#judgement?.block_said : this.#judgement?.said) ?? [];
+    const sentences = (this.#isBlockView ? this.#judgement?.block_said : this.#judgement?.said) ?? [];
     this.#findingsElement.replaceChildren(...lesson ? sentences.map((sentence) => makeTextElement('li', sentence, this.#makeReader(lesson))) : []);
   }
 
@@ -330,8 +330,8 @@ export class Lessons {
         this.#page.put(this.#lendProgram(lesson, programText));
         pageState.note.set(text(isOwnReplaced ? 'lesson_used' : 'lesson_used_again'));
       },
-      labelOfCode: (code) => (this.#areBlocks ? labelOfCode(code, this.#spokenBlocks) : null),
-      drawProgram: this.#areBlocks ? (programText, onDone) => {
+      labelOfCode: (code) => (this.#isBlockView ? labelOfCode(code, this.#spokenBlocks) : null),
+      drawProgram: this.#isBlockView ? (programText, onDone) => {
         this.#pictures.request(programText, { text: programText, robot: pageState.robotName.value }, onDone);
       } : null,
     };

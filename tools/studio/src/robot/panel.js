@@ -27,7 +27,7 @@ import { needStop } from '../page/stop_place.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
 import { messageWithFix } from '../writing/messages.js';
-import { shownName, showAt } from '../writing/shows.js';
+import { shownName, findShow } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { RobotInfo, Answer, RobotEvent, Transport } from './transport.js' */
@@ -567,7 +567,7 @@ export class RobotPanel {
   #shownValueName({ program: checksum, at: offset }) {
     if (!checksum) return '';
     if (this.#runningProgram?.program !== checksum) this.#runningProgram = this.#programOf(checksum);
-    const show = this.#runningProgram && showAt(this.#runningProgram, offset);
+    const show = this.#runningProgram && findShow(this.#runningProgram, offset);
     return show ? shownName(this.#runningProgram?.shows ?? [], show, show[1], false) : '';
   }
 

@@ -12,7 +12,7 @@ import { pageState } from '../page/page_state.js';
 import { currentLanguage } from '../page/texts.js';
 import { devicesOf, deviceName, robotOf } from '../page/words.js';
 import { Plot } from '../virtual/plot.js';
-import { showAt } from '../writing/shows.js';
+import { findShow } from '../writing/shows.js';
 
 /** @typedef {import('../python.js').CheckResult} CheckResult */
 /** @import { RobotInfo, Answer, RobotEvent } from './transport.js' */
@@ -238,7 +238,7 @@ export class SensorWatch {
   /** @param {string} checksum @param {number} offset @param {string} value */
   #applyReading(checksum, offset, value) {
     const line = this.#ownLines.get(checksum);
-    const show = line && showAt(line, offset);
+    const show = line && findShow(line, offset);
     if (!show) return;
     this.#readings.set(show[1], value);
     this.#drawReadings();

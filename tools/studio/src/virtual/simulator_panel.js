@@ -8,7 +8,7 @@ import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
 import { download } from '../page/files.js';
 import { rangeAt, StopOffsets } from '../writing/parts.js';
-import { shownName, showAt } from '../writing/shows.js';
+import { shownName, findShow } from '../writing/shows.js';
 import { makeDialPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
@@ -40,7 +40,7 @@ import { WorldDrawing } from '../world/drawing.js';
  * @property {import('../python.js').Python} python
  * @property {import('../programs/work.js').Work} work
  * @property {() => Promise<CheckResult | null>} whenChecked what the compiler says of the newest text, when it is done; null if it cannot say
- * @property {() => void} remember
+ * @property {() => void} storeCurrentWork
  * @property {import('../remote/pad.js').Pad} pad
  * @property {(program: {text: string, robot: string}) => void} putProgram the program of a recorded run into the editor
  */
@@ -106,7 +106,7 @@ export class SimulatorPanel {
 
   /** @param {Page} page */
   constructor(page) {
-    const { python, work, remember } = page;
+    const { python, work, storeCurrentWork } = page;
     this.#page = page;
     this.#blockNames = new BlockNames(python, () => this.#show());
     this.#runsWindow = new RunsWindow({ python, runs: this.runs, show: (run) => this.#showRun(run), play: (openedRun, knownRun) => this.#playOpened(openedRun, knownRun) });
@@ -132,7 +132,7 @@ export class SimulatorPanel {
       putWorld: (world, isOther) => {
         this.#previewWorld = null;
         this.#worldChoice.putOwn(world, isOther);
-        remember();
+        storeCurrentWork();
         this.#switchOff();
       },
       previewWorld: (world) => {
@@ -182,7 +182,7 @@ export class SimulatorPanel {
     soundButton.addEventListener('click', () => {
       work.sound = !work.sound;
       applySound();
-      remember();
+      storeCurrentWork();
     });
     applySound();
     element('erase_ways', HTMLButtonElement).addEventListener('click', () => {
@@ -409,7 +409,7 @@ export class SimulatorPanel {
 
   /** Another world has been chosen. */
   #enterWorld() {
-    this.#page.remember();
+    this.#page.storeCurrentWork();
     this.reset();
   }
 
@@ -687,7 +687,7 @@ export class SimulatorPanel {
     for (const [at_ms, event, offset] of events) {
       if (!event.startsWith('SHOW ')) continue;
       const value = event.slice('SHOW '.length);
-      const program = this.#timeLine.pastState ? this.#timeLine.run.program : this.#program, show = showAt(program, offset);
+      const program = this.#timeLine.pastState ? this.#timeLine.run.program : this.#program, show = findShow(program, offset);
       shownValues.set(show ? shownName(program.shows, show, `SHOW(${show[1]})`, true) : 'SHOW', value);
       this.#arena.showBubble(value, at_ms);
     }

@@ -64,12 +64,12 @@ export function showRepair(list, findingIndex, finding, repair) {
 
 /** @param {CheckResult} checked @returns {string} */
 export function summaryOf({ findings, bytes, places, loose: looseCount }) {
-  const mistakes = findings.filter((finding) => finding.severity === 'mistake').length;
-  const warnings = findings.length - mistakes;
+  const mistakeCount = findings.filter((finding) => finding.severity === 'mistake').length;
+  const warningCount = findings.length - mistakeCount;
   const parts = [];
-  if (mistakes) parts.push(text('mistakes', { count: mistakes }));
+  if (mistakeCount) parts.push(text('mistakes', { count: mistakeCount }));
   else if (!looseCount) parts.push(!places.length ? text('program_empty') : areBlocksNamed() ? text('right_blocks') : text('right', { bytes }));
   if (looseCount) parts.push(text('loose', { count: looseCount }));
-  if (warnings) parts.push(text('warnings', { count: warnings }));
-  return parts.join(mistakes || looseCount ? ', ' : ' ');
+  if (warningCount) parts.push(text('warnings', { count: warningCount }));
+  return parts.join(mistakeCount || looseCount ? ', ' : ' ');
 }
