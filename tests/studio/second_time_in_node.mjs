@@ -248,7 +248,7 @@ const PARTS = {
     await learns(page);
     const { Pupil } = await page.load('class/pupil.js');
     const { loadText } = await page.load('page/kept.js');
-    const { loadDoneLessons, storeDone } = await page.load('lesson/progress.js');
+    const { loadDoneLessons, storeDoneLesson } = await page.load('lesson/progress.js');
     const { pageState } = await page.load('page/page_state.js');
     let room = null;
     playsFetch((_, { headers, body }) => room.asked(headers['X-TiniScript-Token'], JSON.parse(body)));
@@ -353,7 +353,7 @@ const PARTS = {
       const changes = {
         writes: () => { work.text = `F(${random.below(2)})`; },
         robot: () => { work.robot = random.of(['tinibot', 'liner']); },
-        lesson: () => storeDone(`lesson${random.below(9)}`),
+        lesson: () => storeDoneLesson(`lesson${random.below(9)}`),
         ownRobot: () => pageState.ownRobot.set({ name: '', colour: random.below(2) }),
         checks: () => { [dataset['state'], dataset['image']] = [random.of(['stale', 'checked']), random.of(['', '00'])]; },
       };
@@ -1253,7 +1253,7 @@ const PARTS = {
       if (program.lesson && !program.text && (!isRightOn(work.robot, work.text) || isRightOn(program.robot, work.text))) wrong ||= `${inEditor()} goes from a ${program.robot}`;
       given(program);
     };
-    const lessons = new Lessons({ python, simulatorPanel: driving, put: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchange: exchanges, work });
+    const lessons = new Lessons({ python, simulatorPanel: driving, putProgram: (program) => (pageState.groupName.value ? opens(program) : given(program)), exchangeProgram: exchanges, work });
     page.byId('lessons').hidden = false;
     page.byId('side_lessons').click();
     await passes(500);
@@ -3168,7 +3168,7 @@ const PARTS = {
       stop() {},
     };
     page.byId('lesson_end').hidden = true;
-    new Lessons({ python, simulatorPanel: driving, put() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
+    new Lessons({ python, simulatorPanel: driving, putProgram() {}, work: { text: '', robot: '', name: '', lesson: '', own: null } });
     page.byId('lessons').hidden = false;
     const choice = page.byId('lesson');
     const opens = () => {

@@ -140,7 +140,7 @@ const PARTS = {
       },
       stars() {
         const names = [...Object.keys(STARS.lessons).slice(-3), 'gone']; // a lesson that is no more counts nothing
-        if (random() < 0.5) progress.storeDone(random.of(names));
+        if (random() < 0.5) progress.storeDoneLesson(random.of(names));
         else progress.storeStars(random.of([...names, ...Object.keys(STARS.worlds).map(progress.starsKeyOfWorld)]), 1 + random.below(9));
         pageState.language.set(pageState.language.value);
       },

@@ -43,7 +43,7 @@ const robotSelect = element('robot', HTMLSelectElement);
 const languageSelect = element('language', HTMLSelectElement);
 const wordsButton = element('words', HTMLButtonElement);
 const fileInput = element('file', HTMLInputElement);
-let noted_ms = 0;
+let lastNote_ms = 0;
 const statusElement = element('status', HTMLElement);
 const noteElement = element('note', HTMLElement);
 const messageList = element('messages', HTMLElement);
@@ -72,7 +72,7 @@ languageSelect.value = work.language = await setLanguage(work.language);
 element('coming', HTMLElement).remove();
 pageState.note.subscribe((sentence) => {
   noteElement.textContent = sentence;
-  noted_ms = performance.now();
+  lastNote_ms = performance.now();
 });
 pageState.programText.subscribe(forgetNote);
 for (const id of ['run', 'step', 'link_upload']) element(id, HTMLButtonElement).addEventListener('click', forgetNote, { capture: true }); // a phone takes some of them
@@ -130,9 +130,9 @@ const robotPanel = new RobotPanel({
 const lessons = new Lessons({
   python,
   work,
-  put: (program) => programs.replaceProgram(program),
-  keep: () => programs.storeVersion(),
-  exchange: (program) => {
+  putProgram: (program) => programs.replaceProgram(program),
+  keepProgram: () => programs.storeVersion(),
+  exchangeProgram: (program) => {
     programs.storeVersion();
     openProgram(program);
   },
@@ -170,7 +170,7 @@ new Start({
     lessons.leave();
   },
 });
-if (!isStart()) lessons.comeBack();
+if (!isStart()) lessons.reopen();
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
     panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), openLesson: (lessonNumber) => {
@@ -257,7 +257,7 @@ function repair(finding) {
 
 /** What was said of an edit goes with the next one or with a run. */
 function forgetNote() {
-  if (pageState.note.value && performance.now() - noted_ms > OWN_EDIT_MS) pageState.note.set('');
+  if (pageState.note.value && performance.now() - lastNote_ms > OWN_EDIT_MS) pageState.note.set('');
 }
 
 function showRobots() {
@@ -347,7 +347,7 @@ addEventListener('keydown', (event) => {
   } else if (event.key === 'o') {
     event.preventDefault();
     fileInput.click();
-  } else if ('zZyY'.includes(event.key) && !event.defaultPrevented && !hasItsOwnUndo(event.composedPath()[0])) {
+  } else if ('zZyY'.includes(event.key) && !event.defaultPrevented && !hasOwnUndo(event.composedPath()[0])) {
     event.preventDefault();
     const isRedo = event.shiftKey || event.key === 'y';
     const idPrefix = 'drawing' in document.documentElement.dataset ? 'world_' : '';
@@ -356,7 +356,7 @@ addEventListener('keydown', (event) => {
 });
 
 /** Whether a key was pressed in a field of text, or in front of the page. @param {EventTarget | undefined} target */
-function hasItsOwnUndo(target) {
+function hasOwnUndo(target) {
   return target instanceof Element && target.closest('input:not([type=checkbox]), textarea, [contenteditable=true], dialog') !== null;
 }
 

@@ -8,7 +8,7 @@
 import { makeButton, makeLabel, makeElement } from '../page/made.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { setToken, noteStopCount, post } from '../robot/host.js';
-import { storeDone, loadDoneLessons } from '../lesson/progress.js';
+import { storeDoneLesson, loadDoneLessons } from '../lesson/progress.js';
 import { asPlainText } from '../robot/plain_text.js';
 import { ConnectionFailure } from '../robot/transport.js';
 import { Group } from './group.js';
@@ -245,7 +245,7 @@ export class Pupil {
     const isKept = stay.isTakenUnconfirmed = storeVersion(program);
     if (!isNew) return;
     stay.takenWork = work;
-    for (const name of work.lessons) storeDone(name);
+    for (const name of work.lessons) storeDoneLesson(name);
     if (isShown || isKept) element('note', HTMLElement).textContent = text(isShown ? 'class_given' : 'class_given_kept');
   }
 

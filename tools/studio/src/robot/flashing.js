@@ -14,7 +14,7 @@ import { currentLanguage } from '../page/texts.js';
  * @property {() => any} getChosenPort the known one that is chosen, if one is
  * @property {() => boolean} isFree
  * @property {(isBusy: boolean) => void} setBusy
- * @property {(port: any) => Promise<void>} connect the robot that the board is then
+ * @property {(port: any) => Promise<void>} connect to the robot that the board is then
  */
 
 /** What people call the boards that can be written from here. @type {Record<string, string>} */
