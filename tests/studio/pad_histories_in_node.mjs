@@ -56,15 +56,15 @@ async function history(seed) {
   page.byId('pad_thumb').style.setProperty = (name, value) => { styles[name] = value; };
   await learns(page);
   const { pageState } = await page.load('page/page_state.js');
-  const { REMOTE } = await page.load('page/words.js');
+  const { REMOTE_DEVICES } = await page.load('page/words.js');
   const { text } = await page.load('page/texts.js');
   const { Pad } = await page.load('remote/pad.js');
   const pad = new Pad();
   pageState.sideId.set('side_virtual');
   const keyButtons = [...page.byId('pad_arrows').children, ...page.byId('pad_letters').children];
   const parts = [...keyButtons, page.byId('pad_stick')];
-  const devices = REMOTE.filter((device) => device.is_yes_no);
-  const sticks = REMOTE.filter((device) => !device.is_yes_no).map((device) => device.text);
+  const devices = REMOTE_DEVICES.filter((device) => device.is_yes_no);
+  const sticks = REMOTE_DEVICES.filter((device) => !device.is_yes_no).map((device) => device.text);
   const owners = OWNERS.map((selector) => {
     const owner = selector.startsWith('#') ? page.byId(selector.slice(1)) : document.createElement(selector.startsWith('[') ? 'div' : selector);
     if (selector.startsWith('#')) owner.id = selector.slice(1);
@@ -139,7 +139,7 @@ async function history(seed) {
   const actions = {
     offers() {
       const side = random.of(['driving', 'link']);
-      const reads = random() < 0.3 ? [] : REMOTE.map((device) => device.text).filter(() => random() < 0.6);
+      const reads = random() < 0.3 ? [] : REMOTE_DEVICES.map((device) => device.text).filter(() => random() < 0.6);
       const isDeaf = random() < 0.2;
       if (random() < 0.2 && offered[side]) reads.splice(0, Infinity, ...offered[side].reads); // as before, or as it
       const number = (count += 1);

@@ -231,7 +231,7 @@ const PARTS = {
     await learns(page);
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
-    const { showOwnRobot, ownRobotOf, COLOURS } = await page.load('page/own_robot.js');
+    const { showOwnRobot, validOwnRobot, COLOURS } = await page.load('page/own_robot.js');
     const { OwnWindow } = await page.load('start/own_window.js');
     showOwnRobot();
     new OwnWindow();
@@ -240,7 +240,7 @@ const PARTS = {
     const radios = dialog.querySelectorAll('input').filter(({ type }) => type === 'radio');
     let own = { name: '', colour: 0 }, kept = true, isKept = true;
     const stores = (changed) => {
-      own = ownRobotOf({ ...own, ...changed });
+      own = validOwnRobot({ ...own, ...changed });
       isKept = window.localStorage.room > 0;
       if (!isKept) is(pageState.note.value, text('not_kept'), 'said of what is not kept');
       else kept = JSON.stringify(own);
@@ -338,7 +338,7 @@ const PARTS = {
   async stop(random) {
     playsNavigator({});
     const page = freshPage({}, HTML);
-    const { needStop } = await page.load('page/stop_place.js');
+    const { setStopNeeded } = await page.load('page/stop_place.js');
     const COMES_MS = 500, STAYS_MS = 1500;
     const needs = Object.fromEntries(['run', 'link'].map((name) => [name, { isNeeded: false, isThere: false, since_ms: 0 }]));
     const looks = () => {
@@ -348,7 +348,7 @@ const PARTS = {
     };
     const sets = (name, isNeeded) => {
       if (isNeeded !== needs[name].isNeeded) Object.assign(needs[name], { isNeeded, since_ms: now() });
-      needStop(name, isNeeded);
+      setStopNeeded(name, isNeeded);
     };
     const actions = {
       begins: () => sets('run', true),

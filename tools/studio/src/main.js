@@ -4,14 +4,14 @@ import { element } from './page/elements.js';
 import { Checker } from './writing/checking.js';
 import { Editor } from './writing/editor.js';
 import { bugSentence } from './page/faults.js';
-import { bytesOf, download, onFileChosen } from './page/files.js';
+import { readBytes, downloadText, onFileChosen } from './page/files.js';
 import { Lessons } from './lesson/lessons.js';
 import { showMessages, showRepair, summaryOf, messageWithFix } from './writing/messages.js';
 import { registerServiceWorker } from './page/offline.js';
 import { Phone } from './page/phone.js';
 import { Programs } from './programs/programs.js';
 import { Python } from './python.js';
-import { goAmongPictures, makePictureOption, makeRobotPicture } from './page/pictures.js';
+import { listenToPictureKeys, makePictureOption, makeRobotPicture } from './page/pictures.js';
 import { pageState } from './page/page_state.js';
 import { showOwnRobot } from './page/own_robot.js';
 import { holdsProgram } from './programs/links.js';
@@ -51,7 +51,7 @@ const messageList = element('messages', HTMLElement);
 startTheme();
 showOwnRobot();
 ignoreSecondPresses();
-goAmongPictures();
+listenToPictureKeys();
 const storedWork = loadWork();
 const work = storedWork ?? {
   text: FIRST_PROGRAM,
@@ -319,7 +319,7 @@ onFileChosen('file', async (file) => {
   }
   let answer;
   try {
-    const data = await bytesOf(file);
+    const data = await readBytes(file);
     answer = await python.ask({ do: 'open', robot: work.robot, language: currentLanguage() }, data);
   } catch {
     pageState.note.set(text('not_opened', { name: file.name, why: text('unreadable') }));
@@ -335,7 +335,7 @@ onFileChosen('file', async (file) => {
 
 element('save', HTMLButtonElement).addEventListener('click', () => {
   const name = work.name || text('file_name');
-  download(name, editor.text);
+  downloadText(name, editor.text);
   pageState.note.set(text('saved', { name }));
 });
 

@@ -1,7 +1,7 @@
 // The worker: Python, and in it the compiler of this project itself.
 
 import { loadPyodide } from 'pyodide';
-import { Progress, watchedFetch } from './page/progress.js';
+import { ProgressWatch, watchedFetch } from './page/progress.js';
 // Nothing is installed: all modules are in the archives.
 import languages from '../made/languages.json';
 import lock from '../made/lock.json';
@@ -10,7 +10,7 @@ postMessage({ id: 0, begun: true });
 const reportWait = () => postMessage({ id: 0, waits: true });
 const nativeFetch = self.fetch.bind(self);
 // Pyodide's own module. An import tells of no progress: while something else comes, the line carries it, too.
-const moduleProgress = new Progress({ onWait: reportWait });
+const moduleProgress = new ProgressWatch({ onWait: reportWait });
 const advanceModule = () => moduleProgress.advance();
 // What is held on its way ends, and the page is told before. Pyodide waits for ever for what it has not got.
 const reportError = (/** @type {unknown} */ error) => postMessage({ id: 0, error: String(error) });

@@ -1,7 +1,7 @@
 // What a block says, as words: for a sentence that names a block, and for who looks for one. Knows no Blockly.
 
 import { COLOURS } from './colours.js';
-import { devicesOf, KINDS, deviceName, blockLabel, REMOTE } from '../page/words.js';
+import { devicesOf, KINDS, deviceName, blockLabel, REMOTE_DEVICES } from '../page/words.js';
 import { pageState } from '../page/page_state.js';
 import { hasText, text } from '../page/texts.js';
 
@@ -18,7 +18,7 @@ const COLOUR_OF_WORD = { ELSE: 'control', ELSEIF: 'control', CM: 'move', DEG: 'm
 /** @param {string} name of a sensor or an actuator of the page's robot @returns {string} what it is called, or nothing */
 function deviceLabel(name) {
   const robotName = pageState.robotName.value;
-  const device = [...devicesOf(robotName, 'sensor'), ...REMOTE, ...devicesOf(robotName, 'actuator')].find(({ text }) => text === name);
+  const device = [...devicesOf(robotName, 'sensor'), ...REMOTE_DEVICES, ...devicesOf(robotName, 'actuator')].find(({ text }) => text === name);
   return device ? deviceName(device) : '';
 }
 

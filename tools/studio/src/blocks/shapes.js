@@ -6,7 +6,7 @@ import { ArrowField, LineField, NameField, NumberField, UnitField } from './fiel
 import { CALL_METHODS, DEF_METHODS } from './own_words.js';
 import { rangeOf } from './places.js';
 import { labelOf } from '../page/texts.js';
-import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE, tipOf } from '../page/words.js';
+import { devicesOf, KINDS, deviceName, blockLabel, pieceOf, REMOTE_DEVICES, tipOf } from '../page/words.js';
 
 /** @import { ValueKind, BlockKind } from '../page/words.js' */
 
@@ -76,7 +76,7 @@ class DeviceField extends Blockly.FieldDropdown {
   constructor(role) {
     /** @this {any} */
     super(function () {
-      const rows = [...devicesOfRole(role), ...(role === 'sensor' ? REMOTE : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
+      const rows = [...devicesOfRole(role), ...(role === 'sensor' ? REMOTE_DEVICES : [])].map((device) => /** @type {[string, string]} */ ([deviceName(device), device.text]));
       const currentValue = /** @type {any} */ (this).kept;
       if (currentValue && !rows.some(([, name]) => name === currentValue)) rows.push([currentValue, currentValue]);
       return rows.length ? rows : [['?', '?']];
@@ -332,7 +332,7 @@ export function defineBlocks() {
 /** @param {Blockly.Block} block of a device */
 function tipOfDevice(block) {
   const name = block.getFieldValue('WORD');
-  const device = [...devicesOfRole('sensor'), ...REMOTE, ...devicesOfRole('actuator')].find((candidate) => candidate.text === name);
+  const device = [...devicesOfRole('sensor'), ...REMOTE_DEVICES, ...devicesOfRole('actuator')].find((candidate) => candidate.text === name);
   const label = device && `${name}: ${labelOf(device.labels)}${device.unit ? ` (${device.unit})` : ''}.`;
   return [label, tipOf(block.type)].filter(Boolean).join(' ');
 }

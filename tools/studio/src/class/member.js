@@ -10,7 +10,7 @@ import { SharedEditor } from './together.js';
 const STORAGE_KEY = 'tiniscript.group'; // what a page that is loaded again goes on with
 
 /** @typedef {import('./together.js').Mate} Mate */
-/** @typedef {{onStateChange: (key: import('../page/texts.js').Key | '') => void, onBug: (why: unknown) => void, onMatesChange: (mates: Mate[]) => void}} MembershipListener `onStateChange` is told of joining and leaving, too */
+/** @typedef {{onStateChange: (key: import('../page/texts.js').Key | '') => void, onBug: (error: unknown) => void, onMatesChange: (mates: Mate[]) => void}} MembershipListener `onStateChange` is told of joining and leaving, too */
 
 export class Membership {
   #page;

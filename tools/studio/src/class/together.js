@@ -43,7 +43,7 @@ const DECISION_LIMIT_MS = 2000; // for what was done before an undo
 
 /**
  * @typedef {object} TogetherListener who hears of it
- * @property {(why: unknown) => void} onBug that is a bug
+ * @property {(error: unknown) => void} onBug that is a bug
  * @property {() => void} onLeft this page is not in the group any more
  * @property {(mates: Mate[]) => void} onMatesChange who is here has changed
  * @property {(why: string) => void} onRefusal a change of this page is refused

@@ -73,7 +73,7 @@ export function replaceOptions(select, options) {
 }
 
 /** In a list of pictures an arrow key goes to the picture that is there, and not to the next one. */
-export function goAmongPictures() {
+export function listenToPictureKeys() {
   document.addEventListener('keydown', (event) => {
     const { target, key } = event, direction = { ArrowUp: [0, -1], ArrowDown: [0, 1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] }[key];
     if (!(target instanceof HTMLElement) || target.localName !== 'option' || !direction) return;

@@ -8,7 +8,7 @@ import { element, setText } from '../page/elements.js';
 import { makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
 import { labelOf, text } from '../page/texts.js';
-import { LINK, REMOTE } from '../page/words.js';
+import { LINK, REMOTE_DEVICES } from '../page/words.js';
 import { readGamepads } from './gamepads.js';
 import { HeldByHolder, areControlsSame, controlsOfStick, NOTHING_HELD } from './held.js';
 
@@ -20,7 +20,7 @@ import { HeldByHolder, areControlsSame, controlsOfStick, NOTHING_HELD } from './
  * @property {boolean} [isDeaf] it has no remote control
  */
 
-const KEY_DEVICES = REMOTE.filter((device) => device.is_yes_no);
+const KEY_DEVICES = REMOTE_DEVICES.filter((device) => device.is_yes_no);
 const ARROW_DIRECTIONS = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
 const KEYBOARD_KEYS = [...Object.keys(ARROW_DIRECTIONS), 'a', 'b']; // in the order of the keys
 const THUMB_SHARE = 0.75; // of its own size, to where the stick ends
@@ -112,7 +112,7 @@ export class Pad {
       const keyButton = this.#keyButtons[index];
       if (keyButton) keyButton.hidden = isDeaf || !remoteWords.includes(device.text);
     });
-    this.#stickElement.hidden = isDeaf || !remoteWords.some((word) => REMOTE.some((device) => device.text === word && !device.is_yes_no));
+    this.#stickElement.hidden = isDeaf || !remoteWords.some((word) => REMOTE_DEVICES.some((device) => device.text === word && !device.is_yes_no));
     for (const groupId of ['pad_arrows', 'pad_letters']) {
       const keyGroup = element(groupId, HTMLElement);
       keyGroup.hidden = [...keyGroup.children].every((keyButton) => keyButton instanceof HTMLElement && keyButton.hidden);

@@ -5,7 +5,7 @@ import { sentenceAtPlace } from '../blocks/said.js';
 import { element } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
-import { bytesOf, onFileChosen } from '../page/files.js';
+import { readBytes, onFileChosen } from '../page/files.js';
 import { chooseDevice, BluetoothPort, hasBluetooth } from './bluetooth.js';
 import { Debugging } from './debugging.js';
 import { ActivityLine } from './doing.js';
@@ -23,7 +23,7 @@ import { SensorWatch } from './watching.js';
 import { storeText, loadText } from '../page/kept.js';
 import { makeSymbolPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
 import { pageState } from '../page/page_state.js';
-import { needStop } from '../page/stop_place.js';
+import { setStopNeeded } from '../page/stop_place.js';
 import { labelOf, currentLanguage, text } from '../page/texts.js';
 import { isRobot, LINK, robotOf } from '../page/words.js';
 import { messageWithFix } from '../writing/messages.js';
@@ -453,7 +453,7 @@ export class RobotPanel {
       return;
     }
     try {
-      const data = await bytesOf(file);
+      const data = await readBytes(file);
       let storedKeys, importResult;
       do {
         storedKeys = loadText(KEYS_STORAGE_KEY);
@@ -596,7 +596,7 @@ export class RobotPanel {
     element('link_drive', HTMLElement).hidden = !isConnected && !this.#isWitness;
     element('link_drive', HTMLElement).classList.toggle('witness', !isConnected);
     element('link_connected', HTMLElement).hidden = this.#transport === null;
-    needStop('link', this.#transport !== null);
+    setStopNeeded('link', this.#transport !== null);
     element('link_name', HTMLElement).textContent = this.#robotName;
     element('link_serial', HTMLButtonElement).hidden = !hasSerial;
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;

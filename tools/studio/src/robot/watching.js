@@ -6,7 +6,7 @@
 
 import { element, setHidden } from '../page/elements.js';
 import { storeText, loadText } from '../page/kept.js';
-import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
+import { readingText, parseShownValue, percentOfRange } from '../page/readings.js';
 import { showRows } from '../page/rows.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage } from '../page/texts.js';
@@ -257,7 +257,7 @@ export class SensorWatch {
   }
 
   #drawReadings() {
-    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: numberOfShown(this.#valueOf(device.text)) })));
+    this.#plot.add(performance.now() - this.#began_ms, this.#sensors.map((device) => ({ name: deviceName(device), value: parseShownValue(this.#valueOf(device.text)) })));
     this.#frameRequest ||= requestAnimationFrame(() => this.#show());
   }
 
@@ -278,7 +278,7 @@ export class SensorWatch {
     if (container.hidden) return;
     showRows(element('gauges', HTMLElement), this.#sensors.map((device) => {
       const reading = this.#valueOf(device.text) ?? '';
-      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, numberOfShown(reading))];
+      return [deviceName(device), reading && readingText(device, reading), percentOfRange(device, parseShownValue(reading))];
     }));
     this.#plot.draw();
   }

@@ -1,7 +1,7 @@
 // The window with the last runs: one is seen again, saved as a file, and a file is opened.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download, onFileChosen } from '../page/files.js';
+import { readBytes, downloadText, onFileChosen } from '../page/files.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { pageState } from '../page/page_state.js';
 import { bugSentence } from '../page/faults.js';
@@ -49,7 +49,7 @@ export class RunsWindow {
   /** @param {File} file of a run: it is played, or why it cannot be is told */
   async open(file) {
     try {
-      await this.openData(await bytesOf(file), file.name);
+      await this.openData(await readBytes(file), file.name);
     } catch {
       this.#showRefusal(file.name, text('unreadable'));
     }
@@ -103,7 +103,7 @@ export class RunsWindow {
   /** @param {Run} run */
   async #saveRun(run) {
     try {
-      download(`${text('run_name')}${FILE_EXTENSION}`, await this.fileOf(run));
+      downloadText(`${text('run_name')}${FILE_EXTENSION}`, await this.fileOf(run));
     } catch (error) {
       this.#showNotice(bugSentence(error));
     }

@@ -6,7 +6,7 @@ import { areBlocksNamed, labelAt, findingOnBlocks } from '../blocks/said.js';
 import { element, setHidden, setText } from '../page/elements.js';
 import { onEscapeKey } from '../page/escape.js';
 import { faultSentence } from '../page/faults.js';
-import { download } from '../page/files.js';
+import { downloadText } from '../page/files.js';
 import { rangeAt, StopOffsets } from '../writing/parts.js';
 import { shownName, findShow } from '../writing/shows.js';
 import { makeDialPicture, replaceOptions, makePictureOption } from '../page/pictures.js';
@@ -18,8 +18,8 @@ import { Run, Runs } from './runs.js';
 import { RunsWindow } from './runs_window.js';
 import { TimeLine } from './time_line.js';
 import { pageState } from '../page/page_state.js';
-import { readingText, numberOfShown, percentOfRange } from '../page/readings.js';
-import { needStop } from '../page/stop_place.js';
+import { readingText, parseShownValue, percentOfRange } from '../page/readings.js';
+import { setStopNeeded } from '../page/stop_place.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
 import { isSecondPress } from '../page/twice.js';
 import { devicesOf, deviceName } from '../page/words.js';
@@ -167,7 +167,7 @@ export class SimulatorPanel {
       this.#simulator.speed = Number(speedSelect.value);
     });
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
-      download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
+      downloadText(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
     this.#whyButton.addEventListener('click', () => {
       this.#isWhyAsked = !this.#isWhyAsked;
@@ -591,7 +591,7 @@ export class SimulatorPanel {
     this.#showReadings();
     const { dataset } = document.documentElement, isOver = ['running', 'paused'].includes(dataset['phase'] ?? '') && phase === 'ended';
     dataset['phase'] = phase;
-    needStop('run', this.#isDriving);
+    setStopNeeded('run', this.#isDriving);
     if (isOver) this.#stage.onRunEnd();
     this.#offerRemote();
     if (!this.#isDriving) this.#onRunOver();
@@ -672,9 +672,9 @@ export class SimulatorPanel {
     if (state.began_ms === null) return;
     this.#keepShownValues(this.#shownValues, state.events);
     this.#plot.add(state.now_ms - state.began_ms, [
-      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: numberOfShown(state.readings[index]?.text) })),
+      ...devicesOf(pageState.robotName.value, 'sensor').map((device, index) => ({ name: deviceName(device), value: parseShownValue(state.readings[index]?.text) })),
       ...this.#variables.map(({ name, is_yes_no }, index) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[index])) : state.variables[index] })),
-      ...[...this.#shownValues].map(([name, value]) => ({ name, value: numberOfShown(value) })),
+      ...[...this.#shownValues].map(([name, value]) => ({ name, value: parseShownValue(value) })),
     ]);
   }
 

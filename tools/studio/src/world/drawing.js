@@ -2,7 +2,7 @@
 // only by `parts.js`.
 
 import { element } from '../page/elements.js';
-import { bytesOf, download, onFileChosen } from '../page/files.js';
+import { readBytes, downloadText, onFileChosen } from '../page/files.js';
 import { copyAsOwn } from './own.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, textKey, text } from '../page/texts.js';
@@ -364,7 +364,7 @@ export class WorldDrawing {
     const { name } = file;
     let reason = text('unreadable');
     try {
-      const data = await bytesOf(file);
+      const data = await readBytes(file);
       const answer = await this.#python.ask({ do: 'open_world', name, language: currentLanguage() }, data);
       if (answer.world) {
         this.#page.putWorld(answer.world, true);
@@ -384,7 +384,7 @@ export class WorldDrawing {
     const name = text('world_name');
     const worldText = await this.#writeWorld();
     if (!worldText) return;
-    download(name, worldText);
+    downloadText(name, worldText);
     this.#setNotice([text('saved', { name }), this.#isBlocked && text('world_blocked')].filter(Boolean).join(' '));
   }
 

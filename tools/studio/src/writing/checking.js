@@ -23,7 +23,7 @@ export class Checker {
 
   /**
    * @param {import('../python.js').Python} python
-   * @param {(why: unknown) => void} onFail the compiler cannot say it
+   * @param {(error: unknown) => void} onFail the compiler cannot say it
    */
   constructor(python, onFail) {
     this.#python = python;
