@@ -489,7 +489,7 @@ const PARTS = {
             return { version: 1, changes: [], ids: [], drafts: [], pending: [], since: 0, epoch: '', told: 0, why: '', count: 0, kept: { name: 'page' } };
           },
         };
-        const programs = new Programs({ python, work, put: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
+        const programs = new Programs({ python, work, putProgram: ({ text }) => { puts(text); shown = text; told = 'class_given'; }, makePicture() {} });
         globalThis.confirm = () => {
           isLaw('while it asks');
           asked.push([...kept][0]);
@@ -2947,7 +2947,7 @@ const PARTS = {
       await later(delay());
       return { text: lineOf(new TextDecoder().decode(bytes)) };
     };
-    const programs = new Programs({ python: { ask }, work, put: (program) => Object.assign(work, program), makePicture() {} });
+    const programs = new Programs({ python: { ask }, work, putProgram: (program) => Object.assign(work, program), makePicture() {} });
     let count = 0;
     let now_ms = 1e12;
     Date.now = () => (now_ms += 1);

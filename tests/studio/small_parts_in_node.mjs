@@ -182,7 +182,7 @@ const PARTS = {
   async versions(random) {
     const page = freshPage();
     await learns(page);
-    const { deleteVersion, loadVersions, restoreVersion, sameProgramAs, storeVersion } = await page.load('programs/versions.js');
+    const { deleteVersion, loadVersions, restoreVersion, isSameProgramAs, storeVersion } = await page.load('programs/versions.js');
     const KEY = 'tiniscript.versions';
     let model = [], at_ms = 1e12, deleted = [];
     const same = (one, other) => one.robot === other.robot && one.text.replace(/\s/g, '') === other.text.replace(/\s/g, '');
@@ -219,7 +219,7 @@ const PARTS = {
     const checks = () => {
       const versions = loadVersions();
       is(versions, model, 'the programs');
-      for (const [k, version] of versions.entries()) if (versions.slice(k + 1).some(sameProgramAs(version))) throw new Fails(`${version.text} is there twice`);
+      for (const [k, version] of versions.entries()) if (versions.slice(k + 1).some(isSameProgramAs(version))) throw new Fails(`${version.text} is there twice`);
     };
     return { acts: actions, checks };
   },

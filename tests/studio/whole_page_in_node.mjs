@@ -351,7 +351,7 @@ function expects(tab) {
     if (['start_lessons', 'start_robot'].includes(did) && dataset.half !== 'robot') throw new Error('what was chosen is not seen');
     if (did === 'Add it to the program' && keptWork().lesson !== LESSONS[byId('lesson_page').dataset.lesson - 1].name) throw new Error(`a lesson's program is of ${keptWork().lesson || 'nobody'}`);
     const wasLeft = before.screen === 'program' && dataset.screen === 'start' && before.text.trim() !== '' && !tab.isShippedProgram(before.text);
-    if (wasLeft && !tab.versions.loadVersions().some(tab.versions.sameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
+    if (wasLeft && !tab.versions.loadVersions().some(tab.versions.isSameProgramAs(before))) throw new Error(`${before.text} is lost at the start screen`);
     if (['bar_new', 'new'].includes(did) && 'big' in dataset) throw new Error(`after ${did} the robot is seen as in a run`);
     if (LATER.includes(did)) tab.isComing = true;
     if (!PASSIVE.includes(did) || tab.isComing) tab.stays = null;

@@ -116,7 +116,7 @@ const simulatorPanel = new SimulatorPanel({
     phone.show('robot');
   },
 });
-const programs = new Programs({ python, work, put: putProgram, makePicture: () => views.makePicture() });
+const programs = new Programs({ python, work, putProgram, makePicture: () => views.makePicture() });
 
 const recorder = new Recorder({ runs: simulatorPanel.runs, play: (run) => simulatorPanel.playAgain(run) });
 const runningPlace = new RunningPlace();

@@ -3,7 +3,7 @@
 import { makeWindow } from './windows.js';
 import { makeButton, makeElement } from '../page/made.js';
 import { setText } from '../page/elements.js';
-import { loadVersions, sameProgramAs, versionTitle } from '../programs/versions.js';
+import { loadVersions, isSameProgramAs, versionTitle } from '../programs/versions.js';
 import { pageState } from '../page/page_state.js';
 import { currentLanguage, text } from '../page/texts.js';
 import { CLASS } from '../page/words.js';
@@ -50,8 +50,8 @@ export class HandoutWindow {
 
   /** @param {string[]} titles of the lessons, once they are known */
   #showChoices(titles) {
-    const { text: programText, robot } = this.#page.work, isOpenOne = sameProgramAs({ text: programText, robot });
-    const versions = loadVersions().filter((version) => !isOpenOne(version));
+    const { text: programText, robot } = this.#page.work, isOpenProgram = isSameProgramAs({ text: programText, robot });
+    const versions = loadVersions().filter((version) => !isOpenProgram(version));
     const chosenIndex = Math.max(0, this.#choiceSelect.selectedIndex);
     const lessonNumbers = Array.from({ length: this.#lessonCount }, (_, index) => index + 1);
     this.#handouts = [{ text: programText, robot }, ...versions, ...lessonNumbers.map((number) => ({ lesson: number }))];
