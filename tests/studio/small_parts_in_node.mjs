@@ -74,7 +74,7 @@ const PARTS = {
         tells('run', world);
         await beginning.run;
       },
-      seeProgram: () => tells('see'), showSide: (id) => tells('side', id), leaveProgram: () => tells('leave'),
+      onProgramShown: () => tells('see'), showSide: (id) => tells('side', id), leaveProgram: () => tells('leave'),
     });
     is(told.splice(0), screen === 'program' ? [['see']] : [], 'told at first');
     const goes = (to) => {
@@ -232,9 +232,9 @@ const PARTS = {
     const { pageState } = await page.load('page/page_state.js');
     const { text } = await page.load('page/texts.js');
     const { showOwnRobot, validOwnRobot, COLOURS } = await page.load('page/own_robot.js');
-    const { OwnWindow } = await page.load('start/own_window.js');
+    const { OwnRobotWindow } = await page.load('start/own_window.js');
     showOwnRobot();
-    new OwnWindow();
+    new OwnRobotWindow();
     const dialog = document.querySelectorAll('dialog').find(({ id }) => id === 'own');
     const nameInput = dialog.querySelectorAll('input').find(({ type }) => type !== 'radio');
     const radios = dialog.querySelectorAll('input').filter(({ type }) => type === 'radio');

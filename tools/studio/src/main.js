@@ -26,8 +26,8 @@ import { RunningPlace } from './robot/place.js';
 import { listenToSideButtons } from './page/sides.js';
 import { ignoreSecondPresses } from './page/twice.js';
 import { FIRST_PROGRAM } from './start/beginnings.js';
-import { openFirstScreen, isStart, showScreen } from './start/screens.js';
-import { OwnWindow } from './start/own_window.js';
+import { openFirstScreen, isStartShown, showScreen } from './start/screens.js';
+import { OwnRobotWindow } from './start/own_window.js';
 import { Start } from './start/start.js';
 import { startTheme } from './page/theme.js';
 import { Views } from './writing/views.js';
@@ -151,14 +151,14 @@ const checker = new Checker(python, (error) => {
 const phone = new Phone(() => robotPanel.run());
 openFirstScreen(entryFailure !== '' || holdsProgram(location.hash), !('class' in document.documentElement.dataset));
 if (storedWork) programs.storeVersion();
-new OwnWindow();
+new OwnRobotWindow();
 new Start({
   putProgram: (program) => programs.replaceProgram(program),
   runInWorld: (worldName) => {
     phone.show('robot');
     return simulatorPanel.run(worldName);
   },
-  seeProgram: () => views.wake(),
+  onProgramShown: () => views.wake(),
   showSide: (id) => {
     element(id, HTMLButtonElement).click();
     phone.show(id === 'side_virtual' ? 'program' : 'robot');
@@ -170,7 +170,7 @@ new Start({
     lessons.leave();
   },
 });
-if (!isStart()) lessons.reopen();
+if (!isStartShown()) lessons.reopen();
 if ('class' in document.documentElement.dataset) {
   import('./class/classroom.js').then(({ openClass }) => openClass({
     panel: robotPanel, work, python, editor, views, keepProgram: () => programs.storeVersion(), openLesson: (lessonNumber) => {
@@ -229,7 +229,7 @@ python.ready.then(() => {
   isReady = true;
   checker.markReady();
   views.markReady();
-  if (isStart()) views.prefetchBlocks();
+  if (isStartShown()) views.prefetchBlocks();
 });
 
 /** @param {string} sentence of the newest text @param {string} className */
