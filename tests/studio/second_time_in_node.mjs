@@ -688,7 +688,7 @@ const PARTS = {
       },
     };
     robot = virtualRobot(chanceOf(1), true);
-    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, storeCurrentWork() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.reads ?? null]) } });
+    new SimulatorPanel({ python, work: { world: 'w', sound: true }, whenChecked: async () => PROGRAM, storeCurrentWork() {}, pad: { offerRobot: (side, driven) => notes.push(['pad', side, driven?.remoteWords ?? null]) } });
     await settles();
     const line = page.byId('time_at');
     const marked = [];
@@ -1841,7 +1841,7 @@ const PARTS = {
           const isOpen = stop === 'pressed';
           if (event.event === 'STARTED' && stop === 'done') stop = '';
           if (event.event !== 'STOPPED') return;
-          if (!noted('pad', 'letGo')) throw new Error('what is held is held on after a stop');
+          if (!noted('pad', 'releaseAll')) throw new Error('what is held is held on after a stop');
           if (!isOpen && stop === '' && said() !== text('stopped_MESSAGE')) throw new Error(`of a stop after a start it says ${said()}`);
           stop = 'done';
         },

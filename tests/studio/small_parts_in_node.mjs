@@ -696,7 +696,7 @@ const PARTS = {
         return { count: keys.length, keys: [...new Set([...listOf(kept), ...keys])].join() };
       },
     };
-    new RobotPanel({ python, goTo() {}, recorder: new Recorder({ runs: new Runs(), play() {} }), place: new RunningPlace(), pad: { letGo() {}, offerRobot() {} } });
+    new RobotPanel({ python, goTo() {}, recorder: new Recorder({ runs: new Runs(), play() {} }), place: new RunningPlace(), pad: { releaseAll() {}, offerRobot() {} } });
     await passes(50);
     const wanted = new Set();
     let count = 0;

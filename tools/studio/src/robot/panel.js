@@ -381,9 +381,9 @@ export class RobotPanel {
     this.#remoteWords = remoteWords;
     const robotInfo = this.#robotInfo;
     this.#page.pad.offerRobot('link', robotInfo && remoteWords.length ? {
-      reads: remoteWords,
-      isDeaf: !robotInfo.has_remote,
-      tell: (controls) => this.#sendControls(controls),
+      remoteWords,
+      lacksRemote: !robotInfo.has_remote,
+      sendControls: (controls) => this.#sendControls(controls),
     } : null);
   }
 
@@ -391,7 +391,7 @@ export class RobotPanel {
   async #sendControls(controls) {
     const answer = await this.#transport?.press(controls).catch(() => null); // it is over, and that was said
     if (!answer?.said) return; // it has heard it, or the next word
-    this.#page.pad.letGo(); // it is not asked again and again
+    this.#page.pad.releaseAll(); // it is not asked again and again
     this.#speech.sayFailure(new ConnectionFailure(answer.failure ?? 'bug', refusalText(answer)));
   }
 
@@ -493,7 +493,7 @@ export class RobotPanel {
     } else if (event.event === 'STOPPING') this.#stopNotice.begin();
     else if (event.event === 'RESTARTED') this.#speech.say('why_restarted');
     else if (event.event === 'STOPPED') {
-      this.#page.pad.letGo();
+      this.#page.pad.releaseAll();
       // A page that is hidden keeps the words why it stopped the robot.
       if (this.#stopNotice.isOpen || document.visibilityState !== 'hidden') this.#stopNotice.confirm(String(event.cause));
     }

@@ -601,7 +601,7 @@ export class SimulatorPanel {
   /** A run that reads a remote control can be driven. */
   #offerRemote() {
     const canDrive = this.#isDriving && this.#remoteWords.length > 0;
-    this.#page.pad.offerRobot('driving', canDrive ? { reads: this.#remoteWords, tell: (controls) => { this.#simulator.heldControls = controls; } } : null);
+    this.#page.pad.offerRobot('driving', canDrive ? { remoteWords: this.#remoteWords, sendControls: (controls) => { this.#simulator.heldControls = controls; } } : null);
     if (!canDrive) this.#simulator.heldControls = null;
   }
 
