@@ -7,9 +7,9 @@ const PART_CHARACTERS = 60_000; // characters: each has three bytes at most
 const POLL_MS = 300;
 const ANSWER_LIMIT_MS = 15_000;
 
-/** Gives it to the class. @param {number} questionNumber the number of the question @param {() => Promise<string>} newestRunFile its file, or nothing */
-export async function giveRun(questionNumber, newestRunFile) {
-  const file = await newestRunFile().catch(() => '');
+/** Gives it to the class. @param {number} questionNumber the number of the question @param {() => Promise<string>} fetchNewestRunFile its file, or nothing */
+export async function giveRun(questionNumber, fetchNewestRunFile) {
+  const file = await fetchNewestRunFile().catch(() => '');
   for (let offset = 0; offset === 0 || offset < file.length; offset += PART_CHARACTERS) {
     const part = file.slice(offset, offset + PART_CHARACTERS);
     await post({ do: 'run', asked: questionNumber, from: offset, part, is_last: offset + PART_CHARACTERS >= file.length });

@@ -19,7 +19,7 @@ import { text } from '../page/texts.js';
  * @property {PupilRow | null} pupil null of who is not here
  */
 /** @typedef {{enlarge: (key: string) => void, remove: (key: string) => void, lowerHand: (key: string) => void, playRun: (key: string) => void, visitGroup: (key: string) => void}} TileActions */
-/** @typedef {{item: HTMLElement, seeButton: HTMLButtonElement, ownRobotDrawing: SVGElement, nameElement: HTMLElement, handButton: HTMLButtonElement, outButton: HTMLButtonElement, playButton: HTMLButtonElement, joinButton: HTMLButtonElement, pictureElement: HTMLImageElement, emptyElement: HTMLElement, badgeElement: HTMLElement, pipsElement: HTMLElement, stateElement: HTMLElement}} Tile */
+/** @typedef {{item: HTMLElement, enlargeButton: HTMLButtonElement, ownRobotDrawing: SVGElement, nameElement: HTMLElement, handButton: HTMLButtonElement, outButton: HTMLButtonElement, playButton: HTMLButtonElement, joinButton: HTMLButtonElement, pictureElement: HTMLImageElement, emptyElement: HTMLElement, badgeElement: HTMLElement, pipsElement: HTMLElement, stateElement: HTMLElement}} Tile */
 
 const SILENT_S = 5;
 const PICTURE_ASPECT_RATIO = 1.75; // of a tile's picture: what suits most programs
@@ -83,20 +83,20 @@ export class Wall {
 
   /** @param {TileContent} content @returns {Tile} */
   #makeTile({ key }) {
-    const seeButton = makeButton('', () => this.#actions.enlarge(key));
+    const enlargeButton = makeButton('', () => this.#actions.enlarge(key));
     const handButton = makeButton('', () => this.#actions.lowerHand(key), makeIcon('hand', 26));
     const outButton = makeButton('', () => this.#actions.remove(key), makeIcon('out', 20));
     const playButton = makeButton('', () => this.#actions.playRun(key), makeIcon('run', 20));
     const joinButton = makeButton('', () => this.#actions.visitGroup(key), makeIcon('join', 20));
     const nameElement = makeElement('strong'), pictureElement = makeElement('img'), emptyElement = makeElement('span', 'class_empty');
     const badgeElement = makeElement('span'), pipsElement = makeElement('span'), stateElement = makeElement('span');
-    for (const [className, element] of Object.entries({ see: seeButton, hand: handButton, out: outButton, play: playButton, join: joinButton, badge: badgeElement, pips: pipsElement, said: stateElement, empty: emptyElement })) element.className = className;
+    for (const [className, element] of Object.entries({ see: enlargeButton, hand: handButton, out: outButton, play: playButton, join: joinButton, badge: badgeElement, pips: pipsElement, said: stateElement, empty: emptyElement })) element.className = className;
     pictureElement.alt = '';
     pictureElement.hidden = true;
     emptyElement.hidden = true; // until its program is known
     const ownRobotDrawing = makeSvg('svg', { class: 'own_robot', viewBox: '-26 -22 54 44', 'aria-hidden': 'true' }, makeSvg('use', { href: '#drawn_robot' }));
-    const listItem = makeElement('li', '', nameElement, makeElement('div', '', pictureElement, emptyElement), makeElement('p', '', pipsElement, stateElement), badgeElement, ownRobotDrawing, seeButton, handButton, playButton, joinButton, outButton);
-    return { item: listItem, seeButton, ownRobotDrawing, nameElement, handButton, outButton, playButton, joinButton, pictureElement, emptyElement, badgeElement, pipsElement, stateElement };
+    const listItem = makeElement('li', '', nameElement, makeElement('div', '', pictureElement, emptyElement), makeElement('p', '', pipsElement, stateElement), badgeElement, ownRobotDrawing, enlargeButton, handButton, playButton, joinButton, outButton);
+    return { item: listItem, enlargeButton, ownRobotDrawing, nameElement, handButton, outButton, playButton, joinButton, pictureElement, emptyElement, badgeElement, pipsElement, stateElement };
   }
 
   /** @param {Tile} tile @param {TileContent} content @param {number} lessonCount */
@@ -134,7 +134,7 @@ export class Wall {
     }
     const details = [text(`class_is_${state}`), pupil?.hand ? text('class_hand_up') : '', robotText(pupil),
       pupil?.place ? text('class_waits', { place: pupil.place }) : '', text('class_lessons', { done: doneLessons.length, all: lessonCount })];
-    setLabel(tile.seeButton, `${text('class_see_of', { name: plainName })} ${details.filter(Boolean).join(', ')}`);
+    setLabel(tile.enlargeButton, `${text('class_see_of', { name: plainName })} ${details.filter(Boolean).join(', ')}`);
     setLabel(tile.handButton, text('class_lower', { name: plainName }));
     setLabel(tile.outButton, text('class_remove_of', { name: plainName }));
     setLabel(tile.joinButton, text('class_visit_of', { name: plainName }));
